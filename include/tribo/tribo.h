@@ -1,0 +1,269 @@
+/* tribo: dry friction in structural dynamics.
+ *
+ * Quantities. A contact has a relative velocity v = dz/dt and a friction force f along +z. Its limit is mu times the
+ * normal load, limit >= 0, so that sliding means f = -limit * sgn(v). Contact accelerations are z'' = R f + a, where
+ * R = J M^-1 J' (the Delassus operator, symmetric and positive semidefinite) and a is everything but friction.
+ * f_eq is the friction force that makes a contact's z'' zero. Any consistent set of units will do: forces like limit,
+ * velocities like epsilon, and R in velocity per time and force.
+ *
+ * Arrays hold one double a contact, contiguous, unless said otherwise; contacts are counted from 0. Outputs come
+ * last, must not overlap inputs, and are untouched on error; an output marked "or NULL" is then not computed.
+ *
+ * Status. Every call that can fail returns one of TRIBO_OK (0) and TRIBO_ERR_...; tribo_message tells what, which contact
+ * and which value. Nothing prints, exits, aborts or keeps global state.
+ *
+ * Threads. Functions of a const context may be called by several threads on one context (if two of them fail at the
+ * same time, the message is that of one of them). Everything else wants one context a thread: tribo_clone.
+ * Memory is allocated by tribo_create, tribo_clone and tribo_set_operator_... only.
+ *
+ * Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397,
+ * doi:10.1115/1.1760564, "the paper" below. All functions: since 1.0, unless said otherwise.
+ */
+#ifndef TRIBO_TRIBO_H
+#define TRIBO_TRIBO_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define TRIBO_VERSION_MAJOR 1
+#define TRIBO_VERSION_MINOR 0
+#define TRIBO_VERSION_PATCH 0
+#define TRIBO_VERSION (10000 * TRIBO_VERSION_MAJOR + 100 * TRIBO_VERSION_MINOR + TRIBO_VERSION_PATCH)
+
+#ifndef TRIBO_API
+#if defined(__GNUC__)
+#define TRIBO_API __attribute__((visibility("default")))
+#else
+#define TRIBO_API
+#endif
+#endif
+
+/* Status codes. Numbers are never reused. */
+enum {
+    TRIBO_OK = 0,
+    /* arguments */
+    TRIBO_ERR_NULL = 1,         /* a required pointer is NULL */
+    TRIBO_ERR_NOT_FINITE = 2,   /* NaN or infinity */
+    TRIBO_ERR_NEGATIVE = 3,     /* a value must be >= 0 */
+    TRIBO_ERR_NOT_POSITIVE = 4, /* a value must be > 0 */
+    TRIBO_ERR_RANGE = 5,        /* an index or a choice is out of range */
+    TRIBO_ERR_SIZE = 6,         /* sizes do not fit each other, or are too large */
+    TRIBO_ERR_NAME = 7,         /* no law or method has this name */
+    TRIBO_ERR_STATE = 8,        /* another call must come first */
+    TRIBO_ERR_UNSUPPORTED = 9,  /* not available for this system, law or build */
+    TRIBO_ERR_MEMORY = 10,
+    TRIBO_ERR_FILE = 11, /* a file cannot be read or does not hold what it should */
+    /* operators and matrices */
+    TRIBO_ERR_NOT_SYMMETRIC = 20,
+    TRIBO_ERR_INDEFINITE = 21, /* not positive semidefinite, or a mass matrix that is not positive definite */
+    TRIBO_ERR_DUPLICATE = 22,  /* an entry is given twice */
+    /* solvers */
+    TRIBO_ERR_INCONSISTENT = 40, /* partition coupling: no f_eq balances this a; the outputs hold the least-squares one */
+    TRIBO_ERR_NO_CONVERGENCE = 41,
+    /* drivers */
+    TRIBO_ERR_STOPPED = 60, /* the observer ended the run */
+    TRIBO_ERR_STEP = 61,    /* the step size fell below what time resolves */
+    TRIBO_ERR_CALLBACK = 62 /* a function of the caller's failed */
+};
+
+/* 10000 major + 100 minor + patch of the library that is running; TRIBO_VERSION is that of this header. */
+TRIBO_API int tribo_version(void);
+TRIBO_API const char *tribo_version_string(void);
+
+/* Text for a status; any int gets one. */
+TRIBO_API const char *tribo_strerror(int status);
+
+/* ---------------------------------------------------------------------------------------------------------- laws */
+
+/* Friction laws.
+ *   COULOMB           v != 0: -limit sgn v;  v = 0: clamp(f_eq, -limit, limit). The paper, Eq. 1 and 2.
+ *   VELOCITY_LIMITED  clamp(-limit v/epsilon, -limit, limit). Martins and Oden (1987), the paper's Eq. 3.
+ *   SMOOTH            -limit tanh(v/epsilon).
+ *   KARNOPP           |v| <= epsilon: clamp(f_eq, -limit, limit), else -limit sgn v; the caller holds v at 0 inside.
+ *   QUINN             clamp(clamp(f_eq, -limit, limit) - (2 limit/epsilon) v, -limit, limit). The paper, Eq. 4.
+ *   QUINN_REVERSAL    Quinn's law, with a second-order form for contacts that are driven through v = 0 without stick;
+ *                     it remembers which those are, see tribo_accept. */
+enum {
+    TRIBO_COULOMB = 0,
+    TRIBO_VELOCITY_LIMITED = 1,
+    TRIBO_SMOOTH = 2,
+    TRIBO_KARNOPP = 3,
+    TRIBO_QUINN = 4,
+    TRIBO_QUINN_REVERSAL = 5
+};
+
+/* Number of laws; their numbers are 0 to tribo_law_count() - 1. */
+TRIBO_API int tribo_law_count(void);
+
+/* Name of a law ("coulomb", "velocity-limited", "smooth", "karnopp", "quinn", "quinn-reversal") and the place in the
+ * literature that it comes from. NULL if there is no such law. */
+TRIBO_API const char *tribo_law_name(int law);
+TRIBO_API const char *tribo_law_reference(int law);
+
+/* Number of the law called name. Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME. */
+TRIBO_API int tribo_law_find(const char *name, int *law);
+
+/* One contact, no context: the force and its derivatives.
+ * v         in   relative velocity
+ * feq       in   balancing force; read only where |v| <= epsilon and the law asks for it
+ * limit     in   mu times normal load, >= 0
+ * epsilon   in   velocity scale, > 0
+ * f         out  friction force, |f| <= limit
+ * df_dv, df_dfeq, df_dlimit   out, each or NULL; one-sided at a kink, df_dv = 0 at a jump
+ * QUINN_REVERSAL: as for a contact that comes in sliding (memory bit set).
+ * Returns TRIBO_ERR_RANGE (law), TRIBO_ERR_NULL (f), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE. */
+TRIBO_API int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, double *f, double *df_dv,
+                             double *df_dfeq, double *df_dlimit);
+
+/* -------------------------------------------------------------------------------------------------------- contexts */
+
+/* A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace. */
+typedef struct tribo_context tribo_context;
+
+/* A context for ncontact contacts (0 is fine): Quinn's law, limit 0, epsilon 1e-6, R = identity, consistent coupling.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
+
+/* A copy with the same settings and memory, and nothing shared. */
+TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
+
+/* Releases a context; NULL is fine. */
+TRIBO_API void tribo_destroy(tribo_context *ctx);
+
+/* What the last call that failed on ctx found: argument, contact (counted from 0) and value; "" before any. Belongs to
+ * the context. A NULL context gets a text too. */
+TRIBO_API const char *tribo_message(const tribo_context *ctx);
+
+/* For libraries on top of this one: makes text the message of ctx, and returns status. */
+TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
+
+/* Number of contacts. */
+TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
+
+/* Law of all contacts; clears the reversal memory. Returns TRIBO_ERR_RANGE for a number that is no law. */
+TRIBO_API int tribo_set_law(tribo_context *ctx, int law);
+TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
+
+/* Limits mu*N. limit [n] in, finite and >= 0; 0 means an open contact, which carries no force and costs nothing.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE; on error all limits stay as they were. */
+TRIBO_API int tribo_set_limit(tribo_context *ctx, const double *limit);
+TRIBO_API int tribo_set_limit_all(tribo_context *ctx, double limit);
+TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);
+
+/* Velocity scale of the regularized laws. epsilon [n] in, > 0, in units of v. */
+TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
+TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
+
+/* Fixes the rate at which stuck contacts relax, lambda = 2 limit R_ii/epsilon, to lambda_dt/dt, whatever limits and
+ * operator are or become: epsilon_i = 2 limit_i R_ii dt/lambda_dt follows them.
+ * dt         in  time step of the caller's integrator, > 0
+ * lambda_dt  in  > 0; the paper takes 1 for the oscillator and 0.4 for the chain; rk4 is stable to 2.785 */
+TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);
+TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
+
+/* The operator R of z'' = R f + a. On error the old one stays.
+ * A contact with R_ii = 0 (driven from both sides: friction cannot move it) is taken as the limit R_ii -> +0: at rest
+ * it carries -limit sgn(a_i), and nothing if a_i = 0; its f_eq is then reported as -sgn(a_i) times a huge number. */
+
+/* R = diag(r): contacts that share no body. r [n] in, >= 0. Never enters a solver. */
+TRIBO_API int tribo_set_operator_diagonal(tribo_context *ctx, const double *r);
+
+/* r [n][n] in, symmetric to rounding (it is made exactly so), positive semidefinite, redundant contacts welcome.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_set_operator_dense(tribo_context *ctx, const double *r);
+
+/* The same in compressed rows, both triangles: the entries of row i are val[k] at column col[k], k = rowptr[i] to
+ * rowptr[i+1] - 1, in any order, each at most once. rowptr [n+1], col and val [rowptr[n]].
+ * Returns also TRIBO_ERR_RANGE, TRIBO_ERR_SIZE (rowptr decreases), TRIBO_ERR_DUPLICATE. */
+TRIBO_API int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val);
+
+/* R = J diag(inverse_mass) J', J [n][ndof] in compressed rows: row i is how the velocities of the degrees of freedom
+ * make v_i. inverse_mass [ndof] in, >= 0 (0: a degree of freedom whose motion is prescribed). */
+TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr,
+                                      const size_t *col, const double *val);
+
+/* How f_eq of contacts that share bodies is found.
+ *   CONSISTENT  f_eq of each contact balances the forces that the others really carry. Continuous, has a solution for every
+ *               a, and at v = 0 it is Coulomb's law exactly. Beyond the paper.
+ *   PARTITION   with S the contacts with |v| <= epsilon: R_SS f_eq = -(a_S + R_SL f_L). The paper, Eq. 8 to 10. */
+enum { TRIBO_CONSISTENT = 0, TRIBO_PARTITION = 1 };
+TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
+TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
+
+/* ---------------------------------------------------------------------------------------------------------- forces */
+
+/* Friction force of every contact from its law, f_eq being known.
+ * v    [n] in   relative velocity
+ * feq  [n] in   balancing force; read only where |v| <= epsilon
+ * f    [n] out  friction force, |f| <= limit
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE. The paper, Eq. 4. */
+TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
+
+/* The same with derivatives. f, df_dv, df_dfeq, df_dlimit [n] out, each or NULL. Where epsilon follows the limit
+ * (tribo_set_epsilon_step), df_dlimit takes that into account. */
+TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                                  double *df_dfeq, double *df_dlimit);
+
+/* f_eq and f of coupled contacts, z'' = R f + a.
+ * v    [n] in   relative velocity
+ * a    [n] in   relative acceleration without friction (minus the contact's driven acceleration)
+ * feq  [n] out  or NULL; 0 for open contacts
+ * f    [n] out  or NULL; |f| <= limit
+ * Consistent coupling: f = law(v, feq) and R_ii feq_i = -(a_i + sum of R_ij f_j over j != i), to rounding. Where
+ * contacts are redundant R f is unique and f one of the solutions. QUINN_REVERSAL: f_eq balances Quinn's forces.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
+TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
+
+/* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
+ * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink. */
+TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
+                                    double *df_da);
+
+/* Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step,
+ * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
+ * dt     in       step, > 0
+ * vfree  [n] in   relative velocity that the step would end with without friction
+ * f      [n] out  friction force, |f| <= limit
+ * Moreau (1988); Jean and Moreau (1992). */
+TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
+
+/* Tells that the integrator accepted a step that ended at v, feq (feq is read only where |v| <= epsilon). Advances the
+ * memory of QUINN_REVERSAL: a contact is marked when |v| > epsilon, and unmarked when |v| <= epsilon and |feq| <= limit.
+ * Does nothing for other laws. */
+TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);
+
+/* ----------------------------------------------------------------------------------------------------------- queries */
+
+/* What each contact did in the last tribo_balance or tribo_step_force. mode [n] out: 0 stuck, +1 and -1 sliding in that
+ * direction (the force is -limit * mode), 2 open. Returns TRIBO_ERR_STATE before the first such call. */
+TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
+
+/* Counts. STUCK and RANK are those of the last tribo_balance or tribo_step_force, the others add up since tribo_create. */
+enum {
+    TRIBO_COUNT_STUCK = 0,          /* contacts with mode 0 */
+    TRIBO_COUNT_RANK = 1,           /* sum of the ranks of the matrices that the last call solved with */
+    TRIBO_COUNT_ISLANDS = 2,        /* groups of coupled contacts in the operator */
+    TRIBO_COUNT_SOLVES = 3,         /* islands that had to be solved */
+    TRIBO_COUNT_SKIPPED = 4,        /* islands left alone: no contact near stick */
+    TRIBO_COUNT_FACTORIZATIONS = 5, /* matrices factorized */
+    TRIBO_COUNT_UPDATES = 6,        /* changes of a stick set */
+    TRIBO_COUNT_MEMORY = 7          /* reversal marks that tribo_accept has set or cleared */
+};
+TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
+
+/* Real quantities. */
+enum {
+    TRIBO_REAL_RESIDUAL = 0, /* last balance: largest |f - law(v, feq)|/limit among the contacts near stick */
+    TRIBO_REAL_MAX_RATE = 1, /* bound on lambda, the rate at which stuck contacts relax, 1/time */
+    TRIBO_REAL_MAX_STEP = 2  /* largest step for which rk4 is stable with that rate, 2.785/lambda; HUGE_VAL if lambda = 0 */
+};
+TRIBO_API int tribo_get_real(const tribo_context *ctx, int which, double *value);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

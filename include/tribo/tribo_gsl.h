@@ -1,0 +1,153 @@
+/* tribo with GSL: mechanical systems with friction, and their integration in time.
+ *
+ * A system is M q'' + C q' + K q = p(t) + J' f,  v = J q' - b(t),  with p and b sums of harmonics; f are the friction forces of
+ * its contacts, found by the tribo_context that it owns, and v their relative velocities. Its state is
+ *     y = q [ndof], q' [ndof], energy dissipated by friction since t = 0        2 ndof + 1 values.
+ *
+ * Conventions, units and threads as in tribo.h; a system and its drivers belong to one thread. GSL's error handler is
+ * never changed, nor ever called: what GSL would object to is refused here first.
+ * This library is BSD-3-Clause; GSL is under the GPL, and so is what is linked with both.
+ * All functions: since 1.0, unless said otherwise.
+ */
+#ifndef TRIBO_TRIBO_GSL_H
+#define TRIBO_TRIBO_GSL_H
+
+#include <gsl/gsl_odeiv2.h>
+#include <gsl/gsl_spmatrix.h>
+
+#include "tribo/tribo.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* --------------------------------------------------------------------------------------------------------- systems */
+
+typedef struct tribo_system tribo_system;
+
+/* Quinn's three reference systems (Quinn 2004, doi:10.1115/1.1760564), nondimensional. limits >= 0, everything finite.
+ * All return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_SIZE, TRIBO_ERR_MEMORY. */
+
+/* x'' + x = f + alpha sin(omega t). Eq. 5. */
+TRIBO_API int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega);
+
+/* n >= 2 blocks on a frictional surface, pulled by alpha sin(omega t) at the first one. Fig. 8 and the equations beside it.
+ * limit is the paper's mu N_i; the context keeps the paper's scaling, forces f_i with limit mu N_i and R = identity; the
+ * last entry of the state is the paper's D, (1/n) times the sum of the integrals of -f_i u_i'. */
+TRIBO_API int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha, double omega);
+
+/* Two blocks, the upper on the lower, the lower on a belt that moves with speed * sin(omega t): contact 0 is between belt and
+ * lower block (limit1), contact 1 between the blocks (limit2); kappa is the stiffness of the upper spring. Eq. 7, Fig. 10. */
+TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega);
+
+/* Any linear structure, from its matrices in the caller's units.
+ * mass       [ndof][ndof] in  symmetric, positive definite; diagonal is fastest
+ * damping    [ndof][ndof] in, or NULL for none
+ * stiffness  [ndof][ndof] in  symmetric
+ * direction  [ncontact][ndof] in  J: row i is how the velocities of the degrees of freedom make that of contact i
+ * nmode      in   0, or: keep only the motion in the nmode lowest modes of (K, M); q then holds their amplitudes (modes have
+ *                 modal mass 1), ndof of the system is nmode, and damping must be NULL (see tribo_system_set_damping_ratio)
+ * message    [size] out, or NULL: on error, the text that says what is wrong and where
+ * The context starts with Quinn's law and limit 0 (all contacts open), and with R = J M^-1 J'. No load, no motion yet.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_MEMORY.
+ */
+TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
+                                  const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
+
+/* The same from sparse matrices (any GSL format; ones that hold only one triangle of a symmetric matrix must be completed first).
+ * Without reduction a mass matrix that is not diagonal makes the system dense. */
+TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
+                                         const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
+                                         char *message, size_t size);
+
+TRIBO_API void tribo_system_destroy(tribo_system *sys);
+
+/* Adds a harmonic to the load, p(t) += cosine cos(omega t) + sine sin(omega t).
+ * cosine, sine  [ndof of the matrices given] in, each or NULL; forces, also for a reduced system */
+TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
+
+/* Adds a harmonic to the driven velocities of the contacts, b(t) += cosine cos(omega t) + sine sin(omega t), e.g. of a belt.
+ * cosine, sine  [ncontact] in, each or NULL */
+TRIBO_API int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
+
+/* Reduced systems: damping ratio of every mode, C = diag(2 zeta omega_k). zeta >= 0. Others: TRIBO_ERR_UNSUPPORTED. */
+TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
+
+/* Reduced systems: natural frequencies omega_k [ndof] out, ascending, rad/time; and the displacements of the whole structure,
+ * full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in. Others: TRIBO_ERR_UNSUPPORTED. */
+TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
+TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
+
+/* Sizes; 0 for NULL. dimension is 2 ndof + 1. */
+TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
+TRIBO_API size_t tribo_system_ncontact(const tribo_system *sys);
+TRIBO_API size_t tribo_system_dimension(const tribo_system *sys);
+
+/* The context of the system's contacts, borrowed: set law, limits, epsilon and coupling here. Its operator is the system's. Calls
+ * on the system that fail leave their message on it. NULL for NULL. */
+TRIBO_API tribo_context *tribo_system_context(tribo_system *sys);
+
+/* The system for anyone's own GSL driver, with Jacobian; borrowed. Use one driver at a time. */
+TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);
+
+/* What the contacts do in a state.
+ * y    [dimension] in
+ * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance */
+TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
+
+/* tribo_accept for the state (t, y): to be called after each accepted step by integrators other than tribo_driver. */
+TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
+
+/* --------------------------------------------------------------------------------------------------------- drivers */
+
+typedef struct tribo_driver tribo_driver;
+
+/* An integrator for a system, which it borrows and which must live longer.
+ * method   in   "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step;
+ *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL
+ *               stepper of that name, adaptive from dt on: error of a step below abstol + reltol |y|
+ * dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks for it.
+ * abstol   in   >= 0; > 0 for adaptive methods
+ * reltol   in   >= 0
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE,
+ * TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY; the message is on the system's context. */
+TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
+                                  double reltol);
+
+/* Names of the methods, method 0 to tribo_method_count() - 1; NULL outside. */
+TRIBO_API int tribo_method_count(void);
+TRIBO_API const char *tribo_method_name(int method);
+
+/* Integrates from *t to t1 >= *t.
+ * t  in/out   time
+ * y  [dimension] in/out   state; may be changed between calls
+ * On error t and y hold the last good step. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (t1 < t),
+ * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, and what tribo_balance returns. */
+TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
+
+/* Counts since creation. */
+enum {
+    TRIBO_COUNT_STEPS = 100,       /* accepted steps */
+    TRIBO_COUNT_REJECTED = 101,    /* steps tried and undone */
+    TRIBO_COUNT_EVALUATIONS = 102, /* evaluations of the right-hand side */
+    TRIBO_COUNT_JACOBIANS = 103,   /* evaluations of its Jacobian */
+    TRIBO_COUNT_EVENTS = 104       /* events located */
+};
+TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
+
+/* Has seen called after every accepted step (event 0) and at events (event 1: a contact sticks, breaks away or reverses). What
+ * it answers ends the run unless 0: the advance then returns TRIBO_ERR_STOPPED. It must not change the system. NULL: no observer.
+ */
+TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data),
+                                        void *data);
+
+/* What the last failing call found; "" before any. */
+TRIBO_API const char *tribo_driver_message(const tribo_driver *drv);
+
+TRIBO_API void tribo_driver_destroy(tribo_driver *drv);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

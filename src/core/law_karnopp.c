@@ -1,0 +1,32 @@
+/* Karnopp's threshold velocity, below which the contact counts as at rest: Quinn (2004), reference 2 and Fig. 2. */
+#include "law.h"
+
+static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+{
+    (void)slope, (void)moving;
+    const double held = clamp(feq, -limit, limit);
+    return v > epsilon ? -limit : v < -epsilon ? limit : held;
+}
+
+static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
+                                     double follows)
+{
+    (void)slope, (void)moving, (void)follows;
+    if (fabs(v) > epsilon) {
+        return (struct tangent){0.0, 0.0, -sign(v)};
+    }
+    const int held = fabs(feq) < limit;
+    return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
+}
+
+TRIBO_LAW_LOOPS
+
+const struct law tribo_law_karnopp = {
+    .id = 3,
+    .name = "karnopp",
+    .reference = "D. Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100, doi:10.1115/1.3140698",
+    .uses_feq = 1,
+    .sticks_in_band = 1,
+    .force = force_all,
+    .tangent = tangent_all,
+};

@@ -1,0 +1,29 @@
+/* The smooth companion of the velocity-limited law; creeps like it. */
+#include "law.h"
+
+static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+{
+    (void)feq, (void)slope, (void)moving;
+    return -limit * tanh(v / epsilon);
+}
+
+static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
+                                     double follows)
+{
+    (void)feq, (void)limit, (void)moving;
+    const double x = v / epsilon, t = tanh(x), cosh_2 = (1.0 - t) * (1.0 + t);
+    const double spread = cosh_2 > 0.0 ? x * cosh_2 : 0.0;
+    return (struct tangent){-0.5 * slope * cosh_2, 0.0, -t + follows * spread};
+}
+
+TRIBO_LAW_LOOPS
+
+const struct law tribo_law_smooth = {
+    .id = 2,
+    .name = "smooth",
+    .reference = "hyperbolic tangent, as in the smooth laws that D. D. Quinn, J. Vib. Acoust. 126 (2004) 391, "
+                 "cites as references 13 and 14",
+    .sticks_in_band = 1,
+    .force = force_all,
+    .tangent = tangent_all,
+};

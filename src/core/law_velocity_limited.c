@@ -1,0 +1,31 @@
+/* A viscous damper near v = 0: Martins and Oden (1987); Quinn (2004), Eq. 3. Creeps under any load. */
+#include "law.h"
+
+static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+{
+    (void)feq, (void)moving;
+    const double f = clamp(-0.5 * slope * v, -limit, limit);
+    return v > epsilon ? -limit : v < -epsilon ? limit : f;
+}
+
+static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
+                                     double follows)
+{
+    (void)feq, (void)moving, (void)limit;
+    if (fabs(v) > epsilon) {
+        return (struct tangent){0.0, 0.0, -sign(v)};
+    }
+    return (struct tangent){-0.5 * slope, 0.0, -(1.0 - follows) * v / epsilon};
+}
+
+TRIBO_LAW_LOOPS
+
+const struct law tribo_law_velocity_limited = {
+    .id = 1,
+    .name = "velocity-limited",
+    .reference = "J. A. C. Martins and J. T. Oden, Nonlinear Anal. 11 (1987) 407, doi:10.1016/0362-546X(87)90055-1; "
+                 "D. D. Quinn (2004), Eq. 3",
+    .sticks_in_band = 1,
+    .force = force_all,
+    .tangent = tangent_all,
+};

@@ -1,0 +1,548 @@
+/* Linear structures from their matrices: as they are if the mass matrix is diagonal, solved for the accelerations if not, or
+ * reduced to their lowest modes. */
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_permute_vector.h>
+
+#include "system.h"
+
+/* What a caller gives, and where the text of an error goes. */
+struct model {
+    size_t ndof, ncontact, nmode;
+    struct matrix mass, damping, stiffness, direction;
+    char *message;
+    size_t size;
+};
+
+/* P M P' = L D L', with L D in the lower triangle of factor. */
+struct cholesky {
+    size_t n;
+    double *factor;
+    size_t *order;
+};
+
+static int fail(const struct model *m, int status, const char *format, ...)
+{
+    if (m->message && m->size) {
+        va_list args;
+        va_start(args, format);
+        vsnprintf(m->message, m->size, format, args);
+        va_end(args);
+    }
+    return status;
+}
+
+static int no_memory(const struct model *m)
+{
+    return fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degrees of freedom and %zu contacts", m->ndof, m->ncontact);
+}
+
+static gsl_matrix_view view(double *x, size_t rows, size_t cols)
+{
+    return gsl_matrix_view_array(x, rows, cols);
+}
+
+static int check(const struct model *m)
+{
+    const struct {
+        const char *name;
+        const struct matrix *matrix;
+        int symmetric;
+    } all[] = {
+        {"mass", &m->mass, 1}, {"damping", &m->damping, 0}, {"stiffness", &m->stiffness, 1}, {"direction", &m->direction, 0}};
+    for (size_t k = 0; k < 4; k++) {
+        size_t i, j;
+        double x, y;
+        if (!matrix_flaw(all[k].matrix, all[k].symmetric, &i, &j, &x, &y)) {
+            continue;
+        }
+        if (!isfinite(x)) {
+            return fail(m, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", all[k].name, i, j, x);
+        }
+        return fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %g, but %s[%zu][%zu] = %g", all[k].name, i, j, x, all[k].name, j,
+                    i, y);
+    }
+    return TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------- the mass matrix, factorized */
+
+static void cholesky_free(struct cholesky *c)
+{
+    free(c->factor);
+    free(c->order);
+}
+
+static int cholesky_create(const struct model *m, struct cholesky *c)
+{
+    c->n = m->ndof;
+    c->factor = matrix_to_dense(&m->mass);
+    c->order = malloc(c->n * sizeof *c->order);
+    if (!c->factor || !c->order) {
+        cholesky_free(c);
+        return no_memory(m);
+    }
+    gsl_matrix_view a = view(c->factor, c->n, c->n);
+    gsl_permutation p = {c->n, c->order};
+    gsl_linalg_pcholesky_decomp(&a.matrix, &p);
+    for (size_t i = 0; i < c->n; i++) {
+        const double pivot = c->factor[i * c->n + i];
+        if (!(pivot > 0.0)) {
+            const size_t where = c->order[i];
+            cholesky_free(c);
+            return fail(m, TRIBO_ERR_INDEFINITE, "mass is not positive definite: pivot %g at degree of freedom %zu", pivot,
+                        where);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* x [n][cols] = D^-1/2 L^-1 P x, so that x'x becomes x' M^-1 x. */
+static void half_solve(const struct cholesky *c, double *x, size_t cols)
+{
+    gsl_permutation p = {c->n, c->order};
+    gsl_matrix_view l = view(c->factor, c->n, c->n), b = view(x, c->n, cols);
+    for (size_t j = 0; j < cols; j++) {
+        gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
+        gsl_permute_vector(&p, &column.vector);
+    }
+    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
+    for (size_t i = 0; i < c->n; i++) {
+        const double root = sqrt(c->factor[i * c->n + i]);
+        for (size_t j = 0; j < cols; j++) {
+            x[i * cols + j] /= root;
+        }
+    }
+}
+
+/* x [n][cols] = P' L^-T D^-1/2 x, the transposed of half_solve. */
+static void half_solve_back(const struct cholesky *c, double *x, size_t cols)
+{
+    gsl_permutation p = {c->n, c->order};
+    gsl_matrix_view l = view(c->factor, c->n, c->n), b = view(x, c->n, cols);
+    for (size_t i = 0; i < c->n; i++) {
+        const double root = sqrt(c->factor[i * c->n + i]);
+        for (size_t j = 0; j < cols; j++) {
+            x[i * cols + j] /= root;
+        }
+    }
+    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
+    for (size_t j = 0; j < cols; j++) {
+        gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
+        gsl_permute_vector_inverse(&p, &column.vector);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- the three ways */
+
+/* J' [ndof][ncontact], dense. */
+static double *transposed_direction(const struct model *m)
+{
+    double *x = calloc(m->ndof * m->ncontact + 1, sizeof *x);
+    for (size_t i = 0; x && i < m->ncontact; i++) {
+        for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
+            x[m->direction.col[k] * m->ncontact + i] = m->direction.val[k];
+        }
+    }
+    return x;
+}
+
+/* R = Z'Z, Z [n][ncontact], which is as symmetric and semidefinite as rounding lets it be. */
+static int set_operator(const struct model *m, tribo_system *sys, double *z, size_t n)
+{
+    const size_t c = m->ncontact;
+    double *r = calloc(c * c + 1, sizeof *r);
+    if (!r) {
+        return no_memory(m);
+    }
+    if (c) {
+        gsl_matrix_view rv = view(r, c, c), zv = view(z, n, c);
+        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &zv.matrix, &zv.matrix, 0.0, &rv.matrix);
+    }
+    const int status = tribo_set_operator_dense(sys->contacts, r);
+    free(r);
+    return status ? fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+}
+
+static int build_diagonal(struct model *m, tribo_system **sys)
+{
+    const size_t n = m->ndof;
+    double *inverse = malloc(n * sizeof *inverse), *entries = transposed_direction(m);
+    struct matrix b = {0};
+    int status = inverse && entries && matrix_from_dense(&b, n, m->ncontact, entries) ? TRIBO_OK : no_memory(m);
+    free(entries);
+    for (size_t i = 0; !status && i < n; i++) {
+        const double mass = matrix_get(&m->mass, i, i);
+        inverse[i] = 1.0 / mass;
+        if (!(mass > 0.0) || !isfinite(inverse[i])) {
+            status = fail(m, TRIBO_ERR_INDEFINITE, "mass[%zu][%zu] = %g is not positive", i, i, mass);
+        }
+    }
+    if (!status && !(matrix_scale_rows(&b, inverse) && matrix_scale_rows(&m->stiffness, inverse) &&
+                     (!m->damping.rows || matrix_scale_rows(&m->damping, inverse)))) {
+        status = no_memory(m);
+    }
+    tribo_system *s = NULL;
+    if (status) {
+        matrix_free(&b);
+    } else {
+        status = tribo_system_build(&s, n, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
+        m->stiffness = m->damping = m->direction = (struct matrix){0};
+    }
+    if (!s) {
+        free(inverse);
+        return status == TRIBO_ERR_MEMORY ? no_memory(m) : status;
+    }
+    s->inverse_mass = inverse;
+    status = tribo_set_operator_mass(s->contacts, n, inverse, s->direction.first, s->direction.col, s->direction.val);
+    if (status) {
+        fail(m, status, "%s", tribo_message(s->contacts));
+    }
+    *sys = s;
+    return status;
+}
+
+/* a = M^-1 a. */
+static int solve_matrix(const struct cholesky *c, struct matrix *a)
+{
+    double *x = matrix_to_dense(a);
+    if (x) {
+        half_solve(c, x, a->cols);
+        half_solve_back(c, x, a->cols);
+    }
+    struct matrix solved;
+    const int done = x && matrix_from_dense(&solved, a->rows, a->cols, x);
+    free(x);
+    if (done) {
+        matrix_free(a);
+        *a = solved;
+    }
+    return done;
+}
+
+static int build_solved(struct model *m, tribo_system **sys)
+{
+    struct cholesky c;
+    int status = cholesky_create(m, &c);
+    if (status) {
+        return status;
+    }
+    double *z = transposed_direction(m), *x = transposed_direction(m);
+    struct matrix b = {0};
+    int done = z && x && solve_matrix(&c, &m->stiffness) && (!m->damping.rows || solve_matrix(&c, &m->damping));
+    if (done && m->ncontact) {
+        half_solve(&c, z, m->ncontact);
+        memcpy(x, z, m->ndof * m->ncontact * sizeof *x);
+        half_solve_back(&c, x, m->ncontact);
+    }
+    done = done && matrix_from_dense(&b, m->ndof, m->ncontact, x);
+    free(x);
+    if (!done) {
+        free(z);
+        cholesky_free(&c);
+        return no_memory(m);
+    }
+    status = tribo_system_build(sys, m->ndof, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
+    m->stiffness = m->damping = m->direction = (struct matrix){0};
+    if (status) {
+        free(z);
+        cholesky_free(&c);
+        return no_memory(m);
+    }
+    (*sys)->mass = c.factor;
+    (*sys)->order = c.order;
+    status = set_operator(m, *sys, z, m->ndof);
+    free(z);
+    return status;
+}
+
+/* The lowest nmode modes: modes [ndof][nmode] with modal mass 1, and omega [nmode]. */
+static int find_modes(const struct model *m, double *modes, double *omega)
+{
+    const size_t n = m->ndof;
+    struct cholesky c;
+    int status = cholesky_create(m, &c);
+    if (status) {
+        return status;
+    }
+    double *k = matrix_to_dense(&m->stiffness), *vectors = malloc(n * n * sizeof *vectors), *values = malloc(n * sizeof *values);
+    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
+    if (!k || !vectors || !values || !work) {
+        status = no_memory(m);
+    } else {
+        gsl_matrix_view kv = view(k, n, n), vv = view(vectors, n, n);
+        gsl_vector_view ev = gsl_vector_view_array(values, n);
+        half_solve(&c, k, n);
+        gsl_matrix_transpose(&kv.matrix);
+        half_solve(&c, k, n);
+        gsl_eigen_symmv(&kv.matrix, &ev.vector, &vv.matrix, work);
+        gsl_eigen_symmv_sort(&ev.vector, &vv.matrix, GSL_EIGEN_SORT_VAL_ASC);
+        const double noise = 1e-13 * (double)n * fabs(values[n - 1]);
+        for (size_t j = 0; !status && j < m->nmode; j++) {
+            if (values[j] < -noise) {
+                status = fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu",
+                              values[j], j);
+            }
+            omega[j] = values[j] > noise ? sqrt(values[j]) : 0.0;
+        }
+        half_solve_back(&c, vectors, n);
+        for (size_t i = 0; i < n; i++) {
+            memcpy(modes + i * m->nmode, vectors + i * n, m->nmode * sizeof *modes);
+        }
+    }
+    gsl_eigen_symmv_free(work);
+    free(k);
+    free(vectors);
+    free(values);
+    cholesky_free(&c);
+    return status;
+}
+
+static int diagonal_matrix(struct matrix *a, const double *x, double factor, int square, size_t n)
+{
+    if (!matrix_identity(a, n)) {
+        return 0;
+    }
+    double *scale = malloc(n * sizeof *scale);
+    for (size_t i = 0; scale && i < n; i++) {
+        scale[i] = factor * x[i] * (square ? x[i] : 1.0);
+    }
+    const int done = scale && matrix_scale_rows(a, scale);
+    free(scale);
+    return done;
+}
+
+static int build_reduced(struct model *m, tribo_system **sys)
+{
+    const size_t n = m->ndof, r = m->nmode, c = m->ncontact;
+    double *modes = malloc(n * r * sizeof *modes), *omega = malloc(r * sizeof *omega);
+    double *j = calloc(c * r + 1, sizeof *j), *z = calloc(c * r + 1, sizeof *z);
+    struct matrix kr = {0}, cr = {0}, jr = {0}, br = {0};
+    int status = modes && omega && j && z ? find_modes(m, modes, omega) : no_memory(m);
+    if (!status) {
+        for (size_t i = 0; i < c; i++) {
+            for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
+                for (size_t mode = 0; mode < r; mode++) {
+                    j[i * r + mode] += m->direction.val[k] * modes[m->direction.col[k] * r + mode];
+                }
+            }
+            for (size_t mode = 0; mode < r; mode++) {
+                z[mode * c + i] = j[i * r + mode];
+            }
+        }
+        if (!(diagonal_matrix(&kr, omega, 1.0, 1, r) && matrix_from_dense(&jr, c, r, j) && matrix_from_dense(&br, r, c, z))) {
+            status = no_memory(m);
+        }
+    }
+    free(j);
+    if (!status) {
+        status = tribo_system_build(sys, r, c, &kr, &cr, &jr, &br);
+        status = status ? no_memory(m) : status;
+    } else {
+        matrix_free(&kr);
+        matrix_free(&jr);
+        matrix_free(&br);
+    }
+    if (status) {
+        free(modes);
+        free(omega);
+        free(z);
+        return status;
+    }
+    (*sys)->given = n;
+    (*sys)->modes = modes;
+    (*sys)->omega = omega;
+    status = set_operator(m, *sys, z, r);
+    free(z);
+    return status;
+}
+
+static void model_free(struct model *m)
+{
+    matrix_free(&m->mass);
+    matrix_free(&m->damping);
+    matrix_free(&m->stiffness);
+    matrix_free(&m->direction);
+}
+
+/* Builds the system from the model, whose matrices it frees. */
+static int build(tribo_system **sys, struct model *m)
+{
+    tribo_system *s = NULL;
+    int status = check(m);
+    if (!status) {
+        status = m->nmode ? build_reduced(m, &s) : matrix_is_diagonal(&m->mass) ? build_diagonal(m, &s) : build_solved(m, &s);
+    }
+    model_free(m);
+    if (status) {
+        tribo_system_destroy(s);
+        return status;
+    }
+    *sys = s;
+    return TRIBO_OK;
+}
+
+static int check_sizes(const struct model *m, int damped)
+{
+    if (m->ndof == 0 || m->ndof > (size_t)1 << 24 || m->ncontact > (size_t)1 << 24) {
+        return fail(m, TRIBO_ERR_SIZE, "%zu degrees of freedom and %zu contacts", m->ndof, m->ncontact);
+    }
+    if (m->nmode > m->ndof) {
+        return fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degrees of freedom", m->nmode, m->ndof);
+    }
+    if (m->nmode && damped) {
+        return fail(m, TRIBO_ERR_UNSUPPORTED, "damping of a reduced system is set by tribo_system_set_damping_ratio");
+    }
+    return TRIBO_OK;
+}
+
+int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
+                        const double *stiffness, const double *direction, size_t nmode, char *message, size_t size)
+{
+    struct model m = {ndof, ncontact, nmode, .message = message, .size = size};
+    if (!sys || !mass || !stiffness || (!direction && ncontact)) {
+        return fail(&m, TRIBO_ERR_NULL, "%s is NULL", !sys ? "sys" : !mass ? "mass" : !stiffness ? "stiffness" : "direction");
+    }
+    const int status = check_sizes(&m, damping != NULL);
+    if (status) {
+        return status;
+    }
+    if (!matrix_from_dense(&m.mass, ndof, ndof, mass) || !matrix_from_dense(&m.stiffness, ndof, ndof, stiffness) ||
+        !matrix_from_dense(&m.direction, ncontact, ndof, direction) ||
+        (damping && !matrix_from_dense(&m.damping, ndof, ndof, damping))) {
+        model_free(&m);
+        return no_memory(&m);
+    }
+    return build(sys, &m);
+}
+
+static int check_square(const struct model *m, const char *name, const gsl_spmatrix *a, size_t rows)
+{
+    if (a && (a->size1 != rows || a->size2 != m->ndof)) {
+        return fail(m, TRIBO_ERR_SIZE, "%s is %zu x %zu, not %zu x %zu", name, a->size1, a->size2, rows, m->ndof);
+    }
+    return TRIBO_OK;
+}
+
+int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
+                               const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode, char *message,
+                               size_t size)
+{
+    struct model m = {.nmode = nmode, .message = message, .size = size};
+    if (!sys || !mass || !stiffness || !direction) {
+        return fail(&m, TRIBO_ERR_NULL, "%s is NULL", !sys ? "sys" : !mass ? "mass" : !stiffness ? "stiffness" : "direction");
+    }
+    m.ndof = mass->size1;
+    m.ncontact = direction->size1;
+    int status = check_sizes(&m, damping != NULL);
+    status = status ? status : check_square(&m, "mass", mass, m.ndof);
+    status = status ? status : check_square(&m, "damping", damping, m.ndof);
+    status = status ? status : check_square(&m, "stiffness", stiffness, m.ndof);
+    status = status ? status : check_square(&m, "direction", direction, m.ncontact);
+    if (status) {
+        return status;
+    }
+    if (!matrix_from_sparse(&m.mass, mass) || !matrix_from_sparse(&m.stiffness, stiffness) ||
+        !matrix_from_sparse(&m.direction, direction) || (damping && !matrix_from_sparse(&m.damping, damping))) {
+        model_free(&m);
+        return no_memory(&m);
+    }
+    return build(sys, &m);
+}
+
+/* ---------------------------------------------------------------------------------------------------- loads and modes */
+
+void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to)
+{
+    if (sys->modes) {
+        for (size_t j = 0; j < sys->ndof; j++) {
+            to[j] = 0.0;
+        }
+        for (size_t i = 0; i < sys->given; i++) {
+            for (size_t j = 0; j < sys->ndof; j++) {
+                to[j] += sys->modes[i * sys->ndof + j] * force[i];
+            }
+        }
+        return;
+    }
+    memcpy(to, force, sys->ndof * sizeof *to);
+    if (sys->inverse_mass) {
+        for (size_t i = 0; i < sys->ndof; i++) {
+            to[i] *= sys->inverse_mass[i];
+        }
+    } else {
+        const struct cholesky c = {sys->ndof, sys->mass, sys->order};
+        half_solve(&c, to, 1);
+        half_solve_back(&c, to, 1);
+    }
+}
+
+static int only_reduced(const tribo_system *sys)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    return sys->modes ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED, "the system is not reduced to modes");
+}
+
+int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
+{
+    const int status = only_reduced(sys);
+    if (status) {
+        return status;
+    }
+    if (!isfinite(zeta)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "zeta = %g is not finite", zeta);
+    }
+    if (zeta < 0.0) {
+        return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "zeta = %g is negative", zeta);
+    }
+    struct matrix damping;
+    if (!diagonal_matrix(&damping, sys->omega, 2.0 * zeta, 0, sys->ndof)) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu modes", sys->ndof);
+    }
+    matrix_free(&sys->damping);
+    sys->damping = damping;
+    free(sys->dense);
+    sys->dense = NULL;
+    return TRIBO_OK;
+}
+
+int tribo_system_get_frequencies(const tribo_system *sys, double *omega)
+{
+    const int status = only_reduced(sys);
+    if (status) {
+        return status;
+    }
+    if (!omega) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "omega is NULL");
+    }
+    memcpy(omega, sys->omega, sys->ndof * sizeof *omega);
+    return TRIBO_OK;
+}
+
+int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full)
+{
+    const int status = only_reduced(sys);
+    if (status) {
+        return status;
+    }
+    if (!reduced || !full) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", reduced ? "full" : "reduced");
+    }
+    for (size_t i = 0; i < sys->given; i++) {
+        double sum = 0.0;
+        for (size_t j = 0; j < sys->ndof; j++) {
+            sum += sys->modes[i * sys->ndof + j] * reduced[j];
+        }
+        full[i] = sum;
+    }
+    return TRIBO_OK;
+}

@@ -1,0 +1,293 @@
+#include "matrix.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* As in the core: entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
+#define ASYMMETRY 1e-10
+
+void matrix_free(struct matrix *a)
+{
+    free(a->first);
+    free(a->col);
+    free(a->val);
+    free(a->offset);
+    free(a->fast);
+    memset(a, 0, sizeof *a);
+}
+
+static int create(struct matrix *a, size_t rows, size_t cols, size_t entries)
+{
+    memset(a, 0, sizeof *a);
+    a->rows = rows;
+    a->cols = cols;
+    a->first = calloc(rows + 2, sizeof *a->first);
+    a->col = malloc((entries + 1) * sizeof *a->col);
+    a->val = malloc((entries + 1) * sizeof *a->val);
+    if (a->first && a->col && a->val) {
+        return 1;
+    }
+    matrix_free(a);
+    return 0;
+}
+
+/* Where the diagonal (j - i) of entry (i, j) is counted. */
+static size_t diagonal(const struct matrix *a, size_t i, size_t j)
+{
+    return j + a->rows - i;
+}
+
+/* Fills `fast` if that pays: with diagonals if half of their entries are not zero, with all entries if a third of them is not. */
+static int speed_up(struct matrix *a)
+{
+    const size_t entries = a->first[a->rows];
+    size_t *place = calloc(a->rows + a->cols + 1, sizeof *place);
+    if (!place) {
+        matrix_free(a);
+        return 0;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            place[diagonal(a, i, a->col[k])] = 1;
+        }
+    }
+    size_t diagonals = 0;
+    for (size_t d = 0; d < a->rows + a->cols + 1; d++) {
+        place[d] = place[d] ? ++diagonals : 0;
+    }
+    int done = 1;
+    if (entries && diagonals * a->rows <= 2 * entries && diagonals <= 16) {
+        a->diagonals = diagonals;
+        a->offset = malloc(diagonals * sizeof *a->offset);
+        a->fast = calloc(diagonals * a->rows, sizeof *a->fast);
+        done = a->offset && a->fast;
+        for (size_t i = 0; done && i < a->rows; i++) {
+            for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+                const size_t d = place[diagonal(a, i, a->col[k])] - 1;
+                a->offset[d] = (ptrdiff_t)a->col[k] - (ptrdiff_t)i;
+                a->fast[d * a->rows + i] = a->val[k];
+            }
+        }
+    } else if (entries >= a->rows * a->cols / 3) {
+        a->fast = matrix_to_dense(a);
+        done = a->fast != NULL;
+    }
+    free(place);
+    if (!done) {
+        matrix_free(a);
+    }
+    return done;
+}
+
+int matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < rows * cols; k++) {
+        count += entries[k] != 0.0;
+    }
+    if (!create(a, rows, cols, count)) {
+        return 0;
+    }
+    size_t k = 0;
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < cols; j++) {
+            if (entries[i * cols + j] != 0.0) {
+                a->col[k] = j;
+                a->val[k++] = entries[i * cols + j];
+            }
+        }
+        a->first[i + 1] = k;
+    }
+    return speed_up(a);
+}
+
+int matrix_identity(struct matrix *a, size_t n)
+{
+    if (!create(a, n, n, n)) {
+        return 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        a->first[i + 1] = i + 1;
+        a->col[i] = i;
+        a->val[i] = 1.0;
+    }
+    return speed_up(a);
+}
+
+/* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
+static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t *order_in, size_t *order_out, size_t *start)
+{
+    memset(start, 0, (keys + 1) * sizeof *start);
+    for (size_t k = 0; k < n; k++) {
+        start[key[k] + 1]++;
+    }
+    for (size_t k = 0; k < keys; k++) {
+        start[k + 1] += start[k];
+    }
+    for (size_t k = 0; k < n; k++) {
+        const size_t from = order_in ? order_in[k] : k;
+        order_out[start[key[from]]++] = from;
+    }
+}
+
+int matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j, const double *v)
+{
+    size_t *by_col = malloc((n + 1) * sizeof *by_col), *by_row = malloc((n + 1) * sizeof *by_row);
+    size_t *start = malloc(((rows > cols ? rows : cols) + 1) * sizeof *start);
+    const int done = by_col && by_row && start && create(a, rows, cols, n);
+    if (done) {
+        counting_sort(cols, n, j, NULL, by_col, start);
+        counting_sort(rows, n, i, by_col, by_row, start);
+        for (size_t k = 0; k < n; k++) {
+            a->first[i[by_row[k]] + 1] = k + 1;
+            a->col[k] = j[by_row[k]];
+            a->val[k] = v[by_row[k]];
+        }
+        for (size_t r = 0; r < rows; r++) {
+            a->first[r + 1] = a->first[r + 1] ? a->first[r + 1] : a->first[r];
+        }
+    } else {
+        memset(a, 0, sizeof *a);
+    }
+    free(by_col);
+    free(by_row);
+    free(start);
+    return done && speed_up(a);
+}
+
+int matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
+{
+    const size_t n = m->nz;
+    size_t *i = malloc((n + 1) * sizeof *i), *j = malloc((n + 1) * sizeof *j);
+    int done = i && j;
+    if (done && GSL_SPMATRIX_ISCOO(m)) {
+        for (size_t k = 0; k < n; k++) {
+            i[k] = (size_t)m->i[k];
+            j[k] = (size_t)m->p[k];
+        }
+    } else if (done) {
+        /* compressed: p bounds the entries of each column (CSC) or row (CSR), i has the other index */
+        const int by_columns = GSL_SPMATRIX_ISCSC(m);
+        size_t *outer = by_columns ? j : i, *inner = by_columns ? i : j, at = 0;
+        for (size_t k = 0; k < n; k++) {
+            while ((size_t)m->p[at + 1] <= k) {
+                at++;
+            }
+            outer[k] = at;
+            inner[k] = (size_t)m->i[k];
+        }
+    }
+    done = done && matrix_from_triplets(a, m->size1, m->size2, n, i, j, m->data);
+    if (!done) {
+        memset(a, 0, sizeof *a);
+    }
+    free(i);
+    free(j);
+    return done;
+}
+
+void matrix_multiply_add(const struct matrix *a, double factor, const double *restrict x, double *restrict y)
+{
+    if (a->diagonals) {
+        for (size_t d = 0; d < a->diagonals; d++) {
+            const double *restrict val = a->fast + d * a->rows;
+            const ptrdiff_t shift = a->offset[d];
+            const size_t begin = shift < 0 ? (size_t)-shift : 0;
+            const size_t room = (size_t)((ptrdiff_t)a->cols - shift), end = room < a->rows ? room : a->rows;
+            for (size_t i = begin; i < end; i++) {
+                y[i] += factor * val[i] * x[(ptrdiff_t)i + shift];
+            }
+        }
+    } else if (a->fast) {
+        for (size_t i = 0; i < a->rows; i++) {
+            const double *restrict val = a->fast + i * a->cols;
+            double sum = 0.0;
+            for (size_t j = 0; j < a->cols; j++) {
+                sum += val[j] * x[j];
+            }
+            y[i] += factor * sum;
+        }
+    } else {
+        for (size_t i = 0; i < a->rows; i++) {
+            double sum = 0.0;
+            for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+                sum += a->val[k] * x[a->col[k]];
+            }
+            y[i] += factor * sum;
+        }
+    }
+}
+
+double *matrix_to_dense(const struct matrix *a)
+{
+    double *dense = calloc(a->rows * a->cols + 1, sizeof *dense);
+    for (size_t i = 0; dense && i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            dense[i * a->cols + a->col[k]] = a->val[k];
+        }
+    }
+    return dense;
+}
+
+int matrix_scale_rows(struct matrix *a, const double *factor)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            a->val[k] *= factor[i];
+        }
+    }
+    free(a->offset);
+    free(a->fast);
+    a->offset = NULL;
+    a->fast = NULL;
+    a->diagonals = 0;
+    return speed_up(a);
+}
+
+double matrix_get(const struct matrix *a, size_t i, size_t j)
+{
+    size_t lo = a->first[i], hi = a->first[i + 1];
+    while (lo < hi) {
+        const size_t mid = lo + (hi - lo) / 2;
+        if (a->col[mid] < j) {
+            lo = mid + 1;
+        } else {
+            hi = mid;
+        }
+    }
+    return lo < a->first[i + 1] && a->col[lo] == j ? a->val[lo] : 0.0;
+}
+
+int matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *column, double *value, double *mirror)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            const size_t j = a->col[k];
+            *row = i;
+            *column = j;
+            *value = a->val[k];
+            *mirror = symmetric ? matrix_get(a, j, i) : a->val[k];
+            if (!isfinite(*value)) {
+                return 1;
+            }
+            const double size = symmetric ? sqrt(fabs(matrix_get(a, i, i))) * sqrt(fabs(matrix_get(a, j, j))) : 0.0;
+            if (symmetric && fabs(*value - *mirror) > ASYMMETRY * fmax(size, fmax(fabs(*value), fabs(*mirror)))) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+int matrix_is_diagonal(const struct matrix *a)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            if (a->col[k] != i && a->val[k] != 0.0) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}

@@ -1,0 +1,43 @@
+/* Real matrices as the right-hand sides multiply with them: compressed rows, and beside them, where that is faster, full
+ * diagonals (chains, diagonal matrices) or all entries. */
+#ifndef TRIBO_MATRIX_H
+#define TRIBO_MATRIX_H
+
+#include <stddef.h>
+
+#include <gsl/gsl_spmatrix.h>
+
+struct matrix {
+    size_t rows, cols;
+    size_t *first, *col; /* row i: entries first[i] to first[i+1] - 1, columns ascending */
+    double *val;
+    size_t diagonals; /* number of diagonals in `fast`, 0 if it holds no diagonals */
+    ptrdiff_t *offset;
+    double *fast; /* [diagonals][rows] or [rows][cols] or NULL */
+};
+
+/* All return 1, or 0 if out of memory. The results are zeroed on failure; matrix_free takes those too. */
+int matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries);
+int matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j, const double *v);
+int matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
+int matrix_identity(struct matrix *a, size_t n);
+void matrix_free(struct matrix *a);
+
+/* y += factor A x. */
+void matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
+
+/* The entries [rows][cols], or NULL if out of memory; the caller frees them. */
+double *matrix_to_dense(const struct matrix *a);
+
+/* Multiplies row i by factor[i]. 1, or 0 if out of memory. */
+int matrix_scale_rows(struct matrix *a, const double *factor);
+
+/* Finds an entry that is not finite, or, with symmetric, one that differs from its mirror image: 1 and its place and values, or
+ * 0. */
+int matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *j, double *value, double *mirror);
+
+/* 1 if no entry is off the diagonal. */
+int matrix_is_diagonal(const struct matrix *a);
+double matrix_get(const struct matrix *a, size_t i, size_t j);
+
+#endif

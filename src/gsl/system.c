@@ -1,0 +1,464 @@
+#include "system.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int right_hand_side(double t, const double y[], double dydt[], void *params);
+static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params);
+
+int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
+                       struct matrix *direction, struct matrix *response)
+{
+    tribo_system *s = calloc(1, sizeof *s);
+    int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
+    double *work = status ? NULL : calloc(5 * (ncontact + 1) + ndof, sizeof *work);
+    if (!work) {
+        tribo_system_destroy(s);
+        matrix_free(stiffness);
+        matrix_free(damping);
+        matrix_free(direction);
+        matrix_free(response);
+        return status ? status : TRIBO_ERR_MEMORY;
+    }
+    s->ndof = ndof;
+    s->ncontact = ncontact;
+    s->given = ndof;
+    s->stiffness = *stiffness;
+    s->damping = *damping;
+    s->direction = *direction;
+    s->response = *response;
+    s->power = 1.0;
+    s->time = NAN;
+    s->v = work;
+    s->a = work + (ncontact + 1);
+    s->f = work + 2 * (ncontact + 1);
+    s->feq = work + 3 * (ncontact + 1);
+    s->dv_dt = work + 4 * (ncontact + 1);
+    s->acceleration = work + 5 * (ncontact + 1);
+    s->odeiv2 = (gsl_odeiv2_system){right_hand_side, jacobian, 2 * ndof + 1, s};
+    *sys = s;
+    return TRIBO_OK;
+}
+
+static void free_harmonic(struct harmonic *h)
+{
+    free(h->index);
+    free(h->cosine);
+    free(h->sine);
+}
+
+void tribo_system_destroy(tribo_system *sys)
+{
+    if (!sys) {
+        return;
+    }
+    tribo_destroy(sys->contacts);
+    matrix_free(&sys->stiffness);
+    matrix_free(&sys->damping);
+    matrix_free(&sys->direction);
+    matrix_free(&sys->response);
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        free_harmonic(&sys->harmonic[k]);
+    }
+    free(sys->harmonic);
+    free(sys->inverse_mass);
+    free(sys->mass);
+    free(sys->modes);
+    free(sys->omega);
+    free(sys->order);
+    free(sys->v);
+    free(sys->dense);
+    free(sys);
+}
+
+size_t tribo_system_ndof(const tribo_system *sys)
+{
+    return sys ? sys->ndof : 0;
+}
+
+size_t tribo_system_ncontact(const tribo_system *sys)
+{
+    return sys ? sys->ncontact : 0;
+}
+
+size_t tribo_system_dimension(const tribo_system *sys)
+{
+    return sys ? 2 * sys->ndof + 1 : 0;
+}
+
+tribo_context *tribo_system_context(tribo_system *sys)
+{
+    return sys ? sys->contacts : NULL;
+}
+
+const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)
+{
+    return sys ? &sys->odeiv2 : NULL;
+}
+
+/* --------------------------------------------------------------------------------------------------------- motion */
+
+static void set_time(tribo_system *sys, double t)
+{
+    if (t != sys->time) {
+        for (size_t k = 0; k < sys->harmonics; k++) {
+            struct harmonic *h = &sys->harmonic[k];
+            h->cos_t = cos(h->omega * t);
+            h->sin_t = sin(h->omega * t);
+        }
+        sys->time = t;
+    }
+}
+
+/* to += factor * (d/dt)^order of the harmonics that load the structure, or that move the base. */
+static void add_harmonics(const tribo_system *sys, int moves_base, int order, double factor, double *to)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *h = &sys->harmonic[k];
+        if (h->moves_base != moves_base) {
+            continue;
+        }
+        double c = h->cos_t, s = h->sin_t;
+        for (int d = 0; d < order; d++) {
+            const double dc = -h->omega * s;
+            s = h->omega * c;
+            c = dc;
+        }
+        for (size_t i = 0; i < h->count; i++) {
+            to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
+        }
+    }
+}
+
+void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
+{
+    const size_t n = sys->ndof;
+    set_time(sys, t);
+    memset(acceleration, 0, n * sizeof *acceleration);
+    add_harmonics(sys, 0, 0, 1.0, acceleration);
+    matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
+    if (sys->damping.rows) {
+        matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
+    }
+    memset(v, 0, sys->ncontact * sizeof *v);
+    memset(a, 0, sys->ncontact * sizeof *a);
+    add_harmonics(sys, 1, 0, -1.0, v);
+    add_harmonics(sys, 1, 1, -1.0, a);
+    matrix_multiply_add(&sys->direction, 1.0, y + n, v);
+    matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
+}
+
+/* Completes dydt from the forces. */
+static void add_forces(const tribo_system *sys, const double *y, double *dydt)
+{
+    const size_t n = sys->ndof;
+    memcpy(dydt, y + n, n * sizeof *dydt);
+    matrix_multiply_add(&sys->response, 1.0, sys->f, dydt + n);
+    double power = 0.0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        power += sys->f[i] * sys->v[i];
+    }
+    dydt[2 * n] = -sys->power * power;
+}
+
+static int right_hand_side(double t, const double y[], double dydt[], void *params)
+{
+    tribo_system *sys = params;
+    sys->evaluations++;
+    tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
+    sys->status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
+    if (sys->status) {
+        /* a step that is too long may overflow, and a shorter one not */
+        return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
+    }
+    add_forces(sys, y, dydt);
+    return GSL_SUCCESS;
+}
+
+int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
+{
+    sys->evaluations++;
+    tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
+    sys->status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, sys->f);
+    if (!sys->status) {
+        sys->status = tribo_accept(sys->contacts, sys->v, sys->feq);
+    }
+    if (!sys->status) {
+        sys->status = tribo_force(sys->contacts, sys->v, sys->feq, sys->f);
+    }
+    if (!sys->status) {
+        add_forces(sys, y, dydt);
+    }
+    return sys->status;
+}
+
+/* --------------------------------------------------------------------------------------------------------- Jacobian */
+
+/* The matrices of the Jacobian, dense, and room for its products. */
+struct dense {
+    double *stiffness, *damping, *direction, *response, *df_dv, *df_da, *df_dq, *df_du, *pull, *load;
+};
+
+static struct dense dense_of(const tribo_system *sys)
+{
+    const size_t n = sys->ndof, m = sys->ncontact;
+    struct dense d;
+    d.stiffness = sys->dense;
+    d.damping = d.stiffness + n * n;
+    d.direction = d.damping + n * n;
+    d.response = d.direction + m * n;
+    d.df_dv = d.response + n * m;
+    d.df_da = d.df_dv + m * m;
+    d.df_dq = d.df_da + m * m;
+    d.df_du = d.df_dq + m * n;
+    d.pull = d.df_du + m * n;
+    d.load = d.pull + m * n;
+    return d;
+}
+
+static int expand(const struct matrix *a, double *to)
+{
+    double *from = matrix_to_dense(a);
+    if (from) {
+        memcpy(to, from, a->rows * a->cols * sizeof *to);
+    }
+    free(from);
+    return from != NULL;
+}
+
+static int create_dense(tribo_system *sys)
+{
+    const size_t n = sys->ndof, m = sys->ncontact;
+    sys->dense = calloc(2 * n * n + 5 * m * n + 2 * m * m + n + 1, sizeof *sys->dense);
+    if (!sys->dense) {
+        return 0;
+    }
+    const struct dense d = dense_of(sys);
+    if (expand(&sys->stiffness, d.stiffness) && (!sys->damping.rows || expand(&sys->damping, d.damping)) &&
+        expand(&sys->direction, d.direction) && expand(&sys->response, d.response)) {
+        return 1;
+    }
+    free(sys->dense);
+    sys->dense = NULL;
+    return 0;
+}
+
+/* c += factor a b; a [rows][inner], b [inner][cols]. Skips zeros of a, of which diagonal operators have many. */
+static void multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
+{
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t k = 0; k < inner; k++) {
+            const double x = factor * a[i * inner + k];
+            for (size_t j = 0; x != 0.0 && j < cols; j++) {
+                c[i * cols + j] += x * b[k * cols + j];
+            }
+        }
+    }
+}
+
+/* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
+static int jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
+{
+    tribo_system *sys = params;
+    const size_t n = sys->ndof, m = sys->ncontact, size = 2 * n + 1;
+    sys->jacobians++;
+    if (!sys->dense && !create_dense(sys)) {
+        sys->status = tribo_set_message(sys->contacts, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
+        return GSL_EBADFUNC;
+    }
+    const struct dense d = dense_of(sys);
+    tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
+    sys->status = tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
+    if (sys->status) {
+        return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
+    }
+
+    /* pull = (df/da) J,  df/dq = -pull AK,  df/du = (df/dv) J - pull AC */
+    memset(d.df_dq, 0, 3 * m * n * sizeof *d.df_dq);
+    multiply_add(m, m, n, 1.0, d.df_da, d.direction, d.pull);
+    multiply_add(m, n, n, -1.0, d.pull, d.stiffness, d.df_dq);
+    multiply_add(m, n, n, -1.0, d.pull, d.damping, d.df_du);
+    multiply_add(m, m, n, 1.0, d.df_dv, d.direction, d.df_du);
+
+    /* df/dt = -(df/dv) b' + (df/da) (J load' - b'') */
+    double *df_dt = sys->feq;
+    memset(d.load, 0, n * sizeof *d.load);
+    memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
+    memset(sys->a, 0, m * sizeof *sys->a);
+    memset(df_dt, 0, m * sizeof *df_dt);
+    add_harmonics(sys, 0, 1, 1.0, d.load);
+    add_harmonics(sys, 1, 1, -1.0, sys->dv_dt);
+    add_harmonics(sys, 1, 2, -1.0, sys->a);
+    matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
+    multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
+    multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
+
+    memset(dfdy, 0, size * size * sizeof *dfdy);
+    memset(dfdt, 0, size * sizeof *dfdt);
+    for (size_t i = 0; i < n; i++) {
+        double *row = dfdy + (n + i) * size;
+        dfdy[i * size + n + i] = 1.0;
+        for (size_t j = 0; j < n; j++) {
+            row[j] = -d.stiffness[i * n + j];
+            row[n + j] = -d.damping[i * n + j];
+        }
+        multiply_add(1, m, n, 1.0, d.response + i * m, d.df_dq, row);
+        multiply_add(1, m, n, 1.0, d.response + i * m, d.df_du, row + n);
+        dfdt[n + i] = d.load[i];
+        multiply_add(1, m, 1, 1.0, d.response + i * m, df_dt, dfdt + n + i);
+    }
+    /* power = -power f.v */
+    double *row = dfdy + 2 * n * size;
+    multiply_add(1, m, n, -sys->power, sys->v, d.df_dq, row);
+    multiply_add(1, m, n, -sys->power, sys->v, d.df_du, row + n);
+    multiply_add(1, m, n, -sys->power, sys->f, d.direction, row + n);
+    multiply_add(1, m, 1, -sys->power, sys->v, df_dt, dfdt + 2 * n);
+    multiply_add(1, m, 1, -sys->power, sys->f, sys->dv_dt, dfdt + 2 * n);
+    return GSL_SUCCESS;
+}
+
+/* --------------------------------------------------------------------------------------------------------- queries */
+
+int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
+{
+    char text[200];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    return tribo_set_message(sys->contacts, status, text);
+}
+
+int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
+{
+    if (!isfinite(t)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
+    }
+    if (!y) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
+    }
+    for (size_t i = 0; i < 2 * sys->ndof + 1; i++) {
+        if (!isfinite(y[i])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g is not finite", i, y[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* v and a of a state, after checking it. */
+static int contacts_at(tribo_system *sys, double t, const double *y)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_system_check_state(sys, t, y);
+    if (!status) {
+        tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
+    }
+    return status;
+}
+
+int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
+{
+    int status = contacts_at(sys, t, y);
+    if (!status) {
+        status = tribo_balance(sys->contacts, sys->v, sys->a, feq, f);
+    }
+    if (!status && v) {
+        memcpy(v, sys->v, sys->ncontact * sizeof *v);
+    }
+    return status;
+}
+
+int tribo_system_accept(tribo_system *sys, double t, const double *y)
+{
+    int status = contacts_at(sys, t, y);
+    if (!status) {
+        status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL);
+    }
+    return status ? status : tribo_accept(sys->contacts, sys->v, sys->feq);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ loads */
+
+/* Keeps only entries in which cosine or sine is not zero. */
+static int compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
+{
+    h->index = malloc((n + 1) * sizeof *h->index);
+    h->cosine = malloc((n + 1) * sizeof *h->cosine);
+    h->sine = malloc((n + 1) * sizeof *h->sine);
+    if (!h->index || !h->cosine || !h->sine) {
+        return 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (cosine[i] != 0.0 || sine[i] != 0.0) {
+            h->index[h->count] = i;
+            h->cosine[h->count] = cosine[i];
+            h->sine[h->count++] = sine[i];
+        }
+    }
+    return 1;
+}
+
+static int check_amplitudes(const tribo_system *sys, const char *name, const double *x, size_t n)
+{
+    for (size_t i = 0; x && i < n; i++) {
+        if (!isfinite(x[i])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int add_harmonic(tribo_system *sys, int moves_base, double omega, const double *cosine, const double *sine)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    const size_t given = moves_base ? sys->ncontact : sys->given, n = moves_base ? sys->ncontact : sys->ndof;
+    if (!isfinite(omega)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+    }
+    int status = check_amplitudes(sys, "cosine", cosine, given);
+    if (!status) {
+        status = check_amplitudes(sys, "sine", sine, given);
+    }
+    if (status) {
+        return status;
+    }
+    struct harmonic h = {.omega = omega, .moves_base = moves_base};
+    double *parts = calloc(2 * n + 1, sizeof *parts);
+    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
+    sys->harmonic = all ? all : sys->harmonic;
+    int done = parts && all;
+    for (int part = 0; done && part < 2; part++) {
+        const double *from = part ? sine : cosine;
+        if (from && moves_base) {
+            memcpy(parts + (size_t)part * n, from, n * sizeof *parts);
+        } else if (from) {
+            tribo_system_accelerate(sys, from, parts + (size_t)part * n);
+        }
+    }
+    done = done && compress(&h, n, parts, parts + n);
+    free(parts);
+    if (!done) {
+        free_harmonic(&h);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
+    }
+    sys->harmonic[sys->harmonics++] = h;
+    sys->time = NAN;
+    return TRIBO_OK;
+}
+
+int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, 0, omega, cosine, sine);
+}
+
+int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, 1, omega, cosine, sine);
+}

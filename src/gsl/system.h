@@ -1,0 +1,67 @@
+/* A mechanical system with friction as the drivers see it: accelerations solved for,
+ *     q'' = load(t) - AK q - AC q' + B f,   v = J q' - b(t),   AK = M^-1 K, AC = M^-1 C, B = M^-1 J'. */
+#ifndef TRIBO_SYSTEM_H
+#define TRIBO_SYSTEM_H
+
+#include "tribo/tribo_gsl.h"
+
+#include "matrix.h"
+
+/* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero. */
+struct harmonic {
+    double omega, cos_t, sin_t; /* at the time sys->time */
+    int moves_base;             /* adds to b(t) of contacts, not to the load */
+    size_t count;
+    size_t *index;
+    double *cosine, *sine;
+};
+
+struct tribo_system {
+    size_t ndof, ncontact;
+    struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
+    double power;                                          /* dissipated power is -power * f.v */
+    tribo_context *contacts;
+
+    size_t harmonics;
+    struct harmonic *harmonic;
+    double time; /* that cos_t and sin_t belong to; NaN: none yet */
+
+    /* how forces on the given degrees of freedom become accelerations: inverse masses, or the mass matrix (factorized), or modes
+     */
+    size_t given;
+    double *inverse_mass, *mass, *modes, *omega; /* [given], [given][given] with order, [given][ndof], [ndof] */
+    size_t *order;
+
+    gsl_odeiv2_system odeiv2;
+    size_t evaluations, jacobians;
+    int status;                      /* what the last evaluation returned */
+    double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
+    double *acceleration;            /* [ndof] workspace */
+    double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
+};
+
+/* A system of ndof degrees of freedom whose matrices (which it takes, also on failure) and M = identity are these. damping may be
+ * all zeros: no rows. */
+int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
+                       struct matrix *direction, struct matrix *response);
+
+/* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
+void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
+
+/* dydt with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
+int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
+
+/* linear.c: to [ndof] = M^-1 force, force [given]. */
+void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to);
+
+/* Keeps the message on the system's context and returns status. */
+int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
+#if defined(__GNUC__)
+    __attribute__((format(printf, 3, 4)))
+#endif
+    ;
+
+/* Checks that t and y are finite. */
+int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
+
+#endif
