@@ -60,7 +60,7 @@ static int check(const struct model *m)
     for (size_t k = 0; k < 4; k++) {
         size_t i, j;
         double x, y;
-        if (!matrix_flaw(all[k].matrix, all[k].symmetric, &i, &j, &x, &y)) {
+        if (!tribo_matrix_flaw(all[k].matrix, all[k].symmetric, &i, &j, &x, &y)) {
             continue;
         }
         if (!isfinite(x)) {
@@ -83,7 +83,7 @@ static void cholesky_free(struct cholesky *c)
 static int cholesky_create(const struct model *m, struct cholesky *c)
 {
     c->n = m->ndof;
-    c->factor = matrix_to_dense(&m->mass);
+    c->factor = tribo_matrix_to_dense(&m->mass);
     c->order = malloc(c->n * sizeof *c->order);
     if (!c->factor || !c->order) {
         cholesky_free(c);
@@ -176,22 +176,22 @@ static int build_diagonal(struct model *m, tribo_system **sys)
     const size_t n = m->ndof;
     double *inverse = malloc(n * sizeof *inverse), *entries = transposed_direction(m);
     struct matrix b = {0};
-    int status = inverse && entries && matrix_from_dense(&b, n, m->ncontact, entries) ? TRIBO_OK : no_memory(m);
+    int status = inverse && entries && tribo_matrix_from_dense(&b, n, m->ncontact, entries) ? TRIBO_OK : no_memory(m);
     free(entries);
     for (size_t i = 0; !status && i < n; i++) {
-        const double mass = matrix_get(&m->mass, i, i);
+        const double mass = tribo_matrix_get(&m->mass, i, i);
         inverse[i] = 1.0 / mass;
         if (!(mass > 0.0) || !isfinite(inverse[i])) {
             status = fail(m, TRIBO_ERR_INDEFINITE, "mass[%zu][%zu] = %g is not positive", i, i, mass);
         }
     }
-    if (!status && !(matrix_scale_rows(&b, inverse) && matrix_scale_rows(&m->stiffness, inverse) &&
-                     (!m->damping.rows || matrix_scale_rows(&m->damping, inverse)))) {
+    if (!status && !(tribo_matrix_scale_rows(&b, inverse) && tribo_matrix_scale_rows(&m->stiffness, inverse) &&
+                     (!m->damping.rows || tribo_matrix_scale_rows(&m->damping, inverse)))) {
         status = no_memory(m);
     }
     tribo_system *s = NULL;
     if (status) {
-        matrix_free(&b);
+        tribo_matrix_free(&b);
     } else {
         status = tribo_system_build(&s, n, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
         m->stiffness = m->damping = m->direction = (struct matrix){0};
@@ -212,16 +212,16 @@ static int build_diagonal(struct model *m, tribo_system **sys)
 /* a = M^-1 a. */
 static int solve_matrix(const struct cholesky *c, struct matrix *a)
 {
-    double *x = matrix_to_dense(a);
+    double *x = tribo_matrix_to_dense(a);
     if (x) {
         half_solve(c, x, a->cols);
         half_solve_back(c, x, a->cols);
     }
     struct matrix solved;
-    const int done = x && matrix_from_dense(&solved, a->rows, a->cols, x);
+    const int done = x && tribo_matrix_from_dense(&solved, a->rows, a->cols, x);
     free(x);
     if (done) {
-        matrix_free(a);
+        tribo_matrix_free(a);
         *a = solved;
     }
     return done;
@@ -242,7 +242,7 @@ static int build_solved(struct model *m, tribo_system **sys)
         memcpy(x, z, m->ndof * m->ncontact * sizeof *x);
         half_solve_back(&c, x, m->ncontact);
     }
-    done = done && matrix_from_dense(&b, m->ndof, m->ncontact, x);
+    done = done && tribo_matrix_from_dense(&b, m->ndof, m->ncontact, x);
     free(x);
     if (!done) {
         free(z);
@@ -272,7 +272,8 @@ static int find_modes(const struct model *m, double *modes, double *omega)
     if (status) {
         return status;
     }
-    double *k = matrix_to_dense(&m->stiffness), *vectors = malloc(n * n * sizeof *vectors), *values = malloc(n * sizeof *values);
+    double *k = tribo_matrix_to_dense(&m->stiffness), *vectors = malloc(n * n * sizeof *vectors),
+           *values = malloc(n * sizeof *values);
     gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
     if (!k || !vectors || !values || !work) {
         status = no_memory(m);
@@ -307,14 +308,14 @@ static int find_modes(const struct model *m, double *modes, double *omega)
 
 static int diagonal_matrix(struct matrix *a, const double *x, double factor, int square, size_t n)
 {
-    if (!matrix_identity(a, n)) {
+    if (!tribo_matrix_identity(a, n)) {
         return 0;
     }
     double *scale = malloc(n * sizeof *scale);
     for (size_t i = 0; scale && i < n; i++) {
         scale[i] = factor * x[i] * (square ? x[i] : 1.0);
     }
-    const int done = scale && matrix_scale_rows(a, scale);
+    const int done = scale && tribo_matrix_scale_rows(a, scale);
     free(scale);
     return done;
 }
@@ -337,7 +338,8 @@ static int build_reduced(struct model *m, tribo_system **sys)
                 z[mode * c + i] = j[i * r + mode];
             }
         }
-        if (!(diagonal_matrix(&kr, omega, 1.0, 1, r) && matrix_from_dense(&jr, c, r, j) && matrix_from_dense(&br, r, c, z))) {
+        if (!(diagonal_matrix(&kr, omega, 1.0, 1, r) && tribo_matrix_from_dense(&jr, c, r, j) &&
+              tribo_matrix_from_dense(&br, r, c, z))) {
             status = no_memory(m);
         }
     }
@@ -346,9 +348,9 @@ static int build_reduced(struct model *m, tribo_system **sys)
         status = tribo_system_build(sys, r, c, &kr, &cr, &jr, &br);
         status = status ? no_memory(m) : status;
     } else {
-        matrix_free(&kr);
-        matrix_free(&jr);
-        matrix_free(&br);
+        tribo_matrix_free(&kr);
+        tribo_matrix_free(&jr);
+        tribo_matrix_free(&br);
     }
     if (status) {
         free(modes);
@@ -366,10 +368,10 @@ static int build_reduced(struct model *m, tribo_system **sys)
 
 static void model_free(struct model *m)
 {
-    matrix_free(&m->mass);
-    matrix_free(&m->damping);
-    matrix_free(&m->stiffness);
-    matrix_free(&m->direction);
+    tribo_matrix_free(&m->mass);
+    tribo_matrix_free(&m->damping);
+    tribo_matrix_free(&m->stiffness);
+    tribo_matrix_free(&m->direction);
 }
 
 /* Builds the system from the model, whose matrices it frees. */
@@ -378,7 +380,9 @@ static int build(tribo_system **sys, struct model *m)
     tribo_system *s = NULL;
     int status = check(m);
     if (!status) {
-        status = m->nmode ? build_reduced(m, &s) : matrix_is_diagonal(&m->mass) ? build_diagonal(m, &s) : build_solved(m, &s);
+        status = m->nmode                             ? build_reduced(m, &s)
+                 : tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, &s)
+                                                      : build_solved(m, &s);
     }
     model_free(m);
     if (status) {
@@ -414,9 +418,9 @@ int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const 
     if (status) {
         return status;
     }
-    if (!matrix_from_dense(&m.mass, ndof, ndof, mass) || !matrix_from_dense(&m.stiffness, ndof, ndof, stiffness) ||
-        !matrix_from_dense(&m.direction, ncontact, ndof, direction) ||
-        (damping && !matrix_from_dense(&m.damping, ndof, ndof, damping))) {
+    if (!tribo_matrix_from_dense(&m.mass, ndof, ndof, mass) || !tribo_matrix_from_dense(&m.stiffness, ndof, ndof, stiffness) ||
+        !tribo_matrix_from_dense(&m.direction, ncontact, ndof, direction) ||
+        (damping && !tribo_matrix_from_dense(&m.damping, ndof, ndof, damping))) {
         model_free(&m);
         return no_memory(&m);
     }
@@ -449,8 +453,8 @@ int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, con
     if (status) {
         return status;
     }
-    if (!matrix_from_sparse(&m.mass, mass) || !matrix_from_sparse(&m.stiffness, stiffness) ||
-        !matrix_from_sparse(&m.direction, direction) || (damping && !matrix_from_sparse(&m.damping, damping))) {
+    if (!tribo_matrix_from_sparse(&m.mass, mass) || !tribo_matrix_from_sparse(&m.stiffness, stiffness) ||
+        !tribo_matrix_from_sparse(&m.direction, direction) || (damping && !tribo_matrix_from_sparse(&m.damping, damping))) {
         model_free(&m);
         return no_memory(&m);
     }
@@ -508,7 +512,7 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     if (!diagonal_matrix(&damping, sys->omega, 2.0 * zeta, 0, sys->ndof)) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu modes", sys->ndof);
     }
-    matrix_free(&sys->damping);
+    tribo_matrix_free(&sys->damping);
     sys->damping = damping;
     free(sys->dense);
     sys->dense = NULL;

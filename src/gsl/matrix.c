@@ -7,7 +7,7 @@
 /* As in the core: entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
 #define ASYMMETRY 1e-10
 
-void matrix_free(struct matrix *a)
+void tribo_matrix_free(struct matrix *a)
 {
     free(a->first);
     free(a->col);
@@ -28,7 +28,7 @@ static int create(struct matrix *a, size_t rows, size_t cols, size_t entries)
     if (a->first && a->col && a->val) {
         return 1;
     }
-    matrix_free(a);
+    tribo_matrix_free(a);
     return 0;
 }
 
@@ -44,7 +44,7 @@ static int speed_up(struct matrix *a)
     const size_t entries = a->first[a->rows];
     size_t *place = calloc(a->rows + a->cols + 1, sizeof *place);
     if (!place) {
-        matrix_free(a);
+        tribo_matrix_free(a);
         return 0;
     }
     for (size_t i = 0; i < a->rows; i++) {
@@ -70,17 +70,17 @@ static int speed_up(struct matrix *a)
             }
         }
     } else if (entries >= a->rows * a->cols / 3) {
-        a->fast = matrix_to_dense(a);
+        a->fast = tribo_matrix_to_dense(a);
         done = a->fast != NULL;
     }
     free(place);
     if (!done) {
-        matrix_free(a);
+        tribo_matrix_free(a);
     }
     return done;
 }
 
-int matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries)
+int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries)
 {
     size_t count = 0;
     for (size_t k = 0; k < rows * cols; k++) {
@@ -102,7 +102,7 @@ int matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *
     return speed_up(a);
 }
 
-int matrix_identity(struct matrix *a, size_t n)
+int tribo_matrix_identity(struct matrix *a, size_t n)
 {
     if (!create(a, n, n, n)) {
         return 0;
@@ -131,7 +131,8 @@ static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t
     }
 }
 
-int matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j, const double *v)
+int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
+                               const double *v)
 {
     size_t *by_col = malloc((n + 1) * sizeof *by_col), *by_row = malloc((n + 1) * sizeof *by_row);
     size_t *start = malloc(((rows > cols ? rows : cols) + 1) * sizeof *start);
@@ -156,7 +157,7 @@ int matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, c
     return done && speed_up(a);
 }
 
-int matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
+int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
 {
     const size_t n = m->nz;
     size_t *i = malloc((n + 1) * sizeof *i), *j = malloc((n + 1) * sizeof *j);
@@ -178,7 +179,7 @@ int matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
             inner[k] = (size_t)m->i[k];
         }
     }
-    done = done && matrix_from_triplets(a, m->size1, m->size2, n, i, j, m->data);
+    done = done && tribo_matrix_from_triplets(a, m->size1, m->size2, n, i, j, m->data);
     if (!done) {
         memset(a, 0, sizeof *a);
     }
@@ -187,7 +188,7 @@ int matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
     return done;
 }
 
-void matrix_multiply_add(const struct matrix *a, double factor, const double *restrict x, double *restrict y)
+void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *restrict x, double *restrict y)
 {
     if (a->diagonals) {
         for (size_t d = 0; d < a->diagonals; d++) {
@@ -219,7 +220,7 @@ void matrix_multiply_add(const struct matrix *a, double factor, const double *re
     }
 }
 
-double *matrix_to_dense(const struct matrix *a)
+double *tribo_matrix_to_dense(const struct matrix *a)
 {
     double *dense = calloc(a->rows * a->cols + 1, sizeof *dense);
     for (size_t i = 0; dense && i < a->rows; i++) {
@@ -230,7 +231,7 @@ double *matrix_to_dense(const struct matrix *a)
     return dense;
 }
 
-int matrix_scale_rows(struct matrix *a, const double *factor)
+int tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
@@ -245,7 +246,7 @@ int matrix_scale_rows(struct matrix *a, const double *factor)
     return speed_up(a);
 }
 
-double matrix_get(const struct matrix *a, size_t i, size_t j)
+double tribo_matrix_get(const struct matrix *a, size_t i, size_t j)
 {
     size_t lo = a->first[i], hi = a->first[i + 1];
     while (lo < hi) {
@@ -259,7 +260,7 @@ double matrix_get(const struct matrix *a, size_t i, size_t j)
     return lo < a->first[i + 1] && a->col[lo] == j ? a->val[lo] : 0.0;
 }
 
-int matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *column, double *value, double *mirror)
+int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *column, double *value, double *mirror)
 {
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
@@ -267,11 +268,11 @@ int matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *colu
             *row = i;
             *column = j;
             *value = a->val[k];
-            *mirror = symmetric ? matrix_get(a, j, i) : a->val[k];
+            *mirror = symmetric ? tribo_matrix_get(a, j, i) : a->val[k];
             if (!isfinite(*value)) {
                 return 1;
             }
-            const double size = symmetric ? sqrt(fabs(matrix_get(a, i, i))) * sqrt(fabs(matrix_get(a, j, j))) : 0.0;
+            const double size = symmetric ? sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j))) : 0.0;
             if (symmetric && fabs(*value - *mirror) > ASYMMETRY * fmax(size, fmax(fabs(*value), fabs(*mirror)))) {
                 return 1;
             }
@@ -280,7 +281,7 @@ int matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *colu
     return 0;
 }
 
-int matrix_is_diagonal(const struct matrix *a)
+int tribo_matrix_is_diagonal(const struct matrix *a)
 {
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {

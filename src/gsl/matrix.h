@@ -16,28 +16,29 @@ struct matrix {
     double *fast; /* [diagonals][rows] or [rows][cols] or NULL */
 };
 
-/* All return 1, or 0 if out of memory. The results are zeroed on failure; matrix_free takes those too. */
-int matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries);
-int matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j, const double *v);
-int matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
-int matrix_identity(struct matrix *a, size_t n);
-void matrix_free(struct matrix *a);
+/* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */
+int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries);
+int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
+                               const double *v);
+int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
+int tribo_matrix_identity(struct matrix *a, size_t n);
+void tribo_matrix_free(struct matrix *a);
 
 /* y += factor A x. */
-void matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
+void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
 
 /* The entries [rows][cols], or NULL if out of memory; the caller frees them. */
-double *matrix_to_dense(const struct matrix *a);
+double *tribo_matrix_to_dense(const struct matrix *a);
 
 /* Multiplies row i by factor[i]. 1, or 0 if out of memory. */
-int matrix_scale_rows(struct matrix *a, const double *factor);
+int tribo_matrix_scale_rows(struct matrix *a, const double *factor);
 
 /* Finds an entry that is not finite, or, with symmetric, one that differs from its mirror image: 1 and its place and values, or
  * 0. */
-int matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *j, double *value, double *mirror);
+int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *j, double *value, double *mirror);
 
 /* 1 if no entry is off the diagonal. */
-int matrix_is_diagonal(const struct matrix *a);
-double matrix_get(const struct matrix *a, size_t i, size_t j);
+int tribo_matrix_is_diagonal(const struct matrix *a);
+double tribo_matrix_get(const struct matrix *a, size_t i, size_t j);
 
 #endif

@@ -39,14 +39,14 @@ static int build(tribo_system **sys, size_t n, const struct list *stiffness, con
 {
     struct matrix k, c = {0}, j, b;
     const int done[] = {
-        matrix_from_triplets(&k, n, n, stiffness->count, stiffness->i, stiffness->j, stiffness->v),
-        matrix_from_triplets(&j, n, n, direction->count, direction->i, direction->j, direction->v),
-        matrix_from_triplets(&b, n, n, direction->count, direction->j, direction->i, direction->v),
+        tribo_matrix_from_triplets(&k, n, n, stiffness->count, stiffness->i, stiffness->j, stiffness->v),
+        tribo_matrix_from_triplets(&j, n, n, direction->count, direction->i, direction->j, direction->v),
+        tribo_matrix_from_triplets(&b, n, n, direction->count, direction->j, direction->i, direction->v),
     };
     if (!done[0] || !done[1] || !done[2]) {
-        matrix_free(&k);
-        matrix_free(&j);
-        matrix_free(&b);
+        tribo_matrix_free(&k);
+        tribo_matrix_free(&j);
+        tribo_matrix_free(&b);
         return TRIBO_ERR_MEMORY;
     }
     double *ones = malloc(n * sizeof *ones);

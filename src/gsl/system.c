@@ -17,10 +17,10 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     double *work = status ? NULL : calloc(5 * (ncontact + 1) + ndof, sizeof *work);
     if (!work) {
         tribo_system_destroy(s);
-        matrix_free(stiffness);
-        matrix_free(damping);
-        matrix_free(direction);
-        matrix_free(response);
+        tribo_matrix_free(stiffness);
+        tribo_matrix_free(damping);
+        tribo_matrix_free(direction);
+        tribo_matrix_free(response);
         return status ? status : TRIBO_ERR_MEMORY;
     }
     s->ndof = ndof;
@@ -56,10 +56,10 @@ void tribo_system_destroy(tribo_system *sys)
         return;
     }
     tribo_destroy(sys->contacts);
-    matrix_free(&sys->stiffness);
-    matrix_free(&sys->damping);
-    matrix_free(&sys->direction);
-    matrix_free(&sys->response);
+    tribo_matrix_free(&sys->stiffness);
+    tribo_matrix_free(&sys->damping);
+    tribo_matrix_free(&sys->direction);
+    tribo_matrix_free(&sys->response);
     for (size_t k = 0; k < sys->harmonics; k++) {
         free_harmonic(&sys->harmonic[k]);
     }
@@ -139,16 +139,16 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     set_time(sys, t);
     memset(acceleration, 0, n * sizeof *acceleration);
     add_harmonics(sys, 0, 0, 1.0, acceleration);
-    matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
     if (sys->damping.rows) {
-        matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
+        tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
     add_harmonics(sys, 1, 0, -1.0, v);
     add_harmonics(sys, 1, 1, -1.0, a);
-    matrix_multiply_add(&sys->direction, 1.0, y + n, v);
-    matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, y + n, v);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
 }
 
 /* Completes dydt from the forces. */
@@ -156,7 +156,7 @@ static void add_forces(const tribo_system *sys, const double *y, double *dydt)
 {
     const size_t n = sys->ndof;
     memcpy(dydt, y + n, n * sizeof *dydt);
-    matrix_multiply_add(&sys->response, 1.0, sys->f, dydt + n);
+    tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, dydt + n);
     double power = 0.0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         power += sys->f[i] * sys->v[i];
@@ -180,6 +180,12 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
 {
+    int law;
+    tribo_get_law(sys->contacts, &law);
+    if (law != TRIBO_QUINN_REVERSAL) {
+        right_hand_side(t, y, dydt, sys);
+        return sys->status;
+    }
     sys->evaluations++;
     tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
     sys->status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, sys->f);
@@ -221,7 +227,7 @@ static struct dense dense_of(const tribo_system *sys)
 
 static int expand(const struct matrix *a, double *to)
 {
-    double *from = matrix_to_dense(a);
+    double *from = tribo_matrix_to_dense(a);
     if (from) {
         memcpy(to, from, a->rows * a->cols * sizeof *to);
     }
@@ -292,7 +298,7 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
     add_harmonics(sys, 0, 1, 1.0, d.load);
     add_harmonics(sys, 1, 1, -1.0, sys->dv_dt);
     add_harmonics(sys, 1, 2, -1.0, sys->a);
-    matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
     multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
     multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
 
