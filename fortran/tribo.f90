@@ -1,0 +1,1235 @@
+!> tribo: dry friction in structural dynamics.
+!>
+!> Quantities. A contact has a relative velocity v = dz/dt and a friction force f along +z. Its limit is mu times the normal
+!> load, so that sliding means f = -limit*sign(v). Contact accelerations are z'' = R f + a, where R = J M**-1 J' is symmetric
+!> and positive semidefinite, and a is everything but friction. f_eq is the friction force that makes a contact's z'' zero. Any
+!> consistent set of units will do.
+!>
+!>     use tribo
+!>     type(tribo_context) :: c
+!>     call c%create(n)
+!>     call c%set_limit(mu_n)
+!>     call c%set_operator(inverse_mass)
+!>     call c%set_epsilon(step=dt)
+!>     call c%balance(v, a_free, f=f)
+!>
+!> Arguments. Arrays hold one value a contact unless said otherwise, and sections of arrays will do. A size that does not fit is
+!> an error (TRIBO_ERR_SIZE). On error outputs stay as they were: that is why they are intent(inout).
+!>
+!> Errors. Every call that can fail takes stat (TRIBO_OK or one of TRIBO_ERR_...) and errmsg, which is defined as that of
+!> ALLOCATE is: any character variable, padded or cut to its length, and left alone if there is no error. Without stat an error
+!> stops the program with its text.
+!>
+!> Contexts. b = a makes b a copy that shares nothing with a; b must exist, so an allocatable b is allocated first. A context
+!> that goes out of scope is destroyed. Where a compiler copies a context without asking its assignment - allocate(b, source=a),
+!> and in gfortran assignment of a type in which it is an allocatable component - both names mean one context, until either of
+!> them is destroyed: then the other has none. gfortran before version 13 does not destroy what a function returns: prefer a
+!> subroutine.
+!>
+!> Threads. Procedures that take a context as intent(in) may be called by several threads on one context; everything else wants
+!> one context a thread. In threads ask for texts by errmsg: where a function of deferred length, like message, is called,
+!> gfortran keeps the length in static memory.
+!>
+!> Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397, doi:10.1115/1.1760564.
+module tribo
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_int, c_int64_t, c_loc, c_null_char, &
+    c_null_ptr, c_ptr, c_signed_char, c_size_t
+  use, intrinsic :: iso_fortran_env, only: error_unit, int32, int64
+  implicit none
+  private
+
+  !> Kind of all reals here: double precision.
+  integer, parameter, public :: dp = c_double
+
+  !> Status codes.
+  integer, parameter, public :: &
+    TRIBO_OK = 0, &
+    TRIBO_ERR_NULL = 1, &         !< a context that has not been created
+    TRIBO_ERR_NOT_FINITE = 2, &   !< NaN or infinity
+    TRIBO_ERR_NEGATIVE = 3, &     !< a value must be >= 0
+    TRIBO_ERR_NOT_POSITIVE = 4, & !< a value must be > 0
+    TRIBO_ERR_RANGE = 5, &        !< an index or a choice is out of range
+    TRIBO_ERR_SIZE = 6, &         !< sizes do not fit each other, or are too large
+    TRIBO_ERR_NAME = 7, &         !< no law or method has this name
+    TRIBO_ERR_STATE = 8, &        !< another call must come first
+    TRIBO_ERR_UNSUPPORTED = 9, &  !< not available for this system, law or build
+    TRIBO_ERR_MEMORY = 10, &
+    TRIBO_ERR_FILE = 11, &        !< a file cannot be read or does not hold what it should
+    TRIBO_ERR_NOT_SYMMETRIC = 20, &
+    TRIBO_ERR_INDEFINITE = 21, &  !< not positive semidefinite
+    TRIBO_ERR_DUPLICATE = 22, &   !< an entry is given twice
+    TRIBO_ERR_INCONSISTENT = 40, & !< partition coupling: no f_eq balances this a; the outputs hold the least-squares one
+    TRIBO_ERR_NO_CONVERGENCE = 41, &
+    TRIBO_ERR_STOPPED = 60, &     !< the observer ended the run
+    TRIBO_ERR_STEP = 61, &        !< the step size fell below what time resolves
+    TRIBO_ERR_CALLBACK = 62       !< a procedure of the caller's failed
+
+  !> Friction laws; set_law takes their names too: "coulomb", "velocity-limited", "smooth", "karnopp", "quinn",
+  !> "quinn-reversal".
+  integer, parameter, public :: &
+    TRIBO_COULOMB = 0, &          !< v /= 0: -limit*sign(v);  v = 0: f_eq between -limit and limit
+    TRIBO_VELOCITY_LIMITED = 1, & !< -limit*v/epsilon between -limit and limit
+    TRIBO_SMOOTH = 2, &           !< -limit*tanh(v/epsilon)
+    TRIBO_KARNOPP = 3, &          !< as Coulomb's, with abs(v) <= epsilon for v = 0; the caller holds v at 0 inside
+    TRIBO_QUINN = 4, &            !< f_eq between -limit and limit, - 2*limit*v/epsilon, between -limit and limit
+    TRIBO_QUINN_REVERSAL = 5      !< Quinn's, second order also where contacts are driven through v = 0, see accept
+
+  !> How f_eq of contacts that share bodies is found.
+  integer, parameter, public :: &
+    TRIBO_CONSISTENT = 0, &       !< it balances the forces that the others really carry
+    TRIBO_PARTITION = 1           !< it balances those of the contacts with abs(v) > epsilon: the paper, Eq. 8 to 10
+
+  !> For get_count. STUCK and RANK are those of the last balance or step_force, the others add up since create.
+  integer, parameter, public :: &
+    TRIBO_COUNT_STUCK = 0, &      !< contacts with mode 0
+    TRIBO_COUNT_RANK = 1, &       !< sum of the ranks of the matrices that the last call solved with
+    TRIBO_COUNT_ISLANDS = 2, &    !< groups of coupled contacts in the operator
+    TRIBO_COUNT_SOLVES = 3, &     !< islands that had to be solved
+    TRIBO_COUNT_SKIPPED = 4, &    !< islands left alone: no contact near stick
+    TRIBO_COUNT_FACTORIZATIONS = 5, & !< matrices factorized
+    TRIBO_COUNT_UPDATES = 6, &    !< changes of a stick set
+    TRIBO_COUNT_MEMORY = 7        !< reversal marks that accept has set or cleared
+
+  !> For get_real.
+  integer, parameter, public :: &
+    TRIBO_REAL_RESIDUAL = 0, &    !< last balance: largest abs(f - law(v, f_eq))/limit among the contacts near stick
+    TRIBO_REAL_MAX_RATE = 1, &    !< bound on lambda, the rate at which stuck contacts relax, 1/time
+    TRIBO_REAL_MAX_STEP = 2       !< largest step for which rk4 is stable with that rate; infinite if it is 0
+
+  public :: tribo_version, tribo_version_string, tribo_strerror
+  public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval
+
+  !> A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace.
+  type, public :: tribo_context
+    private
+    integer(c_int64_t) :: handle = 0
+  contains
+    procedure :: create, clone, destroy
+    procedure :: message
+    procedure :: get_ncontact
+    procedure, private :: set_law_number, set_law_name
+    generic :: set_law => set_law_number, set_law_name
+    procedure :: get_law
+    procedure, private :: set_limit_each, set_limit_all
+    generic :: set_limit => set_limit_each, set_limit_all
+    procedure :: get_limit
+    procedure, private :: set_epsilon_each, set_epsilon_all
+    generic :: set_epsilon => set_epsilon_each, set_epsilon_all
+    procedure :: get_epsilon
+    procedure, private :: set_operator_diagonal, set_operator_dense
+    generic :: set_operator => set_operator_diagonal, set_operator_dense
+    procedure :: set_operator_csr, set_operator_mass
+    procedure :: set_coupling, get_coupling
+    procedure :: force, force_tangent
+    procedure :: balance, balance_tangent
+    procedure :: step_force
+    procedure :: accept
+    procedure :: get_modes
+    procedure, private :: get_count_short, get_count_long
+    generic :: get_count => get_count_short, get_count_long
+    procedure :: get_real
+    procedure, private :: assign
+    generic :: assignment(=) => assign
+    final :: finalize
+  end type tribo_context
+
+  !> What a call works on: the library's context, its number of contacts, and how the call has gone so far.
+  type :: work
+    type(c_ptr) :: ctx = c_null_ptr
+    integer :: n = 0
+    integer(c_int) :: status = TRIBO_OK
+  end type work
+
+  interface expect
+    procedure :: expect_vector, expect_matrix
+  end interface expect
+
+  interface find
+    procedure :: find_vector, find_matrix
+  end interface find
+
+  ! The C library. Outputs are intent(inout) here as well, lest a compiler copies back a section that the call has not written.
+  interface
+    function c_strlen(s) result(n) bind(c, name='strlen')
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: s
+      integer(c_size_t) :: n
+    end function c_strlen
+
+    function c_handle_add(ctx) result(handle) bind(c, name='tribo_handle_add')
+      import :: c_ptr, c_int64_t
+      type(c_ptr), value :: ctx
+      integer(c_int64_t) :: handle
+    end function c_handle_add
+
+    function c_handle_get(handle) result(ctx) bind(c, name='tribo_handle_get')
+      import :: c_ptr, c_int64_t
+      integer(c_int64_t), value :: handle
+      type(c_ptr) :: ctx
+    end function c_handle_get
+
+    function c_handle_remove(handle) result(ctx) bind(c, name='tribo_handle_remove')
+      import :: c_ptr, c_int64_t
+      integer(c_int64_t), value :: handle
+      type(c_ptr) :: ctx
+    end function c_handle_remove
+
+    function c_version() result(version) bind(c, name='tribo_version')
+      import :: c_int
+      integer(c_int) :: version
+    end function c_version
+
+    function c_version_string() result(s) bind(c, name='tribo_version_string')
+      import :: c_ptr
+      type(c_ptr) :: s
+    end function c_version_string
+
+    function c_strerror(status) result(s) bind(c, name='tribo_strerror')
+      import :: c_ptr, c_int
+      integer(c_int), value :: status
+      type(c_ptr) :: s
+    end function c_strerror
+
+    function c_law_count() result(count) bind(c, name='tribo_law_count')
+      import :: c_int
+      integer(c_int) :: count
+    end function c_law_count
+
+    function c_law_name(law) result(s) bind(c, name='tribo_law_name')
+      import :: c_ptr, c_int
+      integer(c_int), value :: law
+      type(c_ptr) :: s
+    end function c_law_name
+
+    function c_law_reference(law) result(s) bind(c, name='tribo_law_reference')
+      import :: c_ptr, c_int
+      integer(c_int), value :: law
+      type(c_ptr) :: s
+    end function c_law_reference
+
+    function c_law_find(name, law) result(status) bind(c, name='tribo_law_find')
+      import :: c_char, c_int
+      character(kind=c_char), intent(in) :: name(*)
+      integer(c_int), intent(inout) :: law
+      integer(c_int) :: status
+    end function c_law_find
+
+    function c_law_eval(law, v, feq, limit, epsilon, f, df_dv, df_dfeq, df_dlimit) result(status) bind(c, name='tribo_law_eval')
+      import :: c_int, c_double
+      integer(c_int), value :: law
+      real(c_double), value :: v, feq, limit, epsilon
+      real(c_double), intent(inout) :: f, df_dv, df_dfeq, df_dlimit
+      integer(c_int) :: status
+    end function c_law_eval
+
+    function c_create(ctx, ncontact) result(status) bind(c, name='tribo_create')
+      import :: c_ptr, c_size_t, c_int
+      type(c_ptr), intent(inout) :: ctx
+      integer(c_size_t), value :: ncontact
+      integer(c_int) :: status
+    end function c_create
+
+    function c_clone(ctx, copy) result(status) bind(c, name='tribo_clone')
+      import :: c_ptr, c_int
+      type(c_ptr), value :: ctx
+      type(c_ptr), intent(inout) :: copy
+      integer(c_int) :: status
+    end function c_clone
+
+    subroutine c_destroy(ctx) bind(c, name='tribo_destroy')
+      import :: c_ptr
+      type(c_ptr), value :: ctx
+    end subroutine c_destroy
+
+    function c_message(ctx) result(s) bind(c, name='tribo_message')
+      import :: c_ptr
+      type(c_ptr), value :: ctx
+      type(c_ptr) :: s
+    end function c_message
+
+    function c_set_message(ctx, status, text) result(same_status) bind(c, name='tribo_set_message')
+      import :: c_ptr, c_char, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_int) :: same_status
+    end function c_set_message
+
+    function c_get_ncontact(ctx, ncontact) result(status) bind(c, name='tribo_get_ncontact')
+      import :: c_ptr, c_size_t, c_int
+      type(c_ptr), value :: ctx
+      integer(c_size_t), intent(inout) :: ncontact
+      integer(c_int) :: status
+    end function c_get_ncontact
+
+    function c_set_law(ctx, law) result(status) bind(c, name='tribo_set_law')
+      import :: c_ptr, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), value :: law
+      integer(c_int) :: status
+    end function c_set_law
+
+    function c_get_law(ctx, law) result(status) bind(c, name='tribo_get_law')
+      import :: c_ptr, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), intent(inout) :: law
+      integer(c_int) :: status
+    end function c_get_law
+
+    function c_set_limit(ctx, limit) result(status) bind(c, name='tribo_set_limit')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: limit(*)
+      integer(c_int) :: status
+    end function c_set_limit
+
+    function c_set_limit_all(ctx, limit) result(status) bind(c, name='tribo_set_limit_all')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), value :: limit
+      integer(c_int) :: status
+    end function c_set_limit_all
+
+    function c_get_limit(ctx, limit) result(status) bind(c, name='tribo_get_limit')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(inout) :: limit(*)
+      integer(c_int) :: status
+    end function c_get_limit
+
+    function c_set_epsilon(ctx, epsilon) result(status) bind(c, name='tribo_set_epsilon')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: epsilon(*)
+      integer(c_int) :: status
+    end function c_set_epsilon
+
+    function c_set_epsilon_all(ctx, epsilon) result(status) bind(c, name='tribo_set_epsilon_all')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), value :: epsilon
+      integer(c_int) :: status
+    end function c_set_epsilon_all
+
+    function c_set_epsilon_step(ctx, dt, lambda_dt) result(status) bind(c, name='tribo_set_epsilon_step')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), value :: dt, lambda_dt
+      integer(c_int) :: status
+    end function c_set_epsilon_step
+
+    function c_get_epsilon(ctx, epsilon) result(status) bind(c, name='tribo_get_epsilon')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(inout) :: epsilon(*)
+      integer(c_int) :: status
+    end function c_get_epsilon
+
+    function c_set_operator_diagonal(ctx, r) result(status) bind(c, name='tribo_set_operator_diagonal')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: r(*)
+      integer(c_int) :: status
+    end function c_set_operator_diagonal
+
+    function c_set_operator_dense(ctx, r) result(status) bind(c, name='tribo_set_operator_dense')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: r(*)
+      integer(c_int) :: status
+    end function c_set_operator_dense
+
+    function c_set_operator_csr(ctx, rowptr, col, val) result(status) bind(c, name='tribo_set_operator_csr')
+      import :: c_ptr, c_size_t, c_double, c_int
+      type(c_ptr), value :: ctx
+      integer(c_size_t), intent(in) :: rowptr(*), col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int) :: status
+    end function c_set_operator_csr
+
+    function c_set_operator_mass(ctx, ndof, inverse_mass, rowptr, col, val) result(status) bind(c, name='tribo_set_operator_mass')
+      import :: c_ptr, c_size_t, c_double, c_int
+      type(c_ptr), value :: ctx
+      integer(c_size_t), value :: ndof
+      real(c_double), intent(in) :: inverse_mass(*)
+      integer(c_size_t), intent(in) :: rowptr(*), col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int) :: status
+    end function c_set_operator_mass
+
+    function c_set_coupling(ctx, coupling) result(status) bind(c, name='tribo_set_coupling')
+      import :: c_ptr, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), value :: coupling
+      integer(c_int) :: status
+    end function c_set_coupling
+
+    function c_get_coupling(ctx, coupling) result(status) bind(c, name='tribo_get_coupling')
+      import :: c_ptr, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), intent(inout) :: coupling
+      integer(c_int) :: status
+    end function c_get_coupling
+
+    function c_force(ctx, v, feq, f) result(status) bind(c, name='tribo_force')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: v(*), feq(*)
+      real(c_double), intent(inout) :: f(*)
+      integer(c_int) :: status
+    end function c_force
+
+    function c_force_tangent(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit) result(status) bind(c, name='tribo_force_tangent')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: v(*), feq(*)
+      type(c_ptr), value :: f, df_dv, df_dfeq, df_dlimit
+      integer(c_int) :: status
+    end function c_force_tangent
+
+    function c_balance(ctx, v, a, feq, f) result(status) bind(c, name='tribo_balance')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: v(*), a(*)
+      type(c_ptr), value :: feq, f
+      integer(c_int) :: status
+    end function c_balance
+
+    function c_balance_tangent(ctx, v, a, feq, f, df_dv, df_da) result(status) bind(c, name='tribo_balance_tangent')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: v(*), a(*)
+      type(c_ptr), value :: feq, f, df_dv, df_da
+      integer(c_int) :: status
+    end function c_balance_tangent
+
+    function c_step_force(ctx, dt, vfree, f) result(status) bind(c, name='tribo_step_force')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), value :: dt
+      real(c_double), intent(in) :: vfree(*)
+      real(c_double), intent(inout) :: f(*)
+      integer(c_int) :: status
+    end function c_step_force
+
+    function c_accept(ctx, v, feq) result(status) bind(c, name='tribo_accept')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: v(*), feq(*)
+      integer(c_int) :: status
+    end function c_accept
+
+    function c_get_modes(ctx, mode) result(status) bind(c, name='tribo_get_modes')
+      import :: c_ptr, c_signed_char, c_int
+      type(c_ptr), value :: ctx
+      integer(c_signed_char), intent(inout) :: mode(*)
+      integer(c_int) :: status
+    end function c_get_modes
+
+    function c_get_count(ctx, which, value) result(status) bind(c, name='tribo_get_count')
+      import :: c_ptr, c_size_t, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), value :: which
+      integer(c_size_t), intent(inout) :: value
+      integer(c_int) :: status
+    end function c_get_count
+
+    function c_get_real(ctx, which, value) result(status) bind(c, name='tribo_get_real')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), value :: which
+      real(c_double), intent(inout) :: value
+      integer(c_int) :: status
+    end function c_get_real
+  end interface
+
+contains
+
+  ! ------------------------------------------------------------------------------------------------------ version, status, laws
+
+  !> 10000*major + 100*minor + patch of the library that is running.
+  integer function tribo_version()
+    tribo_version = int(c_version())
+  end function tribo_version
+
+  function tribo_version_string() result(text)
+    character(len=:), allocatable :: text
+    call to_text(c_version_string(), text)
+  end function tribo_version_string
+
+  !> Text for a status; any integer gets one.
+  function tribo_strerror(status) result(text)
+    integer, intent(in) :: status
+    character(len=:), allocatable :: text
+    call to_text(c_strerror(int(status, c_int)), text)
+  end function tribo_strerror
+
+  !> Number of laws; their numbers are 0 to tribo_law_count() - 1.
+  integer function tribo_law_count()
+    tribo_law_count = int(c_law_count())
+  end function tribo_law_count
+
+  !> Name of a law; empty if there is no such law.
+  function tribo_law_name(law) result(text)
+    integer, intent(in) :: law
+    character(len=:), allocatable :: text
+    call to_text(c_law_name(int(law, c_int)), text)
+  end function tribo_law_name
+
+  !> Where a law comes from; empty if there is no such law.
+  function tribo_law_reference(law) result(text)
+    integer, intent(in) :: law
+    character(len=:), allocatable :: text
+    call to_text(c_law_reference(int(law, c_int)), text)
+  end function tribo_law_reference
+
+  !> Number of the law called name.
+  subroutine tribo_law_find(name, law, stat, errmsg)
+    character(len=*), intent(in) :: name
+    integer, intent(inout) :: law
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, number
+
+    status = c_law_find(trim(name) // c_null_char, number)
+    if (status == TRIBO_OK) law = int(number)
+    call finish(status, stat, errmsg, text='no law is called "' // trim(name) // '"')
+  end subroutine tribo_law_find
+
+  !> One contact, no context: the force and its derivatives, one-sided at a kink, df_dv = 0 at a jump. Elemental: with arrays,
+  !> stat and errmsg are arrays too. TRIBO_QUINN_REVERSAL: as for a contact that comes in sliding.
+  impure elemental subroutine tribo_law_eval(law, v, feq, limit, epsilon, f, df_dv, df_dfeq, df_dlimit, stat, errmsg)
+    integer, intent(in) :: law
+    real(dp), intent(in) :: v, feq, limit, epsilon
+    real(dp), intent(inout) :: f
+    real(dp), intent(inout), optional :: df_dv, df_dfeq, df_dlimit
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    real(dp) :: dv, dfeq, dlimit
+    integer(c_int) :: status
+
+    status = c_law_eval(int(law, c_int), v, feq, limit, epsilon, f, dv, dfeq, dlimit)
+    if (status == TRIBO_OK) then
+      if (present(df_dv)) df_dv = dv
+      if (present(df_dfeq)) df_dfeq = dfeq
+      if (present(df_dlimit)) df_dlimit = dlimit
+    end if
+    call finish(status, stat, errmsg)
+  end subroutine tribo_law_eval
+
+  ! ---------------------------------------------------------------------------------------------------------- life of a context
+
+  !> A context for ncontact contacts (0 is fine), in the place of the one that this held before: Quinn's law, limit 0, epsilon
+  !> 1e-6, R = identity, consistent coupling.
+  subroutine create(this, ncontact, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(in) :: ncontact
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    character(len=60) :: text
+    type(c_ptr) :: ctx
+    integer(c_int) :: status
+
+    if (ncontact < 0) then
+      write (text, '(a,i0,a)') 'ncontact = ', ncontact, ' is negative'
+      call finish(int(TRIBO_ERR_NEGATIVE, c_int), stat, errmsg, text=trim(text))
+      return
+    end if
+    status = c_create(ctx, int(ncontact, c_size_t))
+    if (status == TRIBO_OK) status = adopted(this, ctx)
+    call finish(status, stat, errmsg)
+  end subroutine create
+
+  !> Makes copy a context with the same settings and memory as this one, and nothing shared.
+  subroutine clone(this, copy, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    class(tribo_context), intent(inout) :: copy
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: ctx
+
+    w = begin(this)
+    if (w%status == TRIBO_OK) w%status = c_clone(w%ctx, ctx)
+    if (w%status == TRIBO_OK) then
+      if (adopted(copy, ctx) /= TRIBO_OK) call fail(w, TRIBO_ERR_MEMORY, 'out of memory for a copy')
+    end if
+    call finish(w%status, stat, errmsg, this)
+  end subroutine clone
+
+  !> Releases the context; one that has not been created is fine.
+  subroutine destroy(this)
+    class(tribo_context), intent(inout) :: this
+    call c_destroy(c_handle_remove(this%handle))
+    this%handle = 0
+  end subroutine destroy
+
+  impure elemental subroutine finalize(this)
+    type(tribo_context), intent(inout) :: this
+    call this%destroy()
+  end subroutine finalize
+
+  ! from is not polymorphic, so that types that extend this one assign their own components.
+  impure elemental subroutine assign(to, from)
+    class(tribo_context), intent(inout) :: to
+    type(tribo_context), intent(in) :: from
+    if (c_associated(c_handle_get(from%handle))) then
+      call from%clone(to)
+    else
+      call to%destroy()
+    end if
+  end subroutine assign
+
+  !> What the last call that failed on this context found: argument, contact and value; empty before any.
+  function message(this) result(text)
+    class(tribo_context), intent(in) :: this
+    character(len=:), allocatable :: text
+    call get_message(this, text)
+  end function message
+
+  ! ------------------------------------------------------------------------------------------------------------------- settings
+
+  !> Number of contacts.
+  subroutine get_ncontact(this, ncontact, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(inout) :: ncontact
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    if (w%status == TRIBO_OK) ncontact = w%n
+    call finish(w%status, stat, errmsg, this)
+  end subroutine get_ncontact
+
+  !> Law of all contacts, by number or by name; clears the reversal memory.
+  subroutine set_law_number(this, law, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(in) :: law
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    call finish(c_set_law(c_handle_get(this%handle), int(law, c_int)), stat, errmsg, this)
+  end subroutine set_law_number
+
+  subroutine set_law_name(this, law, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    character(len=*), intent(in) :: law
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    character(len=200) :: text
+    integer :: number, found
+
+    w = begin(this)
+    call tribo_law_find(law, number, found, text)
+    if (found /= TRIBO_OK) call fail(w, found, trim(text))
+    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(number, c_int))
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_law_name
+
+  subroutine get_law(this, law, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(inout) :: law
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, number
+
+    status = c_get_law(c_handle_get(this%handle), number)
+    if (status == TRIBO_OK) law = int(number)
+    call finish(status, stat, errmsg, this)
+  end subroutine get_law
+
+  !> Limits mu*N >= 0, one a contact or one for all; 0 means an open contact, which carries no force and costs nothing.
+  subroutine set_limit_each(this, limit, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: limit(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'limit', limit)
+    if (w%status == TRIBO_OK) w%status = c_set_limit(w%ctx, limit)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_limit_each
+
+  subroutine set_limit_all(this, limit, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: limit
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    call finish(c_set_limit_all(c_handle_get(this%handle), limit), stat, errmsg, this)
+  end subroutine set_limit_all
+
+  subroutine get_limit(this, limit, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    real(dp), intent(inout) :: limit(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'limit', limit)
+    if (w%status == TRIBO_OK) w%status = c_get_limit(w%ctx, limit)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine get_limit
+
+  !> Velocity scale > 0 of the regularized laws, one a contact.
+  subroutine set_epsilon_each(this, epsilon, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: epsilon(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'epsilon', epsilon)
+    if (w%status == TRIBO_OK) w%status = c_set_epsilon(w%ctx, epsilon)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_epsilon_each
+
+  !> Velocity scale for all contacts: epsilon itself, or else the time step of the caller's integrator. Then the rate at which
+  !> stuck contacts relax, 2*limit*R_ii/epsilon, is lambda_dt/step, whatever limits and operator are or become. The paper takes
+  !> lambda_dt = 1 for the oscillator (as here where it is absent) and 0.4 for the chain; rk4 is stable to 2.785.
+  subroutine set_epsilon_all(this, epsilon, step, lambda_dt, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in), optional :: epsilon, step, lambda_dt
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: rate
+
+    w = begin(this)
+    rate = 1
+    if (present(lambda_dt)) rate = lambda_dt
+    if (present(epsilon) .eqv. present(step)) then
+      call fail(w, TRIBO_ERR_RANGE, 'set_epsilon takes either epsilon or step')
+    else if (present(epsilon) .and. present(lambda_dt)) then
+      call fail(w, TRIBO_ERR_RANGE, 'set_epsilon takes lambda_dt with step only')
+    else if (present(epsilon)) then
+      w%status = c_set_epsilon_all(w%ctx, epsilon)
+    else
+      w%status = c_set_epsilon_step(w%ctx, step, rate)
+    end if
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_epsilon_all
+
+  subroutine get_epsilon(this, epsilon, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    real(dp), intent(inout) :: epsilon(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'epsilon', epsilon)
+    if (w%status == TRIBO_OK) w%status = c_get_epsilon(w%ctx, epsilon)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine get_epsilon
+
+  !> The operator R of z'' = R f + a; on error the old one stays. With a vector R is diagonal, for contacts that share no body;
+  !> r >= 0.
+  subroutine set_operator_diagonal(this, r, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: r(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'r', r)
+    if (w%status == TRIBO_OK) w%status = c_set_operator_diagonal(w%ctx, r)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_operator_diagonal
+
+  !> With a matrix: symmetric to rounding, positive semidefinite, redundant contacts welcome.
+  subroutine set_operator_dense(this, r, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: r(:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'r', r)
+    ! Transposed for the sake of messages: r(i,j) is to be that of the caller.
+    if (w%status == TRIBO_OK) w%status = c_set_operator_dense(w%ctx, transpose(r))
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_operator_dense
+
+  !> The same in compressed rows, both triangles: the entries of row i are val(k) at column col(k), k = rowptr(i) to rowptr(i+1)
+  !> - 1, in any order, each at most once; rowptr(1) = 1.
+  subroutine set_operator_csr(this, rowptr, col, val, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(in) :: rowptr(:), col(:)
+    real(dp), intent(in) :: val(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call check_rows(w, rowptr, col, val, w%n)
+    if (w%status == TRIBO_OK) w%status = c_set_operator_csr(w%ctx, from_zero(rowptr), from_zero(col), val)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_operator_csr
+
+  !> R = J diag(inverse_mass) J', J in compressed rows: row i is how the velocities of the size(inverse_mass) degrees of freedom
+  !> make v(i). inverse_mass >= 0 (0: a degree of freedom whose motion is prescribed).
+  subroutine set_operator_mass(this, inverse_mass, rowptr, col, val, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: inverse_mass(:)
+    integer, intent(in) :: rowptr(:), col(:)
+    real(dp), intent(in) :: val(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call check_rows(w, rowptr, col, val, size(inverse_mass))
+    if (w%status == TRIBO_OK) then
+      w%status = c_set_operator_mass(w%ctx, size(inverse_mass, kind=c_size_t), inverse_mass, &
+        from_zero(rowptr), from_zero(col), val)
+    end if
+    call finish(w%status, stat, errmsg, this)
+  end subroutine set_operator_mass
+
+  !> TRIBO_CONSISTENT or TRIBO_PARTITION.
+  subroutine set_coupling(this, coupling, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(in) :: coupling
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    call finish(c_set_coupling(c_handle_get(this%handle), int(coupling, c_int)), stat, errmsg, this)
+  end subroutine set_coupling
+
+  subroutine get_coupling(this, coupling, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(inout) :: coupling
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_int) :: status, number
+
+    status = c_get_coupling(c_handle_get(this%handle), number)
+    if (status == TRIBO_OK) coupling = int(number)
+    call finish(status, stat, errmsg, this)
+  end subroutine get_coupling
+
+  ! --------------------------------------------------------------------------------------------------------------------- forces
+
+  !> Friction force of every contact from its law, f_eq being known; feq is read only where abs(v) <= epsilon. abs(f) <= limit.
+  subroutine force(this, v, feq, f, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    real(dp), intent(in) :: v(:), feq(:)
+    real(dp), intent(inout) :: f(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'v', v)
+    call expect(w, 'feq', feq)
+    call expect(w, 'f', f)
+    if (w%status == TRIBO_OK) w%status = c_force(w%ctx, v, feq, f)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine force
+
+  !> The same with derivatives. Where epsilon follows the limit (set_epsilon with step), df_dlimit takes that into account.
+  subroutine force_tangent(this, v, feq, f, df_dv, df_dfeq, df_dlimit, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    real(dp), intent(in) :: v(:), feq(:)
+    real(dp), intent(inout), optional, contiguous, target :: f(:), df_dv(:), df_dfeq(:), df_dlimit(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: at(4)
+
+    w = begin(this)
+    at = c_null_ptr
+    call expect(w, 'v', v)
+    call expect(w, 'feq', feq)
+    if (present(f)) call find(w, 'f', f, at(1))
+    if (present(df_dv)) call find(w, 'df_dv', df_dv, at(2))
+    if (present(df_dfeq)) call find(w, 'df_dfeq', df_dfeq, at(3))
+    if (present(df_dlimit)) call find(w, 'df_dlimit', df_dlimit, at(4))
+    if (w%status == TRIBO_OK) w%status = c_force_tangent(w%ctx, v, feq, at(1), at(2), at(3), at(4))
+    call finish(w%status, stat, errmsg, this)
+  end subroutine force_tangent
+
+  !> f_eq and f of coupled contacts, z'' = R f + a. a is the relative acceleration without friction, minus the contact's driven
+  !> acceleration; feq is 0 for open contacts; abs(f) <= limit. Where contacts are redundant R f is unique and f one of the
+  !> solutions.
+  subroutine balance(this, v, a, feq, f, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: v(:), a(:)
+    real(dp), intent(inout), optional, contiguous, target :: feq(:), f(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: at(2)
+
+    w = begin(this)
+    at = c_null_ptr
+    call expect(w, 'v', v)
+    call expect(w, 'a', a)
+    if (present(feq)) call find(w, 'feq', feq, at(1))
+    if (present(f)) call find(w, 'f', f, at(2))
+    if (w%status == TRIBO_OK) w%status = c_balance(w%ctx, v, a, at(1), at(2))
+    call finish(w%status, stat, errmsg, this)
+  end subroutine balance
+
+  !> The same, and how f follows v and a, for Newton's method of an implicit integrator: df_dv(i,j) = df(i)/dv(j), df_da alike.
+  subroutine balance_tangent(this, v, a, feq, f, df_dv, df_da, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: v(:), a(:)
+    real(dp), intent(inout), optional, contiguous, target :: feq(:), f(:), df_dv(:,:), df_da(:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: at(4)
+
+    w = begin(this)
+    at = c_null_ptr
+    call expect(w, 'v', v)
+    call expect(w, 'a', a)
+    if (present(feq)) call find(w, 'feq', feq, at(1))
+    if (present(f)) call find(w, 'f', f, at(2))
+    if (present(df_dv)) call find(w, 'df_dv', df_dv, at(3))
+    if (present(df_da)) call find(w, 'df_da', df_da, at(4))
+    if (w%status == TRIBO_OK) then
+      w%status = c_balance_tangent(w%ctx, v, a, at(1), at(2), at(3), at(4))
+      if (w%status == TRIBO_OK .and. present(df_dv)) call transpose_in_place(df_dv)
+      if (w%status == TRIBO_OK .and. present(df_da)) call transpose_in_place(df_da)
+    end if
+    call finish(w%status, stat, errmsg, this)
+  end subroutine balance_tangent
+
+  !> Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step dt,
+  !> that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end(i) = 0 or f(i) =
+  !> -limit(i)*sign(v_end(i)).
+  subroutine step_force(this, dt, vfree, f, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: dt, vfree(:)
+    real(dp), intent(inout) :: f(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'vfree', vfree)
+    call expect(w, 'f', f)
+    if (w%status == TRIBO_OK) w%status = c_step_force(w%ctx, dt, vfree, f)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine step_force
+
+  !> Tells that the integrator accepted a step that ended at v, feq. Advances the memory of TRIBO_QUINN_REVERSAL: a contact is
+  !> marked when abs(v) > epsilon, and unmarked when abs(v) <= epsilon and abs(feq) <= limit. Does nothing for other laws.
+  subroutine accept(this, v, feq, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: v(:), feq(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    w = begin(this)
+    call expect(w, 'v', v)
+    call expect(w, 'feq', feq)
+    if (w%status == TRIBO_OK) w%status = c_accept(w%ctx, v, feq)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine accept
+
+  ! -------------------------------------------------------------------------------------------------------------------- queries
+
+  !> What each contact did in the last balance or step_force: 0 stuck, +1 and -1 sliding in that direction (the force is
+  !> -limit*mode), 2 open.
+  subroutine get_modes(this, mode, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(inout) :: mode(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    integer(c_signed_char) :: small(size(mode))
+
+    w = begin(this)
+    call expect_shape(w, 'mode', shape(mode), w%n)
+    if (w%status == TRIBO_OK) w%status = c_get_modes(w%ctx, small)
+    if (w%status == TRIBO_OK) mode = int(small)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine get_modes
+
+  !> One of TRIBO_COUNT_...; those that add up may outgrow a default integer, and value may be a longer one.
+  subroutine get_count_short(this, which, value, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(in) :: which
+    integer(int32), intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    integer(c_size_t) :: count
+
+    w = begin(this)
+    w%status = c_get_count(w%ctx, int(which, c_int), count)
+    if (w%status == TRIBO_OK) then
+      if (count > huge(value)) call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
+    end if
+    if (w%status == TRIBO_OK) value = int(count, int32)
+    call finish(w%status, stat, errmsg, this)
+  end subroutine get_count_short
+
+  subroutine get_count_long(this, which, value, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(in) :: which
+    integer(int64), intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_size_t) :: count
+    integer(c_int) :: status
+
+    status = c_get_count(c_handle_get(this%handle), int(which, c_int), count)
+    if (status == TRIBO_OK) value = int(count, int64)
+    call finish(status, stat, errmsg, this)
+  end subroutine get_count_long
+
+  !> One of TRIBO_REAL_...
+  subroutine get_real(this, which, value, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(in) :: which
+    real(dp), intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    call finish(c_get_real(c_handle_get(this%handle), int(which, c_int), value), stat, errmsg, this)
+  end subroutine get_real
+
+  ! ------------------------------------------------------------------------------------------------------- what the calls share
+
+  type(work) function begin(this)
+    class(tribo_context), intent(in) :: this
+    integer(c_size_t) :: n
+
+    begin%ctx = c_handle_get(this%handle)
+    begin%status = c_get_ncontact(begin%ctx, n)
+    if (begin%status == TRIBO_OK) begin%n = int(n)
+  end function begin
+
+  !> Ends every call: hands over its status, and the text of an error, which is that of the context unless given; where there is
+  !> no stat to take it, an error ends the program.
+  subroutine finish(status, stat, errmsg, this, text)
+    integer(c_int), intent(in) :: status
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    class(tribo_context), intent(in), optional :: this
+    character(len=*), intent(in), optional :: text
+    character(len=:), allocatable :: found
+
+    if (present(stat)) stat = int(status)
+    if (status == TRIBO_OK) return
+    if (present(text)) then
+      found = text
+    else if (present(this)) then
+      call get_message(this, found)
+    else
+      call to_text(c_strerror(status), found)
+    end if
+    if (present(errmsg)) errmsg = found
+    if (present(stat)) return
+    write (error_unit, '(2a)') 'tribo: ', found
+    error stop 1
+  end subroutine finish
+
+  !> The first error of a call: keeps its text on the context.
+  subroutine fail(w, status, text)
+    type(work), intent(inout) :: w
+    integer, intent(in) :: status
+    character(len=*), intent(in) :: text
+    if (w%status == TRIBO_OK) w%status = c_set_message(w%ctx, int(status, c_int), text // c_null_char)
+  end subroutine fail
+
+  !> The same for one of many values.
+  subroutine fail_at(w, status, name, i, value, text)
+    type(work), intent(inout) :: w
+    integer, intent(in) :: status, i, value
+    character(len=*), intent(in) :: name, text
+    character(len=200) :: full
+    write (full, '(2a,i0,a,i0,2a)') name, '[', i - 1, '] = ', value, ' ', text
+    call fail(w, status, trim(full))
+  end subroutine fail_at
+
+  !> Gives a context of the library to this, in the place of the one before.
+  integer(c_int) function adopted(this, ctx) result(status)
+    class(tribo_context), intent(inout) :: this
+    type(c_ptr), intent(in) :: ctx
+    integer(c_int64_t) :: handle
+
+    handle = c_handle_add(ctx)
+    if (handle == 0) then
+      call c_destroy(ctx)
+      status = TRIBO_ERR_MEMORY
+    else
+      call this%destroy()
+      this%handle = handle
+      status = TRIBO_OK
+    end if
+  end function adopted
+
+  !> Expects one value a contact, or a matrix of them.
+  subroutine expect_vector(w, name, x)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(:)
+    call expect_shape(w, name, shape(x), w%n)
+  end subroutine expect_vector
+
+  subroutine expect_matrix(w, name, x)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(:,:)
+    call expect_shape(w, name, shape(x), w%n)
+  end subroutine expect_matrix
+
+  !> The same for an output that may be absent, and so goes to the library by its address.
+  subroutine find_vector(w, name, x, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(inout), contiguous, target :: x(:)
+    type(c_ptr), intent(inout) :: address
+    call expect(w, name, x)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_vector
+
+  subroutine find_matrix(w, name, x, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(inout), contiguous, target :: x(:,:)
+    type(c_ptr), intent(inout) :: address
+    call expect(w, name, x)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_matrix
+
+  subroutine expect_shape(w, name, found, n)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: found(:), n
+    character(len=120) :: text
+
+    if (all(found == n)) return
+    write (text, '(2a,*(i0,:," x "))') name, ' has size ', found
+    write (text, '(2a,*(i0,:," x "))') trim(text), ', not ', spread(n, 1, size(found))
+    call fail(w, TRIBO_ERR_SIZE, trim(text))
+  end subroutine expect_shape
+
+  !> Compressed rows as far as sizes and indices go. As in the library's messages indices count from 0 here, see get_message.
+  subroutine check_rows(w, rowptr, col, val, columns)
+    type(work), intent(inout) :: w
+    integer, intent(in) :: rowptr(:), col(:), columns
+    real(dp), intent(in) :: val(:)
+    integer :: i, k
+
+    call expect_shape(w, 'rowptr', shape(rowptr), w%n + 1)
+    call expect_shape(w, 'val', shape(val), size(col))
+    if (w%status /= TRIBO_OK) return
+    if (rowptr(1) /= 1) call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', 1, rowptr(1), 'is not 1')
+    do i = 2, w%n + 1
+      if (rowptr(i) < rowptr(i - 1)) call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', i, rowptr(i), 'is less than the one before')
+    end do
+    if (rowptr(w%n + 1) /= size(col) + 1) then
+      call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', w%n + 1, rowptr(w%n + 1), 'does not end where col does')
+    end if
+    do k = 1, size(col)
+      if (col(k) < 1 .or. col(k) > columns) call fail_at(w, TRIBO_ERR_RANGE, 'col', k, col(k), 'is out of range')
+    end do
+  end subroutine check_rows
+
+  elemental integer(c_size_t) function from_zero(i)
+    integer, intent(in) :: i
+    from_zero = int(i, c_size_t) - 1
+  end function from_zero
+
+  !> x = transpose(x), which would allocate.
+  pure subroutine transpose_in_place(x)
+    real(dp), intent(inout) :: x(:,:)
+    real(dp) :: upper
+    integer :: i, j
+
+    do j = 2, size(x, 2)
+      do i = 1, j - 1
+        upper = x(i, j)
+        x(i, j) = x(j, i)
+        x(j, i) = upper
+      end do
+    end do
+  end subroutine transpose_in_place
+
+  ! No function that returns a text of deferred length is called in here: gfortran keeps the length in static memory, which
+  ! threads would share.
+
+  !> The text of a C string; empty for none.
+  subroutine to_text(s, text)
+    type(c_ptr), intent(in) :: s
+    character(len=:), allocatable, intent(out) :: text
+    character(kind=c_char), pointer :: chars(:)
+    integer :: i
+
+    if (c_associated(s)) then
+      call c_f_pointer(s, chars, [c_strlen(s)])
+      allocate (character(len=size(chars)) :: text)
+      do i = 1, size(chars)
+        text(i:i) = chars(i)
+      end do
+    else
+      text = ''
+    end if
+  end subroutine to_text
+
+  !> The message of a context. The library's counts contacts and columns from 0 and writes x[i][j]; this one counts from 1, and
+  !> writes x(i,j).
+  subroutine get_message(this, text)
+    class(tribo_context), intent(in) :: this
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable :: from_zero
+    type(c_ptr) :: ctx
+    character(len=12) :: index
+    logical :: is_index
+    integer :: i, length, number
+
+    ctx = c_handle_get(this%handle)
+    if (.not. c_associated(ctx)) then
+      text = 'the context has not been created, or has been destroyed'
+      return
+    end if
+    call to_text(c_message(ctx), from_zero)
+    text = ''
+    is_index = .false.
+    i = 1
+    do while (i <= len(from_zero))
+      length = max(1, verify(from_zero(i:) // '.', '0123456789') - 1)
+      select case (from_zero(i:i))
+      case ('0':'9')
+        is_index = ends(from_zero(:i - 1), '[') .or. ends(text, 'contact ') .or. ends(text, 'column ') .or. &
+          ends(text, 'contacts ') .or. (is_index .and. ends(text, ', '))
+        if (is_index) then
+          read (from_zero(i:i + length - 1), *) number
+          write (index, '(i0)') number + 1
+          text = text // trim(index)
+        else
+          text = text // from_zero(i:i + length - 1)
+        end if
+      case ('[')
+        if (ends(text, ')')) then
+          text(len(text):) = ','
+        else
+          text = text // '('
+        end if
+      case (']')
+        text = text // ')'
+      case default
+        text = text // from_zero(i:i)
+      end select
+      i = i + length
+    end do
+  end subroutine get_message
+
+  pure logical function ends(text, word)
+    character(len=*), intent(in) :: text, word
+    ends = len(text) >= len(word)
+    if (ends) ends = text(len(text) - len(word) + 1:) == word
+  end function ends
+end module tribo

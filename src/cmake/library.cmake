@@ -1,0 +1,80 @@
+include(CheckLinkerFlag)
+
+check_linker_flag(C "LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/src/core/tribo.map" TRIBO_HAVE_VERSION_SCRIPT)
+find_library(TRIBO_LIBM m)
+mark_as_advanced(TRIBO_LIBM)
+
+set(TRIBO_CMAKE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/tribo")
+set(TRIBO_PKGCONFIG_DIR "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
+set_property(GLOBAL PROPERTY TRIBO_COMPONENTS "")
+
+# What all the project's libraries have in common: flags, libm, soname, symbol versions, installation, export, pkg-config.
+# The caller adds what is its own by target_link_libraries, and installs its headers or modules. C and Fortran sources.
+#
+#   tribo_library(<target> EXPORT <name> MAP <file> DESCRIPTION <text> SOURCES <file>...
+#                 [INCLUDES <folder>...] [REQUIRES <package>...] [REQUIRES_PRIVATE <package>...])
+#
+#   <target>          is also the name of its pkg-config package
+#   EXPORT            the target is tribo::<name>, in the tree and installed; <name> is its component in find_package(tribo)
+#   MAP               version script with the library's symbols
+#   DESCRIPTION       one line, for pkg-config
+#   INCLUDES          further include folders of consumers, relative to the installed include folder (e.g. of modules)
+#   REQUIRES          pkg-config packages whose headers or modules a consumer sees through those of this one
+#   REQUIRES_PRIVATE  pkg-config packages that this library needs by itself
+function(tribo_library target)
+  cmake_parse_arguments(ARG "" "EXPORT;MAP;DESCRIPTION" "SOURCES;INCLUDES;REQUIRES;REQUIRES_PRIVATE" ${ARGN})
+  add_library(${target} ${ARG_SOURCES})
+  add_library(tribo::${ARG_EXPORT} ALIAS ${target})
+  # A new SOVERSION is due when a symbol goes, or what a call means changes: the major version. The installed libraries find each
+  # other wherever they are moved to.
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${ARG_EXPORT} VERSION ${PROJECT_VERSION}
+                                             SOVERSION ${PROJECT_VERSION_MAJOR} INSTALL_RPATH "$ORIGIN")
+  list(TRANSFORM ARG_INCLUDES PREPEND "${CMAKE_INSTALL_INCLUDEDIR}/" OUTPUT_VARIABLE includes)
+  target_include_directories(${target} PUBLIC
+    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR};${includes}>")
+  # Products and sums stay apart, so that every variant of a kernel gives the same bits.
+  target_compile_options(${target} PRIVATE
+    "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-ffp-contract=off;-fno-math-errno;-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>"
+    "$<$<AND:$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>")
+  if(TRIBO_LIBM)
+    target_link_libraries(${target} PRIVATE m)
+  endif()
+  if(TRIBO_HAVE_VERSION_SCRIPT)
+    target_link_options(${target} PRIVATE "LINKER:--version-script=${ARG_MAP}")
+    set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS "${ARG_MAP}")
+  endif()
+
+  install(TARGETS ${target} EXPORT tribo_${ARG_EXPORT})
+  install(EXPORT tribo_${ARG_EXPORT} NAMESPACE tribo:: FILE tribo-${ARG_EXPORT}.cmake DESTINATION "${TRIBO_CMAKE_DIR}")
+  set_property(GLOBAL APPEND PROPERTY TRIBO_COMPONENTS ${ARG_EXPORT})
+  tribo_pkgconfig(${target})
+endfunction()
+
+# Writes and installs <target>.pc; part of tribo_library, whose arguments it sees. Paths are relative to the file, so that the
+# installed tree may be moved.
+function(tribo_pkgconfig target)
+  file(RELATIVE_PATH prefix "${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig" "${CMAKE_INSTALL_PREFIX}")
+  file(RELATIVE_PATH libdir "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_FULL_LIBDIR}")
+  file(RELATIVE_PATH includedir "${CMAKE_INSTALL_PREFIX}" "${CMAKE_INSTALL_FULL_INCLUDEDIR}")
+  list(TRANSFORM ARG_INCLUDES PREPEND " -I\${includedir}/" OUTPUT_VARIABLE cflags)
+  list(JOIN cflags "" cflags)
+  set(requires ${ARG_REQUIRES})
+  set(requires_private ${ARG_REQUIRES_PRIVATE})
+  set(libs "-L\${libdir} -l${target}")
+  set(libs_private "")
+  if(TRIBO_LIBM)
+    set(libs_private "-lm")
+  endif()
+  # A static library has no private needs: whoever links it links those too, with or without pkg-config --static.
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    list(APPEND requires ${requires_private})
+    string(APPEND libs " ${libs_private}")
+    set(requires_private "")
+    set(libs_private "")
+  endif()
+  list(JOIN requires ", " requires)
+  list(JOIN requires_private ", " requires_private)
+  configure_file("${PROJECT_SOURCE_DIR}/src/cmake/library.pc.in" "${CMAKE_CURRENT_BINARY_DIR}/${target}.pc" @ONLY)
+  install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${target}.pc" DESTINATION "${TRIBO_PKGCONFIG_DIR}")
+endfunction()

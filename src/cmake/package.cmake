@@ -1,0 +1,13 @@
+# find_package(tribo) and the uninstall target, once all libraries are known.
+include(CMakePackageConfigHelpers)
+
+get_property(TRIBO_COMPONENTS GLOBAL PROPERTY TRIBO_COMPONENTS)
+configure_file("${CMAKE_CURRENT_LIST_DIR}/triboConfig.cmake.in" "${PROJECT_BINARY_DIR}/triboConfig.cmake" @ONLY)
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/triboConfigVersion.cmake" COMPATIBILITY SameMajorVersion)
+install(FILES "${PROJECT_BINARY_DIR}/triboConfig.cmake" "${PROJECT_BINARY_DIR}/triboConfigVersion.cmake"
+  DESTINATION "${TRIBO_CMAKE_DIR}")
+
+if(PROJECT_IS_TOP_LEVEL)
+  add_custom_target(uninstall VERBATIM
+    COMMAND "${CMAKE_COMMAND}" -D "MANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt" -P "${CMAKE_CURRENT_LIST_DIR}/uninstall.cmake")
+endif()

@@ -1,0 +1,45 @@
+/* Written by abi.sh: the prototypes once more. With another one in the header this does not compile. */
+#include "tribo/tribo.h"
+
+TRIBO_API int tribo_version(void);
+TRIBO_API const char *tribo_version_string(void);
+TRIBO_API const char *tribo_strerror(int status);
+TRIBO_API int tribo_law_count(void);
+TRIBO_API const char *tribo_law_name(int law);
+TRIBO_API const char *tribo_law_reference(int law);
+TRIBO_API int tribo_law_find(const char *name, int *law);
+TRIBO_API int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, double *f, double *df_dv,
+                             double *df_dfeq, double *df_dlimit);
+TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
+TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
+TRIBO_API void tribo_destroy(tribo_context *ctx);
+TRIBO_API const char *tribo_message(const tribo_context *ctx);
+TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
+TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
+TRIBO_API int tribo_set_law(tribo_context *ctx, int law);
+TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
+TRIBO_API int tribo_set_limit(tribo_context *ctx, const double *limit);
+TRIBO_API int tribo_set_limit_all(tribo_context *ctx, double limit);
+TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);
+TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
+TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
+TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);
+TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
+TRIBO_API int tribo_set_operator_diagonal(tribo_context *ctx, const double *r);
+TRIBO_API int tribo_set_operator_dense(tribo_context *ctx, const double *r);
+TRIBO_API int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr,
+                                      const size_t *col, const double *val);
+TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
+TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
+TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
+TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                                  double *df_dfeq, double *df_dlimit);
+TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
+TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
+                                    double *df_da);
+TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
+TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);
+TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
+TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
+TRIBO_API int tribo_get_real(const tribo_context *ctx, int which, double *value);

@@ -1,0 +1,17 @@
+# The constants of the Fortran module are those of the C header, by name and value, and all of them.
+function(constants variable file)
+  file(READ "${file}" text)
+  string(REGEX MATCHALL "TRIBO_[A-Z_]+ = [0-9]+" found "${text}")
+  list(SORT found)
+  set(${variable} "${found}" PARENT_SCOPE)
+endfunction()
+
+constants(wanted "${HEADER}")
+constants(found "${MODULE}")
+list(LENGTH wanted count)
+if(count LESS 39 OR NOT found STREQUAL wanted)
+  set(missing ${wanted})
+  list(REMOVE_ITEM missing ${found})
+  list(REMOVE_ITEM found ${wanted})
+  message(FATAL_ERROR "${count} constants in ${HEADER}; missing in ${MODULE}: ${missing}; there only: ${found}")
+endif()

@@ -1,0 +1,215 @@
+/* What results.f90 does from Fortran, through the C interface: data that both read, and a tape of results to compare with. */
+#include <string.h>
+
+#include "tribo/tribo.h"
+
+#define N 4
+#define NDOF 6
+#define STATES 5
+#define COUNTS 8
+#define REALS 3
+
+/* gfortran takes it for granted that they are aligned as its own arrays would be. */
+#if defined(__GNUC__)
+#define ALIGNED __attribute__((aligned(32)))
+#else
+#define ALIGNED
+#endif
+
+ALIGNED double scene_limit[N] = {0.5, 0.25, 0.0, 1.5};
+ALIGNED double scene_epsilon[N] = {1e-2, 2e-2, 3e-2, 4e-2};
+
+/* R in four forms that differ. The last is J diag(1/m) J', of rank 3: the partition coupling fails where contacts 0, 1 and 3 may
+ * all stick. */
+ALIGNED double scene_diagonal[N] = {1.0, 2.0, 0.5, 0.0};
+ALIGNED double scene_dense[N][N] = {{2.0, -0.5, 0.1, 0.3}, {-0.5, 1.5, 0.2, 0.0}, {0.1, 0.2, 1.0, -0.4}, {0.3, 0.0, -0.4, 3.0}};
+ALIGNED size_t scene_rowptr[N + 1] = {0, 2, 4, 5, 8};
+ALIGNED size_t scene_col[8] = {3, 0, 1, 3, 2, 3, 0, 1};
+ALIGNED double scene_val[8] = {0.25, 1.0, 2.0, -0.5, 0.7, 1.25, 0.25, -0.5};
+ALIGNED double scene_inverse_mass[NDOF] = {1.0, 0.5, 0.0, 2.0, 4.0, 0.25};
+ALIGNED size_t scene_j_rowptr[N + 1] = {0, 1, 3, 4, 5};
+ALIGNED size_t scene_j_col[5] = {0, 0, 1, 5, 1};
+ALIGNED double scene_j_val[5] = {1.0, -1.0, 1.0, 2.0, 1.0};
+
+ALIGNED double scene_v[STATES][N] = {{0.0, 0.0, 0.0, 0.0},
+                                     {1e-3, -2e-3, 0.3, 1e-2},
+                                     {-5e-3, 1.9e-2, 1e-3, -0.5},
+                                     {2e-3, 1e-3, -1e-3, -3e-3},
+                                     {0.4, -0.6, 0.2, 0.1}};
+ALIGNED double scene_a[STATES][N] = {
+    {0.1, -0.2, 0.3, 0.15}, {0.6, 0.1, -0.2, 0.9}, {-0.3, 0.7, 0.1, 5.0}, {0.05, 0.02, -3.0, -0.1}, {1.0, 2.0, 3.0, 4.0}};
+ALIGNED double scene_feq[STATES][N] = {
+    {0.1, -0.3, 0.2, 0.4}, {0.7, 0.2, 0.0, -1.0}, {0.3, 0.1, 0.1, 2.5}, {-0.6, 0.2, 0.3, 1.6}, {0.0, 0.0, 0.0, 0.0}};
+
+static double *tape;
+static size_t room, used;
+
+static void put(size_t n, const double *x)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (used < room) {
+            tape[used] = x[i];
+        }
+        used++;
+    }
+}
+
+static void put_one(double x)
+{
+    put(1, &x);
+}
+
+static void put_text(const char *text)
+{
+    const size_t n = text ? strlen(text) : 0;
+    put_one((double)n);
+    for (size_t i = 0; i < n; i++) {
+        put_one((double)text[i]);
+    }
+}
+
+static void registry(void)
+{
+    put_one(tribo_version());
+    put_text(tribo_version_string());
+    for (int status = -1; status < 64; status++) {
+        put_text(tribo_strerror(status));
+    }
+    put_one(tribo_law_count());
+    for (int law = -1; law <= tribo_law_count(); law++) {
+        put_text(tribo_law_name(law));
+        put_text(tribo_law_reference(law));
+        for (size_t i = 0; i < N; i++) {
+            double f[4] = {0.0, 0.0, 0.0, 0.0};
+            put_one(
+                tribo_law_eval(law, scene_v[3][i], scene_feq[3][i], scene_limit[i], scene_epsilon[i], f, f + 1, f + 2, f + 3));
+            put(4, f);
+        }
+    }
+}
+
+static void settings(const tribo_context *c)
+{
+    size_t n = 0;
+    int law = -1, coupling = -1;
+    double x[N] = {0.0};
+    put_one(tribo_get_ncontact(c, &n));
+    put_one((double)n);
+    put_one(tribo_get_law(c, &law));
+    put_one(law);
+    put_one(tribo_get_coupling(c, &coupling));
+    put_one(coupling);
+    put_one(tribo_get_limit(c, x));
+    put(N, x);
+    put_one(tribo_get_epsilon(c, x));
+    put(N, x);
+}
+
+static void queries(const tribo_context *c)
+{
+    signed char mode[N] = {9, 9, 9, 9};
+    put_one(tribo_get_modes(c, mode));
+    for (size_t i = 0; i < N; i++) {
+        put_one(mode[i]);
+    }
+    for (int which = 0; which < COUNTS; which++) {
+        size_t count = 0;
+        put_one(tribo_get_count(c, which, &count));
+        put_one((double)count);
+    }
+    for (int which = 0; which < REALS; which++) {
+        double value = 0.0;
+        put_one(tribo_get_real(c, which, &value));
+        put_one(value);
+    }
+}
+
+static void forces(tribo_context *c)
+{
+    for (size_t k = 0; k < STATES; k++) {
+        const double *v = scene_v[k], *a = scene_a[k], *feq = scene_feq[k];
+        double f[N] = {0.0}, x[3][N] = {{0.0}}, df_dv[N * N] = {0.0}, df_da[N * N] = {0.0};
+        put_one(tribo_force(c, v, feq, f));
+        put(N, f);
+        put_one(tribo_force_tangent(c, v, feq, f, x[0], x[1], x[2]));
+        put(N, f);
+        put(3 * N, x[0]);
+        put_one(tribo_balance(c, v, a, x[0], f));
+        put(N, x[0]);
+        put(N, f);
+        queries(c);
+        put_one(tribo_balance_tangent(c, v, a, x[0], f, df_dv, df_da));
+        put(N, x[0]);
+        put(N, f);
+        put(N * N, df_dv);
+        put(N * N, df_da);
+        put_one(tribo_step_force(c, 0.125, v, f));
+        put(N, f);
+        queries(c);
+        put_one(tribo_accept(c, v, feq));
+    }
+}
+
+static void set_operator(tribo_context *c, int form)
+{
+    switch (form) {
+    case 0:
+        put_one(tribo_set_operator_diagonal(c, scene_diagonal));
+        break;
+    case 1:
+        put_one(tribo_set_operator_dense(c, scene_dense[0]));
+        break;
+    case 2:
+        put_one(tribo_set_operator_csr(c, scene_rowptr, scene_col, scene_val));
+        break;
+    default:
+        put_one(tribo_set_operator_mass(c, NDOF, scene_inverse_mass, scene_j_rowptr, scene_j_col, scene_j_val));
+    }
+}
+
+/* Plays the scene on to values[n]; returns how many values that are. */
+size_t scene_play(double *values, size_t n)
+{
+    tape = values;
+    room = n;
+    used = 0;
+    registry();
+
+    tribo_context *c = NULL, *copy = NULL;
+    put_one(tribo_create(&c, N));
+    put_text(tribo_message(c));
+    settings(c);
+    queries(c);
+    put_one(tribo_set_limit(c, scene_limit));
+    put_one(tribo_set_epsilon(c, scene_epsilon));
+    settings(c);
+    for (int form = 0; form < 4; form++) {
+        set_operator(c, form);
+        for (int coupling = 0; coupling < 2; coupling++) {
+            put_one(tribo_set_coupling(c, coupling));
+            for (int law = 0; law < tribo_law_count(); law++) {
+                put_one(tribo_set_law(c, law));
+                settings(c);
+                forces(c);
+            }
+        }
+    }
+    put_one(tribo_set_coupling(c, TRIBO_CONSISTENT));
+    put_one(tribo_set_epsilon_step(c, 0.01, 0.4));
+    settings(c);
+    put_one(tribo_set_epsilon_step(c, 0.01, 1.0));
+    settings(c);
+    forces(c);
+    put_one(tribo_set_epsilon_all(c, 0.03125));
+    put_one(tribo_set_limit_all(c, 0.75));
+    settings(c);
+    put_one(tribo_clone(c, &copy));
+    put_one(tribo_set_law(c, TRIBO_SMOOTH));
+    forces(c);
+    settings(copy);
+    queries(copy);
+    forces(copy);
+    tribo_destroy(c);
+    tribo_destroy(copy);
+    return used;
+}

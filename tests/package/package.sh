@@ -1,0 +1,137 @@
+#!/bin/sh
+# One step of the package's tests; CMakeLists.txt beside it sets the environment. $WORK belongs to one kind of build:
+#   build      the project
+#   prefix     where it is installed to
+#   elsewhere  where that is moved to then, since an installed tree should work from anywhere
+set -eu
+unset DESTDIR MAKEFLAGS LD_LIBRARY_PATH PKG_CONFIG_PATH
+here=$(dirname "$0")
+step=$1
+shift
+
+say() { # what fails, for people
+    echo "$step: $*" >&2
+}
+
+# build <folder> <cmake option>...: the project, configured as if for the first time, in a folder whose objects are used again.
+build() {
+    folder=$1
+    shift
+    rm -rf "$folder/CMakeCache.txt" "$folder/CMakeFiles"
+    "$CMAKE" -S "$ROOT" -B "$folder" "$@"
+    "$CMAKE" --build "$folder" --parallel 2
+}
+
+# consume <folder> <cmake option>...: builds the consumers in $WORK/<folder> and runs them.
+consume() {
+    folder=$WORK/$1
+    shift
+    rm -rf "$folder"
+    "$CMAKE" -S "$here/consumer" -B "$folder" "$@"
+    "$CMAKE" --build "$folder" --parallel 2
+    for program in "$folder"/*.run; do
+        "$program"
+    done
+}
+
+# compile <source> <language> <output> <flag>...: strictly, since headers must not bring warnings into other people's code.
+compile() {
+    source=$here/consumer/$1 language=$2 output=$3
+    shift 3
+    strict="-Wall -Wextra -pedantic -Werror"
+    case $language in
+    C) "$CC" -std=c99 $strict "$source" -o "$output" "$@" ;;
+    CXX) "${CXX:-c++}" -std=c++98 $strict "$source" -o "$output" "$@" ;;
+    Fortran) "$FC" $strict "$source" -o "$output" "$@" ;;
+    esac
+}
+
+case $step in
+install) # <cmake option>...
+    rm -rf "$WORK/prefix" "$WORK/elsewhere"
+    build "$WORK/build" "$@" -DCMAKE_INSTALL_PREFIX="$WORK/prefix" -DCMAKE_INSTALL_LIBDIR=lib
+    "$CMAKE" --install "$WORK/build"
+    mv "$WORK/prefix" "$WORK/elsewhere"
+    ;;
+
+find_package) # <source> <language> <component> [OPTIONAL_COMPONENTS <component>...]
+    consume "find_package-$1" -DCMAKE_PREFIX_PATH="$WORK/elsewhere" -DCONSUMERS="$*"
+    ;;
+
+pkgconfig) # <source> <language> <component>
+    case $3 in tribo) package=tribo ;; *) package=tribo_$3 ;; esac
+    export PKG_CONFIG_PATH="$WORK/elsewhere/lib/pkgconfig"
+    pkg-config --print-errors --exists "$package >= 1.0" "$package < 2.0"
+    program=$WORK/pkgconfig-$1
+    # As distributions link: what the program does not call itself must be found by the library that does.
+    set -- "$1" "$2" "$program" -Wl,--as-needed -Wl,-rpath,"$WORK/elsewhere/lib"
+    eval "compile \"\$@\" $(pkg-config --cflags --libs "$package")" # since pkg-config escapes blanks in paths
+    "$program"
+    ;;
+
+subdirectory) # <cmake option>... <consumer>...
+    consumers=
+    for argument; do
+        shift
+        case $argument in
+        -*) set -- "$@" "$argument" ;;
+        *) consumers="$consumers;$argument" ;;
+        esac
+    done
+    consume subdirectory -DTRIBO_SOURCE="$ROOT" -DCONSUMERS="${consumers#;}" "$@"
+    ;;
+
+refused) # <name> <message> -S <folder> <cmake option>...
+    folder=$WORK/refused-$1 message=$2
+    shift 2
+    rm -rf "$folder"
+    if "$CMAKE" -B "$folder" -DCMAKE_PREFIX_PATH="$WORK/elsewhere" "$@" >"$folder.log" 2>&1; then
+        say "this was accepted: $*"
+        exit 1
+    fi
+    # CMake breaks its messages into lines as it likes.
+    tr -s ' \n' '  ' <"$folder.log" | grep -qF "$message" || {
+        cat "$folder.log"
+        say "the message is not: $message"
+        exit 1
+    }
+    ;;
+
+archives) # A static library's names land in the program of its user.
+    if nm -g --defined-only "$WORK"/elsewhere/lib/*.a |
+        awk 'NF == 3 && $3 !~ /^(tribo_|trb[a-z]*_$|__tribo[a-z_]*_MOD_)/ { print; bad = 1 } END { exit !bad }'; then
+        say "names that may be the user's own"
+        exit 1
+    fi
+    ;;
+
+needs) # The core needs a C compiler, libc and libm.
+    if grep -E '^CMAKE_(CXX|Fortran)_COMPILER:|^GSL_|^PKG_CONFIG_EXECUTABLE' "$WORK/build/CMakeCache.txt"; then
+        say "more than a C compiler was looked for"
+        exit 1
+    fi
+    if grep -n 'include.*gsl' "$ROOT"/src/core/* "$ROOT/include/tribo/tribo.h"; then
+        say "the core includes GSL"
+        exit 1
+    fi
+    if objdump -p "$WORK/elsewhere/lib/libtribo.so" | awk '$1 == "NEEDED" { print $2 }' | grep -Ev '^lib[cm]\.'; then
+        say "libtribo needs more than libc and libm"
+        exit 1
+    fi
+    ;;
+
+uninstall)
+    mv "$WORK/elsewhere" "$WORK/prefix"
+    "$CMAKE" --build "$WORK/build" --target uninstall
+    if find "$WORK/prefix" ! -type d -o -name 'tribo*' | grep .; then
+        say "this was left behind"
+        exit 1
+    fi
+    ;;
+
+unit) # <cmake option>...
+    case $* in *clang*) command -v clang >/dev/null || { say "there is no clang" && exit 77; } ;; esac
+    build "$WORK/unit" "$@"
+    "$CTEST" --test-dir "$WORK/unit" --label-regex '^unit$' --no-tests=error --output-on-failure
+    ;;
+esac

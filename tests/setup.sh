@@ -1,0 +1,47 @@
+# For the run scripts, which source it. POSIX sh.
+#   setup <Debian package>...   returns when what the packages bring is there. Installs the missing ones where it may (as root, or by
+#                               sudo without a password), else says what to install and ends the script with status 1.
+
+# A tool counts wherever it comes from; dpkg is asked about what is none, or not found.
+setup_has() {
+    case $1 in
+    libc6-dev) echo '#include <math.h>' | gcc -E - ;;
+    libgsl-dev) pkg-config --exists 'gsl >= 2.7' ;;
+    check) pkg-config --exists check ;;
+    gnuplot-nox) command -v gnuplot ;;
+    *) command -v "$1" ;;
+    esac >/dev/null 2>&1 || dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null | grep -qx installed
+}
+
+setup_missing() {
+    for setup_package; do
+        setup_has "$setup_package" || printf '%s ' "$setup_package"
+    done
+}
+
+setup_stop() {
+    printf '%s\n' "$@" >&2
+    exit 1
+}
+
+setup_install() {
+    setup_line="apt-get install -y --no-install-recommends $*"
+    command -v apt-get >/dev/null || setup_stop "Please install first (the names are Debian's): $*"
+    if [ "$(id -u)" = 0 ]; then
+        setup_sudo=
+    elif sudo -n true 2>/dev/null; then
+        setup_sudo=sudo
+    else
+        setup_stop "Some packages are missing. Please run, as root:" "    $setup_line"
+    fi
+    echo "== Installing $*"
+    $setup_sudo apt-get update || echo "== The package lists could not be updated, going on with those that are here"
+    $setup_sudo env DEBIAN_FRONTEND=noninteractive $setup_line || setup_stop "This failed: $setup_line"
+    setup_list=$(setup_missing "$@")
+    [ -z "$setup_list" ] || setup_stop "Installed, but not found or too old: $setup_list"
+}
+
+setup() {
+    setup_list=$(setup_missing "$@")
+    [ -z "$setup_list" ] || setup_install $setup_list
+}

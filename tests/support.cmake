@@ -1,0 +1,32 @@
+# tribo_test(<label> <name> [<file or library>...]): a suite, from <name>.c and what else it needs.
+function(tribo_test label name)
+  set(target test_${label}_${name})
+  add_executable(${target} ${name}.c "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/support.c")
+  foreach(part IN LISTS ARGN)
+    if(part MATCHES "\\.c$|TARGET_OBJECTS")
+      target_sources(${target} PRIVATE "${part}")
+    else()
+      target_link_libraries(${target} PRIVATE "${part}")
+    endif()
+  endforeach()
+  target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}" "${PROJECT_SOURCE_DIR}/include")
+  target_link_libraries(${target} PRIVATE PkgConfig::CHECK m)
+  target_compile_options(${target} PRIVATE
+    $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
+    $<$<AND:$<C_COMPILER_ID:GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>)
+  add_test(NAME ${label}/${name} COMMAND ${target})
+  set_tests_properties(${label}/${name} PROPERTIES LABELS ${label})
+endfunction()
+
+# tribo_test_memory(<label> <name> <library> [...]): the same with the library's objects linked in, and its allocations counted
+# and made to fail (unit/memory.h), where the linker can do that.
+include(CheckLinkerFlag)
+check_linker_flag(C "LINKER:--wrap=tribo_nothing" TRIBO_HAVE_WRAP)
+function(tribo_test_memory label name library)
+  if(TRIBO_HAVE_WRAP)
+    tribo_test(${label} ${name} "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/unit/memory.c" "$<TARGET_OBJECTS:${library}>" ${ARGN})
+    target_include_directories(test_${label}_${name} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/unit")
+    target_link_options(test_${label}_${name} PRIVATE
+      "LINKER:--wrap=malloc" "LINKER:--wrap=calloc" "LINKER:--wrap=realloc" "LINKER:--wrap=free")
+  endif()
+endfunction()

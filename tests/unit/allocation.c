@@ -1,0 +1,182 @@
+/* Memory: none is asked for once a context is set up; and when there is none, nothing leaks and nothing is lost. */
+#include <string.h>
+
+#include "memory.h"
+#include "problem.h"
+
+static const size_t first[] = {0, 2, 4, 5}, col[] = {0, 1, 1, 0, 2};
+static const double val[] = {2.0, 1.0, 2.0, 1.0, 1.0}, weight[] = {1.0, 0.5, 2.0};
+static const double dense[] = {1.0, 0.5, 0.25, 0.5, 1.0, 0.5, 0.25, 0.5, 1.0}, unit[] = {1.0, 1.0, 1.0};
+
+/* ---------------------------------------------------------------------------------------------------------- hot paths */
+
+static void work(tribo_context *c, const struct problem *p)
+{
+    static double f[LARGEST], feq[LARGEST], square[2][LARGEST * LARGEST];
+    static signed char mode[LARGEST];
+    size_t count;
+    tribo_balance(c, p->v, p->a, feq, f);
+    tribo_force(c, p->v, feq, f);
+    tribo_force_tangent(c, p->v, feq, f, square[0], square[1], NULL);
+    tribo_balance_tangent(c, p->v, p->a, feq, f, square[0], square[1]);
+    tribo_step_force(c, 0.1, p->v, f);
+    tribo_accept(c, p->v, feq);
+    tribo_get_modes(c, mode);
+    tribo_get_count(c, TRIBO_COUNT_STUCK, &count);
+    tribo_set_limit(c, p->limit);
+    tribo_set_epsilon(c, p->epsilon);
+    tribo_set_epsilon_step(c, 0.1, 1.0);
+    tribo_set_law(c, TRIBO_QUINN_REVERSAL);
+    tribo_set_coupling(c, TRIBO_PARTITION);
+    tribo_force(c, NULL, NULL, NULL);
+    tribo_balance(c, NULL, NULL, NULL, NULL);
+}
+
+TEST(hot_paths)
+{
+    struct random g = random_of(_i);
+    const struct recipe recipe = recipe_random(&g, LARGEST, 0.5);
+    struct problem p = problem_create(&g, &recipe);
+    const size_t none = memory_calls();
+    tribo_context *c = problem_context(&p, _i % tribo_law_count(), _i / tribo_law_count() % 2);
+    const size_t before = memory_calls();
+    require(before > none, "allocations are not counted");
+    for (int k = 0; k < 5; k++) {
+        work(c, &p);
+        for (size_t i = 0; i < p.n; i++) {
+            p.v[i] *= -0.7;
+            p.a[i] = -p.a[i];
+        }
+    }
+    require(memory_calls() == before, "%zu allocations", memory_calls() - before);
+    tribo_destroy(c);
+}
+
+/* ---------------------------------------------------------------------------------------------------- failing allocations */
+
+static int create(tribo_context *c)
+{
+    tribo_context *other = c;
+    const int status = tribo_create(&other, 7);
+    if (status) {
+        return other == c ? status : -1; /* the output was written to */
+    }
+    tribo_destroy(other);
+    return status;
+}
+
+static int clone(tribo_context *c)
+{
+    tribo_context *other = c;
+    const int status = tribo_clone(c, &other);
+    if (status) {
+        return other == c ? status : -1;
+    }
+    tribo_destroy(other);
+    return status;
+}
+
+static int set_diagonal(tribo_context *c)
+{
+    return tribo_set_operator_diagonal(c, unit);
+}
+
+static int set_dense(tribo_context *c)
+{
+    return tribo_set_operator_dense(c, dense);
+}
+
+static int set_csr(tribo_context *c)
+{
+    return tribo_set_operator_csr(c, first, col, val);
+}
+
+static int set_mass(tribo_context *c)
+{
+    return tribo_set_operator_mass(c, 3, weight, first, col, val);
+}
+
+/* A diagonal operator that does not look like one takes a way of its own. */
+static int set_dense_diagonal(tribo_context *c)
+{
+    const double r[] = {1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0};
+    return tribo_set_operator_dense(c, r);
+}
+
+static const struct {
+    const char *name;
+    int (*call)(tribo_context *c);
+    int has_message;
+} calls[] = {
+    {"create", create, 0},
+    {"clone", clone, 1},
+    {"diagonal", set_diagonal, 1},
+    {"dense", set_dense, 1},
+    {"csr", set_csr, 1},
+    {"mass", set_mass, 1},
+    {"diagonal as dense", set_dense_diagonal, 1},
+};
+
+/* A context with islands {0, 1} and {2}. */
+static tribo_context *set_up(void)
+{
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 3));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(set_csr(c));
+    return c;
+}
+
+static void ask(tribo_context *c, double *answer)
+{
+    const double v[] = {0.0, 1e-7, 0.0}, a[] = {0.3, 0.2, -0.6};
+    assert_ok(tribo_balance(c, v, a, answer, answer + 3));
+    answer[6] = (double)count_of(c, TRIBO_COUNT_ISLANDS);
+}
+
+/* Fails one allocation after the other, until there are no more. */
+TEST(failures)
+{
+    double before[7], after[7];
+    size_t fails = 1;
+    for (int status = TRIBO_ERR_MEMORY; status; fails++) {
+        const long none = memory_live();
+        tribo_context *c = set_up();
+        ask(c, before);
+        const long live = memory_live();
+        memory_fail(fails);
+        status = calls[_i].call(c);
+        memory_fail(0);
+        if (status) {
+            assert_status(status, TRIBO_ERR_MEMORY);
+            require(memory_live() == live, "%s leaks when allocation %zu fails", calls[_i].name, fails);
+            assert_says(tribo_message(c), calls[_i].has_message ? "out of memory" : "");
+            ask(c, after);
+            assert_all_close(after, before, 7, 1e-15); /* the second search starts from what the first found */
+            assert_ok(calls[_i].call(c));
+        }
+        tribo_destroy(c);
+        require(memory_live() == none, "%s leaves %ld blocks behind", calls[_i].name, memory_live() - none);
+    }
+    ck_assert_uint_gt(fails, 3);
+}
+
+/* Refused operators leave nothing behind either. */
+TEST(refusals)
+{
+    const size_t bad_col[] = {0, 1, 1, 1, 2};
+    const double skew[] = {1.0, 0.5, 0.25, 0.5, 1.0, 0.5, 0.25, 0.125, 1.0};
+    const double indefinite[] = {1.0, -0.75, -0.75, -0.75, 1.0, -0.75, -0.75, -0.75, 1.0};
+    const long none = memory_live();
+    tribo_context *c = set_up();
+    const long live = memory_live();
+    assert_status(tribo_set_operator_csr(c, first, bad_col, val), TRIBO_ERR_DUPLICATE);
+    assert_status(tribo_set_operator_mass(c, 3, weight, first, bad_col, val), TRIBO_ERR_DUPLICATE);
+    assert_status(tribo_set_operator_dense(c, skew), TRIBO_ERR_NOT_SYMMETRIC);
+    assert_status(tribo_set_operator_dense(c, indefinite), TRIBO_ERR_INDEFINITE);
+    require(memory_live() == live, "%ld blocks leak", memory_live() - live);
+    tribo_destroy(c);
+    require(memory_live() == none, "%ld blocks leak", memory_live() - none);
+}
+
+TEST_MAIN("allocation", {hot_paths, 24}, {failures, COUNT(calls)}, {refusals, 1})

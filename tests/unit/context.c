@@ -1,0 +1,365 @@
+/* Contexts: defaults, settings, copies; what epsilon follows; versions and texts. */
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem.h"
+
+static tribo_context *create(size_t n)
+{
+    tribo_context *c;
+    assert_ok(tribo_create(&c, n));
+    return c;
+}
+
+TEST(defaults)
+{
+    tribo_context *c = create(3);
+    size_t n = 0;
+    int law = -1, coupling = -1;
+    double x[3];
+    const double zero[3] = {0}, epsilon[3] = {1e-6, 1e-6, 1e-6}, v[3] = {0}, a[3] = {1.0, -2.0, 3.0};
+    const double feq[3] = {-1.0, 2.0, -3.0};
+    assert_ok(tribo_get_ncontact(c, &n));
+    assert_ok(tribo_get_law(c, &law));
+    assert_ok(tribo_get_coupling(c, &coupling));
+    ck_assert_uint_eq(n, 3);
+    ck_assert_int_eq(law, TRIBO_QUINN);
+    ck_assert_int_eq(coupling, TRIBO_CONSISTENT);
+    ck_assert_str_eq(tribo_message(c), "");
+    assert_ok(tribo_get_limit(c, x));
+    assert_all_exact(x, zero, 3);
+    assert_ok(tribo_get_epsilon(c, x));
+    assert_all_exact(x, epsilon, 3);
+    /* R is the identity: f_eq = -a */
+    assert_ok(tribo_set_limit_all(c, 9.0));
+    assert_ok(tribo_balance(c, v, a, x, NULL));
+    assert_all_exact(x, feq, 3);
+    tribo_destroy(c);
+    tribo_destroy(NULL);
+}
+
+TEST(settings)
+{
+    tribo_context *c = create(2);
+    const double limit[2] = {0.5, 0.0}, epsilon[2] = {1e-3, 7.0}, all[2] = {4.0, 4.0};
+    double x[2];
+    int value;
+    for (int law = 0; law < tribo_law_count(); law++) {
+        assert_ok(tribo_set_law(c, law));
+        assert_ok(tribo_get_law(c, &value));
+        ck_assert_int_eq(value, law);
+    }
+    for (int coupling = 1; coupling >= 0; coupling--) {
+        assert_ok(tribo_set_coupling(c, coupling));
+        assert_ok(tribo_get_coupling(c, &value));
+        ck_assert_int_eq(value, coupling);
+    }
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_get_limit(c, x));
+    assert_all_exact(x, limit, 2);
+    assert_ok(tribo_set_limit_all(c, 4.0));
+    assert_ok(tribo_get_limit(c, x));
+    assert_all_exact(x, all, 2);
+    assert_ok(tribo_set_epsilon(c, epsilon));
+    assert_ok(tribo_get_epsilon(c, x));
+    assert_all_exact(x, epsilon, 2);
+    assert_ok(tribo_set_epsilon_all(c, 4.0));
+    assert_ok(tribo_get_epsilon(c, x));
+    assert_all_exact(x, all, 2);
+    tribo_destroy(c);
+}
+
+/* epsilon = 2 N R dt/lambda_dt, through every later change, until it is given. */
+TEST(epsilon_step)
+{
+    tribo_context *c = create(2);
+    const double limit[2] = {1.0, 0.5}, r[2] = {0.25, 8.0}, dense[4] = {2.0, 1.0, 1.0, 4.0};
+    const double steps[][2] = {{0.01, 1.0}, {0.5, 0.4}};
+    double x[2];
+    for (int k = 0; k < 2; k++) {
+        const double time = steps[k][0] / steps[k][1];
+        const double unit[2] = {2.0 * time, 2.0 * time}, limits[2] = {2.0 * time, time};
+        const double both[2] = {0.5 * time, 8.0 * time}, coupled[2] = {4.0 * time, 4.0 * time};
+        const double ones[2] = {1.0, 1.0};
+        assert_ok(tribo_set_limit_all(c, 1.0));
+        assert_ok(tribo_set_operator_diagonal(c, ones));
+        assert_ok(tribo_set_epsilon_step(c, steps[k][0], steps[k][1]));
+        assert_ok(tribo_get_epsilon(c, x));
+        assert_all_close(x, unit, 2, 4.0 * DBL_EPSILON * time);
+        assert_ok(tribo_set_limit(c, limit));
+        assert_ok(tribo_get_epsilon(c, x));
+        assert_all_close(x, limits, 2, 4.0 * DBL_EPSILON * time);
+        assert_ok(tribo_set_operator_diagonal(c, r));
+        assert_ok(tribo_get_epsilon(c, x));
+        assert_all_close(x, both, 2, 16.0 * DBL_EPSILON * time);
+        assert_close(real_of(c, TRIBO_REAL_MAX_RATE) * time, 1.0, 4.0 * DBL_EPSILON);
+        assert_ok(tribo_set_operator_dense(c, dense));
+        assert_ok(tribo_get_epsilon(c, x));
+        assert_all_close(x, coupled, 2, 16.0 * DBL_EPSILON * time);
+        assert_close(real_of(c, TRIBO_REAL_MAX_RATE) * time, 1.0, 4.0 * DBL_EPSILON);
+    }
+    assert_ok(tribo_set_epsilon(c, limit));
+    assert_ok(tribo_set_limit_all(c, 3.0));
+    assert_ok(tribo_get_epsilon(c, x));
+    assert_all_exact(x, limit, 2);
+    tribo_destroy(c);
+}
+
+/* The law then reads clamp(clamp(f_eq) - (lambda_dt/(dt R)) v), also where the limit is too small to divide by. */
+TEST(epsilon_step_without_division)
+{
+    tribo_context *c = create(3);
+    const double limit[3] = {1.0, 1e-300, 0.0}, v[3] = {0.002, 0.0, 0.0}, feq[3] = {0.5, 1e-301, 5.0};
+    const double want[3] = {0.3, 1e-301, 0.0};
+    double f[3];
+    assert_ok(tribo_set_epsilon_step(c, 0.01, 1.0));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_force(c, v, feq, f));
+    assert_close(f[0], want[0], 2.0 * DBL_EPSILON);
+    assert_all_exact(f + 1, want + 1, 2);
+    tribo_destroy(c);
+}
+
+TEST(open_contacts)
+{
+    struct random g = random_of(_i);
+    const double coupled[4] = {2.0, 1.0, 1.0, 2.0}, limit[2] = {0.0, 1.0};
+    tribo_context *c = create(2);
+    assert_ok(tribo_set_law(c, _i % 6));
+    assert_ok(tribo_set_coupling(c, _i / 6 % 2));
+    assert_ok(tribo_set_limit(c, limit));
+    if (_i / 12) {
+        assert_ok(tribo_set_operator_dense(c, coupled));
+    }
+    for (int k = 0; k < 50; k++) {
+        const double v[2] = {uniform(&g, -1e-6, 1e-6) * (double)(k % 2), 0.0}, a[2] = {uniform(&g, -9, 9), 0.25};
+        double feq[2], f[2];
+        signed char mode[2];
+        assert_ok(tribo_balance(c, v, a, feq, f));
+        assert_exact(f[0], 0.0);
+        assert_exact(feq[0], 0.0);
+        assert_ok(tribo_get_modes(c, mode));
+        ck_assert_int_eq(mode[0], 2);
+        assert_ok(tribo_step_force(c, 1.0, a, f));
+        assert_exact(f[0], 0.0);
+        assert_ok(tribo_force(c, v, a, f));
+        assert_exact(f[0], 0.0);
+    }
+    tribo_destroy(c);
+}
+
+/* A contact that opens lets go at once. */
+TEST(opening_contacts)
+{
+    const double r[4] = {2.0, 1.0, 1.0, 2.0}, v[2] = {0}, a[2] = {0.5, 0.5}, limit[2] = {1.0, 0.0}, want[2] = {-0.25, 0.0};
+    for (int k = 0; k < 4; k++) {
+        double f[2];
+        tribo_context *c = create(2);
+        assert_ok(tribo_set_operator_dense(c, r));
+        assert_ok(tribo_set_coupling(c, k % 2));
+        assert_ok(tribo_set_limit_all(c, 1.0));
+        assert_ok(tribo_balance(c, v, a, NULL, f));
+        assert_ok(tribo_set_limit(c, limit));
+        assert_ok(k / 2 == 0 ? tribo_balance(c, v, a, NULL, f) : tribo_step_force(c, 1.0, a, f));
+        assert_all_close(f, want, 2, DBL_EPSILON);
+        tribo_destroy(c);
+    }
+}
+
+/* With no contacts nothing is read, and NULL will do for every array. */
+TEST(no_contacts)
+{
+    tribo_context *c = create(0), *copy = NULL;
+    const size_t rowptr[1] = {0};
+    size_t n = 9;
+    assert_ok(tribo_set_limit(c, NULL));
+    assert_ok(tribo_set_epsilon(c, NULL));
+    assert_ok(tribo_set_epsilon_step(c, 0.1, 1.0));
+    assert_ok(tribo_set_operator_diagonal(c, NULL));
+    assert_ok(tribo_set_operator_dense(c, NULL));
+    assert_ok(tribo_set_operator_csr(c, rowptr, NULL, NULL));
+    assert_ok(tribo_set_operator_mass(c, 0, NULL, rowptr, NULL, NULL));
+    assert_ok(tribo_get_limit(c, NULL));
+    assert_ok(tribo_force(c, NULL, NULL, NULL));
+    assert_ok(tribo_force_tangent(c, NULL, NULL, NULL, NULL, NULL, NULL));
+    assert_ok(tribo_balance(c, NULL, NULL, NULL, NULL));
+    assert_ok(tribo_balance_tangent(c, NULL, NULL, NULL, NULL, NULL, NULL));
+    assert_ok(tribo_step_force(c, 0.1, NULL, NULL));
+    assert_ok(tribo_accept(c, NULL, NULL));
+    assert_ok(tribo_get_modes(c, NULL));
+    assert_ok(tribo_clone(c, &copy));
+    assert_ok(tribo_get_ncontact(copy, &n));
+    ck_assert_uint_eq(n, 0);
+    ck_assert_uint_eq(count_of(c, TRIBO_COUNT_ISLANDS), 0);
+    assert_exact(real_of(c, TRIBO_REAL_MAX_STEP), HUGE_VAL);
+    tribo_destroy(copy);
+    tribo_destroy(c);
+}
+
+/* Laws that do not ask for f_eq do not need the array either. */
+TEST(no_feq)
+{
+    const double v[2] = {0.5, -3.0};
+    double f[2], d[2];
+    tribo_context *c = create(2);
+    assert_ok(tribo_set_law(c, _i ? TRIBO_SMOOTH : TRIBO_VELOCITY_LIMITED));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    assert_ok(tribo_force(c, v, NULL, f));
+    assert_exact(f[0], law_force(_i ? TRIBO_SMOOTH : TRIBO_VELOCITY_LIMITED, 0.5, 0.0, 1.0, 1.0));
+    assert_ok(tribo_force_tangent(c, v, NULL, NULL, d, NULL, NULL));
+    assert_ok(tribo_accept(c, v, NULL));
+    tribo_destroy(c);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ copies */
+
+/* What a context answers to a few questions, settings and memory included. */
+struct fingerprint {
+    int law, coupling;
+    double limit[3], epsilon[3], feq[3], f[3], atop[3];
+    signed char mode[3];
+};
+
+static struct fingerprint fingerprint(tribo_context *c)
+{
+    const double v[3] = {0.1, 0.0, -0.2}, a[3] = {0.5, -4.0, 1.0}, rest[3] = {0}, twice[3] = {9.0, 9.0, -9.0};
+    struct fingerprint x;
+    memset(&x, 0, sizeof x);
+    assert_ok(tribo_get_law(c, &x.law));
+    assert_ok(tribo_get_coupling(c, &x.coupling));
+    assert_ok(tribo_get_limit(c, x.limit));
+    assert_ok(tribo_get_epsilon(c, x.epsilon));
+    assert_ok(tribo_force(c, rest, twice, x.atop));
+    assert_ok(tribo_get_modes(c, x.mode));
+    assert_ok(tribo_balance(c, v, a, x.feq, x.f));
+    return x;
+}
+
+/* Everything but the defaults. */
+static tribo_context *unusual(void)
+{
+    const double r[9] = {2.0, 1.0, 0.5, 1.0, 2.0, 0.25, 0.5, 0.25, 1.0}, limit[3] = {1.0, 2.0, 3.0};
+    const double fast[3] = {9.0, 0.0, -9.0}, rest[3] = {0};
+    tribo_context *c = create(3);
+    assert_ok(tribo_set_law(c, TRIBO_QUINN_REVERSAL));
+    assert_ok(tribo_set_coupling(c, TRIBO_PARTITION));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_epsilon_step(c, 0.1, 1.0));
+    assert_ok(tribo_accept(c, fast, rest));
+    assert_ok(tribo_balance(c, rest, limit, NULL, NULL));
+    return c;
+}
+
+static void upset(tribo_context *c)
+{
+    const double r[3] = {5.0, 6.0, 7.0}, rest[3] = {0};
+    assert_ok(tribo_accept(c, rest, rest));
+    assert_ok(tribo_set_law(c, TRIBO_SMOOTH));
+    assert_ok(tribo_set_coupling(c, TRIBO_CONSISTENT));
+    assert_ok(tribo_set_limit_all(c, 0.1));
+    assert_ok(tribo_set_epsilon_all(c, 0.1));
+    assert_ok(tribo_set_operator_diagonal(c, r));
+    assert_status(tribo_set_law(c, 99), TRIBO_ERR_RANGE);
+}
+
+TEST(clones)
+{
+    tribo_context *c = unusual(), *copies[2];
+    assert_ok(tribo_clone(c, &copies[0]));
+    assert_ok(tribo_clone(c, &copies[1]));
+    for (int which = 0; which <= TRIBO_COUNT_MEMORY; which++) {
+        ck_assert_uint_eq(count_of(copies[0], which), count_of(c, which));
+    }
+    const struct fingerprint x = fingerprint(c), first = fingerprint(copies[0]);
+    ck_assert_mem_eq(&first, &x, sizeof x);
+    upset(c);
+    ck_assert_str_eq(tribo_message(copies[1]), "");
+    tribo_destroy(c);
+    upset(copies[0]);
+    tribo_destroy(copies[0]);
+    const struct fingerprint second = fingerprint(copies[1]);
+    ck_assert_mem_eq(&second, &x, sizeof x);
+    /* epsilon still follows the limits in the copy */
+    double epsilon[3];
+    const double twice[3] = {2.0, 4.0, 6.0};
+    assert_ok(tribo_set_limit(copies[1], twice));
+    assert_ok(tribo_get_epsilon(copies[1], epsilon));
+    assert_close(epsilon[2], 2.0 * x.epsilon[2], 4.0 * DBL_EPSILON * epsilon[2]);
+    tribo_destroy(copies[1]);
+}
+
+/* ------------------------------------------------------------------------------------------------------ versions, texts */
+
+TEST(versions)
+{
+    char *end;
+    const char *text = tribo_version_string();
+    const long major = strtol(text, &end, 10), minor = strtol(end + 1, &end, 10), patch = strtol(end + 1, &end, 10);
+    ck_assert_int_eq(*end, 0);
+    ck_assert_int_eq(tribo_version(), 10000 * major + 100 * minor + patch);
+    ck_assert_int_eq(tribo_version(), TRIBO_VERSION);
+}
+
+TEST(texts_of_statuses)
+{
+    const int known[] = {TRIBO_OK,
+                         TRIBO_ERR_NULL,
+                         TRIBO_ERR_NOT_FINITE,
+                         TRIBO_ERR_NEGATIVE,
+                         TRIBO_ERR_RANGE,
+                         TRIBO_ERR_SIZE,
+                         TRIBO_ERR_NOT_POSITIVE,
+                         TRIBO_ERR_NAME,
+                         TRIBO_ERR_STATE,
+                         TRIBO_ERR_UNSUPPORTED,
+                         TRIBO_ERR_MEMORY,
+                         TRIBO_ERR_FILE,
+                         TRIBO_ERR_STOPPED,
+                         TRIBO_ERR_STEP,
+                         TRIBO_ERR_CALLBACK,
+                         TRIBO_ERR_NOT_SYMMETRIC,
+                         TRIBO_ERR_DUPLICATE,
+                         TRIBO_ERR_INDEFINITE,
+                         TRIBO_ERR_INCONSISTENT,
+                         TRIBO_ERR_NO_CONVERGENCE};
+    const char *unknown = tribo_strerror(-1);
+    for (size_t i = 0; i < COUNT(known); i++) {
+        ck_assert_str_ne(tribo_strerror(known[i]), unknown);
+        for (size_t j = 0; j < i; j++) {
+            ck_assert_str_ne(tribo_strerror(known[i]), tribo_strerror(known[j]));
+        }
+    }
+    const int odd[] = {INT_MIN, INT_MAX, -77, 12, 19, 59, 63, 1000};
+    for (size_t i = 0; i < COUNT(odd); i++) {
+        ck_assert_str_eq(tribo_strerror(odd[i]), unknown);
+    }
+    for (int status = -300; status < 300; status++) {
+        require(strlen(tribo_strerror(status)) > 3, "status %d", status);
+    }
+}
+
+TEST(messages)
+{
+    tribo_context *c = create(1);
+    ck_assert_uint_gt(strlen(tribo_message(NULL)), 0);
+    assert_status(tribo_set_message(c, TRIBO_ERR_FILE, "beam.mtx is missing"), TRIBO_ERR_FILE);
+    ck_assert_str_eq(tribo_message(c), "beam.mtx is missing");
+    assert_ok(tribo_set_limit_all(c, 1.0)); /* success leaves the last failure's text */
+    ck_assert_str_eq(tribo_message(c), "beam.mtx is missing");
+    assert_status(tribo_set_message(c, TRIBO_ERR_FILE, NULL), TRIBO_ERR_FILE);
+    assert_status(tribo_set_message(NULL, TRIBO_ERR_FILE, "x"), TRIBO_ERR_FILE);
+    ck_assert_str_eq(tribo_message(c), "beam.mtx is missing");
+    char text[1000];
+    memset(text, '%', sizeof text - 1);
+    text[sizeof text - 1] = 0;
+    assert_status(tribo_set_message(c, TRIBO_ERR_FILE, text), TRIBO_ERR_FILE);
+    assert_says(text, tribo_message(c)); /* cut, but not interpreted */
+    ck_assert_uint_gt(strlen(tribo_message(c)), 100);
+    tribo_destroy(c);
+}
+
+TEST_MAIN("context", {defaults, 1}, {settings, 1}, {epsilon_step, 1}, {epsilon_step_without_division, 1}, {open_contacts, 24},
+          {opening_contacts, 1}, {no_contacts, 1}, {no_feq, 2}, {clones, 1}, {versions, 1}, {texts_of_statuses, 1}, {messages, 1})

@@ -1,0 +1,146 @@
+/* Derivatives of the coupled balance against differences, in random directions. */
+#include <string.h>
+
+#include "problem.h"
+
+#define STEP 1e-6
+
+struct tangent {
+    double f[LARGEST], dv[LARGEST * LARGEST], da[LARGEST * LARGEST];
+};
+
+/* Forces and derivatives of f along (v, a) + STEP (dv, da). */
+static void forces_at(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
+{
+    double v[LARGEST], a[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        v[i] = p->v[i] + step * dv[i];
+        a[i] = p->a[i] + step * da[i];
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+}
+
+/* How many of the components have no kink and no jump within the step; these are compared. */
+static size_t check_direction(tribo_context *c, const struct problem *p, const struct tangent *t, const double *dv,
+                              const double *da)
+{
+    double f[LARGEST], before[LARGEST], after[LARGEST];
+    size_t smooth = 0;
+    forces_at(c, p, 0.0, dv, da, f);
+    forces_at(c, p, -STEP, dv, da, before);
+    forces_at(c, p, STEP, dv, da, after);
+    assert_all_close(t->f, f, p->n, 1e-14);
+    for (size_t i = 0; i < p->n; i++) {
+        const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP;
+        double want = 0.0, size = 1.0;
+        for (size_t j = 0; j < p->n; j++) {
+            const double terms[] = {t->dv[i * p->n + j] * dv[j], t->da[i * p->n + j] * da[j]};
+            want += terms[0] + terms[1];
+            size += fabs(terms[0]) + fabs(terms[1]);
+        }
+        /* 1e-9 from rounding; the smooth and reversal laws add STEP times a curvature of up to 100 */
+        if (fabs(forward - backward) < 2e-4 * size) {
+            assert_close(want, 0.5 * (forward + backward), 1e-6 * size);
+            smooth++;
+        }
+    }
+    return smooth;
+}
+
+/* Problems in which epsilon, limits and R are of the order of 1. Odd contacts have the reversal memory set. */
+static tribo_context *create(struct random *g, int law, int coupling, struct problem *p)
+{
+    struct recipe recipe = recipe_regular(g, 12);
+    recipe.resting = law == TRIBO_COULOMB ? 0.5 : 0.0; /* at rest and saturated, the other laws have a kink */
+    *p = problem_create(g, &recipe);
+    tribo_context *c = problem_context(p, law, coupling);
+    double v[LARGEST], none[LARGEST] = {0};
+    for (size_t i = 0; i < p->n; i++) {
+        v[i] = i % 2 ? 9.0 : 0.0;
+    }
+    assert_ok(tribo_accept(c, v, none));
+    return c;
+}
+
+TEST(tangents)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2;
+    size_t smooth = 0, all = 0;
+    for (int k = 0; k < 10; k++) {
+        struct problem p;
+        struct tangent t;
+        tribo_context *c = create(&g, law, coupling, &p);
+        assert_ok(tribo_balance_tangent(c, p.v, p.a, NULL, t.f, t.dv, t.da));
+        for (int way = 0; way < 4; way++) {
+            double dv[LARGEST], da[LARGEST];
+            for (size_t i = 0; i < p.n; i++) {
+                /* Coulomb's law jumps at rest, with derivative 0: there only a moves */
+                dv[i] = law == TRIBO_COULOMB || way == 1 ? 0.0 : uniform(&g, -1.0, 1.0);
+                da[i] = way == 2 ? 0.0 : uniform(&g, -1.0, 1.0);
+            }
+            smooth += check_direction(c, &p, &t, dv, da);
+            all += p.n;
+        }
+        tribo_destroy(c);
+    }
+    ck_assert_uint_gt(smooth, all * 95 / 100);
+}
+
+static void answer_apart(const tribo_context *c, const struct problem *p, double *feq, double *f, double *dv, double *da)
+{
+    tribo_context *copy; /* since forces found before show in the last digits */
+    assert_ok(tribo_clone(c, &copy));
+    assert_ok(tribo_balance_tangent(copy, p->v, p->a, feq, f, dv, da));
+    tribo_destroy(copy);
+}
+
+/* Each output may be left out, and does not depend on the others. */
+TEST(optional_outputs)
+{
+    struct random g = random_of(_i);
+    struct problem p;
+    struct tangent all, one;
+    double feq[LARGEST], feq_alone[LARGEST];
+    tribo_context *c = create(&g, TRIBO_QUINN_REVERSAL, _i % 2, &p);
+    answer_apart(c, &p, feq, all.f, all.dv, all.da);
+    answer_apart(c, &p, NULL, NULL, one.dv, NULL);
+    answer_apart(c, &p, NULL, NULL, NULL, one.da);
+    answer_apart(c, &p, feq_alone, one.f, NULL, NULL);
+    assert_all_exact(one.dv, all.dv, p.n * p.n);
+    assert_all_exact(one.da, all.da, p.n * p.n);
+    assert_all_exact(one.f, all.f, p.n);
+    assert_all_exact(feq_alone, feq, p.n);
+    assert_ok(tribo_balance(c, p.v, p.a, feq_alone, one.f));
+    assert_all_exact(one.f, all.f, p.n);
+    assert_all_exact(feq_alone, feq, p.n);
+    tribo_destroy(c);
+}
+
+/* Uncoupled contacts: what tribo_force_tangent says, with f_eq = -a/R. */
+TEST(uncoupled)
+{
+    struct random g = random_of(_i);
+    const double r[] = {0.5, 2.0, 1.0}, limit[] = {1.0, 0.7, 0.0};
+    double v[3], a[3], feq[3], f[3], dv[9], da[9], law_dv[3], law_dfeq[3];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 3));
+    assert_ok(tribo_set_law(c, _i % tribo_law_count()));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    assert_ok(tribo_set_operator_diagonal(c, r));
+    for (size_t i = 0; i < 3; i++) {
+        v[i] = uniform(&g, -1.2, 1.2) * (double)below(&g, 2);
+        a[i] = uniform(&g, -1.0, 1.0);
+    }
+    assert_ok(tribo_balance_tangent(c, v, a, feq, f, dv, da));
+    assert_ok(tribo_force_tangent(c, v, feq, NULL, law_dv, law_dfeq, NULL));
+    for (size_t k = 0; k < 9; k++) {
+        const size_t i = k / 3;
+        assert_exact(dv[k], k % 4 ? 0.0 : law_dv[i]);
+        assert_exact(da[k], k % 4 || limit[i] == 0.0 ? 0.0 : -law_dfeq[i] / r[i]);
+    }
+    tribo_destroy(c);
+}
+
+TEST_MAIN("tangents", {tangents, 24}, {optional_outputs, 6}, {uncoupled, 60})

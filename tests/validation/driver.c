@@ -1,0 +1,309 @@
+/* Drivers: fixed steps, counts, observers, and every way to fail. */
+#include <string.h>
+
+#include "run.h"
+
+/* A chain on its way, in steps that are exact in binary. */
+#define STEP (1.0 / 64.0)
+#define BLOCKS 8
+#define DIMENSION (2 * BLOCKS + 1)
+
+static tribo_system *chain(int law)
+{
+    tribo_system *sys;
+    assert_ok(tribo_system_chain(&sys, BLOCKS, 1.0, 0.4, 1.0));
+    assert_ok(tribo_set_law(tribo_system_context(sys), law));
+    assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), STEP, 0.4));
+    return sys;
+}
+
+TEST(four_evaluations_a_step)
+{
+    double t = 0.0, y[DIMENSION] = {0};
+    tribo_system *sys = chain(_i);
+    tribo_driver *drv = driver_create(sys, "rk4/fixed", STEP, 0.0);
+    for (size_t k = 1; k <= 3; k++) {
+        driver_advance(drv, &t, (double)k * 100.0 * STEP, y);
+        ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), 100 * k);
+        ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_EVALUATIONS), 400 * k);
+    }
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_REJECTED), 0);
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_JACOBIANS), 0);
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_EVENTS), 0);
+    driver_advance(drv, &t, t, y); /* nowhere to go */
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), 300);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* The last step is shorter where the end asks for it; a remainder that is rounding is none. */
+TEST(last_steps)
+{
+    const struct {
+        double dt, end;
+        size_t steps;
+    } cases[] = {{0.1, 1.05, 11}, {0.1, 1.0, 10}, {0.1, 0.3, 3}, {0.7, 2.1, 3}, {5.0, 1.0, 1}, {0.01, 0.09999999999, 10}};
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        double t = 0.0, y[DIMENSION] = {0};
+        tribo_system *sys = chain(TRIBO_SMOOTH);
+        tribo_driver *drv = driver_create(sys, "rk4/fixed", cases[i].dt, 0.0);
+        driver_advance(drv, &t, cases[i].end, y);
+        ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), cases[i].steps);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
+/* rk4 written out, on the right-hand side that anybody's driver sees. */
+TEST(classical_runge_kutta)
+{
+    double want[DIMENSION] = {0}, y[DIMENSION] = {0};
+    tribo_system *sys = chain(TRIBO_QUINN);
+    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    ck_assert_uint_eq(ode->dimension, DIMENSION);
+    run(sys, "rk4/fixed", STEP, 0.0, 256.0 * STEP, y);
+    for (int k = 0; k < 256; k++) {
+        double slope[4][DIMENSION], stage[DIMENSION];
+        for (int s = 0; s < 4; s++) {
+            const double part = s == 0 ? 0.0 : s == 3 ? STEP : 0.5 * STEP;
+            for (size_t i = 0; i < DIMENSION; i++) {
+                stage[i] = want[i] + (s ? part * slope[s - 1][i] : 0.0);
+            }
+            ck_assert_int_eq(ode->function(k * STEP + part, stage, slope[s], ode->params), GSL_SUCCESS);
+        }
+        for (size_t i = 0; i < DIMENSION; i++) {
+            want[i] += STEP / 6.0 * (slope[0][i] + 2.0 * slope[1][i] + 2.0 * slope[2][i] + slope[3][i]);
+        }
+    }
+    assert_all_close(y, want, DIMENSION, 1e-14);
+    tribo_system_destroy(sys);
+}
+
+TEST(pieces)
+{
+    double at_once[DIMENSION] = {0}, y[DIMENSION] = {0}, t = 0.0;
+    tribo_system *sys[] = {chain(_i), chain(_i)};
+    run(sys[0], "rk4/fixed", STEP, 0.0, 480.0 * STEP, at_once);
+    tribo_driver *drv = driver_create(sys[1], "rk4/fixed", STEP, 0.0);
+    for (int k = 1; k <= 15; k++) {
+        driver_advance(drv, &t, 32.0 * k * STEP, y);
+    }
+    assert_all_exact(y, at_once, DIMENSION);
+    require(y[2 * BLOCKS] > 0.01, "nothing moved");
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys[0]);
+    tribo_system_destroy(sys[1]);
+}
+
+/* --------------------------------------------------------------------------------------------------------- observers */
+
+struct seen {
+    size_t steps, stop_at;
+    double t, y[DIMENSION];
+};
+
+static int see(double t, const double *y, int event, void *data)
+{
+    struct seen *seen = data;
+    require(event == 0 && t > seen->t, "event %d at %g after %g", event, t, seen->t);
+    seen->steps++;
+    seen->t = t;
+    memcpy(seen->y, y, sizeof seen->y);
+    return seen->steps == seen->stop_at ? 7 : 0;
+}
+
+/* Stopped, then sent on: nothing is lost. */
+TEST(observer_stops)
+{
+    const char *const methods[] = {"rk4/fixed", "rkf45", "msbdf"};
+    double t = 0.0, y[DIMENSION] = {0}, at_once[DIMENSION] = {0};
+    struct seen seen = {0, 20, 0.0, {0}};
+    tribo_system *sys[] = {chain(TRIBO_QUINN), chain(TRIBO_QUINN)};
+    tribo_driver *drv = driver_create(sys[0], methods[_i], STEP, 1e-6);
+    assert_ok(tribo_driver_set_observer(drv, see, &seen));
+    assert_status(tribo_driver_advance(drv, &t, 2.0, y), TRIBO_ERR_STOPPED);
+    assert_says(tribo_driver_message(drv), "observer answered 7");
+    ck_assert_uint_eq(seen.steps, 20);
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), 20);
+    assert_exact(t, seen.t);
+    assert_all_exact(y, seen.y, DIMENSION);
+    driver_advance(drv, &t, 2.0, y);
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), seen.steps);
+    assert_exact(t, seen.t);
+    run(sys[1], methods[_i], STEP, 1e-6, 2.0, at_once);
+    assert_all_exact(y, at_once, DIMENSION);
+    assert_ok(tribo_driver_set_observer(drv, NULL, NULL));
+    driver_advance(drv, &t, 3.0, y);
+    assert_exact(seen.t, 2.0);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys[0]);
+    tribo_system_destroy(sys[1]);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ errors */
+
+TEST(creation_errors)
+{
+    const struct {
+        const char *method;
+        double dt, abstol, reltol;
+        int status;
+        const char *text;
+    } cases[] = {
+        {NULL, 0.1, 0, 0, TRIBO_ERR_NULL, "method is NULL"},
+        {"rk5", 0.1, 0, 0, TRIBO_ERR_NAME, "method \"rk5\""},
+        {"", 0.1, 0, 0, TRIBO_ERR_NAME, "method \"\""},
+        {"rk4/fixed", 0, 0, 0, TRIBO_ERR_NOT_POSITIVE, "dt = 0"},
+        {"rk4/fixed", -1, 0, 0, TRIBO_ERR_NOT_POSITIVE, "dt = -1"},
+        {"rk4/fixed", NAN, 0, 0, TRIBO_ERR_NOT_FINITE, "dt = nan"},
+        {"rk4/fixed", 1, -1, 0, TRIBO_ERR_NEGATIVE, "abstol = -1"},
+        {"rkf45", HUGE_VAL, 1, 0, TRIBO_ERR_NOT_FINITE, "dt = inf"},
+        {"rkf45", 1, 0, 0, TRIBO_ERR_NOT_POSITIVE, "abstol = 0"},
+        {"rkf45", 1, NAN, 0, TRIBO_ERR_NOT_FINITE, "abstol = nan"},
+        {"rkf45", 1, 1, -2, TRIBO_ERR_NEGATIVE, "reltol = -2"},
+        {"rkf45", 1, 1, NAN, TRIBO_ERR_NOT_FINITE, "reltol = nan"},
+    };
+    tribo_driver *drv;
+    tribo_system *sys = chain(TRIBO_QUINN);
+    stain(&drv, sizeof drv);
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        assert_status(tribo_driver_create(&drv, sys, cases[i].method, cases[i].dt, cases[i].abstol, cases[i].reltol),
+                      cases[i].status);
+        assert_says(tribo_message(tribo_system_context(sys)), cases[i].text);
+    }
+    assert_status(tribo_driver_create(NULL, sys, "rk4/fixed", 1, 0, 0), TRIBO_ERR_NULL);
+    assert_says(tribo_message(tribo_system_context(sys)), "drv is NULL");
+    assert_status(tribo_driver_create(&drv, NULL, "rk4/fixed", 1, 0, 0), TRIBO_ERR_NULL);
+    ck_assert(stained(&drv, sizeof drv));
+    tribo_system_destroy(sys);
+}
+
+/* This changes with the next version. */
+TEST(planned_methods)
+{
+    const char *const names[] = {"event", "exact", "central/fixed", "moreau/fixed"};
+    tribo_system *sys = chain(TRIBO_QUINN);
+    tribo_driver *drv = NULL;
+    for (size_t i = 0; i < COUNT(names); i++) {
+        assert_status(tribo_driver_create(&drv, sys, names[i], 0.1, 1e-6, 0.0), TRIBO_ERR_UNSUPPORTED);
+        assert_says(tribo_message(tribo_system_context(sys)), names[i]);
+    }
+    tribo_system_destroy(sys);
+}
+
+TEST(advance_errors)
+{
+    const char *const methods[] = {"rk4/fixed", "rkf45", "bsimp"};
+    tribo_system *sys = chain(TRIBO_QUINN);
+    tribo_driver *drv = driver_create(sys, methods[_i], STEP, 1e-6);
+    double t = 0.5, bad = NAN, y[DIMENSION] = {0}, ill[DIMENSION] = {0};
+    y[3] = 0.25;
+    ill[4] = -HUGE_VAL;
+    ck_assert_str_eq(tribo_driver_message(drv), "");
+    assert_status(tribo_driver_advance(NULL, &t, 1.0, y), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_advance(drv, NULL, 1.0, y), TRIBO_ERR_NULL);
+    assert_says(tribo_driver_message(drv), "t is NULL");
+    assert_status(tribo_driver_advance(drv, &t, 1.0, NULL), TRIBO_ERR_NULL);
+    assert_says(tribo_driver_message(drv), "y is NULL");
+    assert_status(tribo_driver_advance(drv, &bad, 1.0, y), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_driver_message(drv), "t = nan");
+    assert_status(tribo_driver_advance(drv, &t, HUGE_VAL, y), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_driver_message(drv), "t1 = inf");
+    assert_status(tribo_driver_advance(drv, &t, 0.25, y), TRIBO_ERR_RANGE);
+    assert_says(tribo_driver_message(drv), "t1 = 0.25 is before t = 0.5");
+    assert_status(tribo_driver_advance(drv, &t, 1.0, ill), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_driver_message(drv), "y[4] = -inf");
+    assert_exact(t, 0.5);
+    assert_exact(y[3], 0.25);
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), 0);
+    driver_advance(drv, &t, 1.0, y);
+    ck_assert_uint_gt(driver_count(drv, TRIBO_COUNT_STEPS), 0);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+TEST(other_errors)
+{
+    size_t count;
+    tribo_system *sys = chain(TRIBO_QUINN);
+    tribo_driver *drv = driver_create(sys, "rk4/fixed", STEP, 0.0);
+    stain(&count, sizeof count);
+    assert_status(tribo_driver_count(NULL, TRIBO_COUNT_STEPS, &count), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_count(drv, TRIBO_COUNT_STEPS, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_count(drv, TRIBO_COUNT_STUCK, &count), TRIBO_ERR_RANGE);
+    assert_status(tribo_driver_count(drv, TRIBO_COUNT_EVENTS + 1, &count), TRIBO_ERR_RANGE);
+    assert_status(tribo_driver_set_observer(NULL, see, NULL), TRIBO_ERR_NULL);
+    ck_assert(stained(&count, sizeof count));
+    ck_assert_uint_gt(strlen(tribo_driver_message(NULL)), 0);
+    tribo_driver_destroy(NULL);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* ------------------------------------------------------------------------------------------------- failures under way */
+
+/* The same contact twice, each with a motion of its own: the partition has no f_eq for that once both are near stick. */
+static tribo_system *torn(void)
+{
+    const double mass[] = {1.0}, stiffness[] = {1.0}, direction[] = {1.0, 1.0}, sine[] = {0.0, 1.0};
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 1, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
+    tribo_context *c = tribo_system_context(sys);
+    assert_ok(tribo_system_add_motion(sys, 1.0, NULL, sine));
+    assert_ok(tribo_set_coupling(c, TRIBO_PARTITION));
+    assert_ok(tribo_set_limit_all(c, 0.1));
+    assert_ok(tribo_set_epsilon_all(c, 0.1));
+    return sys;
+}
+
+static int see_one(double t, const double *y, int event, void *data)
+{
+    struct seen *seen = data;
+    (void)event;
+    seen->t = t;
+    memcpy(seen->y, y, 3 * sizeof *y);
+    return 0;
+}
+
+/* From far above, the contacts come to the band within a few steps. */
+TEST(inconsistent_under_way)
+{
+    const char *const methods[] = {"rk4/fixed", "rkf45", "bsimp"};
+    tribo_system *sys = torn();
+    tribo_driver *drv = driver_create(sys, methods[_i], 0.01, 1e-6);
+    double t = 0.0, y[3] = {0.0, 1.0, 0.0};
+    struct seen seen = {0, 0, 0.0, {0}};
+    assert_ok(tribo_driver_set_observer(drv, see_one, &seen));
+    assert_status(tribo_driver_advance(drv, &t, 50.0, y), TRIBO_ERR_INCONSISTENT);
+    assert_says(tribo_driver_message(drv), "at t = ");
+    assert_says(tribo_driver_message(drv), "rank 1");
+    assert_exact(t, seen.t);
+    assert_all_exact(y, seen.y, 3);
+    require(t > 0.1 && t < 50.0 && y[1] != 1.0, "failed at t = %g", t);
+    /* the consistent coupling takes it from there */
+    assert_ok(tribo_set_coupling(tribo_system_context(sys), TRIBO_CONSISTENT));
+    driver_advance(drv, &t, 50.0, y);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* Numbers that overflow end the run where they do. */
+TEST(overflow)
+{
+    const char *const methods[] = {"rk4/fixed", "rkf45", "bsimp"};
+    tribo_system *sys = chain(TRIBO_QUINN);
+    tribo_driver *drv = driver_create(sys, methods[_i], STEP, 1e-6);
+    double t = 0.0, y[DIMENSION] = {0};
+    y[0] = 1e308; /* times n^2 */
+    const int status = tribo_driver_advance(drv, &t, 1.0, y);
+    require(status == TRIBO_ERR_NOT_FINITE || status == TRIBO_ERR_STEP, "%d: %s", status, tribo_driver_message(drv));
+    ck_assert_uint_gt(strlen(tribo_driver_message(drv)), 0);
+    assert_exact(t, 0.0);
+    assert_exact(y[0], 1e308);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("driver", {four_evaluations_a_step, 6}, {last_steps, 1}, {classical_runge_kutta, 1}, {pieces, 6}, {observer_stops, 3},
+          {creation_errors, 1}, {planned_methods, 1}, {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3},
+          {overflow, 3})

@@ -1,0 +1,128 @@
+/* The Jacobian that implicit methods are given, against differences of the right-hand side. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "model.h"
+
+#define LARGEST 17
+#define STEP 1e-6
+
+static void rate_of(const gsl_odeiv2_system *ode, double t, const double *y, double *dydt)
+{
+    ck_assert_int_eq(ode->function(t, y, dydt, ode->params), GSL_SUCCESS);
+}
+
+/* d(dydt)/dy_j, or /dt for j = dimension, where no kink is near; answers how many entries that were. */
+static size_t check_column(const gsl_odeiv2_system *ode, double t, const double *y, size_t j, const double *derivative,
+                           size_t stride)
+{
+    double at[LARGEST], rate[3][LARGEST];
+    size_t smooth = 0;
+    for (int k = -1; k <= 1; k++) {
+        memcpy(at, y, ode->dimension * sizeof *y);
+        at[j < ode->dimension ? j : 0] += j < ode->dimension ? k * STEP : 0.0;
+        rate_of(ode, j < ode->dimension ? t : t + k * STEP, at, rate[k + 1]);
+    }
+    for (size_t i = 0; i < ode->dimension; i++) {
+        const double forward = (rate[2][i] - rate[1][i]) / STEP, backward = (rate[1][i] - rate[0][i]) / STEP;
+        const double got = derivative[i * stride], size = 1.0 + fabs(got);
+        if (fabs(forward - backward) < 2e-4 * size) {
+            /* rounding of a rate of up to 100 leaves 1e-8 */
+            assert_close(got, 0.5 * (forward + backward), 1e-6 * size);
+            smooth++;
+        }
+    }
+    return smooth;
+}
+
+static void check_jacobian(tribo_system *sys, struct random *g)
+{
+    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    const size_t n = ode->dimension;
+    double y[LARGEST], dfdy[LARGEST * LARGEST], dfdt[LARGEST];
+    size_t smooth = 0;
+    for (int k = 0; k < 20; k++) {
+        const double t = uniform(g, 0.0, 9.0);
+        for (size_t i = 0; i < n; i++) {
+            y[i] = uniform(g, -0.5, 0.5);
+        }
+        if (k % 3 == 0) {
+            assert_ok(tribo_system_accept(sys, t, y)); /* sets some memory bits */
+        }
+        stain(dfdy, sizeof dfdy);
+        stain(dfdt, sizeof dfdt);
+        ck_assert_int_eq(ode->jacobian(t, y, dfdy, dfdt, ode->params), GSL_SUCCESS);
+        for (size_t j = 0; j < n; j++) {
+            smooth += check_column(ode, t, y, j, dfdy + j, n);
+        }
+        smooth += check_column(ode, t, y, n, dfdt, 1);
+    }
+    ck_assert_uint_gt(smooth, 20 * n * (n + 1) * 9 / 10);
+}
+
+static tribo_system *system_of(struct random *g, int which)
+{
+    const struct model m = model_create(g, which == 3);
+    tribo_system *sys = NULL;
+    switch (which) {
+    case 0:
+        assert_ok(tribo_system_oscillator(&sys, 1.0, 1.5, 0.5));
+        break;
+    case 1:
+        assert_ok(tribo_system_chain(&sys, 8, 1.0, 0.25, 0.5));
+        break;
+    case 2:
+        assert_ok(tribo_system_belt(&sys, 2.0, 0.5, 0.25, 1.0, 0.5));
+        break;
+    case 3:
+    case 4:
+        sys = model_system(&m, 1, 0, 1.0);
+        break;
+    default:
+        sys = model_system(&m, 0, 4, 1.0);
+        assert_ok(tribo_system_set_damping_ratio(sys, 0.05));
+    }
+    assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 0.5));
+    return sys;
+}
+
+#define SYSTEMS 6
+
+/* Without Coulomb's law: its derivatives are zero wherever v is not. */
+static const int laws[] = {TRIBO_VELOCITY_LIMITED, TRIBO_SMOOTH, TRIBO_KARNOPP, TRIBO_QUINN, TRIBO_QUINN_REVERSAL};
+
+TEST(jacobians)
+{
+    struct random g = random_of(_i);
+    tribo_system *sys = system_of(&g, _i % SYSTEMS);
+    assert_ok(tribo_set_law(tribo_system_context(sys), laws[(size_t)(_i / SYSTEMS) % COUNT(laws)]));
+    for (int coupling = 0; coupling < 2; coupling++) {
+        assert_ok(tribo_set_coupling(tribo_system_context(sys), coupling));
+        check_jacobian(sys, &g);
+    }
+    tribo_system_destroy(sys);
+}
+
+/* Damping that comes after the first Jacobian is in the next one. */
+TEST(jacobian_after_new_damping)
+{
+    struct random g = random_of(_i);
+    tribo_system *sys = system_of(&g, SYSTEMS - 1);
+    for (int k = 0; k < 3; k++) {
+        assert_ok(tribo_system_set_damping_ratio(sys, 0.1 * k));
+        check_jacobian(sys, &g);
+    }
+    tribo_system_destroy(sys);
+}
+
+TEST(jacobian_of_bad_states)
+{
+    double y[3] = {0.0, NAN, 0.0}, dfdy[9], dfdt[3], dydt[3];
+    tribo_system *sys = oscillator(TRIBO_QUINN, 1.0, 1.0);
+    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    ck_assert_int_ne(ode->jacobian(0.0, y, dfdy, dfdt, ode->params), GSL_SUCCESS);
+    ck_assert_int_ne(ode->function(0.0, y, dydt, ode->params), GSL_SUCCESS);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("jacobian", {jacobians, SYSTEMS *COUNT(laws)}, {jacobian_after_new_damping, 1}, {jacobian_of_bad_states, 1})

@@ -1,0 +1,136 @@
+/* Memory of systems and drivers: none is asked for while the chain moves; and when there is none, nothing leaks. GSL allocates
+ * for itself, and is not among those that fail here. */
+#include <string.h>
+
+#include "memory.h"
+#include "model.h"
+
+TEST(fixed_steps_allocate_nothing)
+{
+    double t = 0.0, y[17] = {0};
+    tribo_system *sys;
+    assert_ok(tribo_system_chain(&sys, 8, 0.1, 0.25, 0.5));
+    assert_ok(tribo_set_law(tribo_system_context(sys), _i));
+    tribo_driver *drv = driver_create(sys, "rk4/fixed", 0.01, 0.0);
+    const size_t before = memory_calls();
+    require(before > 0, "allocations are not counted");
+    const int status = tribo_driver_advance(drv, &t, 5.0, y);
+    require(memory_calls() == before, "%zu allocations", memory_calls() - before);
+    assert_status(status, TRIBO_OK);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+static const struct model *model;
+
+static int make_chain(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    return tribo_system_chain(sys, 8, 0.1, 0.25, 0.5);
+}
+
+static int make_belt(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    return tribo_system_belt(sys, 2.0, 0.5, 0.25, 1.0, 0.5);
+}
+
+static int make_oscillator(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    return tribo_system_oscillator(sys, 1.0, 1.5, 0.5);
+}
+
+static int make_linear(tribo_system **sys, const struct model *m, int damped, size_t nmode)
+{
+    return tribo_system_linear(sys, DOFS, CONTACTS, m->mass, damped ? m->damping : NULL, m->stiffness, m->direction, nmode, NULL,
+                               0);
+}
+
+static int make_full(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    return make_linear(sys, model, 1, 0);
+}
+
+static int make_diagonal(tribo_system **sys, tribo_driver **drv)
+{
+    struct model m = *model;
+    for (size_t k = 0; k < DOFS * DOFS; k++) {
+        m.mass[k] *= k % (DOFS + 1) ? 0.0 : 1.0;
+    }
+    (void)drv;
+    return make_linear(sys, &m, 1, 0);
+}
+
+static int make_reduced(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    return make_linear(sys, model, 0, 3);
+}
+
+static int make_driver(tribo_system **sys, tribo_driver **drv)
+{
+    const int status = tribo_system_oscillator(sys, 1.0, 1.5, 0.5);
+    return status ? status : tribo_driver_create(drv, *sys, "rk4/fixed", 0.1, 0.0, 0.0);
+}
+
+/* A system with all that can be added to it. */
+static int make_loaded(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    int status = make_linear(sys, model, 0, 3);
+    status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
+    status = status ? status : tribo_system_add_motion(*sys, 1.0, NULL, model->motion[0]);
+    return status ? status : tribo_system_set_damping_ratio(*sys, 0.1);
+}
+
+static const struct {
+    const char *name;
+    int (*make)(tribo_system **sys, tribo_driver **drv);
+} makers[] = {{"chain", make_chain},       {"belt", make_belt},       {"oscillator", make_oscillator}, {"full", make_full},
+              {"diagonal", make_diagonal}, {"reduced", make_reduced}, {"driver", make_driver},         {"loaded", make_loaded}};
+
+/* Fails one allocation after the other, until there are no more. */
+TEST(failures)
+{
+    struct random g = random_of(1);
+    const struct model m = model_create(&g, 1);
+    model = &m;
+    size_t fails = 1;
+    for (int status = TRIBO_ERR_MEMORY; status; fails++) {
+        tribo_system *sys = NULL;
+        tribo_driver *drv = NULL;
+        const long none = memory_live();
+        memory_fail(fails);
+        status = makers[_i].make(&sys, &drv);
+        memory_fail(0);
+        require(!status || status == TRIBO_ERR_MEMORY, "%s, allocation %zu: %d", makers[_i].name, fails, status);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+        require(memory_live() == none, "%s leaves %ld blocks behind when allocation %zu fails", makers[_i].name,
+                memory_live() - none, fails);
+    }
+    ck_assert_uint_gt(fails, 10);
+}
+
+/* The Jacobian's workspace comes with the first call. */
+TEST(failing_jacobian)
+{
+    double y[DIMENSION] = {0}, dfdy[DIMENSION * DIMENSION], dfdt[DIMENSION];
+    struct random g = random_of(1);
+    const struct model m = model_create(&g, 1);
+    tribo_system *sys = model_system(&m, 1, 0, 0.1);
+    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    for (size_t fails = 1; fails <= 5; fails++) {
+        memory_fail(fails);
+        const int status = ode->jacobian(0.0, y, dfdy, dfdt, ode->params);
+        memory_fail(0);
+        ck_assert_int_eq(status, GSL_EBADFUNC);
+        assert_says(tribo_message(tribo_system_context(sys)), "out of memory for the Jacobian");
+    }
+    ck_assert_int_eq(ode->jacobian(0.0, y, dfdy, dfdt, ode->params), GSL_SUCCESS);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("memory", {fixed_steps_allocate_nothing, 6}, {failures, COUNT(makers)}, {failing_jacobian, 1})

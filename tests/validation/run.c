@@ -1,0 +1,65 @@
+#include "run.h"
+
+#include <stdlib.h>
+
+tribo_driver *driver_create(tribo_system *sys, const char *method, double dt, double tolerance)
+{
+    tribo_driver *drv = NULL;
+    const int status = tribo_driver_create(&drv, sys, method, dt, tolerance, 0.0);
+    require(status == TRIBO_OK, "%s: %s", method, tribo_message(tribo_system_context(sys)));
+    return drv;
+}
+
+void driver_advance(tribo_driver *drv, double *t, double t1, double *y)
+{
+    const int status = tribo_driver_advance(drv, t, t1, y);
+    require(status == TRIBO_OK, "%d: %s", status, tribo_driver_message(drv));
+    assert_exact(*t, t1);
+}
+
+size_t driver_count(const tribo_driver *drv, int which)
+{
+    size_t value;
+    assert_ok(tribo_driver_count(drv, which, &value));
+    return value;
+}
+
+void run(tribo_system *sys, const char *method, double dt, double tolerance, double t1, double *y)
+{
+    tribo_driver *drv = driver_create(sys, method, dt, tolerance);
+    double t = 0.0;
+    driver_advance(drv, &t, t1, y);
+    tribo_driver_destroy(drv);
+}
+
+tribo_system *oscillator(int law, double alpha, double omega)
+{
+    tribo_system *sys;
+    assert_ok(tribo_system_oscillator(&sys, 1.0, alpha, omega));
+    assert_ok(tribo_set_law(tribo_system_context(sys), law));
+    return sys;
+}
+
+double dissipation(tribo_system *sys, double omega, int cycles, double x0, double dt, double width)
+{
+    const double cycle = 2.0 * PI / omega, h = cycle / ceil(cycle / dt);
+    const size_t last = tribo_system_dimension(sys) - 1;
+    double *y = calloc(last + 1, sizeof *y), t = 0.0, before = 0.0;
+    assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), width * h));
+    tribo_driver *drv = driver_create(sys, "rk4/fixed", h, 0.0);
+    y[0] = x0;
+    for (int k = 1; k <= cycles; k++) {
+        before = y[last];
+        driver_advance(drv, &t, k * cycle, y);
+    }
+    const double d = y[last] - before;
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    free(y);
+    return d;
+}
+
+double order_of(const double *dt, const double *error, size_t n)
+{
+    return log(error[0] / error[n - 1]) / log(dt[0] / dt[n - 1]);
+}

@@ -1,0 +1,25 @@
+/* Runs of the library's systems. */
+#ifndef TRIBO_TESTS_RUN_H
+#define TRIBO_TESTS_RUN_H
+
+#include "support.h"
+#include "tribo/tribo_gsl.h"
+
+/* A text to report, and the end of the test: what failed says the driver. */
+tribo_driver *driver_create(tribo_system *sys, const char *method, double dt, double tolerance);
+void driver_advance(tribo_driver *drv, double *t, double t1, double *y);
+size_t driver_count(const tribo_driver *drv, int which);
+
+/* Advances y from 0 to t1 with a driver of its own. */
+void run(tribo_system *sys, const char *method, double dt, double tolerance, double t1, double *y);
+
+tribo_system *oscillator(int law, double alpha, double omega);
+
+/* Dissipation of the last of so many cycles, starting from q_0 = x0 and rest, in fixed steps of at most dt that divide the cycle,
+ * with epsilon = width steps. Destroys sys. */
+double dissipation(tribo_system *sys, double omega, int cycles, double x0, double dt, double width);
+
+/* Slope of log(error) over log(dt), between the first and the last. */
+double order_of(const double *dt, const double *error, size_t n);
+
+#endif
