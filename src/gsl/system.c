@@ -64,11 +64,10 @@ void tribo_system_destroy(tribo_system *sys)
         free_harmonic(&sys->harmonic[k]);
     }
     free(sys->harmonic);
-    free(sys->inverse_mass);
-    free(sys->mass);
+    tribo_matrix_free(&sys->metric);
+    tribo_cholesky_free(&sys->factor);
     free(sys->modes);
     free(sys->omega);
-    free(sys->order);
     free(sys->v);
     free(sys->dense);
     free(sys);
@@ -101,7 +100,7 @@ const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)
 
 /* --------------------------------------------------------------------------------------------------------- motion */
 
-static void set_time(tribo_system *sys, double t)
+void tribo_system_set_time(tribo_system *sys, double t)
 {
     if (t != sys->time) {
         for (size_t k = 0; k < sys->harmonics; k++) {
@@ -114,7 +113,7 @@ static void set_time(tribo_system *sys, double t)
 }
 
 /* to += factor * (d/dt)^order of the harmonics that load the structure, or that move the base. */
-static void add_harmonics(const tribo_system *sys, int moves_base, int order, double factor, double *to)
+void tribo_system_harmonics(const tribo_system *sys, int moves_base, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *h = &sys->harmonic[k];
@@ -136,17 +135,17 @@ static void add_harmonics(const tribo_system *sys, int moves_base, int order, do
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
 {
     const size_t n = sys->ndof;
-    set_time(sys, t);
+    tribo_system_set_time(sys, t);
     memset(acceleration, 0, n * sizeof *acceleration);
-    add_harmonics(sys, 0, 0, 1.0, acceleration);
+    tribo_system_harmonics(sys, 0, 0, 1.0, acceleration);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
-    add_harmonics(sys, 1, 0, -1.0, v);
-    add_harmonics(sys, 1, 1, -1.0, a);
+    tribo_system_harmonics(sys, 1, 0, -1.0, v);
+    tribo_system_harmonics(sys, 1, 1, -1.0, a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, y + n, v);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
 }
@@ -295,9 +294,9 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
     memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
     memset(sys->a, 0, m * sizeof *sys->a);
     memset(df_dt, 0, m * sizeof *df_dt);
-    add_harmonics(sys, 0, 1, 1.0, d.load);
-    add_harmonics(sys, 1, 1, -1.0, sys->dv_dt);
-    add_harmonics(sys, 1, 2, -1.0, sys->a);
+    tribo_system_harmonics(sys, 0, 1, 1.0, d.load);
+    tribo_system_harmonics(sys, 1, 1, -1.0, sys->dv_dt);
+    tribo_system_harmonics(sys, 1, 2, -1.0, sys->a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
     multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
     multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
@@ -455,6 +454,7 @@ static int add_harmonic(tribo_system *sys, int moves_base, double omega, const d
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
     }
     sys->harmonic[sys->harmonics++] = h;
+    sys->revision++;
     sys->time = NAN;
     return TRIBO_OK;
 }

@@ -5,7 +5,7 @@
 
 #include "tribo/tribo_gsl.h"
 
-#include "matrix.h"
+#include "dense.h"
 
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero. */
 struct harmonic {
@@ -24,13 +24,17 @@ struct tribo_system {
 
     size_t harmonics;
     struct harmonic *harmonic;
+    size_t revision; /* counts changes of harmonics and damping */
     double time; /* that cos_t and sin_t belong to; NaN: none yet */
 
-    /* how forces on the given degrees of freedom become accelerations: inverse masses, or the mass matrix (factorized), or modes
-     */
+    /* The metric W, in which AK is symmetric: the mass matrix, but for chain and reduced systems. No rows: the identity. */
+    struct matrix metric;
+    struct cholesky factor; /* of W */
+
+    /* How forces on the given degrees of freedom become accelerations: by the modes, or as they are, or by the mass matrix W. */
     size_t given;
-    double *inverse_mass, *mass, *modes, *omega; /* [given], [given][given] with order, [given][ndof], [ndof] */
-    size_t *order;
+    double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
+    int loads_accelerate;
 
     gsl_odeiv2_system odeiv2;
     size_t evaluations, jacobians;
@@ -44,6 +48,11 @@ struct tribo_system {
  * all zeros: no rows. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
                        struct matrix *direction, struct matrix *response);
+
+/* Prepares the harmonics for time t; adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load
+ * makes to `to`. */
+void tribo_system_set_time(tribo_system *sys, double t);
+void tribo_system_harmonics(const tribo_system *sys, int moves_base, int order, double factor, double *to);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
