@@ -1,6 +1,6 @@
 /* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed form from the
- * modes of the structure with its contacts at rest held (held.h); events are found by steps that cannot skip one (roots.h), since a bound on
- * the third derivative of a sum of exponentials is the sum of their amplitudes times |lambda|^3; and at an event the contacts at rest are
+ * modes of the structure with its contacts at rest held (held.h); no event can be skipped (roots.h), since the sixth derivative of a sum of
+ * exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it strays from a quintic; and at an event the contacts at rest are
  * decided about anew (modes.h). The energy integral is closed too: a sliding force is constant, so that it dissipates its size times the
  * distance slid. */
 #include <float.h>
@@ -19,8 +19,9 @@
 /* One side of a watch: offset + side * value must stay positive. */
 struct guard {
     const struct watch *watch;
-    double offset, side, start, ramp, bend, noise;
-    double horizon; /* it is positive until here */
+    double offset, side, start, ramp;
+    double size, bend;               /* bounds of its parts together, and of their sixth derivative */
+    struct sample left, right, middle;
 };
 
 struct exact {
@@ -35,7 +36,7 @@ struct exact {
     double *drift, *drift_rate;                /* [modes] of those that drift: what harmonics do not explain, at t0 */
     double *zr, *zi;                           /* [exponents] at t0 */
     double *wr, *wi, *w1r, *w1i, *w2r, *w2i;   /* [exponents] z and its derivatives at tau */
-    double *growth, *growth3;                  /* [exponents] bounds of |z| and |z'''| over the phase */
+    double *growth, *growth6;                  /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
     double *cos_t, *sin_t, *cos_0, *sin_0;     /* [harmonics] at t0 + tau, at t0 */
     double *now, *work;                        /* [modes] eta and eta' at tau; workspace */
     double *dq;                                /* [ndof] */
@@ -201,8 +202,8 @@ static void look(struct exact *x, const tribo_system *sys, double tau)
     x->tau = tau;
 }
 
-/* A guard's value and derivatives where look() was. */
-static void read_guard(const struct exact *x, const tribo_system *sys, const struct guard *g, double *c)
+/* A guard where look() was. */
+static struct sample read_guard(const struct exact *x, const tribo_system *sys, const struct guard *g)
 {
     const struct watch *w = g->watch;
     double v0 = g->start + g->ramp * x->tau, v1 = g->ramp, v2 = 0.0;
@@ -218,9 +219,7 @@ static void read_guard(const struct exact *x, const tribo_system *sys, const str
         v1 += omega * im;
         v2 -= omega * omega * re;
     }
-    c[0] = g->offset + g->side * v0;
-    c[1] = g->side * v1;
-    c[2] = g->side * v2;
+    return (struct sample){g->offset + g->side * v0, g->side * v1, g->side * v2};
 }
 
 /* Energy dissipated since t0: a sliding contact's constant force times the distance slid, J dq minus the belt's way. */
@@ -383,7 +382,7 @@ static void split_motion(struct exact *x, const tribo_system *sys, const double 
 }
 
 /* How long the bounds of this phase hold: for good, unless something grows. */
-static double bound_motion(struct exact *x, const tribo_system *sys, double longest)
+static double bound_motion(struct exact *x, double longest)
 {
     const struct held *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
@@ -391,16 +390,16 @@ static double bound_motion(struct exact *x, const tribo_system *sys, double long
     }
     longest = h->any_resonant ? fmin(longest, 16.0 / h->fastest) : longest;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double lambda = hypot(h->lr[p], h->li[p]);
-        x->growth[p] = hypot(x->zr[p], x->zi[p]) * (h->lr[p] > 0.0 ? exp(h->lr[p] * longest) : 1.0);
-        x->growth3[p] = x->growth[p];
+        const double lambda = h->size[p];
+        x->growth[p] = sqrt(x->zr[p] * x->zr[p] + x->zi[p] * x->zi[p]) * (h->lr[p] > 0.0 ? exp(h->lr[p] * longest) : 1.0);
+        x->growth6[p] = x->growth[p];
         for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
             const size_t at = s * h->modes + h->owner[p];
             if (h->resonant[at]) {
-                const double omega = fabs(sys->harmonic[s].omega), force = hypot(h->gr[at], h->gi[at]) / h->li[p];
-                const double ratio = omega / lambda;
+                const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
+                /* the frequencies are within RESONANCE of each other */
                 x->growth[p] += force * longest;
-                x->growth3[p] += force * (longest + (1.0 + ratio + ratio * ratio) / lambda);
+                x->growth6[p] += force * (longest + 6.1 / lambda);
             }
         }
     }
@@ -408,21 +407,20 @@ static double bound_motion(struct exact *x, const tribo_system *sys, double long
 }
 
 /* Guards of a watch, for a phase that lasts no longer than longest. now is what it watches at t0. */
-static void add_guards(struct exact *x, const tribo_system *sys, const struct watch *w, int slides, double now, double longest)
+static void add_guards(struct exact *x, const struct watch *w, int slides, double now, double longest)
 {
     const struct held *h = x->h;
     const size_t i = w->contact;
     double start = now, bend = 0.0, size = fabs(now), ramp = w->ramp;
     for (size_t p = 0; p < h->exponents; p++) {
         start -= w->cr[p] * x->zr[p] - w->ci[p] * x->zi[p];
-        bend += w->bend[p] * x->growth3[p];
+        bend += w->bend[p] * x->growth6[p];
         size += w->size[p] * x->growth[p];
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = fabs(sys->harmonic[s].omega), r = hypot(w->rr[s], w->ri[s]);
         start -= w->rr[s] * x->cos_0[s] - w->ri[s] * x->sin_0[s];
-        bend += r * omega * omega * omega;
-        size += r;
+        size += w->wave[s];
+        bend += w->wave_bend[s];
     }
     for (size_t k = 0; k < h->modes; k++) {
         ramp += w->on_rate[k] * (slides ? x->acc[k] : x->vel[k]);
@@ -430,12 +428,13 @@ static void add_guards(struct exact *x, const tribo_system *sys, const struct wa
     const double range = size - fabs(now) + fabs(start) + fabs(ramp) * longest, limit = x->modes.limit[i];
     if (slides) {
         const double side = x->modes.mode[i];
-        x->guard[x->guards++] = (struct guard){w, 0.0, side, start, ramp, bend, 4.0 * DBL_EPSILON * size, 0.0};
+        x->guard[x->guards++] = (struct guard){.watch = w, .side = side, .start = start, .ramp = ramp, .size = size, .bend = bend};
         return;
     }
     /* far from the limit for the whole phase: nothing to guard */
     for (int side = -1; side <= 1 && range >= limit; side += 2) {
-        x->guard[x->guards++] = (struct guard){w, limit, side, start, ramp, bend, 4.0 * DBL_EPSILON * (size + limit), 0.0};
+        x->guard[x->guards++] =
+            (struct guard){.watch = w, .offset = limit, .side = side, .start = start, .ramp = ramp, .size = size + limit, .bend = bend};
     }
 }
 
@@ -445,73 +444,180 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
     const struct held *h = x->h;
     x->t0 = t;
     split_motion(x, sys, y);
-    longest = bound_motion(x, sys, longest);
+    longest = bound_motion(x, longest);
     x->guards = 0;
     for (size_t k = 0; k < h->watches; k++) {
         const struct watch *w = &h->watch[k];
         if (x->modes.mode[w->contact] != 2) {
             const int slides = k < h->sliding;
-            add_guards(x, sys, w, slides, slides ? tribo_modes_velocity(&x->modes, sys, w->contact, y) : x->modes.force[w->contact], longest);
+            add_guards(x, w, slides, slides ? tribo_modes_velocity(&x->modes, sys, w->contact, y) : x->modes.force[w->contact], longest);
         }
     }
     return longest;
 }
 
-/* Looks at a guard where look() was, and moves its horizon. 1 if it has met zero there; *late is how much later still. */
-static int check_guard(const struct exact *x, const tribo_system *sys, struct guard *g, int first, double longest, double *late)
+/* Values of a guard that are rounding. */
+static double noise(const struct guard *g)
 {
-    double c[3];
-    read_guard(x, sys, g, c);
-    *late = 0.0;
-    if (first) {
-        /* what starts at zero has been decided to leave it */
-        const double zero = fmax(16.0 * g->noise, 4.0 * TRIBO_AT_LIMIT * g->offset);
-        if (c[0] <= zero) {
-            c[0] = 0.0;
-            c[1] = fmax(c[1], 0.0);
-            c[2] = c[1] > 0.0 ? c[2] : fmax(c[2], 0.0);
+    return 4.0 * DBL_EPSILON * g->size;
+}
+
+/* Samples of all guards at the start. What is zero there has been decided to leave it. */
+static void sample_start(struct exact *x, tribo_system *sys)
+{
+    look(x, sys, 0.0);
+    for (size_t k = 0; k < x->guards; k++) {
+        struct guard *g = &x->guard[k];
+        g->left = read_guard(x, sys, g);
+        if (g->left.g <= fmax(16.0 * noise(g), 4.0 * TRIBO_AT_LIMIT * g->offset)) {
+            g->left.g = 0.0;
+            g->left.d = fmax(g->left.d, 0.0);
+            g->left.e = g->left.d > 0.0 ? g->left.e : fmax(g->left.e, 0.0);
         }
-    } else if (c[0] <= g->noise) {
-        return 1;
     }
-    double step = tribo_safe_step(c[0], c[1], c[2], g->bend, longest - x->tau);
-    if (c[0] == 0.0) {
-        /* leaves zero so slowly that the bound cannot tell */
-        step = fmax(step, 1e-5 / fmax(x->h->fastest, x->slowest));
-    } else if (!(x->tau + step > x->tau)) {
-        *late = c[1] < 0.0 ? -c[0] / c[1] : 0.0;
-        return 1;
+    sys->evaluations++;
+}
+
+static void sample(struct exact *x, tribo_system *sys, double tau)
+{
+    look(x, sys, tau);
+    for (size_t k = 0; k < x->guards; k++) {
+        x->guard[k].middle = read_guard(x, sys, &x->guard[k]);
     }
-    g->horizon = x->tau + step;
-    return 0;
+    sys->evaluations++;
+}
+
+/* 1 if no guard can be zero between its left sample and the next one, h later, which is middle or right. At its end it may be. */
+static int all_positive(const struct exact *x, double h, int to_middle)
+{
+    for (size_t k = 0; k < x->guards; k++) {
+        const struct guard *g = &x->guard[k];
+        struct sample end = to_middle ? g->middle : g->right;
+        end.g = fmax(end.g, 0.0);
+        if (!tribo_positive(&g->left, &end, h, g->bend, noise(g))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* The length of interval to try first: a fraction of the guards' sizes in doubt. */
+static double first_length(const struct exact *x, double longest)
+{
+    double ratio = HUGE_VAL;
+    for (size_t k = 0; k < x->guards; k++) {
+        ratio = fmin(ratio, x->guard[k].bend > 0.0 ? x->guard[k].size / x->guard[k].bend : HUGE_VAL);
+    }
+    return fmin(cbrt(sqrt(300.0 * ratio)), longest);
+}
+
+/* The guard that, among those not positive where the interval of length h ends, is the first to fall to zero as far as one can tell. */
+static struct guard *first_to_fall(struct exact *x, double h, double *when)
+{
+    struct guard *first = NULL;
+    for (size_t k = 0; k < x->guards; k++) {
+        struct guard *g = &x->guard[k];
+        if (g->right.g <= noise(g)) {
+            const double guess = g->right.g >= 0.0 ? h : tribo_root_guess(&g->left, &g->right, h);
+            if (!first || guess < *when) {
+                first = g;
+                *when = guess;
+            }
+        }
+    }
+    return first;
+}
+
+/* The last sample becomes the left, or the right, one. */
+static void keep_left(struct exact *x)
+{
+    for (size_t k = 0; k < x->guards; k++) {
+        x->guard[k].left = x->guard[k].middle;
+    }
+}
+
+static void keep_right(struct exact *x)
+{
+    for (size_t k = 0; k < x->guards; k++) {
+        x->guard[k].right = x->guard[k].middle;
+    }
+}
+
+/* How far a guard's zero is from its middle sample by Newton's method, if that is as good as another look; 0 if there is need of one. */
+static double last_bit(const struct guard *g)
+{
+    const double step = -g->middle.g / g->middle.d;
+    return g->middle.d < 0.0 && fabs(0.5 * g->middle.e * step * step) <= noise(g) ? step : 0.0;
+}
+
+/* A guard is not positive at *b. Narrows [*a, *b] to the first zero of all guards: returns that guard, with *when, or NULL if [*a, *b] must
+ * be divided to tell. */
+static const struct guard *find_zero(struct exact *x, tribo_system *sys, double *a, double *b, double *when)
+{
+    double at;
+    struct guard *falls = first_to_fall(x, *b - *a, &at);
+    while (falls->right.g < -noise(falls) && *a + at > *a && *a + at < *b) {
+        const double trial = *a + at;
+        sample(x, sys, trial);
+        int others_below = 0;
+        for (size_t k = 0; k < x->guards; k++) {
+            others_below |= &x->guard[k] != falls && x->guard[k].middle.g < -noise(&x->guard[k]);
+        }
+        const double step = last_bit(falls);
+        if (others_below || (falls->middle.g < -noise(falls) && step == 0.0)) {
+            *b = trial;
+            keep_right(x);
+            falls = first_to_fall(x, *b - *a, &at);
+            continue;
+        }
+        if (!all_positive(x, at, 1)) {
+            *b = trial;
+            keep_right(x);
+            return NULL;
+        }
+        *when = trial + step;
+        if (step != 0.0 || falls->middle.g <= noise(falls)) {
+            return falls;
+        }
+        *a = trial;
+        keep_left(x);
+        falls = first_to_fall(x, *b - *a, &at);
+    }
+    *when = *b;
+    return all_positive(x, *b - *a, 0) ? falls : NULL;
 }
 
 /* The guard that is first to meet zero, and when; NULL if none does before longest. */
 static const struct guard *find_event(struct exact *x, tribo_system *sys, double longest, double *when)
 {
-    double late;
-    look(x, sys, 0.0);
-    sys->evaluations++;
-    for (size_t k = 0; k < x->guards; k++) {
-        check_guard(x, sys, &x->guard[k], 1, longest, &late);
+    if (x->guards == 0) {
+        return NULL;
     }
-    for (;;) {
-        double next = longest;
-        for (size_t k = 0; k < x->guards; k++) {
-            next = fmin(next, x->guard[k].horizon);
-        }
-        if (next >= longest) {
-            return NULL;
-        }
-        look(x, sys, next);
-        sys->evaluations++;
-        for (size_t k = 0; k < x->guards; k++) {
-            if (x->guard[k].horizon <= next && check_guard(x, sys, &x->guard[k], 0, longest, &late)) {
-                *when = next + late;
-                return &x->guard[k];
+    double a = 0.0, h = first_length(x, longest), ignored;
+    sample_start(x, sys);
+    while (a < longest) {
+        double b = fmin(a + h, longest);
+        sample(x, sys, b);
+        keep_right(x);
+        if (first_to_fall(x, b - a, &ignored)) {
+            const struct guard *falls = find_zero(x, sys, &a, &b, when);
+            if (falls) {
+                return falls;
             }
+        } else if (all_positive(x, b - a, 0)) {
+            h = 1.7 * (b - a);
+            a = b;
+            keep_left(x);
+            continue;
+        }
+        h = 0.5 * (b - a);
+        if (!(a + h > a && a + h < b)) {
+            /* nothing left to divide: what is in doubt is rounding */
+            a = b;
+            keep_left(x);
         }
     }
+    return NULL;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
@@ -542,7 +648,7 @@ static int create(tribo_driver *drv)
         return status;
     }
     double **const by_mode[] = {&x->eta, &x->rate, &x->off, &x->vel, &x->acc, &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
-    double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth3};
+    double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
     double *work = malloc((10 * n + 20 * n + 1) * sizeof *work);
     x->guard = malloc((2 * c + 1) * sizeof *x->guard);
     if (!work || !x->guard) {

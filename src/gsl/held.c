@@ -661,20 +661,29 @@ static void watch_mode(const struct build *b, struct watch *w, size_t k, double 
 static int create_watch(struct build *b, struct watch *w, size_t contact)
 {
     const size_t p = b->h->exponents, s = b->h->harmonics, m = b->h->modes;
-    double *x = keep(b, 4 * p + 2 * s + m);
+    double *x = keep(b, 4 * p + 4 * s + m);
     if (!x) {
         return 0;
     }
-    *w = (struct watch){contact, x, x + p, x + 2 * p, x + 3 * p, x + 4 * p, x + 4 * p + s, x + 4 * p + 2 * s, 0.0};
+    double *y = x + 4 * p;
+    *w = (struct watch){contact, x, x + p, x + 2 * p, x + 3 * p, y, y + s, y + 2 * s, y + 3 * s, y + 4 * s, 0.0};
     return 1;
+}
+
+static double sixth_power(double x)
+{
+    return x * x * x * x * x * x;
 }
 
 static void finish_watch(const struct build *b, struct watch *w)
 {
     for (size_t p = 0; p < b->h->exponents; p++) {
-        const double lambda = hypot(b->h->lr[p], b->h->li[p]);
         w->size[p] = hypot(w->cr[p], w->ci[p]);
-        w->bend[p] = w->size[p] * lambda * lambda * lambda;
+        w->bend[p] = w->size[p] * sixth_power(b->h->size[p]);
+    }
+    for (size_t s = 0; s < b->h->harmonics; s++) {
+        w->wave[s] = hypot(w->rr[s], w->ri[s]);
+        w->wave_bend[s] = w->wave[s] * sixth_power(b->sys->harmonic[s].omega);
     }
 }
 
@@ -855,10 +864,12 @@ static int build(struct build *b, const signed char *mode)
     if (status) {
         return status;
     }
-    for (size_t p = 0; p < h->exponents; p++) {
-        h->fastest = fmax(h->fastest, hypot(h->lr[p], h->li[p]));
+    h->size = keep(b, h->exponents);
+    for (size_t p = 0; h->size && p < h->exponents; p++) {
+        h->size[p] = hypot(h->lr[p], h->li[p]);
+        h->fastest = fmax(h->fastest, h->size[p]);
     }
-    return find_forcing(b) && find_response(b) && find_watches(b) && compress(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    return h->size && find_forcing(b) && find_response(b) && find_watches(b) && compress(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode)

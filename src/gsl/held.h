@@ -15,8 +15,9 @@ struct watch {
     size_t contact;
     double *cr, *ci;   /* [exponents] c_p */
     double *size;      /* [exponents] |c_p| */
-    double *bend;      /* [exponents] |c_p| |lambda_p|^3 */
+    double *bend;      /* [exponents] |c_p| |lambda_p|^6 */
     double *rr, *ri;   /* [harmonics] response */
+    double *wave, *wave_bend; /* [harmonics] its size, and that of its sixth derivative */
     double *on_rate;   /* [modes] held contacts: what a constant eta' adds to the ramp; sliding ones: what a constant eta'' does */
     double ramp;       /* from belts of constant speed */
 };
@@ -33,7 +34,7 @@ struct held {
     unsigned char *drifts; /* [modes] omega = 0 and no damping */
 
     size_t exponents;
-    double *lr, *li;          /* lambda */
+    double *lr, *li, *size;   /* lambda, and its absolute value */
     double *ar, *ai, *br, *bi; /* z = a eta + b eta';  [exponents], or [exponents][modes] if coupled */
     double *rr, *ri;          /* eta = Re(r z), coupled only: [modes][exponents] */
     size_t *owner;            /* the mode of an exponent, if not coupled (then r = 1) */

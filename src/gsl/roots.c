@@ -2,83 +2,70 @@
 
 #include <math.h>
 
-struct cubic {
-    double c0, c1, c2, bend;
-};
-
-static double value(const struct cubic *p, double h)
+/* Bernstein coefficients of the quintic that has the samples' values and derivatives at its ends. */
+static void bernstein(const struct sample *a, const struct sample *b, double h, double *c)
 {
-    return p->c0 + h * (p->c1 + h * (0.5 * p->c2 - h * p->bend / 6.0));
+    c[0] = a->g;
+    c[1] = c[0] + 0.2 * h * a->d;
+    c[2] = c[1] + 0.2 * h * (a->d + 0.25 * h * a->e);
+    c[5] = b->g;
+    c[4] = c[5] - 0.2 * h * b->d;
+    c[3] = c[4] - 0.2 * h * (b->d - 0.25 * h * b->e);
 }
 
-static double slope(const struct cubic *p, double h)
+/* The function differs from the quintic by at most bend h^6/6! s^3 (1-s)^3, which in Bernstein's basis of degree 6 is the middle element
+ * alone, 20 s^3 (1-s)^3: raised to that degree, the quintic needs coefficients that are positive, the middle one by this much. */
+int tribo_positive(const struct sample *a, const struct sample *b, double h, double bend, double noise)
 {
-    return p->c1 + h * (p->c2 - 0.5 * h * p->bend);
+    double c[6];
+    bernstein(a, b, h, c);
+    const double h_3 = h * h * h, doubt = bend * h_3 * h_3 / 14400.0;
+    const double low = fmin(fmin(c[0] + 5.0 * c[1], 2.0 * c[1] + 4.0 * c[2]), fmin(4.0 * c[3] + 2.0 * c[4], 5.0 * c[4] + c[5])) / 6.0;
+    return fmin(fmin(low, fmin(c[0], c[5])), 0.5 * (c[2] + c[3]) - doubt) >= -noise;
 }
 
-/* Positive on all of [0, h] if its Bernstein coefficients there are. */
-static int positive(const struct cubic *p, double h)
+/* Value at s of the polynomial of this degree with Bernstein coefficients c, and its slope. */
+static double value(const double *c, int degree, double s, double *slope)
 {
-    const double b1 = p->c0 + p->c1 * h / 3.0, b2 = b1 + h * (p->c1 / 3.0 + p->c2 * h / 6.0);
-    return b1 >= 0.0 && b2 >= 0.0 && value(p, h) >= 0.0;
-}
-
-/* The root beyond a, from where on p is concave, and p(a) >= 0: Newton's method comes down from the right, and the chord from a to the last
- * point meets zero before p does. */
-static double beyond(const struct cubic *p, double a, double longest)
-{
-    const double pa = value(p, a), rise = fmax(slope(p, a), 0.0);
-    double right = a + fmax(sqrt(12.0 * rise / p->bend), cbrt(12.0 * pa / p->bend));
-    if (!(right > a)) {
-        return a;
+    const double r = 1.0 - s;
+    double p[6];
+    for (int i = 0; i <= degree; i++) {
+        p[i] = c[i];
     }
-    for (int i = 0; i < 4; i++) {
-        const double next = right - value(p, right) / slope(p, right);
-        if (!(next > a && next < right)) {
+    for (int k = degree; k > 1; k--) {
+        for (int i = 0; i < k; i++) {
+            p[i] = r * p[i] + s * p[i + 1];
+        }
+    }
+    *slope = degree * (p[1] - p[0]);
+    return r * p[0] + s * p[1];
+}
+
+double tribo_root_guess(const struct sample *a, const struct sample *b, double h)
+{
+    double c[6], lo = 0.0, hi = 1.0, slope;
+    int degree = 5;
+    bernstein(a, b, h, c);
+    /* roots at the start are divided out */
+    while (degree > 1 && c[0] <= 0.0) {
+        for (int i = 0; i < degree; i++) {
+            c[i] = c[i + 1] * degree / (i + 1.0);
+        }
+        degree--;
+    }
+    double s = c[0] > 0.0 ? c[0] / (c[0] - c[degree]) : 0.5;
+    for (int i = 0; i < 20 && hi - lo > 1e-12; i++) {
+        const double p = value(c, degree, s, &slope);
+        if (p > 0.0) {
+            lo = s;
+        } else {
+            hi = s;
+        }
+        const double next = s - p / slope;
+        if (slope < 0.0 && fabs(next - s) < 1e-12) {
             break;
         }
-        right = next;
+        s = next > lo && next < hi ? next : 0.5 * (lo + hi);
     }
-    const double pr = value(p, right);
-    const double root = pr < 0.0 ? a + (right - a) * pa / (pa - pr) : right;
-    return fmin(root, longest);
-}
-
-double tribo_safe_step(double c0, double c1, double c2, double bend, double longest)
-{
-    const struct cubic p = {c0, c1, c2, bend};
-    if (positive(&p, longest)) {
-        return longest;
-    }
-    if (c1 < 0.0) {
-        /* close to a simple root: Newton's step, shortened by what curvature can do */
-        const double newton = -c0 / c1, h = newton * (1.0 + newton * (0.5 * fabs(c2) + bend * newton / 6.0) / c1);
-        if (h > 0.9 * newton && h < longest && value(&p, h) >= 0.0) {
-            return h;
-        }
-    }
-    if (!(bend > 0.0)) {
-        /* a parabola: its first root */
-        const double square = c1 * c1 - 2.0 * c0 * c2;
-        const double q = -c1 + sqrt(fmax(square, 0.0));
-        return square < 0.0 ? longest : c1 < 0.0 ? fmin(2.0 * c0 / q, longest) : c2 < 0.0 ? fmin(q / -c2, longest) : longest;
-    }
-    const double inflection = fmax(c2, 0.0) / bend;
-    if (c1 < 0.0 && inflection > 0.0) {
-        /* convex so far; is there a root before its lowest point? Newton's method from the left stays short of it */
-        const double square = c2 * c2 + 2.0 * bend * c1;
-        const double lowest = square > 0.0 ? -2.0 * c1 / (c2 + sqrt(square)) : inflection;
-        if (value(&p, lowest) <= 0.0) {
-            double h = 0.0;
-            for (int i = 0; i < 6; i++) {
-                const double next = h - value(&p, h) / slope(&p, h);
-                if (!(next > h && next < lowest)) {
-                    break;
-                }
-                h = next;
-            }
-            return fmin(h, longest);
-        }
-    }
-    return beyond(&p, inflection, longest);
+    return s * h;
 }

@@ -1,10 +1,17 @@
-/* Steps that cannot skip a root. */
+/* Intervals on which a function has no root, and where it has one. */
 #ifndef TRIBO_ROOTS_H
 #define TRIBO_ROOTS_H
 
-/* A function with value c0 >= 0, first and second derivative c1 and c2 here, and third derivative of at most bend in size, stays positive
- * over the step returned, at most longest: it lies above c0 + c1 h + c2 h^2/2 - bend h^3/6, whose first root is bounded from below. Close to a
- * simple root the bound is sharp to third order. */
-double tribo_safe_step(double c0, double c1, double c2, double bend, double longest);
+/* Value, first and second derivative. */
+struct sample {
+    double g, d, e;
+};
+
+/* 1 if a function with these samples at the ends of an interval of length h, and a sixth derivative of at most bend in size, is above -noise
+ * on all of it. */
+int tribo_positive(const struct sample *a, const struct sample *b, double h, double bend, double noise);
+
+/* The first place in (0, h) where the quintic through both samples falls to zero; a.g > 0 >= b.g. */
+double tribo_root_guess(const struct sample *a, const struct sample *b, double h);
 
 #endif
