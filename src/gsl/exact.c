@@ -3,7 +3,6 @@
  * exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it strays from a quintic; and at an event the contacts at rest are
  * decided about anew (modes.h). The energy integral is closed too: a sliding force is constant, so that it dissipates its size times the
  * distance slid. */
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,20 +10,13 @@
 #include "driver.h"
 #include "held.h"
 #include "modes.h"
-#include "roots.h"
+#include "search.h"
 
 /* Decompositions are dropped when they take more than this. */
 #define CACHE_BYTES ((size_t)256 << 20)
 
-/* One side of a watch: offset + side * value must stay positive. */
-struct guard {
-    const struct watch *watch;
-    double offset, side, start, ramp;
-    double size, bend;               /* bounds of its parts together, and of their sixth derivative */
-    struct sample left, right, middle;
-};
-
 struct exact {
+    tribo_system *sys;
     struct modes modes;
     struct held **held;
     size_t helds, room, bytes, revision;
@@ -41,8 +33,7 @@ struct exact {
     double *now, *work;                        /* [modes] eta and eta' at tau; workspace */
     double *dq;                                /* [ndof] */
     double slowest, shown;                     /* 1/length of the advance; when the observer looks next */
-    struct guard *guard;
-    size_t guards;
+    struct search search;
 };
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
@@ -68,8 +59,9 @@ static int rests_like(const struct held *h, const signed char *mode, size_t n)
 }
 
 /* Sets x->h to the structure with the contacts of mode 0 held. Those used last are looked at first. */
-static int find_held(struct exact *x, tribo_system *sys)
+static int find_held(struct exact *x, tribo_driver *drv)
 {
+    tribo_system *sys = drv->sys;
     for (size_t i = x->helds; i-- > 0;) {
         struct held *h = x->held[i];
         if (rests_like(h, x->modes.mode, sys->ncontact)) {
@@ -86,19 +78,20 @@ static int find_held(struct exact *x, tribo_system *sys)
         const size_t room = 2 * x->room + 16;
         struct held **more = realloc(x->held, room * sizeof *more);
         if (!more) {
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
+            return tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
         }
         x->held = more;
         x->room = room;
     }
     struct held *h;
     const int status = tribo_held_create(&h, sys, x->modes.mode);
-    if (!status) {
-        x->held[x->helds++] = h;
-        x->bytes += h->bytes;
-        x->h = h;
+    if (status) {
+        return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
     }
-    return status;
+    x->held[x->helds++] = h;
+    x->bytes += h->bytes;
+    x->h = h;
+    return TRIBO_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------------- motion */
@@ -178,8 +171,10 @@ static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
 }
 
 /* z and its derivatives, and the harmonics, at t0 + tau. */
-static void look(struct exact *x, const tribo_system *sys, double tau)
+static void look(void *motion, double tau)
 {
+    struct exact *x = motion;
+    const tribo_system *sys = x->sys;
     const struct held *h = x->h;
     for (size_t s = 0; s < h->harmonics; s++) {
         const double phase = sys->harmonic[s].omega * (x->t0 + tau);
@@ -203,8 +198,10 @@ static void look(struct exact *x, const tribo_system *sys, double tau)
 }
 
 /* A guard where look() was. */
-static struct sample read_guard(const struct exact *x, const tribo_system *sys, const struct guard *g)
+static struct sample read_guard(const void *motion, const struct guard *g)
 {
+    const struct exact *x = motion;
+    const tribo_system *sys = x->sys;
     const struct watch *w = g->watch;
     double v0 = g->start + g->ramp * x->tau, v1 = g->ramp, v2 = 0.0;
     for (size_t p = 0; p < x->h->exponents; p++) {
@@ -283,7 +280,7 @@ static void move_to(struct exact *x, const tribo_system *sys, double tau, const 
 {
     const struct held *h = x->h;
     const size_t n = sys->ndof;
-    look(x, sys, tau);
+    look(x, tau);
     amplitudes(x, sys);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
@@ -428,13 +425,14 @@ static void add_guards(struct exact *x, const struct watch *w, int slides, doubl
     const double range = size - fabs(now) + fabs(start) + fabs(ramp) * longest, limit = x->modes.limit[i];
     if (slides) {
         const double side = x->modes.mode[i];
-        x->guard[x->guards++] = (struct guard){.watch = w, .side = side, .start = start, .ramp = ramp, .size = size, .bend = bend};
+        x->search.guard[x->search.guards++] =
+            (struct guard){.contact = i, .watch = w, .side = side, .start = start, .ramp = ramp, .size = size, .bend = bend};
         return;
     }
     /* far from the limit for the whole phase: nothing to guard */
     for (int side = -1; side <= 1 && range >= limit; side += 2) {
-        x->guard[x->guards++] =
-            (struct guard){.watch = w, .offset = limit, .side = side, .start = start, .ramp = ramp, .size = size + limit, .bend = bend};
+        x->search.guard[x->search.guards++] = (struct guard){
+            .contact = i, .watch = w, .offset = limit, .side = side, .start = start, .ramp = ramp, .size = size + limit, .bend = bend};
     }
 }
 
@@ -445,7 +443,7 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
     x->t0 = t;
     split_motion(x, sys, y);
     longest = bound_motion(x, longest);
-    x->guards = 0;
+    x->search.guards = 0;
     for (size_t k = 0; k < h->watches; k++) {
         const struct watch *w = &h->watch[k];
         if (x->modes.mode[w->contact] != 2) {
@@ -454,170 +452,6 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
         }
     }
     return longest;
-}
-
-/* Values of a guard that are rounding. */
-static double noise(const struct guard *g)
-{
-    return 4.0 * DBL_EPSILON * g->size;
-}
-
-/* Samples of all guards at the start. What is zero there has been decided to leave it. */
-static void sample_start(struct exact *x, tribo_system *sys)
-{
-    look(x, sys, 0.0);
-    for (size_t k = 0; k < x->guards; k++) {
-        struct guard *g = &x->guard[k];
-        g->left = read_guard(x, sys, g);
-        if (g->left.g <= fmax(16.0 * noise(g), 4.0 * TRIBO_AT_LIMIT * g->offset)) {
-            g->left.g = 0.0;
-            g->left.d = fmax(g->left.d, 0.0);
-            g->left.e = g->left.d > 0.0 ? g->left.e : fmax(g->left.e, 0.0);
-        }
-    }
-    sys->evaluations++;
-}
-
-static void sample(struct exact *x, tribo_system *sys, double tau)
-{
-    look(x, sys, tau);
-    for (size_t k = 0; k < x->guards; k++) {
-        x->guard[k].middle = read_guard(x, sys, &x->guard[k]);
-    }
-    sys->evaluations++;
-}
-
-/* 1 if no guard can be zero between its left sample and the next one, h later, which is middle or right. At its end it may be. */
-static int all_positive(const struct exact *x, double h, int to_middle)
-{
-    for (size_t k = 0; k < x->guards; k++) {
-        const struct guard *g = &x->guard[k];
-        struct sample end = to_middle ? g->middle : g->right;
-        end.g = fmax(end.g, 0.0);
-        if (!tribo_positive(&g->left, &end, h, g->bend, noise(g))) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
-/* The length of interval to try first: a fraction of the guards' sizes in doubt. */
-static double first_length(const struct exact *x, double longest)
-{
-    double ratio = HUGE_VAL;
-    for (size_t k = 0; k < x->guards; k++) {
-        ratio = fmin(ratio, x->guard[k].bend > 0.0 ? x->guard[k].size / x->guard[k].bend : HUGE_VAL);
-    }
-    return fmin(cbrt(sqrt(300.0 * ratio)), longest);
-}
-
-/* The guard that, among those not positive where the interval of length h ends, is the first to fall to zero as far as one can tell. */
-static struct guard *first_to_fall(struct exact *x, double h, double *when)
-{
-    struct guard *first = NULL;
-    for (size_t k = 0; k < x->guards; k++) {
-        struct guard *g = &x->guard[k];
-        if (g->right.g <= noise(g)) {
-            const double guess = g->right.g >= 0.0 ? h : tribo_root_guess(&g->left, &g->right, h);
-            if (!first || guess < *when) {
-                first = g;
-                *when = guess;
-            }
-        }
-    }
-    return first;
-}
-
-/* The last sample becomes the left, or the right, one. */
-static void keep_left(struct exact *x)
-{
-    for (size_t k = 0; k < x->guards; k++) {
-        x->guard[k].left = x->guard[k].middle;
-    }
-}
-
-static void keep_right(struct exact *x)
-{
-    for (size_t k = 0; k < x->guards; k++) {
-        x->guard[k].right = x->guard[k].middle;
-    }
-}
-
-/* How far a guard's zero is from its middle sample by Newton's method, if that is as good as another look; 0 if there is need of one. */
-static double last_bit(const struct guard *g)
-{
-    const double step = -g->middle.g / g->middle.d;
-    return g->middle.d < 0.0 && fabs(0.5 * g->middle.e * step * step) <= noise(g) ? step : 0.0;
-}
-
-/* A guard is not positive at *b. Narrows [*a, *b] to the first zero of all guards: returns that guard, with *when, or NULL if [*a, *b] must
- * be divided to tell. */
-static const struct guard *find_zero(struct exact *x, tribo_system *sys, double *a, double *b, double *when)
-{
-    double at;
-    struct guard *falls = first_to_fall(x, *b - *a, &at);
-    while (falls->right.g < -noise(falls) && *a + at > *a && *a + at < *b) {
-        const double trial = *a + at;
-        sample(x, sys, trial);
-        int others_below = 0;
-        for (size_t k = 0; k < x->guards; k++) {
-            others_below |= &x->guard[k] != falls && x->guard[k].middle.g < -noise(&x->guard[k]);
-        }
-        const double step = last_bit(falls);
-        if (others_below || (falls->middle.g < -noise(falls) && step == 0.0)) {
-            *b = trial;
-            keep_right(x);
-            falls = first_to_fall(x, *b - *a, &at);
-            continue;
-        }
-        if (!all_positive(x, at, 1)) {
-            *b = trial;
-            keep_right(x);
-            return NULL;
-        }
-        *when = trial + step;
-        if (step != 0.0 || falls->middle.g <= noise(falls)) {
-            return falls;
-        }
-        *a = trial;
-        keep_left(x);
-        falls = first_to_fall(x, *b - *a, &at);
-    }
-    *when = *b;
-    return all_positive(x, *b - *a, 0) ? falls : NULL;
-}
-
-/* The guard that is first to meet zero, and when; NULL if none does before longest. */
-static const struct guard *find_event(struct exact *x, tribo_system *sys, double longest, double *when)
-{
-    if (x->guards == 0) {
-        return NULL;
-    }
-    double a = 0.0, h = first_length(x, longest), ignored;
-    sample_start(x, sys);
-    while (a < longest) {
-        double b = fmin(a + h, longest);
-        sample(x, sys, b);
-        keep_right(x);
-        if (first_to_fall(x, b - a, &ignored)) {
-            const struct guard *falls = find_zero(x, sys, &a, &b, when);
-            if (falls) {
-                return falls;
-            }
-        } else if (all_positive(x, b - a, 0)) {
-            h = 1.7 * (b - a);
-            a = b;
-            keep_left(x);
-            continue;
-        }
-        h = 0.5 * (b - a);
-        if (!(a + h > a && a + h < b)) {
-            /* nothing left to divide: what is in doubt is rounding */
-            a = b;
-            keep_left(x);
-        }
-    }
-    return NULL;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
@@ -630,7 +464,7 @@ static void destroy(tribo_driver *drv)
         free(x->held);
         tribo_modes_free(&x->modes);
         free(x->eta);
-        free(x->guard);
+        free(x->search.guard);
         free(x);
     }
 }
@@ -643,6 +477,10 @@ static int create(tribo_driver *drv)
     if (!x) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
+    x->sys = drv->sys;
+    x->search.look = look;
+    x->search.read = read_guard;
+    x->search.motion = x;
     const int status = tribo_modes_create(&x->modes, drv->sys);
     if (status) {
         return status;
@@ -650,8 +488,8 @@ static int create(tribo_driver *drv)
     double **const by_mode[] = {&x->eta, &x->rate, &x->off, &x->vel, &x->acc, &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
     double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
     double *work = malloc((10 * n + 20 * n + 1) * sizeof *work);
-    x->guard = malloc((2 * c + 1) * sizeof *x->guard);
-    if (!work || !x->guard) {
+    x->search.guard = malloc((2 * c + 1) * sizeof *x->search.guard);
+    if (!work || !x->search.guard) {
         free(work);
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
@@ -692,38 +530,21 @@ static int show(struct exact *x, tribo_driver *drv, double tau, const double *y)
     return status;
 }
 
-/* An event: the contact sticks or is at its limit, and all at rest are decided about. */
-static int handle(struct exact *x, tribo_driver *drv, const struct guard *g, double *t, double *y)
-{
-    if (g->offset == 0.0) {
-        x->modes.mode[g->watch->contact] = 0;
-    }
-    tribo_modes_project(&x->modes, drv->sys, *t, y);
-    drv->events++;
-    if (!tribo_modes_event(&x->modes, *t, 1.0 / fmax(x->h->fastest, x->slowest))) {
-        return tribo_driver_fail(drv, TRIBO_ERR_CHATTER, "more than %zu events at t = %.17g, the last one of contact %zu", x->modes.patience, *t,
-                                 g->watch->contact);
-    }
-    int status = tribo_modes_decide(&x->modes, drv->sys, *t, y);
-    status = status ? status : find_held(x, drv->sys);
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
-}
-
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
     int status = prepare(x, sys);
     status = status ? status : tribo_modes_start(&x->modes, sys, *t, y, continues);
-    status = status ? status : find_held(x, sys);
     if (status) {
         return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
     }
+    status = find_held(x, drv);
     x->slowest = 1.0 / (t1 - *t);
     x->shown = *t + drv->dt;
     while (!status && *t < t1) {
         double longest = begin_phase(x, sys, *t, y, t1 - *t), when = 0.0;
-        const struct guard *event = find_event(x, sys, longest, &when);
+        const struct guard *event = tribo_search(&x->search, longest, &when);
         when = event ? fmin(when, longest) : longest;
         status = show(x, drv, when, y);
         if (status) {
@@ -732,15 +553,14 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         move_to(x, sys, when, y, y);
         *t = !event && longest == t1 - *t ? t1 : fmin(*t + when, t1);
         drv->steps++;
-        status = event ? handle(x, drv, event, t, y) : TRIBO_OK;
-        if (!event) {
-            tribo_modes_project(&x->modes, sys, *t, y);
-            status = *t < t1 ? tribo_modes_decide(&x->modes, sys, *t, y) : TRIBO_OK;
-        }
+        status = tribo_modes_proceed(&x->modes, drv, event, *t, y, 1.0 / fmax(x->h->fastest, x->slowest));
+        status = status ? status : find_held(x, drv);
         if (!status && (event || *t >= t1)) {
             status = tribo_driver_tell(drv, *t, y, event != NULL);
         }
     }
+    sys->evaluations += x->search.looks;
+    x->search.looks = 0;
     return status;
 }
 

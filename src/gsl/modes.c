@@ -231,10 +231,21 @@ double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size
     return v;
 }
 
-int tribo_modes_event(struct modes *m, double t, double shortest)
+int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct guard *event, double t, double *y, double shortest)
 {
-    const size_t slot = m->events++ % m->patience;
-    const int crowded = m->events > m->patience && t - m->recent[slot] < 1e-6 * shortest;
-    m->recent[slot] = t;
-    return !crowded;
+    if (event) {
+        const size_t slot = m->events++ % m->patience;
+        drv->events++;
+        if (m->events > m->patience && t - m->recent[slot] < 1e-6 * shortest) {
+            return tribo_driver_fail(drv, TRIBO_ERR_CHATTER, "%zu events up to t = %.17g took no time, the last one of contact %zu", m->patience,
+                                     t, event->contact);
+        }
+        m->recent[slot] = t;
+        if (event->offset == 0.0) {
+            m->mode[event->contact] = 0;
+        }
+    }
+    tribo_modes_project(m, drv->sys, t, y);
+    const int status = tribo_modes_decide(m, drv->sys, t, y);
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }

@@ -2,7 +2,8 @@
 #ifndef TRIBO_MODES_H
 #define TRIBO_MODES_H
 
-#include "system.h"
+#include "driver.h"
+#include "search.h"
 
 /* A balancing force this close to the limit counts as just at it: far above rounding, and far below what a wrong guess could change. */
 #define TRIBO_AT_LIMIT 1e-9
@@ -42,7 +43,9 @@ double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size
  * freedom. */
 void tribo_modes_project(struct modes *m, tribo_system *sys, double t, double *y);
 
-/* Counts an event. 0 if there have been too many of them in too short a time (shortest is the structure's shortest time). */
-int tribo_modes_event(struct modes *m, double t, double shortest);
+/* A phase has ended at (t, y): with an event of the contact that guard is about, or without (NULL). Brings the velocities of contacts at rest
+ * to zero and decides anew. Counts events; fails if there have been too many of them in too short a time, shortest being the structure's
+ * shortest. The message of a failure is on the driver. */
+int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct guard *event, double t, double *y, double shortest);
 
 #endif
