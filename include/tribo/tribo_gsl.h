@@ -70,6 +70,18 @@ TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const doubl
  * cosine, sine  [ncontact] in, each or NULL */
 TRIBO_API int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
+/* Adds a load that follows a table, p(t) += pattern * value(t), with value linear between its knots and constant outside.
+ * time     [knots] in   ascending
+ * value    [knots] in
+ * pattern  [ndof of the matrices given] in */
+TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
+                                          const double *pattern);
+
+/* Lets the limits follow a table, linear between its knots and constant outside, instead of what the context says.
+ * time   [knots] in   ascending; knots = 0 ends it
+ * limit  [knots][ncontact] in   >= 0 */
+TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
+
 /* Reduced systems: damping ratio of every mode, C = diag(2 zeta omega_k). zeta >= 0. Others: TRIBO_ERR_UNSUPPORTED. */
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 

@@ -84,7 +84,7 @@ static int find_held(struct exact *x, tribo_driver *drv)
         x->room = room;
     }
     struct held *h;
-    const int status = tribo_held_create(&h, sys, x->modes.mode);
+    const int status = tribo_held_create(&h, sys, x->modes.mode, x->modes.holds);
     if (status) {
         return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
     }
@@ -534,6 +534,9 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
+    if (sys->tables || sys->limits.knots) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method exact takes harmonic loads only; method event takes tables too");
+    }
     int status = prepare(x, sys);
     status = status ? status : tribo_modes_start(&x->modes, sys, *t, y, continues);
     if (status) {

@@ -106,52 +106,26 @@ void tribo_held_free(struct held *h)
 
 /* ------------------------------------------------------------------------------------- the contacts that hold, and R_II */
 
-static double delassus(const tribo_system *sys, size_t i, size_t j)
-{
-    const struct matrix *a = &sys->direction;
-    double sum = 0.0;
-    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-        sum += a->val[k] * tribo_matrix_get(&sys->response, a->col[k], j);
-    }
-    return sum;
-}
-
-/* Of the contacts at rest, an independent set holds the structure; the others then rest by themselves, with constant force. */
-static int find_rest(struct build *b)
+/* Lists the contacts that hold, and their R_II if it is diagonal. */
+static int list_rest(struct build *b, const unsigned char *holds)
 {
     struct held *h = b->h;
-    size_t islands, all = 0, *at = scratch_indices(b, b->sys->ncontact), *order = scratch_indices(b, b->sys->ncontact);
+    size_t islands;
     b->rest = scratch_indices(b, b->sys->ncontact);
-    if (!at || !order || !b->rest) {
-        return 0;
+    for (size_t i = 0; b->rest && i < b->sys->ncontact; i++) {
+        if (holds[i]) {
+            b->rest[h->rest++] = i;
+        }
     }
     tribo_get_count(b->sys->contacts, TRIBO_COUNT_ISLANDS, &islands);
-    for (size_t i = 0; i < b->sys->ncontact; i++) {
-        if (h->key[i]) {
-            at[all++] = i;
-        }
+    if (!b->rest || islands < b->sys->ncontact) {
+        return b->rest != NULL;
     }
-    if (islands == b->sys->ncontact) {
-        b->r_diagonal = scratch(b, all);
-        for (size_t p = 0; b->r_diagonal && p < all; p++) {
-            const double r = delassus(b->sys, at[p], at[p]);
-            b->r_diagonal[h->rest] = r;
-            b->rest[h->rest] = at[p];
-            h->rest += r > 0.0;
-        }
-        return b->r_diagonal != NULL;
+    b->r_diagonal = scratch(b, h->rest);
+    for (size_t p = 0; b->r_diagonal && p < h->rest; p++) {
+        b->r_diagonal[p] = tribo_system_delassus(b->sys, b->rest[p], b->rest[p]);
     }
-    double *r = scratch(b, all * all);
-    for (size_t p = 0; r && p < all; p++) {
-        for (size_t q = 0; q < all; q++) {
-            r[p * all + q] = delassus(b->sys, at[p], at[q]);
-        }
-    }
-    h->rest = r ? tribo_independent_rows(r, all, order) : 0;
-    for (size_t p = 0; p < h->rest; p++) {
-        b->rest[p] = at[order[p]];
-    }
-    return r != NULL;
+    return b->r_diagonal != NULL;
 }
 
 /* Factorizes R_II, for solve_rest. */
@@ -163,7 +137,7 @@ static int factorize_rest(struct build *b)
     struct matrix m = {0};
     for (size_t p = 0; r && p < s; p++) {
         for (size_t q = 0; q < s; q++) {
-            r[p * s + q] = delassus(b->sys, b->rest[p], b->rest[q]);
+            r[p * s + q] = tribo_system_delassus(b->sys, b->rest[p], b->rest[q]);
         }
     }
     const int done = r && tribo_matrix_from_dense(&m, s, s, r) && tribo_cholesky_create(&b->r, &m, &where, &pivot) == TRIBO_OK;
@@ -849,14 +823,14 @@ static int compress(struct build *b)
     return 1;
 }
 
-static int build(struct build *b, const signed char *mode)
+static int build(struct build *b, const signed char *mode, const unsigned char *holds)
 {
     struct held *h = b->h;
     h->key = take(&h->memory, &h->bytes, b->sys->ncontact, 1);
     for (size_t i = 0; h->key && i < b->sys->ncontact; i++) {
         h->key[i] = mode[i] == 0;
     }
-    if (!h->key || !find_rest(b) || (!b->r_diagonal && !factorize_rest(b)) ||
+    if (!h->key || !list_rest(b, holds) || (!b->r_diagonal && !factorize_rest(b)) ||
         !(holds_single_dofs(b) ? modes_by_elimination(b) : modes_by_projection(b)) || !complete_modes(b)) {
         return TRIBO_ERR_MEMORY;
     }
@@ -872,10 +846,10 @@ static int build(struct build *b, const signed char *mode)
     return h->size && find_forcing(b) && find_response(b) && find_watches(b) && compress(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode)
+int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode, const unsigned char *holds)
 {
     struct build b = {.sys = sys, .n = sys->ndof, .h = calloc(1, sizeof *b.h)};
-    int status = b.h ? build(&b, mode) : TRIBO_ERR_MEMORY;
+    int status = b.h ? build(&b, mode, holds) : TRIBO_ERR_MEMORY;
     give_back(b.scratch);
     tribo_cholesky_free(&b.r);
     if (status) {

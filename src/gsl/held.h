@@ -54,8 +54,9 @@ struct held {
     size_t bytes;
 };
 
-/* The set of contacts whose mode is 0. Returns a status; its message is on the system's context. */
-int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode);
+/* For the contacts whose mode is 0, those of them that hold being marked (see modes.h). Returns a status; its message is on the system's
+ * context. */
+int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode, const unsigned char *holds);
 void tribo_held_free(struct held *h);
 
 #endif

@@ -10,14 +10,15 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     memset(m, 0, sizeof *m);
     m->patience = 64 + 16 * sys->ncontact;
     int status = tribo_clone(sys->contacts, &m->judge);
-    double *work = malloc((10 * c + 2 * n + m->patience) * sizeof *work);
-    m->mode = malloc(2 * c);
+    double *work = malloc((11 * c + 2 * n + m->patience) * sizeof *work);
+    m->mode = malloc(3 * c);
     m->limit = work;
     if (status || !work || !m->mode) {
         tribo_modes_free(m);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of %zu contacts", sys->ncontact);
     }
     m->weak = m->mode + c;
+    m->holds = (unsigned char *)m->mode + 2 * c;
     m->force = work + c;
     m->v = work + 2 * c;
     m->a = work + 3 * c;
@@ -27,15 +28,16 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->diagonal = work + 7 * c;
     m->base = work + 8 * c;
     m->base_rate = work + 9 * c;
-    m->acceleration = work + 10 * c;
+    m->limit_rate = work + 10 * c;
+    m->acceleration = work + 11 * c;
     m->jerk = m->acceleration + n;
     m->recent = m->jerk + n;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->diagonal[i] = 0.0;
-        for (size_t k = sys->direction.first[i]; k < sys->direction.first[i + 1]; k++) {
-            m->diagonal[i] += sys->direction.val[k] * tribo_matrix_get(&sys->response, sys->direction.col[k], i);
-        }
+        m->diagonal[i] = tribo_system_delassus(sys, i, i);
     }
+    size_t islands;
+    tribo_get_count(m->judge, TRIBO_COUNT_ISLANDS, &islands);
+    m->uncoupled = islands == sys->ncontact;
     tribo_set_law(m->judge, TRIBO_COULOMB);
     tribo_set_coupling(m->judge, TRIBO_CONSISTENT);
     return TRIBO_OK;
@@ -61,17 +63,31 @@ static double noise(const tribo_system *sys, const struct modes *m, const double
     return 1e-14 * (size + fabs(m->v[i] - sum));
 }
 
+static int mode_of_velocity(const tribo_system *sys, const struct modes *m, const double *y, size_t i)
+{
+    return fabs(m->v[i]) <= noise(sys, m, y + sys->ndof, i) ? 0 : m->v[i] > 0.0 ? 1 : -1;
+}
+
+/* Brings limits, and with them which contacts are open, up to the time of v. */
+static void update_limits(struct modes *m, const tribo_system *sys, const double *y)
+{
+    tribo_system_limits(sys, m->limit, m->limit_rate);
+    tribo_set_limit(m->judge, m->limit);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->limit[i] == 0.0 && m->limit_rate[i] == 0.0) {
+            m->mode[i] = 2;
+        } else if (m->mode[i] == 2) {
+            m->mode[i] = (signed char)mode_of_velocity(sys, m, y, i);
+        }
+    }
+}
+
 int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, int continues)
 {
-    tribo_get_limit(sys->contacts, m->limit);
-    tribo_set_limit(m->judge, m->limit);
     tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->limit[i] == 0.0) {
-            m->mode[i] = 2;
-        } else if (!continues || m->mode[i] == 2) {
-            m->mode[i] = (signed char)(fabs(m->v[i]) <= noise(sys, m, y + sys->ndof, i) ? 0 : m->v[i] > 0.0 ? 1 : -1);
-        }
+    tribo_system_limits(sys, m->limit, m->limit_rate);
+    for (size_t i = 0; !continues && i < sys->ncontact; i++) {
+        m->mode[i] = (signed char)(m->limit[i] == 0.0 ? 2 : mode_of_velocity(sys, m, y, i));
     }
     m->events = 0;
     tribo_modes_project(m, sys, t, y);
@@ -84,32 +100,35 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
     const size_t n = sys->ndof, c = sys->ncontact;
     memset(m->jerk, 0, n * sizeof *m->jerk);
     memset(m->a, 0, c * sizeof *m->a);
-    tribo_system_harmonics(sys, 0, 1, 1.0, m->jerk);
+    tribo_system_loads(sys, 0, 1, 1.0, m->jerk);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + n, m->jerk);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, m->acceleration, m->jerk);
     }
-    tribo_system_harmonics(sys, 1, 2, -1.0, m->a);
+    tribo_system_loads(sys, 1, 2, -1.0, m->a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->jerk, m->a);
     double bound = 0.0;
     for (size_t i = 0; i < c; i++) {
         bound = fmax(bound, m->diagonal[i] > 0.0 ? 1e3 * fabs(m->a[i]) / m->diagonal[i] : 0.0);
+        bound = fmax(bound, 1e3 * fabs(m->limit_rate[i]));
     }
     for (size_t i = 0; i < c; i++) {
-        const int rests = m->mode[i] == 0, weak = m->weak[i];
-        m->lo[i] = rests && !(weak && m->force[i] < 0.0) ? -bound : 0.0;
-        m->hi[i] = rests && !(weak && m->force[i] > 0.0) ? bound : 0.0;
+        const double side = m->mode[i] == 0 ? (m->force[i] > 0.0 ? 1.0 : -1.0) : -m->mode[i];
+        const double along = m->mode[i] == 2 ? 0.0 : side * m->limit_rate[i]; /* the rate of a force that stays at its limit */
+        const int rests = m->mode[i] == 0;
+        m->lo[i] = rests && !(m->weak[i] && side < 0.0) ? -bound : along;
+        m->hi[i] = rests && !(m->weak[i] && side > 0.0) ? bound : along;
     }
     const int status = tribo_solve_box(m->judge, m->a, m->lo, m->hi, m->rate);
     if (status) {
         return tribo_system_fail(sys, status, "%s", tribo_message(m->judge));
     }
     for (size_t i = 0; i < c; i++) {
-        m->lo[i] = fabs(m->a[i]);
+        m->lo[i] = fabs(m->a[i]) + m->diagonal[i] * fabs(m->limit_rate[i]);
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->rate, m->jerk);
     memset(m->a, 0, c * sizeof *m->a);
-    tribo_system_harmonics(sys, 1, 2, -1.0, m->a);
+    tribo_system_loads(sys, 1, 2, -1.0, m->a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->jerk, m->a);
     for (size_t i = 0; i < c; i++) {
         const double side = m->force[i] > 0.0 ? -1.0 : 1.0;
@@ -125,6 +144,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
 static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const double *y)
 {
     tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
+    update_limits(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->mode[i] == 2 ? 0.0 : m->mode[i];
     }
@@ -172,18 +192,55 @@ static size_t arrive(struct modes *m, const tribo_system *sys, const double *y)
     return count;
 }
 
+/* Of the contacts at rest, marks an independent set as holding. */
+static int find_holds(struct modes *m, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    size_t rest = 0;
+    for (size_t i = 0; i < c; i++) {
+        m->holds[i] = m->mode[i] == 0 && m->diagonal[i] > 0.0;
+        rest += m->holds[i];
+    }
+    if (m->uncoupled || rest < 2) {
+        return TRIBO_OK;
+    }
+    size_t p = 0, *at = malloc(2 * rest * sizeof *at), *order = at + rest;
+    double *r = malloc(rest * rest * sizeof *r);
+    if (!at || !r) {
+        free(at);
+        free(r);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+    }
+    for (size_t i = 0; i < c; i++) {
+        if (m->holds[i]) {
+            at[p++] = i;
+        }
+    }
+    for (p = 0; p < rest; p++) {
+        for (size_t q = 0; q < rest; q++) {
+            r[p * rest + q] = tribo_system_delassus(sys, at[p], at[q]);
+        }
+    }
+    for (size_t k = tribo_independent_rows(r, rest, order); k < rest; k++) {
+        m->holds[at[order[k]]] = 0;
+    }
+    free(at);
+    free(r);
+    return TRIBO_OK;
+}
+
 int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, const double *y)
 {
     memset(m->base, 0, 2 * (sys->ncontact + 1) * sizeof *m->base);
     tribo_system_set_time(sys, t);
-    tribo_system_harmonics(sys, 1, 0, 1.0, m->base);
-    tribo_system_harmonics(sys, 1, 1, 1.0, m->base_rate);
+    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    tribo_system_loads(sys, 1, 1, 1.0, m->base_rate);
     int status;
     size_t rounds = 0;
     do {
         status = decide_by_forces(m, sys, t, y);
     } while (!status && arrive(m, sys, y) && rounds++ < sys->ncontact);
-    return status;
+    return status ? status : find_holds(m, sys);
 }
 
 void tribo_modes_project(struct modes *m, tribo_system *sys, double t, double *y)
@@ -192,7 +249,7 @@ void tribo_modes_project(struct modes *m, tribo_system *sys, double t, double *y
     double *u = y + sys->ndof, *base = m->base;
     memset(base, 0, sys->ncontact * sizeof *base);
     tribo_system_set_time(sys, t);
-    tribo_system_harmonics(sys, 1, 0, 1.0, base);
+    tribo_system_loads(sys, 1, 0, 1.0, base);
     for (int sweep = 0; sweep < 4; sweep++) {
         double left = 0.0;
         for (size_t i = 0; i < sys->ncontact; i++) {

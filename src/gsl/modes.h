@@ -11,7 +11,8 @@
 struct modes {
     tribo_context *judge;     /* a clone of the system's context under Coulomb's law */
     signed char *mode;        /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
-    double *limit;            /* [ncontact] */
+    double *limit, *limit_rate; /* [ncontact] */
+    unsigned char *holds;     /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest by themselves */
     double *force;            /* [ncontact] after tribo_modes_decide: friction */
     double *acceleration;     /* [ndof] and q'' */
     double *v, *a;            /* [ncontact] relative velocity, and acceleration without friction */
@@ -21,6 +22,7 @@ struct modes {
     double *jerk;             /* [ndof] workspace */
     signed char *weak;        /* [ncontact] 1: just at its limit */
     double *recent;           /* [patience] times of the last events */
+    int uncoupled;            /* R is diagonal */
     size_t patience, events;
 };
 
@@ -28,12 +30,12 @@ struct modes {
 int tribo_modes_create(struct modes *m, tribo_system *sys);
 void tribo_modes_free(struct modes *m);
 
-/* Takes the limits from the system's context, and, unless it continues, the modes from the state: contacts whose velocity is
- * zero to rounding are at rest. */
+/* Takes limits from the system, and, unless it continues, the modes from the state: contacts whose velocity is zero to rounding are at
+ * rest. */
 int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, int continues);
 
 /* Decides about the contacts at rest: min 1/2 f'Rf + a'f, |f| <= limit, says which hold and which slide off; the same problem for the
- * rates of the forces does so for those that are just at their limit. Sets mode, force and acceleration. */
+ * rates of the forces does so for those that are just at their limit. Sets mode, holds, force and acceleration. */
 int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, const double *y);
 
 /* v_i in a state, at the time that tribo_modes_decide was last called for. */

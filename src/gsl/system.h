@@ -16,6 +16,15 @@ struct harmonic {
     double *cosine, *sine;
 };
 
+/* A function of time, linear between knots and constant outside: times pattern it adds to the load, or, with a row of limits to each knot,
+ * it is the limits of the contacts. */
+struct table {
+    size_t knots, at; /* at: the knot at or before sys->time */
+    double *time;
+    double *value;    /* [knots], or [knots][ncontact] */
+    double *pattern;  /* [ndof] accelerations, or NULL */
+};
+
 struct tribo_system {
     size_t ndof, ncontact;
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
@@ -24,7 +33,10 @@ struct tribo_system {
 
     size_t harmonics;
     struct harmonic *harmonic;
-    size_t revision; /* counts changes of harmonics and damping */
+    size_t tables;
+    struct table *table;
+    struct table limits; /* knots 0: the limits are those of the context */
+    size_t revision;     /* counts changes of harmonics and damping */
     double time; /* that cos_t and sin_t belong to; NaN: none yet */
 
     /* The metric W, in which AK is symmetric: the mass matrix, but for chain and reduced systems. No rows: the identity. */
@@ -49,10 +61,20 @@ struct tribo_system {
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
                        struct matrix *direction, struct matrix *response);
 
-/* Prepares the harmonics for time t; adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load
- * makes to `to`. */
+/* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
 void tribo_system_set_time(tribo_system *sys, double t);
-void tribo_system_harmonics(const tribo_system *sys, int moves_base, int order, double factor, double *to);
+
+/* Adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load makes to `to`, at the time set. */
+void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to);
+
+/* limit, and its derivative, each [ncontact], at the time set. */
+void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
+
+/* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
+double tribo_system_next_kink(const tribo_system *sys, double t);
+
+/* R_ij. */
+double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
