@@ -23,7 +23,8 @@ void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols);
 /* Order [n] names n rows of a semidefinite a [n][n], the independent ones first; returns how many they are. Overwrites a. */
 size_t tribo_independent_rows(double *a, size_t n, size_t *order);
 
-/* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. 0 if out of memory. */
+/* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. 0 if out of
+ * memory. */
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors);
 
 #endif

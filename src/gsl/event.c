@@ -1,10 +1,10 @@
-/* Method "event": Coulomb's law itself on any system. While the modes of the contacts last, the motion is smooth, and its Taylor series at
- * the start of a step follows from the equations of motion, one product with the structure's matrices and one solve for the held contacts an
- * order; velocities and forces of the contacts come out as polynomials too.
+/* Method "event": Coulomb's law itself on any system. While the modes of the contacts last, the motion is smooth, and its Taylor
+ * series at the start of a step follows from the equations of motion, one product with the structure's matrices and one solve for
+ * the held contacts an order; velocities and forces of the contacts come out as polynomials too.
  *
- * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can have, what the
- * series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials cannot skip a zero
- * (roots.h). */
+ * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can
+ * have, what the series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials
+ * cannot skip a zero (roots.h). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,12 +19,12 @@ struct event {
     struct search search;
     tribo_context *hold; /* finds the forces of the contacts that hold, and only theirs */
     size_t order;
-    double fastest;     /* bound on the frequencies of the motion */
+    double fastest; /* bound on the frequencies of the motion */
     size_t revision;
-    double tau;         /* where look() was */
-    double *q, *u;      /* [order + 1][ndof] coefficients of the powers of time */
-    double *v, *f;      /* [ncontact][order + 1] */
-    double *d;          /* [order + 1] dissipated energy */
+    double tau;    /* where look() was */
+    double *q, *u; /* [order + 1][ndof] coefficients of the powers of time */
+    double *v, *f; /* [ncontact][order + 1] */
+    double *d;     /* [order + 1] dissipated energy */
     double *acceleration, *zero, *a, *force, *largest;
 };
 

@@ -1,8 +1,8 @@
-/* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed form from the
- * modes of the structure with its contacts at rest held (held.h); no event can be skipped (roots.h), since the sixth derivative of a sum of
- * exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it strays from a quintic; and at an event the contacts at rest are
- * decided about anew (modes.h). The energy integral is closed too: a sliding force is constant, so that it dissipates its size times the
- * distance slid. */
+/* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
+ * form from the modes of the structure with its contacts at rest held (held.h); no event can be skipped (roots.h), since the
+ * sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
+ * strays from a quintic; and at an event the contacts at rest are decided about anew (modes.h). The energy integral is closed
+ * too: a sliding force is constant, so that it dissipates its size times the distance slid. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,18 +21,19 @@ struct exact {
     struct held **held;
     size_t helds, room, bytes, revision;
 
-    /* the phase: it began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z) */
+    /* the phase: it began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics +
+     * Re(r z) */
     const struct held *h;
-    double t0, tau; /* tau: where w is */
-    double *eta, *rate, *off, *vel, *acc;      /* [modes] at t0 */
-    double *drift, *drift_rate;                /* [modes] of those that drift: what harmonics do not explain, at t0 */
-    double *zr, *zi;                           /* [exponents] at t0 */
-    double *wr, *wi, *w1r, *w1i, *w2r, *w2i;   /* [exponents] z and its derivatives at tau */
-    double *growth, *growth6;                  /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
-    double *cos_t, *sin_t, *cos_0, *sin_0;     /* [harmonics] at t0 + tau, at t0 */
-    double *now, *work;                        /* [modes] eta and eta' at tau; workspace */
-    double *dq;                                /* [ndof] */
-    double slowest, shown;                     /* 1/length of the advance; when the observer looks next */
+    double t0, tau;                          /* tau: where w is */
+    double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
+    double *drift, *drift_rate;              /* [modes] of those that drift: what harmonics do not explain, at t0 */
+    double *zr, *zi;                         /* [exponents] at t0 */
+    double *wr, *wi, *w1r, *w1i, *w2r, *w2i; /* [exponents] z and its derivatives at tau */
+    double *growth, *growth6;                /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
+    double *cos_t, *sin_t, *cos_0, *sin_0;   /* [harmonics] at t0 + tau, at t0 */
+    double *now, *work;                      /* [modes] eta and eta' at tau; workspace */
+    double *dq;                              /* [ndof] */
+    double slowest, shown;                   /* 1/length of the advance; when the observer looks next */
     struct search search;
 };
 
@@ -236,8 +237,8 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
         const struct harmonic *w = &sys->harmonic[s];
         for (size_t e = 0; w->moves_base && e < w->count; e++) {
             const double c = w->cosine[e], d = w->sine[e];
-            const double way = w->omega == 0.0 ? c * tau
-                                               : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
+            const double way =
+                w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
             energy += x->modes.mode[w->index[e]] ? x->modes.force[w->index[e]] * way : 0.0;
         }
     }
@@ -431,8 +432,14 @@ static void add_guards(struct exact *x, const struct watch *w, int slides, doubl
     }
     /* far from the limit for the whole phase: nothing to guard */
     for (int side = -1; side <= 1 && range >= limit; side += 2) {
-        x->search.guard[x->search.guards++] = (struct guard){
-            .contact = i, .watch = w, .offset = limit, .side = side, .start = start, .ramp = ramp, .size = size + limit, .bend = bend};
+        x->search.guard[x->search.guards++] = (struct guard){.contact = i,
+                                                             .watch = w,
+                                                             .offset = limit,
+                                                             .side = side,
+                                                             .start = start,
+                                                             .ramp = ramp,
+                                                             .size = size + limit,
+                                                             .bend = bend};
     }
 }
 
@@ -448,7 +455,8 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
         const struct watch *w = &h->watch[k];
         if (x->modes.mode[w->contact] != 2) {
             const int slides = k < h->sliding;
-            add_guards(x, w, slides, slides ? tribo_modes_velocity(&x->modes, sys, w->contact, y) : x->modes.force[w->contact], longest);
+            add_guards(x, w, slides, slides ? tribo_modes_velocity(&x->modes, sys, w->contact, y) : x->modes.force[w->contact],
+                       longest);
         }
     }
     return longest;
@@ -485,7 +493,8 @@ static int create(tribo_driver *drv)
     if (status) {
         return status;
     }
-    double **const by_mode[] = {&x->eta, &x->rate, &x->off, &x->vel, &x->acc, &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
+    double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
+                                &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
     double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
     double *work = malloc((10 * n + 20 * n + 1) * sizeof *work);
     x->search.guard = malloc((2 * c + 1) * sizeof *x->search.guard);
@@ -535,7 +544,8 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
     if (sys->tables || sys->limits.knots) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method exact takes harmonic loads only; method event takes tables too");
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                 "method exact takes harmonic loads only; method event takes tables too");
     }
     int status = prepare(x, sys);
     status = status ? status : tribo_modes_start(&x->modes, sys, *t, y, continues);

@@ -9,8 +9,8 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 
-/* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor; and a mode this close to
- * critical damping has no two exponents that could be told apart to 12 digits. */
+/* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor; and a mode this
+ * close to critical damping has no two exponents that could be told apart to 12 digits. */
 #define RESONANCE 1e-3
 #define CRITICAL 1e-8
 
@@ -19,14 +19,14 @@ struct build {
     tribo_system *sys;
     struct held *h;
     size_t n;
-    size_t *rest;         /* [h->rest] the contacts that hold */
-    double *r_diagonal;   /* [rest] R_II, if the contacts share no body; */
-    struct cholesky r;    /* its factor, if they do */
+    size_t *rest;       /* [h->rest] the contacts that hold */
+    double *r_diagonal; /* [rest] R_II, if the contacts share no body; */
+    struct cholesky r;  /* its factor, if they do */
     double *phi, *psi, *ak_phi, *ac_phi;
-    double *g, *g_rate;   /* [modes][rest] force of the held contacts per unit of eta, eta' */
-    double *yr, *yi;      /* [harmonics][ndof] */
-    double *y0;           /* [ndof] velocities from belts of constant speed */
-    void *scratch;        /* list of what is freed at the end */
+    double *g, *g_rate; /* [modes][rest] force of the held contacts per unit of eta, eta' */
+    double *yr, *yi;    /* [harmonics][ndof] */
+    double *y0;         /* [ndof] velocities from belts of constant speed */
+    void *scratch;      /* list of what is freed at the end */
 };
 
 /* ------------------------------------------------------------------------------------------------------------ memory */
@@ -248,7 +248,8 @@ static int modes_by_projection(struct build *b)
     }
     if (s) {
         tribo_half_solve(&b->sys->factor, js, s);
-        gsl_matrix_view jv = gsl_matrix_view_array(js, n, s), qv = gsl_matrix_view_array(q, n, n), rv = gsl_matrix_view_array(r, n, s);
+        gsl_matrix_view jv = gsl_matrix_view_array(js, n, s), qv = gsl_matrix_view_array(q, n, n),
+                        rv = gsl_matrix_view_array(r, n, s);
         gsl_vector_view tv = gsl_vector_view_array(tau, s);
         gsl_linalg_QR_decomp(&jv.matrix, &tv.vector);
         gsl_linalg_QR_unpack(&jv.matrix, &tv.vector, &qv.matrix, &rv.matrix);
@@ -393,7 +394,8 @@ static int exponents_coupled(struct build *b)
 {
     struct held *h = b->h;
     const size_t m = h->modes, size = 2 * m;
-    double *a = scratch(b, size * size), *s = scratch(b, m), *values = scratch(b, 2 * size), *vectors = scratch(b, 2 * size * size);
+    double *a = scratch(b, size * size), *s = scratch(b, m), *values = scratch(b, 2 * size),
+           *vectors = scratch(b, 2 * size * size);
     double *lu = scratch(b, 2 * size * size), *inverse = scratch(b, 2 * size * size);
     size_t *order = scratch_indices(b, size);
     gsl_eigen_nonsymmv_workspace *work = gsl_eigen_nonsymmv_alloc(size);
@@ -416,7 +418,8 @@ static int exponents_coupled(struct build *b)
     gsl_matrix_view av = gsl_matrix_view_array(a, size, size);
     gsl_vector_complex_view ev = gsl_vector_complex_view_array(values, size);
     gsl_matrix_complex_view vv = gsl_matrix_complex_view_array(vectors, size, size);
-    gsl_matrix_complex_view fv = gsl_matrix_complex_view_array(lu, size, size), iv = gsl_matrix_complex_view_array(inverse, size, size);
+    gsl_matrix_complex_view fv = gsl_matrix_complex_view_array(lu, size, size),
+                            iv = gsl_matrix_complex_view_array(inverse, size, size);
     gsl_eigen_nonsymmv(&av.matrix, &ev.vector, &vv.matrix, work);
     gsl_eigen_nonsymmv_free(work);
     memcpy(lu, vectors, 2 * size * size * sizeof *lu);
@@ -691,8 +694,8 @@ static int watch_sliding(struct build *b, struct watch *w, size_t i)
     return 1;
 }
 
-/* f_I = R_II^-1 (J_I AK q + J_I AC q' - J_I load + b_I'), for all that hold, by modes and by harmonics; only those that change at all
- * are watched. */
+/* f_I = R_II^-1 (J_I AK q + J_I AC q' - J_I load + b_I'), for all that hold, by modes and by harmonics; only those that change at
+ * all are watched. */
 static int watch_held(struct build *b, struct watch *all, size_t *used)
 {
     struct held *h = b->h;
@@ -854,7 +857,8 @@ int tribo_held_create(struct held **held, tribo_system *sys, const signed char *
     tribo_cholesky_free(&b.r);
     if (status) {
         tribo_held_free(b.h);
-        return status == TRIBO_ERR_MEMORY ? tribo_system_fail(sys, status, "out of memory for the modes of a held structure") : status;
+        return status == TRIBO_ERR_MEMORY ? tribo_system_fail(sys, status, "out of memory for the modes of a held structure")
+                                          : status;
     }
     *held = b.h;
     return TRIBO_OK;

@@ -221,7 +221,8 @@ static int find_modes(const struct model *m, double *modes, double *omega)
     if (status) {
         return status;
     }
-    double *k = tribo_matrix_to_dense(&m->stiffness), *vectors = malloc(n * n * sizeof *vectors), *values = malloc(n * sizeof *values);
+    double *k = tribo_matrix_to_dense(&m->stiffness), *vectors = malloc(n * n * sizeof *vectors),
+           *values = malloc(n * sizeof *values);
     int done = k && vectors && values;
     if (done) {
         tribo_half_solve(&c, k, n);
@@ -233,7 +234,8 @@ static int find_modes(const struct model *m, double *modes, double *omega)
     const double noise = done ? 1e-13 * (double)n * fabs(values[n - 1]) : 0.0;
     for (size_t j = 0; !status && j < m->nmode; j++) {
         if (values[j] < -noise) {
-            status = fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu", values[j], j);
+            status =
+                fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu", values[j], j);
         }
         omega[j] = values[j] > noise ? sqrt(values[j]) : 0.0;
     }

@@ -90,7 +90,7 @@ int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, i
         m->mode[i] = (signed char)(m->limit[i] == 0.0 ? 2 : mode_of_velocity(sys, m, y, i));
     }
     m->events = 0;
-    tribo_modes_project(m, sys, t, y);
+    tribo_system_project(sys, m->mode, t, y + sys->ndof);
     return tribo_modes_decide(m, sys, t, y);
 }
 
@@ -243,41 +243,6 @@ int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, const doubl
     return status ? status : find_holds(m, sys);
 }
 
-void tribo_modes_project(struct modes *m, tribo_system *sys, double t, double *y)
-{
-    const struct matrix *j = &sys->direction;
-    double *u = y + sys->ndof, *base = m->base;
-    memset(base, 0, sys->ncontact * sizeof *base);
-    tribo_system_set_time(sys, t);
-    tribo_system_loads(sys, 1, 0, 1.0, base);
-    for (int sweep = 0; sweep < 4; sweep++) {
-        double left = 0.0;
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            const size_t first = j->first[i], last = j->first[i + 1];
-            if (m->mode[i] != 0 || first == last) {
-                continue;
-            }
-            double off = -base[i], square = 0.0;
-            for (size_t k = first; k < last; k++) {
-                off += j->val[k] * u[j->col[k]];
-                square += j->val[k] * j->val[k];
-            }
-            left = fmax(left, fabs(off));
-            if (off != 0.0 && last - first <= 2) {
-                const double other = last - first == 2 ? j->val[first] * u[j->col[first]] : 0.0;
-                u[j->col[last - 1]] = (base[i] - other) / j->val[last - 1];
-            } else if (off != 0.0) {
-                for (size_t k = first; k < last; k++) {
-                    u[j->col[k]] -= off * j->val[k] / square;
-                }
-            }
-        }
-        if (left == 0.0) {
-            return;
-        }
-    }
-}
-
 double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size_t i, const double *y)
 {
     const struct matrix *j = &sys->direction;
@@ -294,15 +259,16 @@ int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct guard *
         const size_t slot = m->events++ % m->patience;
         drv->events++;
         if (m->events > m->patience && t - m->recent[slot] < 1e-6 * shortest) {
-            return tribo_driver_fail(drv, TRIBO_ERR_CHATTER, "%zu events up to t = %.17g took no time, the last one of contact %zu", m->patience,
-                                     t, event->contact);
+            return tribo_driver_fail(drv, TRIBO_ERR_CHATTER,
+                                     "%zu events up to t = %.17g took no time, the last one of contact %zu", m->patience, t,
+                                     event->contact);
         }
         m->recent[slot] = t;
         if (event->offset == 0.0) {
             m->mode[event->contact] = 0;
         }
     }
-    tribo_modes_project(m, drv->sys, t, y);
+    tribo_system_project(drv->sys, m->mode, t, y + drv->sys->ndof);
     const int status = tribo_modes_decide(m, drv->sys, t, y);
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }

@@ -1,21 +1,24 @@
-/* Coulomb's law itself, for the event-located drivers: which contacts stick, which way the others slide, and what changes that. */
+/* Coulomb's law itself, for the event-located drivers: which contacts stick, which way the others slide, and what changes that.
+ */
 #ifndef TRIBO_MODES_H
 #define TRIBO_MODES_H
 
 #include "driver.h"
 #include "search.h"
 
-/* A balancing force this close to the limit counts as just at it: far above rounding, and far below what a wrong guess could change. */
+/* A balancing force this close to the limit counts as just at it: far above rounding, and far below what a wrong guess could
+ * change. */
 #define TRIBO_AT_LIMIT 1e-9
 
 struct modes {
-    tribo_context *judge;     /* a clone of the system's context under Coulomb's law */
-    signed char *mode;        /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
+    tribo_context *judge;       /* a clone of the system's context under Coulomb's law */
+    signed char *mode;          /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
     double *limit, *limit_rate; /* [ncontact] */
-    unsigned char *holds;     /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest by themselves */
-    double *force;            /* [ncontact] after tribo_modes_decide: friction */
-    double *acceleration;     /* [ndof] and q'' */
-    double *v, *a;            /* [ncontact] relative velocity, and acceleration without friction */
+    unsigned char *holds; /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest by
+                             themselves */
+    double *force;        /* [ncontact] after tribo_modes_decide: friction */
+    double *acceleration; /* [ndof] and q'' */
+    double *v, *a;        /* [ncontact] relative velocity, and acceleration without friction */
     double *base, *base_rate; /* [ncontact] b(t), b'(t) */
     double *diagonal;         /* [ncontact] R_ii */
     double *rate, *lo, *hi;   /* [ncontact] workspace */
@@ -30,24 +33,20 @@ struct modes {
 int tribo_modes_create(struct modes *m, tribo_system *sys);
 void tribo_modes_free(struct modes *m);
 
-/* Takes limits from the system, and, unless it continues, the modes from the state: contacts whose velocity is zero to rounding are at
- * rest. */
+/* Takes limits from the system, and, unless it continues, the modes from the state: contacts whose velocity is zero to rounding
+ * are at rest. */
 int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, int continues);
 
-/* Decides about the contacts at rest: min 1/2 f'Rf + a'f, |f| <= limit, says which hold and which slide off; the same problem for the
- * rates of the forces does so for those that are just at their limit. Sets mode, holds, force and acceleration. */
+/* Decides about the contacts at rest: min 1/2 f'Rf + a'f, |f| <= limit, says which hold and which slide off; the same problem for
+ * the rates of the forces does so for those that are just at their limit. Sets mode, holds, force and acceleration. */
 int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, const double *y);
 
 /* v_i in a state, at the time that tribo_modes_decide was last called for. */
 double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size_t i, const double *y);
 
-/* Takes what rounding left of the velocities of contacts at rest out of y, to the last bit where a contact has but one or two degrees of
- * freedom. */
-void tribo_modes_project(struct modes *m, tribo_system *sys, double t, double *y);
-
-/* A phase has ended at (t, y): with an event of the contact that guard is about, or without (NULL). Brings the velocities of contacts at rest
- * to zero and decides anew. Counts events; fails if there have been too many of them in too short a time, shortest being the structure's
- * shortest. The message of a failure is on the driver. */
+/* A phase has ended at (t, y): with an event of the contact that guard is about, or without (NULL). Brings the velocities of
+ * contacts at rest to zero and decides anew. Counts events; fails if there have been too many of them in too short a time,
+ * shortest being the structure's shortest. The message of a failure is on the driver. */
 int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct guard *event, double t, double *y, double shortest);
 
 #endif

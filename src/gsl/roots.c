@@ -13,14 +13,16 @@ static void bernstein(const struct sample *a, const struct sample *b, double h, 
     c[3] = c[4] - 0.2 * h * (b->d - 0.25 * h * b->e);
 }
 
-/* The function differs from the quintic by at most bend h^6/6! s^3 (1-s)^3, which in Bernstein's basis of degree 6 is the middle element
- * alone, 20 s^3 (1-s)^3: raised to that degree, the quintic needs coefficients that are positive, the middle one by this much. */
+/* The function differs from the quintic by at most bend h^6/6! s^3 (1-s)^3, which in Bernstein's basis of degree 6 is the middle
+ * element alone, 20 s^3 (1-s)^3: raised to that degree, the quintic needs coefficients that are positive, the middle one by this
+ * much. */
 int tribo_positive(const struct sample *a, const struct sample *b, double h, double bend, double noise)
 {
     double c[6];
     bernstein(a, b, h, c);
     const double h_3 = h * h * h, doubt = bend * h_3 * h_3 / 14400.0;
-    const double low = fmin(fmin(c[0] + 5.0 * c[1], 2.0 * c[1] + 4.0 * c[2]), fmin(4.0 * c[3] + 2.0 * c[4], 5.0 * c[4] + c[5])) / 6.0;
+    const double low =
+        fmin(fmin(c[0] + 5.0 * c[1], 2.0 * c[1] + 4.0 * c[2]), fmin(4.0 * c[3] + 2.0 * c[4], 5.0 * c[4] + c[5])) / 6.0;
     return fmin(fmin(low, fmin(c[0], c[5])), 0.5 * (c[2] + c[3]) - doubt) >= -noise;
 }
 

@@ -60,7 +60,8 @@ static double first_length(const struct search *s, double longest)
     return fmin(cbrt(sqrt(300.0 * ratio)), longest);
 }
 
-/* The guard that, among those not positive where the interval of length h ends, is the first to fall to zero as far as one can tell. */
+/* The guard that, among those not positive where the interval of length h ends, is the first to fall to zero as far as one can
+ * tell. */
 static struct guard *first_to_fall(struct search *s, double h, double *when)
 {
     struct guard *first = NULL;
@@ -92,15 +93,16 @@ static void keep_right(struct search *s)
     }
 }
 
-/* How far a guard's zero is from its middle sample by Newton's method, if that is as good as another look; 0 if there is need of one. */
+/* How far a guard's zero is from its middle sample by Newton's method, if that is as good as another look; 0 if there is need of
+ * one. */
 static double last_bit(const struct guard *g)
 {
     const double step = -g->middle.g / g->middle.d;
     return g->middle.d < 0.0 && fabs(0.5 * g->middle.e * step * step) <= noise(g) ? step : 0.0;
 }
 
-/* A guard is not positive at *b. Narrows [*a, *b] to the first zero of all guards: returns that guard, with *when, or NULL if [*a, *b] must
- * be divided to tell. */
+/* A guard is not positive at *b. Narrows [*a, *b] to the first zero of all guards: returns that guard, with *when, or NULL if
+ * [*a, *b] must be divided to tell. */
 static const struct guard *find_zero(struct search *s, double *a, double *b, double *when)
 {
     double at;

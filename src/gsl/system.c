@@ -219,6 +219,47 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
     return sum;
 }
 
+double tribo_system_weight(const tribo_system *sys, size_t i)
+{
+    /* only the chain has a metric of its own, and there contact i is on degree of freedom i */
+    return sys->loads_accelerate && sys->metric.rows ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
+}
+
+void tribo_system_project(tribo_system *sys, const signed char *mode, double t, double *u)
+{
+    const struct matrix *j = &sys->direction;
+    double *base = sys->dv_dt;
+    tribo_system_set_time(sys, t);
+    memset(base, 0, sys->ncontact * sizeof *base);
+    tribo_system_loads(sys, 1, 0, 1.0, base);
+    for (int sweep = 0; sweep < 4; sweep++) {
+        double left = 0.0;
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            const size_t first = j->first[i], last = j->first[i + 1];
+            if (mode[i] != 0 || first == last) {
+                continue;
+            }
+            double off = -base[i], square = 0.0;
+            for (size_t k = first; k < last; k++) {
+                off += j->val[k] * u[j->col[k]];
+                square += j->val[k] * j->val[k];
+            }
+            left = fmax(left, fabs(off));
+            if (off != 0.0 && last - first <= 2) {
+                const double other = last - first == 2 ? j->val[first] * u[j->col[first]] : 0.0;
+                u[j->col[last - 1]] = (base[i] - other) / j->val[last - 1];
+            } else if (off != 0.0) {
+                for (size_t k = first; k < last; k++) {
+                    u[j->col[k]] -= off * j->val[k] / square;
+                }
+            }
+        }
+        if (left == 0.0) {
+            return;
+        }
+    }
+}
+
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
 {
     const size_t n = sys->ndof;
@@ -568,7 +609,8 @@ static int check_table(const tribo_system *sys, size_t knots, size_t columns, co
             return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "time[%zu] = %g is not finite", k, time[k]);
         }
         if (k && time[k] <= time[k - 1]) {
-            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1, time[k - 1]);
+            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1,
+                                     time[k - 1]);
         }
     }
     return check_amplitudes(sys, "value", value, knots * columns);
@@ -594,7 +636,8 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
         return TRIBO_ERR_NULL;
     }
     if (knots == 0 || !pattern) {
-        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL") : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL")
+                     : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
     }
     int status = check_table(sys, knots, 1, time, value);
     status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
@@ -630,8 +673,8 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
         }
         for (size_t k = 0; k < knots * sys->ncontact; k++) {
             if (limit[k] < 0.0) {
-                return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / sys->ncontact, limit[k],
-                                         k % sys->ncontact);
+                return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / sys->ncontact,
+                                         limit[k], k % sys->ncontact);
             }
         }
         if (!create_table(&t, knots, sys->ncontact, time, limit)) {

@@ -16,13 +16,13 @@ struct harmonic {
     double *cosine, *sine;
 };
 
-/* A function of time, linear between knots and constant outside: times pattern it adds to the load, or, with a row of limits to each knot,
- * it is the limits of the contacts. */
+/* A function of time, linear between knots and constant outside: times pattern it adds to the load, or, with a row of limits to
+ * each knot, it is the limits of the contacts. */
 struct table {
     size_t knots, at; /* at: the knot at or before sys->time */
     double *time;
-    double *value;    /* [knots], or [knots][ncontact] */
-    double *pattern;  /* [ndof] accelerations, or NULL */
+    double *value;   /* [knots], or [knots][ncontact] */
+    double *pattern; /* [ndof] accelerations, or NULL */
 };
 
 struct tribo_system {
@@ -37,7 +37,7 @@ struct tribo_system {
     struct table *table;
     struct table limits; /* knots 0: the limits are those of the context */
     size_t revision;     /* counts changes of harmonics and damping */
-    double time; /* that cos_t and sin_t belong to; NaN: none yet */
+    double time;         /* that cos_t and sin_t belong to; NaN: none yet */
 
     /* The metric W, in which AK is symmetric: the mass matrix, but for chain and reduced systems. No rows: the identity. */
     struct matrix metric;
@@ -64,7 +64,8 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
 /* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
-/* Adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load makes to `to`, at the time set. */
+/* Adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load makes to `to`, at the time
+ * set. */
 void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to);
 
 /* limit, and its derivative, each [ncontact], at the time set. */
@@ -75,6 +76,13 @@ double tribo_system_next_kink(const tribo_system *sys, double t);
 
 /* R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
+
+/* w_i such that W B_i = w_i J_i'. */
+double tribo_system_weight(const tribo_system *sys, size_t i);
+
+/* Takes what rounding left of the velocities of contacts at rest (mode 0) at time t out of u, to the last bit where a contact has
+ * but one or two degrees of freedom. */
+void tribo_system_project(tribo_system *sys, const signed char *mode, double t, double *u);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
