@@ -90,28 +90,38 @@ void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
     }
 }
 
-size_t tribo_independent_rows(double *a, size_t n, size_t *order)
+size_t tribo_independent_rows(double *a, size_t n, const unsigned char *last, size_t *order)
 {
+    /* a Cholesky factorization of a scaled to a diagonal of ones, with the largest pivot next, of rows that are not to be last if there is one */
+    const double least = 1e-12 * (double)(n + 1);
     size_t rank = 0;
     for (size_t i = 0; i < n; i++) {
         order[i] = i;
-    }
-    if (n == 0) {
-        return 0;
-    }
-    /* to a diagonal of ones first, so that pivots can be compared */
-    for (size_t i = 0; i < n; i++) {
         const double d = a[i * n + i] > 0.0 ? 1.0 / sqrt(a[i * n + i]) : 0.0;
         for (size_t j = 0; j < n; j++) {
             a[i * n + j] *= d;
             a[j * n + i] *= d;
         }
     }
-    gsl_matrix_view m = gsl_matrix_view_array(a, n, n);
-    gsl_permutation p = {n, order};
-    gsl_linalg_pcholesky_decomp(&m.matrix, &p);
-    while (rank < n && a[rank * n + rank] > 1e-13 * (double)(n + 1)) {
-        rank++;
+    for (; rank < n; rank++) {
+        size_t best = n;
+        for (size_t k = rank; k < n; k++) {
+            const size_t i = order[k], b = best < n ? order[best] : i;
+            const int better = last[i] != last[b] ? last[i] < last[b] : a[i * n + i] > a[b * n + b];
+            best = a[i * n + i] > least && (best == n || better) ? k : best;
+        }
+        if (best == n) {
+            break;
+        }
+        const size_t p = order[best];
+        order[best] = order[rank];
+        order[rank] = p;
+        for (size_t k = rank + 1; k < n; k++) {
+            const double factor = a[order[k] * n + p] / a[p * n + p];
+            for (size_t l = rank + 1; l < n; l++) {
+                a[order[k] * n + order[l]] -= factor * a[p * n + order[l]];
+            }
+        }
     }
     return rank;
 }

@@ -78,6 +78,9 @@ static int expand(struct event *e, double t, const double *y)
             return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(e->hold));
         }
         tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
+        memset(a, 0, c * sizeof *a);
+        tribo_system_loads(sys, 1, (int)k + 1, 1.0 / factorial, a);
+        tribo_system_hold(sys, e->modes.mode, a, acc);
         for (size_t i = 0; i < c; i++) {
             e->f[i * stride + k] = e->force[i] + held[i];
         }

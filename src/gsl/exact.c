@@ -49,10 +49,10 @@ static void drop_helds(struct exact *x)
     x->h = NULL;
 }
 
-static int rests_like(const struct held *h, const signed char *mode, size_t n)
+static int rests_like(const struct held *h, const struct modes *m, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        if (h->key[i] != (mode[i] == 0)) {
+        if (h->key[i] != (m->mode[i] == 0) + m->holds[i]) {
             return 0;
         }
     }
@@ -65,7 +65,7 @@ static int find_held(struct exact *x, tribo_driver *drv)
     tribo_system *sys = drv->sys;
     for (size_t i = x->helds; i-- > 0;) {
         struct held *h = x->held[i];
-        if (rests_like(h, x->modes.mode, sys->ncontact)) {
+        if (rests_like(h, &x->modes, sys->ncontact)) {
             memmove(x->held + i, x->held + i + 1, (x->helds - 1 - i) * sizeof *x->held);
             x->held[x->helds - 1] = h;
             x->h = h;

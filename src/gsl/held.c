@@ -831,7 +831,7 @@ static int build(struct build *b, const signed char *mode, const unsigned char *
     struct held *h = b->h;
     h->key = take(&h->memory, &h->bytes, b->sys->ncontact, 1);
     for (size_t i = 0; h->key && i < b->sys->ncontact; i++) {
-        h->key[i] = mode[i] == 0;
+        h->key[i] = (signed char)((mode[i] == 0) + holds[i]);
     }
     if (!h->key || !list_rest(b, holds) || (!b->r_diagonal && !factorize_rest(b)) ||
         !(holds_single_dofs(b) ? modes_by_elimination(b) : modes_by_projection(b)) || !complete_modes(b)) {

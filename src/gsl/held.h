@@ -24,7 +24,7 @@ struct watch {
 };
 
 struct held {
-    signed char *key; /* [ncontact] 1: the contact rests */
+    signed char *key; /* [ncontact] 1: the contact rests, 2: and holds */
     size_t rest;      /* contacts at rest that hold; others depend on them */
 
     size_t moving, *dof; /* degrees of freedom that move */

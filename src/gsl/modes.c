@@ -11,7 +11,7 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->patience = 64 + 16 * sys->ncontact;
     int status = tribo_clone(sys->contacts, &m->judge);
     double *work = malloc((11 * c + 2 * n + m->patience) * sizeof *work);
-    m->mode = malloc(3 * c);
+    m->mode = malloc(4 * c);
     m->limit = work;
     if (status || !work || !m->mode) {
         tribo_modes_free(m);
@@ -19,6 +19,7 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     }
     m->weak = m->mode + c;
     m->holds = (unsigned char *)m->mode + 2 * c;
+    m->blocked = m->holds + c;
     m->force = work + c;
     m->v = work + 2 * c;
     m->a = work + 3 * c;
@@ -124,7 +125,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
         return tribo_system_fail(sys, status, "%s", tribo_message(m->judge));
     }
     for (size_t i = 0; i < c; i++) {
-        m->lo[i] = fabs(m->a[i]) + m->diagonal[i] * fabs(m->limit_rate[i]);
+        m->blocked[i] = !(m->rate[i] > m->lo[i] && m->rate[i] < m->hi[i]);
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->rate, m->jerk);
     memset(m->a, 0, c * sizeof *m->a);
@@ -132,7 +133,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->jerk, m->a);
     for (size_t i = 0; i < c; i++) {
         const double side = m->force[i] > 0.0 ? -1.0 : 1.0;
-        if (m->weak[i] && side * m->a[i] > TRIBO_AT_LIMIT * m->lo[i]) {
+        if (m->weak[i] && side * m->a[i] > 1e-3 * TRIBO_AT_LIMIT * m->diagonal[i] * bound) {
             m->mode[i] = (signed char)side;
             m->force[i] = -side * m->limit[i];
         }
@@ -156,6 +157,7 @@ static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const 
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double feq = m->rate[i], limit = m->limit[i];
         m->weak[i] = 0;
+        m->blocked[i] = 0;
         if (m->mode[i] == 0 && fabs(feq) > (1.0 + TRIBO_AT_LIMIT) * limit) {
             m->mode[i] = feq > 0.0 ? -1 : 1;
         } else if (m->mode[i] == 0 && fabs(feq) >= (1.0 - TRIBO_AT_LIMIT) * limit) {
@@ -192,7 +194,7 @@ static size_t arrive(struct modes *m, const tribo_system *sys, const double *y)
     return count;
 }
 
-/* Of the contacts at rest, marks an independent set as holding. */
+/* Of the contacts at rest, marks an independent set as holding; such whose forces can go both ways if there are enough of them. */
 static int find_holds(struct modes *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
@@ -206,13 +208,16 @@ static int find_holds(struct modes *m, const tribo_system *sys)
     }
     size_t p = 0, *at = malloc(2 * rest * sizeof *at), *order = at + rest;
     double *r = malloc(rest * rest * sizeof *r);
-    if (!at || !r) {
+    unsigned char *last = malloc(rest);
+    if (!at || !r || !last) {
         free(at);
         free(r);
+        free(last);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
     }
     for (size_t i = 0; i < c; i++) {
         if (m->holds[i]) {
+            last[p] = m->blocked[i];
             at[p++] = i;
         }
     }
@@ -221,11 +226,12 @@ static int find_holds(struct modes *m, const tribo_system *sys)
             r[p * rest + q] = tribo_system_delassus(sys, at[p], at[q]);
         }
     }
-    for (size_t k = tribo_independent_rows(r, rest, order); k < rest; k++) {
+    for (size_t k = tribo_independent_rows(r, rest, last, order); k < rest; k++) {
         m->holds[at[order[k]]] = 0;
     }
     free(at);
     free(r);
+    free(last);
     return TRIBO_OK;
 }
 

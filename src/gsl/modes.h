@@ -23,7 +23,8 @@ struct modes {
     double *diagonal;         /* [ncontact] R_ii */
     double *rate, *lo, *hi;   /* [ncontact] workspace */
     double *jerk;             /* [ndof] workspace */
-    signed char *weak;        /* [ncontact] 1: just at its limit */
+    signed char *weak;        /* [ncontact] 1: at rest just at its limit */
+    unsigned char *blocked;   /* [ncontact] 1: and its force would go beyond, if others did not hold the contact */
     double *recent;           /* [patience] times of the last events */
     int uncoupled;            /* R is diagonal */
     size_t patience, events;

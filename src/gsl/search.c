@@ -126,7 +126,7 @@ static const struct guard *find_zero(struct search *s, double *a, double *b, dou
             keep_right(s);
             return NULL;
         }
-        *when = trial + step;
+        *when = fmax(trial + step, 0.0);
         if (step != 0.0 || falls->middle.g <= noise(falls)) {
             return falls;
         }
