@@ -40,6 +40,30 @@ static void given_forces(const struct event *e, size_t k, double *force)
     }
 }
 
+/* Contacts at rest must not creep by what rounding leaves in acc: J_I acc = b'. Where contacts share bodies, once more the forces that hold
+ * them, for what is left, make it small; then the last bits go. */
+static int hold_still(struct event *e, size_t k, double factorial)
+{
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    double *a = e->a, *base = e->zero;
+    memset(a, 0, c * sizeof *a);
+    if (!e->modes.uncoupled) {
+        memset(base, 0, c * sizeof *base);
+        tribo_system_loads(sys, 1, (int)k + 1, -1.0 / factorial, a);
+        tribo_matrix_multiply_add(&sys->direction, 1.0, e->acceleration, a);
+        const int status = tribo_balance(e->hold, base, a, e->largest, NULL);
+        if (status) {
+            return status;
+        }
+        tribo_matrix_multiply_add(&sys->response, 1.0, e->largest, e->acceleration);
+        memset(a, 0, c * sizeof *a);
+    }
+    tribo_system_loads(sys, 1, (int)k + 1, 1.0 / factorial, a);
+    tribo_system_hold(sys, e->modes.mode, a, e->acceleration);
+    return TRIBO_OK;
+}
+
 /* Coefficients of the motion from (t, y) on. Returns a status. */
 static int expand(struct event *e, double t, const double *y)
 {
@@ -60,7 +84,7 @@ static int expand(struct event *e, double t, const double *y)
         tribo_system_loads(sys, 1, (int)k, -1.0 / factorial, v);
         tribo_matrix_multiply_add(&sys->direction, 1.0, u, v);
         for (size_t i = 0; i < c; i++) {
-            e->v[i * stride + k] = e->modes.mode[i] == 0 ? 0.0 : v[i];
+            e->v[i * stride + k] = e->modes.mode[i] == 0 || (k == 0 && e->modes.rested[i]) ? 0.0 : v[i];
         }
         given_forces(e, k, e->force);
         tribo_system_loads(sys, 0, (int)k, 1.0 / factorial, acc);
@@ -73,16 +97,17 @@ static int expand(struct event *e, double t, const double *y)
         tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
         memset(v, 0, c * sizeof *v);
         double *held = e->largest;
-        const int status = tribo_balance(e->hold, v, a, held, NULL);
+        int status = tribo_balance(e->hold, v, a, held, NULL);
         if (status) {
             return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(e->hold));
         }
-        tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
-        memset(a, 0, c * sizeof *a);
-        tribo_system_loads(sys, 1, (int)k + 1, 1.0 / factorial, a);
-        tribo_system_hold(sys, e->modes.mode, a, acc);
         for (size_t i = 0; i < c; i++) {
             e->f[i * stride + k] = e->force[i] + held[i];
+        }
+        tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
+        status = hold_still(e, k, factorial);
+        if (status) {
+            return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(e->hold));
         }
         for (size_t i = 0; k + 1 < stride && i < n; i++) {
             e->q[(k + 1) * n + i] = u[i] / (double)(k + 1);
@@ -317,7 +342,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         move_to(e, when, y);
         *t = when < end - *t ? *t + when : end;
         drv->steps++;
-        status = tribo_modes_proceed(&e->modes, drv, event, *t, y, 1.0 / e->fastest);
+        status = tribo_modes_proceed(&e->modes, drv, &e->search, event, *t, y, 1.0 / e->fastest);
         if (!status) {
             set_hold(e);
             status = tribo_driver_tell(drv, *t, y, event != NULL);

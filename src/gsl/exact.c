@@ -455,8 +455,8 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
         const struct watch *w = &h->watch[k];
         if (x->modes.mode[w->contact] != 2) {
             const int slides = k < h->sliding;
-            add_guards(x, w, slides, slides ? tribo_modes_velocity(&x->modes, sys, w->contact, y) : x->modes.force[w->contact],
-                       longest);
+            const double v = x->modes.rested[w->contact] ? 0.0 : tribo_modes_velocity(&x->modes, sys, w->contact, y);
+            add_guards(x, w, slides, slides ? v : x->modes.force[w->contact], longest);
         }
     }
     return longest;
@@ -566,7 +566,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         move_to(x, sys, when, y, y);
         *t = !event && longest == t1 - *t ? t1 : fmin(*t + when, t1);
         drv->steps++;
-        status = tribo_modes_proceed(&x->modes, drv, event, *t, y, 1.0 / fmax(x->h->fastest, x->slowest));
+        status = tribo_modes_proceed(&x->modes, drv, &x->search, event, *t, y, 1.0 / fmax(x->h->fastest, x->slowest));
         status = status ? status : find_held(x, drv);
         if (!status && (event || *t >= t1)) {
             status = tribo_driver_tell(drv, *t, y, event != NULL);

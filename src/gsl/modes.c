@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Velocities are known to this part of what they are the sum of. */
+#define NOISE 1e-14
+
 int tribo_modes_create(struct modes *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1, n = sys->ndof;
@@ -11,7 +14,7 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->patience = 64 + 16 * sys->ncontact;
     int status = tribo_clone(sys->contacts, &m->judge);
     double *work = malloc((11 * c + 2 * n + m->patience) * sizeof *work);
-    m->mode = malloc(4 * c);
+    m->mode = malloc(5 * c);
     m->limit = work;
     if (status || !work || !m->mode) {
         tribo_modes_free(m);
@@ -20,6 +23,7 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->weak = m->mode + c;
     m->holds = (unsigned char *)m->mode + 2 * c;
     m->blocked = m->holds + c;
+    m->rested = m->blocked + c;
     m->force = work + c;
     m->v = work + 2 * c;
     m->a = work + 3 * c;
@@ -28,8 +32,8 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->hi = work + 6 * c;
     m->diagonal = work + 7 * c;
     m->base = work + 8 * c;
-    m->base_rate = work + 9 * c;
-    m->limit_rate = work + 10 * c;
+    m->limit_rate = work + 9 * c;
+    m->noise = work + 10 * c;
     m->acceleration = work + 11 * c;
     m->jerk = m->acceleration + n;
     m->recent = m->jerk + n;
@@ -52,25 +56,27 @@ void tribo_modes_free(struct modes *m)
     memset(m, 0, sizeof *m);
 }
 
-/* What of v_i may be rounding. */
-static double noise(const tribo_system *sys, const struct modes *m, const double *u, size_t i)
+/* What of the velocities may be rounding, as far as the state alone tells. */
+static void find_noise(struct modes *m, const tribo_system *sys, const double *y)
 {
     const struct matrix *j = &sys->direction;
-    double sum = 0.0, size = 0.0;
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        sum += j->val[k] * u[j->col[k]];
-        size += fabs(j->val[k] * u[j->col[k]]);
+    const double *u = y + sys->ndof;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        double size = fabs(m->base[i]);
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            size += fabs(j->val[k] * u[j->col[k]]);
+        }
+        m->noise[i] = NOISE * size;
     }
-    return 1e-14 * (size + fabs(m->v[i] - sum));
 }
 
-static int mode_of_velocity(const tribo_system *sys, const struct modes *m, const double *y, size_t i)
+static signed char mode_of_velocity(const struct modes *m, size_t i)
 {
-    return fabs(m->v[i]) <= noise(sys, m, y + sys->ndof, i) ? 0 : m->v[i] > 0.0 ? 1 : -1;
+    return (signed char)(fabs(m->v[i]) <= m->noise[i] ? 0 : m->v[i] > 0.0 ? 1 : -1);
 }
 
 /* Brings limits, and with them which contacts are open, up to the time of v. */
-static void update_limits(struct modes *m, const tribo_system *sys, const double *y)
+static void update_limits(struct modes *m, const tribo_system *sys)
 {
     tribo_system_limits(sys, m->limit, m->limit_rate);
     tribo_set_limit(m->judge, m->limit);
@@ -78,7 +84,7 @@ static void update_limits(struct modes *m, const tribo_system *sys, const double
         if (m->limit[i] == 0.0 && m->limit_rate[i] == 0.0) {
             m->mode[i] = 2;
         } else if (m->mode[i] == 2) {
-            m->mode[i] = (signed char)mode_of_velocity(sys, m, y, i);
+            m->mode[i] = mode_of_velocity(m, i);
         }
     }
 }
@@ -87,12 +93,26 @@ int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, i
 {
     tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
     tribo_system_limits(sys, m->limit, m->limit_rate);
+    memset(m->base, 0, sys->ncontact * sizeof *m->base);
+    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
-        m->mode[i] = (signed char)(m->limit[i] == 0.0 ? 2 : mode_of_velocity(sys, m, y, i));
+        m->mode[i] = (signed char)(m->limit[i] == 0.0 ? 2 : mode_of_velocity(m, i));
     }
     m->events = 0;
-    tribo_system_project(sys, m->mode, t, y + sys->ndof);
     return tribo_modes_decide(m, sys, t, y);
+}
+
+/* Bounds for the rates of forces: sliding ones follow their limit, those just at their limit may not go beyond. */
+static void set_rate_bounds(struct modes *m, size_t c, double bound)
+{
+    for (size_t i = 0; i < c; i++) {
+        const int rests = m->mode[i] == 0;
+        const double side = !rests ? -m->mode[i] : m->force[i] > 0.0 ? 1.0 : -1.0;
+        const double along = m->mode[i] == 2 ? 0.0 : side * m->limit_rate[i];
+        m->lo[i] = rests && !(m->weak[i] && side < 0.0) ? -bound : along;
+        m->hi[i] = rests && !(m->weak[i] && side > 0.0) ? bound : along;
+    }
 }
 
 /* The contacts at their limit: those whose rate of f_eq would take it beyond the limit slide off. */
@@ -110,19 +130,23 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->jerk, m->a);
     double bound = 0.0;
     for (size_t i = 0; i < c; i++) {
-        bound = fmax(bound, m->diagonal[i] > 0.0 ? 1e3 * fabs(m->a[i]) / m->diagonal[i] : 0.0);
-        bound = fmax(bound, 1e3 * fabs(m->limit_rate[i]));
+        bound = fmax(bound, m->diagonal[i] > 0.0 ? fabs(m->a[i]) / m->diagonal[i] : 0.0);
+        bound = fmax(bound, fabs(m->limit_rate[i]));
     }
-    for (size_t i = 0; i < c; i++) {
-        const double side = m->mode[i] == 0 ? (m->force[i] > 0.0 ? 1.0 : -1.0) : -m->mode[i];
-        const double along = m->mode[i] == 2 ? 0.0 : side * m->limit_rate[i]; /* the rate of a force that stays at its limit */
-        const int rests = m->mode[i] == 0;
-        m->lo[i] = rests && !(m->weak[i] && side < 0.0) ? -bound : along;
-        m->hi[i] = rests && !(m->weak[i] && side > 0.0) ? bound : along;
-    }
-    const int status = tribo_solve_box(m->judge, m->a, m->lo, m->hi, m->rate);
-    if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(m->judge));
+    const double scale = bound;
+    int status, short_of = 1;
+    /* the box wants bounds where there are none; if they matter, they were too narrow */
+    for (int round = 0; round < 4 && short_of; round++) {
+        bound *= 1e3;
+        set_rate_bounds(m, c, bound);
+        status = tribo_solve_box(m->judge, m->a, m->lo, m->hi, m->rate);
+        if (status) {
+            return tribo_system_fail(sys, status, "%s", tribo_message(m->judge));
+        }
+        short_of = 0;
+        for (size_t i = 0; i < c; i++) {
+            short_of |= m->mode[i] == 0 && fabs(m->rate[i]) >= bound && bound > 0.0;
+        }
     }
     for (size_t i = 0; i < c; i++) {
         m->blocked[i] = !(m->rate[i] > m->lo[i] && m->rate[i] < m->hi[i]);
@@ -133,7 +157,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->jerk, m->a);
     for (size_t i = 0; i < c; i++) {
         const double side = m->force[i] > 0.0 ? -1.0 : 1.0;
-        if (m->weak[i] && side * m->a[i] > 1e-3 * TRIBO_AT_LIMIT * m->diagonal[i] * bound) {
+        if (m->weak[i] && side * m->a[i] > TRIBO_AT_LIMIT * m->diagonal[i] * scale) {
             m->mode[i] = (signed char)side;
             m->force[i] = -side * m->limit[i];
         }
@@ -145,7 +169,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
 static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const double *y)
 {
     tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
-    update_limits(m, sys, y);
+    update_limits(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->mode[i] == 2 ? 0.0 : m->mode[i];
     }
@@ -167,31 +191,6 @@ static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const 
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
     return weak ? decide_by_rates(m, sys, y) : TRIBO_OK;
-}
-
-/* Marks sliding contacts that are about to meet v = 0 within rounding as at rest; how many. */
-static size_t arrive(struct modes *m, const tribo_system *sys, const double *y)
-{
-    const struct matrix *j = &sys->direction;
-    size_t count = 0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->mode[i] != 1 && m->mode[i] != -1) {
-            continue;
-        }
-        m->v[i] = tribo_modes_velocity(m, sys, i, y);
-        if (m->mode[i] * m->v[i] > noise(sys, m, y + sys->ndof, i)) {
-            continue;
-        }
-        double a = -m->base_rate[i];
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            a += j->val[k] * m->acceleration[j->col[k]];
-        }
-        if (m->mode[i] * a < -TRIBO_AT_LIMIT * m->diagonal[i] * m->limit[i]) {
-            m->mode[i] = 0;
-            count++;
-        }
-    }
-    return count;
 }
 
 /* Of the contacts at rest, marks an independent set as holding; such whose forces can go both ways if there are enough of them. */
@@ -217,7 +216,7 @@ static int find_holds(struct modes *m, const tribo_system *sys)
     }
     for (size_t i = 0; i < c; i++) {
         if (m->holds[i]) {
-            last[p] = m->blocked[i];
+            last[p] = (unsigned char)(m->weak[i] + m->blocked[i]);
             at[p++] = i;
         }
     }
@@ -235,17 +234,21 @@ static int find_holds(struct modes *m, const tribo_system *sys)
     return TRIBO_OK;
 }
 
-int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, const double *y)
+int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, double *y)
 {
-    memset(m->base, 0, 2 * (sys->ncontact + 1) * sizeof *m->base);
+    double *u = y + sys->ndof;
+    memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_set_time(sys, t);
     tribo_system_loads(sys, 1, 0, 1.0, m->base);
-    tribo_system_loads(sys, 1, 1, 1.0, m->base_rate);
-    int status;
-    size_t rounds = 0;
-    do {
-        status = decide_by_forces(m, sys, t, y);
-    } while (!status && arrive(m, sys, y) && rounds++ < sys->ncontact);
+    tribo_system_hold(sys, m->mode, m->base, u);
+    /* whoever has no velocity is decided about, also those that another contact now holds, or that have only just been let go */
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = tribo_modes_velocity(m, sys, i, y);
+        m->mode[i] = (signed char)(m->mode[i] == 2 || fabs(m->v[i]) > m->noise[i] ? m->mode[i] : 0);
+        m->rested[i] = m->mode[i] == 0;
+    }
+    tribo_system_hold(sys, m->mode, m->base, u);
+    const int status = decide_by_forces(m, sys, t, y);
     return status ? status : find_holds(m, sys);
 }
 
@@ -259,8 +262,13 @@ double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size
     return v;
 }
 
-int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct guard *event, double t, double *y, double shortest)
+int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct search *search, const struct guard *event, double t, double *y,
+                        double shortest)
 {
+    for (size_t k = 0; k < search->guards; k++) {
+        const struct guard *g = &search->guard[k];
+        m->noise[g->contact] = g->offset == 0.0 ? NOISE * g->size : m->noise[g->contact];
+    }
     if (event) {
         const size_t slot = m->events++ % m->patience;
         drv->events++;
@@ -274,7 +282,6 @@ int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct guard *
             m->mode[event->contact] = 0;
         }
     }
-    tribo_system_project(drv->sys, m->mode, t, y + drv->sys->ndof);
     const int status = tribo_modes_decide(m, drv->sys, t, y);
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }

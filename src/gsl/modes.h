@@ -19,11 +19,12 @@ struct modes {
     double *force;        /* [ncontact] after tribo_modes_decide: friction */
     double *acceleration; /* [ndof] and q'' */
     double *v, *a;        /* [ncontact] relative velocity, and acceleration without friction */
-    double *base, *base_rate; /* [ncontact] b(t), b'(t) */
+    double *base, *noise;     /* [ncontact] b(t); what of v may be rounding */
     double *diagonal;         /* [ncontact] R_ii */
     double *rate, *lo, *hi;   /* [ncontact] workspace */
     double *jerk;             /* [ndof] workspace */
     signed char *weak;        /* [ncontact] 1: at rest just at its limit */
+    unsigned char *rested;    /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     unsigned char *blocked;   /* [ncontact] 1: and its force would go beyond, if others did not hold the contact */
     double *recent;           /* [patience] times of the last events */
     int uncoupled;            /* R is diagonal */
@@ -40,14 +41,15 @@ int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, i
 
 /* Decides about the contacts at rest: min 1/2 f'Rf + a'f, |f| <= limit, says which hold and which slide off; the same problem for
  * the rates of the forces does so for those that are just at their limit. Sets mode, holds, force and acceleration. */
-int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, const double *y);
+int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, double *y);
 
 /* v_i in a state, at the time that tribo_modes_decide was last called for. */
 double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size_t i, const double *y);
 
-/* A phase has ended at (t, y): with an event of the contact that guard is about, or without (NULL). Brings the velocities of
+/* A phase has ended at (t, y), where search left off: with an event, or without (NULL). Brings the velocities of
  * contacts at rest to zero and decides anew. Counts events; fails if there have been too many of them in too short a time,
  * shortest being the structure's shortest. The message of a failure is on the driver. */
-int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct guard *event, double t, double *y, double shortest);
+int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct search *search, const struct guard *event, double t, double *y,
+                        double shortest);
 
 #endif
