@@ -17,7 +17,6 @@ struct event {
     tribo_system *sys;
     struct modes modes;
     struct search search;
-    tribo_context *hold; /* finds the forces of the contacts that hold, and only theirs */
     size_t order;
     double fastest; /* bound on the frequencies of the motion */
     size_t revision;
@@ -38,30 +37,6 @@ static void given_forces(const struct event *e, size_t k, double *force)
         const double limit = k == 0 ? m->limit[i] : k == 1 ? m->limit_rate[i] : 0.0;
         force[i] = m->mode[i] == 0 ? (k == 0 && !m->holds[i] ? m->force[i] : 0.0) : m->mode[i] == 2 ? 0.0 : -m->mode[i] * limit;
     }
-}
-
-/* Contacts at rest must not creep by what rounding leaves in acc: J_I acc = b'. Where contacts share bodies, once more the forces that hold
- * them, for what is left, make it small; then the last bits go. */
-static int hold_still(struct event *e, size_t k, double factorial)
-{
-    const tribo_system *sys = e->sys;
-    const size_t c = sys->ncontact;
-    double *a = e->a, *base = e->zero;
-    memset(a, 0, c * sizeof *a);
-    if (!e->modes.uncoupled) {
-        memset(base, 0, c * sizeof *base);
-        tribo_system_loads(sys, 1, (int)k + 1, -1.0 / factorial, a);
-        tribo_matrix_multiply_add(&sys->direction, 1.0, e->acceleration, a);
-        const int status = tribo_balance(e->hold, base, a, e->largest, NULL);
-        if (status) {
-            return status;
-        }
-        tribo_matrix_multiply_add(&sys->response, 1.0, e->largest, e->acceleration);
-        memset(a, 0, c * sizeof *a);
-    }
-    tribo_system_loads(sys, 1, (int)k + 1, 1.0 / factorial, a);
-    tribo_system_hold(sys, e->modes.mode, a, e->acceleration);
-    return TRIBO_OK;
 }
 
 /* Coefficients of the motion from (t, y) on. Returns a status. */
@@ -97,17 +72,20 @@ static int expand(struct event *e, double t, const double *y)
         tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
         memset(v, 0, c * sizeof *v);
         double *held = e->largest;
-        int status = tribo_balance(e->hold, v, a, held, NULL);
+        int status = tribo_balance(e->modes.hold, v, a, held, NULL);
         if (status) {
-            return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(e->hold));
+            return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(e->modes.hold));
         }
         for (size_t i = 0; i < c; i++) {
             e->f[i * stride + k] = e->force[i] + held[i];
         }
         tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
-        status = hold_still(e, k, factorial);
+        /* contacts at rest must not creep by what rounding leaves in acc */
+        memset(a, 0, c * sizeof *a);
+        tribo_system_loads(sys, 1, (int)k + 1, 1.0 / factorial, a);
+        status = tribo_modes_hold(&e->modes, sys, a, acc);
         if (status) {
-            return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(e->hold));
+            return status;
         }
         for (size_t i = 0; k + 1 < stride && i < n; i++) {
             e->q[(k + 1) * n + i] = u[i] / (double)(k + 1);
@@ -220,7 +198,6 @@ static void destroy(tribo_driver *drv)
     struct event *e = drv->own;
     if (e) {
         tribo_modes_free(&e->modes);
-        tribo_destroy(e->hold);
         free(e->q);
         free(e->search.guard);
         free(e);
@@ -234,7 +211,6 @@ static int create(tribo_driver *drv)
     struct event *e = calloc(1, sizeof *e);
     drv->own = e;
     int status = e ? tribo_modes_create(&e->modes, sys) : TRIBO_ERR_MEMORY;
-    status = status ? status : tribo_clone(sys->contacts, &e->hold);
     if (status) {
         return tribo_system_fail(sys, status, "out of memory for method event");
     }
@@ -262,8 +238,6 @@ static int create(tribo_driver *drv)
     e->search.look = look;
     e->search.read = read_guard;
     e->search.motion = e;
-    tribo_set_law(e->hold, TRIBO_COULOMB);
-    tribo_set_coupling(e->hold, TRIBO_PARTITION);
     return TRIBO_OK;
 }
 
@@ -291,15 +265,6 @@ static void find_fastest(struct event *e)
     e->revision = sys->revision;
 }
 
-/* The contacts that hold get limits, the others none. */
-static void set_hold(struct event *e)
-{
-    for (size_t i = 0; i < e->sys->ncontact; i++) {
-        e->force[i] = e->modes.mode[i] == 0 && e->modes.holds[i] ? 1.0 : 0.0;
-    }
-    tribo_set_limit(e->hold, e->force);
-}
-
 /* State and energy at tau. */
 static void move_to(const struct event *e, double tau, double *y)
 {
@@ -325,7 +290,6 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     if (status) {
         return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
     }
-    set_hold(e);
     while (!status && *t < t1) {
         status = expand(e, *t, y);
         if (status) {
@@ -344,8 +308,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         drv->steps++;
         status = tribo_modes_proceed(&e->modes, drv, &e->search, event, *t, y, 1.0 / e->fastest);
         if (!status) {
-            set_hold(e);
-            status = tribo_driver_tell(drv, *t, y, event != NULL);
+                    status = tribo_driver_tell(drv, *t, y, event != NULL);
         }
     }
     return status;

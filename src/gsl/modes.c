@@ -13,6 +13,7 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     memset(m, 0, sizeof *m);
     m->patience = 64 + 16 * sys->ncontact;
     int status = tribo_clone(sys->contacts, &m->judge);
+    status = status ? status : tribo_clone(sys->contacts, &m->hold);
     double *work = malloc((11 * c + 2 * n + m->patience) * sizeof *work);
     m->mode = malloc(5 * c);
     m->limit = work;
@@ -45,12 +46,19 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->uncoupled = islands == sys->ncontact;
     tribo_set_law(m->judge, TRIBO_COULOMB);
     tribo_set_coupling(m->judge, TRIBO_CONSISTENT);
+    tribo_set_law(m->hold, TRIBO_COULOMB);
+    tribo_set_coupling(m->hold, TRIBO_PARTITION);
+    m->simple = 1;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
+    }
     return TRIBO_OK;
 }
 
 void tribo_modes_free(struct modes *m)
 {
     tribo_destroy(m->judge);
+    tribo_destroy(m->hold);
     free(m->limit);
     free(m->mode);
     memset(m, 0, sizeof *m);
@@ -193,6 +201,15 @@ static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const 
     return weak ? decide_by_rates(m, sys, y) : TRIBO_OK;
 }
 
+/* The contacts that hold get limits in the context that finds their forces, the others none. */
+static void set_hold(struct modes *m, const tribo_system *sys)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+    }
+    tribo_set_limit(m->hold, m->lo);
+}
+
 /* Of the contacts at rest, marks an independent set as holding; such whose forces can go both ways if there are enough of them. */
 static int find_holds(struct modes *m, const tribo_system *sys)
 {
@@ -203,6 +220,7 @@ static int find_holds(struct modes *m, const tribo_system *sys)
         rest += m->holds[i];
     }
     if (m->uncoupled || rest < 2) {
+        set_hold(m, sys);
         return TRIBO_OK;
     }
     size_t p = 0, *at = malloc(2 * rest * sizeof *at), *order = at + rest;
@@ -231,6 +249,27 @@ static int find_holds(struct modes *m, const tribo_system *sys)
     free(at);
     free(r);
     free(last);
+    set_hold(m, sys);
+    return TRIBO_OK;
+}
+
+/* x -= B_I R_II^-1 (J_I x - base) over the contacts that hold, twice, since the first time leaves rounding; then the last bits. */
+int tribo_modes_hold(struct modes *m, tribo_system *sys, const double *base, double *x)
+{
+    const size_t c = sys->ncontact;
+    for (int pass = 0; pass < 2 && !m->simple; pass++) {
+        memset(m->v, 0, c * sizeof *m->v);
+        for (size_t i = 0; i < c; i++) {
+            m->a[i] = -base[i];
+        }
+        tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->a);
+        const int status = tribo_balance(m->hold, m->v, m->a, m->rate, NULL);
+        if (status) {
+            return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+        }
+        tribo_matrix_multiply_add(&sys->response, 1.0, m->rate, x);
+    }
+    tribo_system_snap(sys, m->mode, base, x);
     return TRIBO_OK;
 }
 
@@ -240,15 +279,27 @@ int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, double *y)
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_set_time(sys, t);
     tribo_system_loads(sys, 1, 0, 1.0, m->base);
-    tribo_system_hold(sys, m->mode, m->base, u);
+    memset(m->weak, 0, sys->ncontact);
+    memset(m->blocked, 0, sys->ncontact);
+    int status = TRIBO_OK;
+    size_t found = 1;
     /* whoever has no velocity is decided about, also those that another contact now holds, or that have only just been let go */
+    while (!status && found) {
+        status = find_holds(m, sys);
+        status = status ? status : tribo_modes_hold(m, sys, m->base, u);
+        found = 0;
+        for (size_t i = 0; !status && i < sys->ncontact; i++) {
+            if ((m->mode[i] == 1 || m->mode[i] == -1) && fabs(tribo_modes_velocity(m, sys, i, y)) <= m->noise[i]) {
+                m->mode[i] = 0;
+                found++;
+            }
+        }
+    }
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = tribo_modes_velocity(m, sys, i, y);
-        m->mode[i] = (signed char)(m->mode[i] == 2 || fabs(m->v[i]) > m->noise[i] ? m->mode[i] : 0);
         m->rested[i] = m->mode[i] == 0;
     }
-    tribo_system_hold(sys, m->mode, m->base, u);
-    const int status = decide_by_forces(m, sys, t, y);
+    status = status ? status : decide_by_forces(m, sys, t, y);
     return status ? status : find_holds(m, sys);
 }
 

@@ -11,7 +11,8 @@
 #define TRIBO_AT_LIMIT 1e-9
 
 struct modes {
-    tribo_context *judge;       /* a clone of the system's context under Coulomb's law */
+    tribo_context *judge; /* a clone of the system's context under Coulomb's law */
+    tribo_context *hold;  /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */
     signed char *mode;          /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
     double *limit, *limit_rate; /* [ncontact] */
     unsigned char *holds; /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest by
@@ -28,6 +29,7 @@ struct modes {
     unsigned char *blocked;   /* [ncontact] 1: and its force would go beyond, if others did not hold the contact */
     double *recent;           /* [patience] times of the last events */
     int uncoupled;            /* R is diagonal */
+    int simple;               /* no contact has more than one degree of freedom */
     size_t patience, events;
 };
 
@@ -42,6 +44,9 @@ int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, i
 /* Decides about the contacts at rest: min 1/2 f'Rf + a'f, |f| <= limit, says which hold and which slide off; the same problem for
  * the rates of the forces does so for those that are just at their limit. Sets mode, holds, force and acceleration. */
 int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, double *y);
+
+/* Takes what is not zero in J x - base for the contacts at rest out of x [ndof]. */
+int tribo_modes_hold(struct modes *m, tribo_system *sys, const double *base, double *x);
 
 /* v_i in a state, at the time that tribo_modes_decide was last called for. */
 double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size_t i, const double *y);

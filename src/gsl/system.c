@@ -225,33 +225,15 @@ double tribo_system_weight(const tribo_system *sys, size_t i)
     return sys->loads_accelerate && sys->metric.rows ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
 }
 
-void tribo_system_hold(const tribo_system *sys, const signed char *mode, const double *base, double *x)
+void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
-    for (int sweep = 0; sweep < 4; sweep++) {
-        double left = 0.0;
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            const size_t first = j->first[i], last = j->first[i + 1];
-            if (mode[i] != 0 || first == last) {
-                continue;
-            }
-            double off = -base[i], square = 0.0;
-            for (size_t k = first; k < last; k++) {
-                off += j->val[k] * x[j->col[k]];
-                square += j->val[k] * j->val[k];
-            }
-            left = fmax(left, fabs(off));
-            if (off != 0.0 && last - first <= 2) {
-                const double other = last - first == 2 ? j->val[first] * x[j->col[first]] : 0.0;
-                x[j->col[last - 1]] = (base[i] - other) / j->val[last - 1];
-            } else if (off != 0.0) {
-                for (size_t k = first; k < last; k++) {
-                    x[j->col[k]] -= off * j->val[k] / square;
-                }
-            }
-        }
-        if (left == 0.0) {
-            return;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        if (mode[i] == 0 && count == 1) {
+            x[j->col[first]] = base[i] / j->val[first];
+        } else if (mode[i] == 0 && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
+            x[j->col[first + 1]] = (base[i] - j->val[first] * x[j->col[first]]) / j->val[first + 1];
         }
     }
 }
@@ -262,7 +244,7 @@ void tribo_system_project(tribo_system *sys, const signed char *mode, double t, 
     tribo_system_set_time(sys, t);
     memset(base, 0, sys->ncontact * sizeof *base);
     tribo_system_loads(sys, 1, 0, 1.0, base);
-    tribo_system_hold(sys, mode, base, u);
+    tribo_system_snap(sys, mode, base, u);
 }
 
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
