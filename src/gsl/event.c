@@ -177,6 +177,7 @@ static void set_guards(struct event *e, double h)
         }
         bound(g.watch, e->order, h, &g.size, &g.bend);
         if (m->mode[i] != 0) {
+            g.from_zero = m->rested[i];
             e->search.guard[e->search.guards++] = g;
             continue;
         }
@@ -186,6 +187,7 @@ static void set_guards(struct event *e, double h)
         g.size += m->limit[i] + fabs(m->limit_rate[i]) * h;
         for (int side = -1; near && side <= 1; side += 2) {
             g.side = side;
+            g.from_zero = m->weak[i] && side * m->force[i] < 0.0;
             e->search.guard[e->search.guards++] = g;
         }
     }

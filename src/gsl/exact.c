@@ -424,22 +424,19 @@ static void add_guards(struct exact *x, const struct watch *w, int slides, doubl
         ramp += w->on_rate[k] * (slides ? x->acc[k] : x->vel[k]);
     }
     const double range = size - fabs(now) + fabs(start) + fabs(ramp) * longest, limit = x->modes.limit[i];
+    struct guard g = {.contact = i, .watch = w, .side = x->modes.mode[i], .start = start, .ramp = ramp, .size = size, .bend = bend};
     if (slides) {
-        const double side = x->modes.mode[i];
-        x->search.guard[x->search.guards++] =
-            (struct guard){.contact = i, .watch = w, .side = side, .start = start, .ramp = ramp, .size = size, .bend = bend};
+        g.from_zero = x->modes.rested[i];
+        x->search.guard[x->search.guards++] = g;
         return;
     }
     /* far from the limit for the whole phase: nothing to guard */
+    g.offset = limit;
+    g.size += limit;
     for (int side = -1; side <= 1 && range >= limit; side += 2) {
-        x->search.guard[x->search.guards++] = (struct guard){.contact = i,
-                                                             .watch = w,
-                                                             .offset = limit,
-                                                             .side = side,
-                                                             .start = start,
-                                                             .ramp = ramp,
-                                                             .size = size + limit,
-                                                             .bend = bend};
+        g.side = side;
+        g.from_zero = x->modes.weak[i] && side * x->modes.force[i] < 0.0;
+        x->search.guard[x->search.guards++] = g;
     }
 }
 

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* A balancing force this close to the limit counts as just at it: far above rounding, and far below what a wrong guess could change. */
+#define AT_LIMIT 1e-9
+
 /* Velocities are known to this part of what they are the sum of. */
 #define NOISE 1e-14
 
@@ -165,7 +168,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->jerk, m->a);
     for (size_t i = 0; i < c; i++) {
         const double side = m->force[i] > 0.0 ? -1.0 : 1.0;
-        if (m->weak[i] && side * m->a[i] > TRIBO_AT_LIMIT * m->diagonal[i] * scale) {
+        if (m->weak[i] && side * m->a[i] > AT_LIMIT * m->diagonal[i] * scale) {
             m->mode[i] = (signed char)side;
             m->force[i] = -side * m->limit[i];
         }
@@ -190,9 +193,9 @@ static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const 
         const double feq = m->rate[i], limit = m->limit[i];
         m->weak[i] = 0;
         m->blocked[i] = 0;
-        if (m->mode[i] == 0 && fabs(feq) > (1.0 + TRIBO_AT_LIMIT) * limit) {
+        if (m->mode[i] == 0 && fabs(feq) > (1.0 + AT_LIMIT) * limit) {
             m->mode[i] = feq > 0.0 ? -1 : 1;
-        } else if (m->mode[i] == 0 && fabs(feq) >= (1.0 - TRIBO_AT_LIMIT) * limit) {
+        } else if (m->mode[i] == 0 && fabs(feq) >= (1.0 - AT_LIMIT) * limit) {
             m->weak[i] = 1;
             weak = 1;
         }

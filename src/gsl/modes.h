@@ -6,10 +6,6 @@
 #include "driver.h"
 #include "search.h"
 
-/* A balancing force this close to the limit counts as just at it: far above rounding, and far below what a wrong guess could
- * change. */
-#define TRIBO_AT_LIMIT 1e-9
-
 struct modes {
     tribo_context *judge; /* a clone of the system's context under Coulomb's law */
     tribo_context *hold;  /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */

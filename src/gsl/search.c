@@ -3,22 +3,20 @@
 #include <float.h>
 #include <math.h>
 
-#include "modes.h"
-
 /* Values of a guard that are rounding. */
 static double noise(const struct guard *g)
 {
     return 4.0 * DBL_EPSILON * g->size;
 }
 
-/* Samples of all guards at the start. What is zero there has been decided to leave it. */
+/* Samples of all guards at the start. */
 static void sample_start(struct search *s)
 {
     s->look(s->motion, 0.0);
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         g->left = s->read(s->motion, g);
-        if (g->left.g <= fmax(16.0 * noise(g), 4.0 * TRIBO_AT_LIMIT * g->offset)) {
+        if (g->from_zero || g->left.g <= 0.0) {
             g->left.g = 0.0;
             g->left.d = fmax(g->left.d, 0.0);
             g->left.e = g->left.d > 0.0 ? g->left.e : fmax(g->left.e, 0.0);

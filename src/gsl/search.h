@@ -15,6 +15,7 @@ struct guard {
     double offset, side;
     double start, ramp; /* the motion's own */
     double size, bend;  /* bounds of its parts together, and of its sixth derivative */
+    int from_zero;      /* it starts at zero, and has been decided to leave it */
     struct sample left, right, middle;
 };
 
