@@ -18,6 +18,7 @@ struct event {
     struct modes modes;
     struct search search;
     size_t order;
+    double tolerance; /* relative */
     double fastest; /* bound on the frequencies of the motion */
     size_t revision;
     double tau;    /* where look() was */
@@ -114,15 +115,20 @@ static double largest(const double *x, size_t n)
     return most;
 }
 
-/* The step on which the last two terms stay below the tolerance. */
+/* The step on which the last two terms of everything stay below the tolerance. */
 static double step_length(const struct event *e, const tribo_driver *drv)
 {
-    const size_t n = e->sys->ndof;
+    const size_t n = e->sys->ndof, c = e->sys->ncontact, stride = e->order + 1;
     const double q = drv->abstol + drv->reltol * largest(e->q, n), u = drv->abstol + drv->reltol * largest(e->u, n);
     const double d = drv->abstol + drv->reltol * fabs(e->d[0]);
-    double h = 0.5 * (double)(e->order + 1) / e->fastest;
+    double h = 0.5 * (double)stride / e->fastest;
     for (size_t k = e->order - 1; k <= e->order; k++) {
-        const double term = fmax(largest(e->q + k * n, n) / q, fmax(largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
+        double term = fmax(largest(e->q + k * n, n) / q, fmax(largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
+        for (size_t i = 0; i < c; i++) {
+            /* contacts at rest: their forces, to the same part of the limit; sliding ones: their velocities */
+            const int rests = e->modes.mode[i] == 0;
+            term = fmax(term, fabs((rests ? e->f : e->v)[i * stride + k]) / (rests ? e->tolerance * e->modes.limit[i] : u));
+        }
         h = term > 0.0 ? fmin(h, pow(term, -1.0 / (double)k)) : h;
     }
     return h;
@@ -217,8 +223,8 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(sys, status, "out of memory for method event");
     }
     /* the more digits are wanted, the more terms pay */
-    const double digits = -log10(fmin(fmax(fmin(drv->abstol, fmax(drv->reltol, drv->abstol)), 1e-16), 1e-2));
-    e->order = (size_t)(10.0 + 1.5 * digits);
+    e->tolerance = fmin(fmax(fmin(drv->abstol, fmax(drv->reltol, drv->abstol)), 1e-16), 1e-2);
+    e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t stride = e->order + 1;
     double *work = malloc((2 * stride * n + 2 * stride * c + stride + n + 4 * c + 1) * sizeof *work);
     e->search.guard = malloc((2 * c + 1) * sizeof *e->search.guard);

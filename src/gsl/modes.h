@@ -19,10 +19,10 @@ struct modes {
     double *base, *noise;     /* [ncontact] b(t); what of v may be rounding */
     double *diagonal;         /* [ncontact] R_ii */
     double *rate, *lo, *hi;   /* [ncontact] workspace */
-    double *jerk;             /* [ndof] workspace */
-    signed char *weak;        /* [ncontact] 1: at rest just at its limit */
+    double *slope;            /* [ncontact] rate of a, if any contact is weak */
+    double *jerk;             /* [ORDERS][ndof] workspace: derivatives of the acceleration */
+    signed char *weak;        /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     unsigned char *rested;    /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
-    unsigned char *blocked;   /* [ncontact] 1: and its force would go beyond, if others did not hold the contact */
     double *recent;           /* [patience] times of the last events */
     int uncoupled;            /* R is diagonal */
     int simple;               /* no contact has more than one degree of freedom */

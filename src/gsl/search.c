@@ -3,26 +3,34 @@
 #include <float.h>
 #include <math.h>
 
+/* A slope this far below zero, in terms of what the guard's parts do together, is no rounding. */
+#define FALLS 1e-7
+
 /* Values of a guard that are rounding. */
 static double noise(const struct guard *g)
 {
     return 4.0 * DBL_EPSILON * g->size;
 }
 
-/* Samples of all guards at the start. */
-static void sample_start(struct search *s)
+/* Samples of all guards at the start. Of those that start at zero, rounding may say that they fall; one that really does is returned. */
+static const struct guard *sample_start(struct search *s)
 {
     s->look(s->motion, 0.0);
+    s->looks++;
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         g->left = s->read(s->motion, g);
         if (g->from_zero || g->left.g <= 0.0) {
+            const double rate = g->size > 0.0 ? cbrt(sqrt(g->bend / g->size)) : 0.0;
+            if (g->left.d < -FALLS * g->size * rate) {
+                return g;
+            }
             g->left.g = 0.0;
             g->left.d = fmax(g->left.d, 0.0);
             g->left.e = g->left.d > 0.0 ? g->left.e : fmax(g->left.e, 0.0);
         }
     }
-    s->looks++;
+    return NULL;
 }
 
 static void sample(struct search *s, double tau)
@@ -143,13 +151,17 @@ const struct guard *tribo_search(struct search *s, double longest, double *when)
         return NULL;
     }
     double a = 0.0, h = first_length(s, longest), ignored;
-    sample_start(s);
+    const struct guard *falls = sample_start(s);
+    if (falls) {
+        *when = 0.0;
+        return falls;
+    }
     while (a < longest) {
         double b = fmin(a + h, longest);
         sample(s, b);
         keep_right(s);
         if (first_to_fall(s, b - a, &ignored)) {
-            const struct guard *falls = find_zero(s, &a, &b, when);
+            falls = find_zero(s, &a, &b, when);
             if (falls) {
                 return falls;
             }
