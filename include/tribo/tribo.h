@@ -66,7 +66,8 @@ enum {
     /* drivers */
     TRIBO_ERR_STOPPED = 60, /* the observer ended the run */
     TRIBO_ERR_STEP = 61,    /* the step size fell below what time resolves */
-    TRIBO_ERR_CALLBACK = 62 /* a function of the caller's failed */
+    TRIBO_ERR_CALLBACK = 62, /* a function of the caller's failed */
+    TRIBO_ERR_CHATTER = 63   /* too many events in too short a time */
 };
 
 /* 10000 major + 100 minor + patch of the library that is running; TRIBO_VERSION is that of this header. */
@@ -229,6 +230,12 @@ TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const d
  * f      [n] out  friction force, |f| <= limit
  * Moreau (1988); Jean and Moreau (1992). */
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
+
+/* The box-constrained problem behind it all, min 1/2 f'Rf + a'f with lower <= f <= upper, for laws of the caller's own. Neither
+ * limits nor law nor epsilon matter.
+ * a, lower, upper  [n] in   finite, lower <= upper
+ * f                [n] out */
+TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);
 
 /* Tells that the integrator accepted a step that ended at v, feq (feq is read only where |v| <= epsilon). Advances the
  * memory of QUINN_REVERSAL: a contact is marked when |v| > epsilon, and unmarked when |v| <= epsilon and |feq| <= limit.

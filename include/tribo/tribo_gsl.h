@@ -70,6 +70,18 @@ TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const doubl
  * cosine, sine  [ncontact] in, each or NULL */
 TRIBO_API int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
+/* Adds a load that follows a table, p(t) += pattern * value(t), with value linear between its knots and constant outside.
+ * time     [knots] in   ascending
+ * value    [knots] in
+ * pattern  [ndof of the matrices given] in */
+TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
+                                          const double *pattern);
+
+/* Lets the limits follow a table, linear between its knots and constant outside, instead of what the context says.
+ * time   [knots] in   ascending; knots = 0 ends it
+ * limit  [knots][ncontact] in   >= 0 */
+TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
+
 /* Reduced systems: damping ratio of every mode, C = diag(2 zeta omega_k). zeta >= 0. Others: TRIBO_ERR_UNSUPPORTED. */
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 
@@ -103,16 +115,27 @@ TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 typedef struct tribo_driver tribo_driver;
 
 /* An integrator for a system, which it borrows and which must live longer.
- * method   in   "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step;
+ * method   in   Coulomb's law itself, epsilon -> 0:
+ *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads
+ *               "event": high-order steps between events, with the tolerances; any system
+ *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit, dt below
+ *               2/omega_max) and by the implicit midpoint rule (Moreau and Jean); second order
+ *               "auto": exact if the system is linear, harmonic and small, else event; see tribo_driver_method
+ *               The law, coupling and epsilon of the context:
+ *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step;
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL
  *               stepper of that name, adaptive from dt on: error of a step below abstol + reltol |y|
- * dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks for it.
- * abstol   in   >= 0; > 0 for adaptive methods
+ * dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks for it. exact: how often
+ *               an observer sees the motion between events
+ * abstol   in   >= 0; > 0 for adaptive methods and event
  * reltol   in   >= 0
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE,
- * TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY; the message is on the system's context. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY; the message
+ * is on the system's context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
+
+/* Name of the method; for "auto", of the one it chose. NULL for NULL. */
+TRIBO_API const char *tribo_driver_method(const tribo_driver *drv);
 
 /* Names of the methods, method 0 to tribo_method_count() - 1; NULL outside. */
 TRIBO_API int tribo_method_count(void);
@@ -122,7 +145,7 @@ TRIBO_API const char *tribo_method_name(int method);
  * t  in/out   time
  * y  [dimension] in/out   state; may be changed between calls
  * On error t and y hold the last good step. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (t1 < t),
- * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, and what tribo_balance returns. */
+ * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, TRIBO_ERR_CHATTER, TRIBO_ERR_UNSUPPORTED (exact), and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
 /* Counts since creation. */

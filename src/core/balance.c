@@ -41,13 +41,13 @@ static void split(const tribo_context *ctx, const double *v, struct island *is)
     }
 }
 
-/* The solver's matrix, and q = a + what the contacts that are not near stick do. */
-static void gather(tribo_context *ctx, const struct island *is, const double *a)
+/* The solver's matrix, and q = scale a + what the contacts that are not near stick do. */
+static void gather(tribo_context *ctx, const struct island *is, const double *a, double scale)
 {
     struct solver *s = &ctx->solver;
     for (size_t p = 0; p < is->count; p++) {
         const double *row = is->block + ctx->near[p] * is->size;
-        double sum = a[is->member[ctx->near[p]]];
+        double sum = scale * a[is->member[ctx->near[p]]];
         for (size_t q = is->count; q < is->size; q++) {
             sum += row[ctx->near[q]] * ctx->f[is->member[ctx->near[q]]];
         }
@@ -73,7 +73,7 @@ static int solve_box(tribo_context *ctx, const struct island *is)
     for (size_t p = 0; p < is->count; p++) {
         const size_t i = is->member[ctx->near[p]];
         const double fixed_point = clamp(s->x[p] - s->gradient[p] / ctx->op.diagonal[i], s->lo[p], s->hi[p]);
-        ctx->residual = fmax(ctx->residual, fabs(s->x[p] - fixed_point) / ctx->limit[i]);
+        ctx->residual = fmax(ctx->residual, fabs(s->x[p] - fixed_point) / fmax(ctx->limit[i], 0.5 * (s->hi[p] - s->lo[p])));
     }
     ctx->rank += s->rank;
     return TRIBO_OK;
@@ -83,7 +83,7 @@ static int solve_box(tribo_context *ctx, const struct island *is)
 static int solve_consistent(tribo_context *ctx, const struct island *is, const double *v, const double *a)
 {
     struct solver *s = &ctx->solver;
-    gather(ctx, is, a);
+    gather(ctx, is, a, 1.0);
     for (size_t p = 0; p < is->count; p++) {
         const size_t i = is->member[ctx->near[p]];
         const double limit = ctx->limit[i], kappa = ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
@@ -103,7 +103,7 @@ static int solve_consistent(tribo_context *ctx, const struct island *is, const d
 static int solve_partition(tribo_context *ctx, const struct island *is, const double *a)
 {
     struct solver *s = &ctx->solver;
-    gather(ctx, is, a);
+    gather(ctx, is, a, 1.0);
     ctx->solves++;
     tribo_solver_prepare(s, is->count);
     const int consistent = tribo_solver_linear(s, is->count);
@@ -215,32 +215,36 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------- step force */
+/* ---------------------------------------------------------------------------------------------- step force and box */
 
-static int step_islands(tribo_context *ctx, double dt, const double *vfree)
+/* The box over all contacts, bounds as given; scale multiplies a. Contacts whose bounds leave no choice take no part in the
+ * solver. */
+static int box_islands(tribo_context *ctx, const double *a, double scale, const double *lower, const double *upper)
 {
     struct solver *s = &ctx->solver;
     for (size_t k = 0; k < ctx->op.islands; k++) {
         struct island is = island_of(ctx, k);
+        size_t behind = is.size;
+        for (size_t p = is.size; p-- > 0;) {
+            const size_t i = is.member[p];
+            if (lower[i] == upper[i]) {
+                ctx->near[--behind] = p;
+                ctx->f[i] = lower[i];
+            }
+        }
         for (size_t p = 0; p < is.size; p++) {
-            if (ctx->limit[is.member[p]] > 0.0) {
+            if (lower[is.member[p]] < upper[is.member[p]]) {
                 ctx->near[is.count++] = p;
-            } else {
-                ctx->f[is.member[p]] = 0.0;
             }
         }
         if (is.count == 0) {
             ctx->skipped++;
             continue;
         }
+        gather(ctx, &is, a, scale);
         for (size_t p = 0; p < is.count; p++) {
-            const size_t i = is.member[ctx->near[p]];
-            for (size_t q = 0; q < is.count; q++) {
-                s->g[p * is.count + q] = is.block[ctx->near[p] * is.size + ctx->near[q]];
-            }
-            s->q[p] = vfree[i] / dt;
-            s->hi[p] = ctx->limit[i];
-            s->lo[p] = -ctx->limit[i];
+            s->lo[p] = lower[is.member[ctx->near[p]]];
+            s->hi[p] = upper[is.member[ctx->near[p]]];
         }
         const int status = solve_box(ctx, &is);
         if (status) {
@@ -251,6 +255,22 @@ static int step_islands(tribo_context *ctx, double dt, const double *vfree)
         }
     }
     return TRIBO_OK;
+}
+
+/* The box for any operator, after the checks. */
+static int box(tribo_context *ctx, const double *a, double scale, const double *lower, const double *upper, double *f)
+{
+    ctx->rank = 0;
+    ctx->residual = 0.0;
+    ctx->balanced = 0;
+    for (size_t i = 0; ctx->op.islands == 0 && i < ctx->n; i++) {
+        ctx->f[i] = clamp(-(scale * a[i]) / ctx->op.diagonal[i], lower[i], upper[i]);
+    }
+    const int status = ctx->op.islands ? box_islands(ctx, a, scale, lower, upper) : TRIBO_OK;
+    if (!status) {
+        tribo_copy(f, ctx->f, ctx->n);
+    }
+    return status;
 }
 
 int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
@@ -271,23 +291,37 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    ctx->rank = 0;
-    ctx->residual = 0.0;
-    ctx->balanced = 0;
-    if (ctx->op.islands == 0) {
-        for (size_t i = 0; i < ctx->n; i++) {
-            ctx->f[i] = clamp(-(vfree[i] / dt) / ctx->op.diagonal[i], -ctx->limit[i], ctx->limit[i]);
-        }
-    } else {
-        status = step_islands(ctx, dt, vfree);
-        if (status) {
-            return status;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->column[i] = -ctx->limit[i];
+    }
+    status = box(ctx, vfree, 1.0 / dt, ctx->column, ctx->limit, f);
+    if (!status) {
+        ctx->balanced = 1;
+        ctx->holds = 1.0;
+    }
+    return status;
+}
+
+int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = tribo_check_finite(ctx, "a", a, ctx->n);
+    status = status ? status : tribo_check_finite(ctx, "lower", lower, ctx->n);
+    status = status ? status : tribo_check_finite(ctx, "upper", upper, ctx->n);
+    if (status) {
+        return status;
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        if (lower[i] > upper[i]) {
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "lower[%zu] = %g is above upper[%zu] = %g", i, lower[i], i, upper[i]);
         }
     }
-    ctx->balanced = 1;
-    ctx->holds = 1.0;
-    tribo_copy(f, ctx->f, ctx->n);
-    return TRIBO_OK;
+    if (!f && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
+    }
+    return box(ctx, a, 1.0, lower, upper, f);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- tangents */

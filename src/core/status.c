@@ -57,6 +57,8 @@ const char *tribo_strerror(int status)
         return "the step size became too small";
     case TRIBO_ERR_CALLBACK:
         return "a function of the caller's failed";
+    case TRIBO_ERR_CHATTER:
+        return "too many events in too short a time";
     default:
         return "not a tribo status";
     }

@@ -8,13 +8,11 @@
 #include "driver.h"
 
 static const struct method *const methods[] = {
-    &tribo_method_rk4_fixed, &tribo_method_rk2,   &tribo_method_rk4,     &tribo_method_rkf45,
-    &tribo_method_rkck,      &tribo_method_rk8pd, &tribo_method_rk1imp,  &tribo_method_rk2imp,
-    &tribo_method_rk4imp,    &tribo_method_bsimp, &tribo_method_msadams, &tribo_method_msbdf,
+    &tribo_method_exact,     &tribo_method_event, &tribo_method_central_fixed, &tribo_method_moreau_fixed,
+    &tribo_method_rk4_fixed, &tribo_method_rk2,   &tribo_method_rk4,           &tribo_method_rkf45,
+    &tribo_method_rkck,      &tribo_method_rk8pd, &tribo_method_rk1imp,        &tribo_method_rk2imp,
+    &tribo_method_rk4imp,    &tribo_method_bsimp, &tribo_method_msadams,       &tribo_method_msbdf,
 };
-
-/* Promised by name, for a later version. */
-static const char *const planned[] = {"event", "exact", "central/fixed", "moreau/fixed", "auto"};
 
 int tribo_method_count(void)
 {
@@ -26,20 +24,21 @@ const char *tribo_method_name(int method)
     return method >= 0 && method < tribo_method_count() ? methods[method]->name : NULL;
 }
 
-static int find(const tribo_system *sys, const char *name, const struct method **method)
+/* Exact pays while modes are found in no time and the right-hand side is harmonic. */
+static const struct method *automatic(const tribo_system *sys)
+{
+    const int small = sys->ndof <= 200 && !sys->tables && !sys->limits.knots;
+    return small ? &tribo_method_exact : &tribo_method_event;
+}
+
+static const struct method *find(const tribo_system *sys, const char *name)
 {
     for (int i = 0; i < tribo_method_count(); i++) {
         if (strcmp(methods[i]->name, name) == 0) {
-            *method = methods[i];
-            return TRIBO_OK;
+            return methods[i];
         }
     }
-    for (size_t i = 0; i < sizeof planned / sizeof *planned; i++) {
-        if (strcmp(planned[i], name) == 0) {
-            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED, "method \"%s\" is not in this version", name);
-        }
-    }
-    return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%s\" is unknown", name);
+    return strcmp(name, "auto") == 0 ? automatic(sys) : NULL;
 }
 
 static int check_parameters(const tribo_system *sys, const struct method *method, double dt, double abstol, double reltol)
@@ -71,11 +70,11 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     if (!drv || !method) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
     }
-    const struct method *m = NULL;
-    int status = find(sys, method, &m);
-    if (!status) {
-        status = check_parameters(sys, m, dt, abstol, reltol);
+    const struct method *m = find(sys, method);
+    if (!m) {
+        return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%s\" is unknown", method);
     }
+    int status = check_parameters(sys, m, dt, abstol, reltol);
     if (status) {
         return status;
     }
@@ -112,6 +111,11 @@ void tribo_driver_destroy(tribo_driver *drv)
     drv->method->destroy(drv);
     free(drv->state);
     free(drv);
+}
+
+const char *tribo_driver_method(const tribo_driver *drv)
+{
+    return drv ? drv->method->name : NULL;
 }
 
 const char *tribo_driver_message(const tribo_driver *drv)
@@ -168,6 +172,32 @@ int tribo_driver_tell(tribo_driver *drv, double t, const double *y, int event)
 {
     const int answer = drv->seen ? drv->seen(t, y, event, drv->data) : 0;
     return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
+}
+
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
+                             int (*step)(tribo_driver *, double, double, double *))
+{
+    const size_t bytes = tribo_system_dimension(drv->sys) * sizeof *y;
+    const double begin = *t, whole = (t1 - begin) / drv->dt;
+    /* a rest that is only rounding is spread over the steps */
+    const double steps = fabs(whole - round(whole)) < 1e-6 && whole > 0.5 ? round(whole) : ceil(whole);
+    const double h = whole > steps ? (t1 - begin) / steps : drv->dt;
+    for (double k = 1.0; k <= steps; k++) {
+        const double next = k < steps ? begin + k * h : t1;
+        memcpy(drv->state, y, bytes);
+        int status = step(drv, *t, next, y);
+        if (status) {
+            memcpy(y, drv->state, bytes);
+            return status;
+        }
+        *t = next;
+        drv->steps++;
+        status = tribo_driver_tell(drv, *t, y, 0);
+        if (status) {
+            return status;
+        }
+    }
+    return TRIBO_OK;
 }
 
 int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)

@@ -35,11 +35,16 @@ int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
 #endif
     ;
 
+/* Steps of drv->dt to t1, the last one shorter where it must be. step takes y from t to next; if it fails, y is what it was
+ * before. */
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
+                             int (*step)(tribo_driver *, double, double, double *));
+
 /* Tells the observer; TRIBO_OK or TRIBO_ERR_STOPPED. */
 int tribo_driver_tell(tribo_driver *drv, double t, const double *y, int event);
 
-extern const struct method tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck,
-    tribo_method_rk8pd, tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_bsimp, tribo_method_msadams,
-    tribo_method_msbdf;
+extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
+    tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck, tribo_method_rk8pd,
+    tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_bsimp, tribo_method_msadams, tribo_method_msbdf;
 
 #endif

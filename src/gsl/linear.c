@@ -7,9 +7,6 @@
 #include <string.h>
 
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_eigen.h>
-#include <gsl/gsl_linalg.h>
-#include <gsl/gsl_permute_vector.h>
 
 #include "system.h"
 
@@ -19,13 +16,6 @@ struct model {
     struct matrix mass, damping, stiffness, direction;
     char *message;
     size_t size;
-};
-
-/* P M P' = L D L', with L D in the lower triangle of factor. */
-struct cholesky {
-    size_t n;
-    double *factor;
-    size_t *order;
 };
 
 static int fail(const struct model *m, int status, const char *format, ...)
@@ -42,11 +32,6 @@ static int fail(const struct model *m, int status, const char *format, ...)
 static int no_memory(const struct model *m)
 {
     return fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degrees of freedom and %zu contacts", m->ndof, m->ncontact);
-}
-
-static gsl_matrix_view view(double *x, size_t rows, size_t cols)
-{
-    return gsl_matrix_view_array(x, rows, cols);
 }
 
 static int check(const struct model *m)
@@ -72,71 +57,17 @@ static int check(const struct model *m)
     return TRIBO_OK;
 }
 
-/* ------------------------------------------------------------------------------------------- the mass matrix, factorized */
-
-static void cholesky_free(struct cholesky *c)
+static int factorize_mass(const struct model *m, struct cholesky *c)
 {
-    free(c->factor);
-    free(c->order);
-}
-
-static int cholesky_create(const struct model *m, struct cholesky *c)
-{
-    c->n = m->ndof;
-    c->factor = tribo_matrix_to_dense(&m->mass);
-    c->order = malloc(c->n * sizeof *c->order);
-    if (!c->factor || !c->order) {
-        cholesky_free(c);
+    size_t where;
+    double pivot;
+    switch (tribo_cholesky_create(c, &m->mass, &where, &pivot)) {
+    case TRIBO_OK:
+        return TRIBO_OK;
+    case TRIBO_ERR_INDEFINITE:
+        return fail(m, TRIBO_ERR_INDEFINITE, "mass is not positive definite: pivot %g at degree of freedom %zu", pivot, where);
+    default:
         return no_memory(m);
-    }
-    gsl_matrix_view a = view(c->factor, c->n, c->n);
-    gsl_permutation p = {c->n, c->order};
-    gsl_linalg_pcholesky_decomp(&a.matrix, &p);
-    for (size_t i = 0; i < c->n; i++) {
-        const double pivot = c->factor[i * c->n + i];
-        if (!(pivot > 0.0)) {
-            const size_t where = c->order[i];
-            cholesky_free(c);
-            return fail(m, TRIBO_ERR_INDEFINITE, "mass is not positive definite: pivot %g at degree of freedom %zu", pivot,
-                        where);
-        }
-    }
-    return TRIBO_OK;
-}
-
-/* x [n][cols] = D^-1/2 L^-1 P x, so that x'x becomes x' M^-1 x. */
-static void half_solve(const struct cholesky *c, double *x, size_t cols)
-{
-    gsl_permutation p = {c->n, c->order};
-    gsl_matrix_view l = view(c->factor, c->n, c->n), b = view(x, c->n, cols);
-    for (size_t j = 0; j < cols; j++) {
-        gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
-        gsl_permute_vector(&p, &column.vector);
-    }
-    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
-    for (size_t i = 0; i < c->n; i++) {
-        const double root = sqrt(c->factor[i * c->n + i]);
-        for (size_t j = 0; j < cols; j++) {
-            x[i * cols + j] /= root;
-        }
-    }
-}
-
-/* x [n][cols] = P' L^-T D^-1/2 x, the transposed of half_solve. */
-static void half_solve_back(const struct cholesky *c, double *x, size_t cols)
-{
-    gsl_permutation p = {c->n, c->order};
-    gsl_matrix_view l = view(c->factor, c->n, c->n), b = view(x, c->n, cols);
-    for (size_t i = 0; i < c->n; i++) {
-        const double root = sqrt(c->factor[i * c->n + i]);
-        for (size_t j = 0; j < cols; j++) {
-            x[i * cols + j] /= root;
-        }
-    }
-    gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
-    for (size_t j = 0; j < cols; j++) {
-        gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
-        gsl_permute_vector_inverse(&p, &column.vector);
     }
 }
 
@@ -163,7 +94,7 @@ static int set_operator(const struct model *m, tribo_system *sys, double *z, siz
         return no_memory(m);
     }
     if (c) {
-        gsl_matrix_view rv = view(r, c, c), zv = view(z, n, c);
+        gsl_matrix_view rv = gsl_matrix_view_array(r, c, c), zv = gsl_matrix_view_array(z, n, c);
         gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &zv.matrix, &zv.matrix, 0.0, &rv.matrix);
     }
     const int status = tribo_set_operator_dense(sys->contacts, r);
@@ -171,41 +102,49 @@ static int set_operator(const struct model *m, tribo_system *sys, double *z, siz
     return status ? fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
 }
 
+/* The system owns the mass matrix and its factor from now on. */
+static void give_mass(struct model *m, tribo_system *sys, struct cholesky *c)
+{
+    sys->metric = m->mass;
+    sys->factor = *c;
+    m->mass = (struct matrix){0};
+    *c = (struct cholesky){0};
+}
+
 static int build_diagonal(struct model *m, tribo_system **sys)
 {
     const size_t n = m->ndof;
+    struct cholesky c;
+    int status = factorize_mass(m, &c);
+    if (status) {
+        return status;
+    }
     double *inverse = malloc(n * sizeof *inverse), *entries = transposed_direction(m);
     struct matrix b = {0};
-    int status = inverse && entries && tribo_matrix_from_dense(&b, n, m->ncontact, entries) ? TRIBO_OK : no_memory(m);
+    status = inverse && entries && tribo_matrix_from_dense(&b, n, m->ncontact, entries) ? TRIBO_OK : no_memory(m);
     free(entries);
     for (size_t i = 0; !status && i < n; i++) {
-        const double mass = tribo_matrix_get(&m->mass, i, i);
-        inverse[i] = 1.0 / mass;
-        if (!(mass > 0.0) || !isfinite(inverse[i])) {
-            status = fail(m, TRIBO_ERR_INDEFINITE, "mass[%zu][%zu] = %g is not positive", i, i, mass);
-        }
+        inverse[i] = 1.0 / tribo_matrix_get(&m->mass, i, i);
     }
     if (!status && !(tribo_matrix_scale_rows(&b, inverse) && tribo_matrix_scale_rows(&m->stiffness, inverse) &&
                      (!m->damping.rows || tribo_matrix_scale_rows(&m->damping, inverse)))) {
         status = no_memory(m);
     }
-    tribo_system *s = NULL;
     if (status) {
         tribo_matrix_free(&b);
     } else {
-        status = tribo_system_build(&s, n, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
+        status = tribo_system_build(sys, n, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
         m->stiffness = m->damping = m->direction = (struct matrix){0};
+        status = status ? no_memory(m) : TRIBO_OK;
     }
-    if (!s) {
-        free(inverse);
-        return status == TRIBO_ERR_MEMORY ? no_memory(m) : status;
+    if (!status) {
+        const struct matrix *j = &(*sys)->direction;
+        give_mass(m, *sys, &c);
+        status = tribo_set_operator_mass((*sys)->contacts, n, inverse, j->first, j->col, j->val);
+        status = status ? fail(m, status, "%s", tribo_message((*sys)->contacts)) : TRIBO_OK;
     }
-    s->inverse_mass = inverse;
-    status = tribo_set_operator_mass(s->contacts, n, inverse, s->direction.first, s->direction.col, s->direction.val);
-    if (status) {
-        fail(m, status, "%s", tribo_message(s->contacts));
-    }
-    *sys = s;
+    free(inverse);
+    tribo_cholesky_free(&c);
     return status;
 }
 
@@ -214,8 +153,8 @@ static int solve_matrix(const struct cholesky *c, struct matrix *a)
 {
     double *x = tribo_matrix_to_dense(a);
     if (x) {
-        half_solve(c, x, a->cols);
-        half_solve_back(c, x, a->cols);
+        tribo_half_solve(c, x, a->cols);
+        tribo_half_solve_back(c, x, a->cols);
     }
     struct matrix solved;
     const int done = x && tribo_matrix_from_dense(&solved, a->rows, a->cols, x);
@@ -230,7 +169,7 @@ static int solve_matrix(const struct cholesky *c, struct matrix *a)
 static int build_solved(struct model *m, tribo_system **sys)
 {
     struct cholesky c;
-    int status = cholesky_create(m, &c);
+    int status = factorize_mass(m, &c);
     if (status) {
         return status;
     }
@@ -238,29 +177,39 @@ static int build_solved(struct model *m, tribo_system **sys)
     struct matrix b = {0};
     int done = z && x && solve_matrix(&c, &m->stiffness) && (!m->damping.rows || solve_matrix(&c, &m->damping));
     if (done && m->ncontact) {
-        half_solve(&c, z, m->ncontact);
+        tribo_half_solve(&c, z, m->ncontact);
         memcpy(x, z, m->ndof * m->ncontact * sizeof *x);
-        half_solve_back(&c, x, m->ncontact);
+        tribo_half_solve_back(&c, x, m->ncontact);
     }
     done = done && tribo_matrix_from_dense(&b, m->ndof, m->ncontact, x);
     free(x);
     if (!done) {
         free(z);
-        cholesky_free(&c);
+        tribo_cholesky_free(&c);
         return no_memory(m);
     }
     status = tribo_system_build(sys, m->ndof, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
     m->stiffness = m->damping = m->direction = (struct matrix){0};
     if (status) {
         free(z);
-        cholesky_free(&c);
+        tribo_cholesky_free(&c);
         return no_memory(m);
     }
-    (*sys)->mass = c.factor;
-    (*sys)->order = c.order;
+    give_mass(m, *sys, &c);
     status = set_operator(m, *sys, z, m->ndof);
     free(z);
     return status;
+}
+
+static void transpose(double *a, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < i; j++) {
+            const double x = a[i * n + j];
+            a[i * n + j] = a[j * n + i];
+            a[j * n + i] = x;
+        }
+    }
 }
 
 /* The lowest nmode modes: modes [ndof][nmode] with modal mass 1, and omega [nmode]. */
@@ -268,41 +217,38 @@ static int find_modes(const struct model *m, double *modes, double *omega)
 {
     const size_t n = m->ndof;
     struct cholesky c;
-    int status = cholesky_create(m, &c);
+    int status = factorize_mass(m, &c);
     if (status) {
         return status;
     }
     double *k = tribo_matrix_to_dense(&m->stiffness), *vectors = malloc(n * n * sizeof *vectors),
            *values = malloc(n * sizeof *values);
-    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
-    if (!k || !vectors || !values || !work) {
-        status = no_memory(m);
-    } else {
-        gsl_matrix_view kv = view(k, n, n), vv = view(vectors, n, n);
-        gsl_vector_view ev = gsl_vector_view_array(values, n);
-        half_solve(&c, k, n);
-        gsl_matrix_transpose(&kv.matrix);
-        half_solve(&c, k, n);
-        gsl_eigen_symmv(&kv.matrix, &ev.vector, &vv.matrix, work);
-        gsl_eigen_symmv_sort(&ev.vector, &vv.matrix, GSL_EIGEN_SORT_VAL_ASC);
-        const double noise = 1e-13 * (double)n * fabs(values[n - 1]);
-        for (size_t j = 0; !status && j < m->nmode; j++) {
-            if (values[j] < -noise) {
-                status = fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu",
-                              values[j], j);
-            }
-            omega[j] = values[j] > noise ? sqrt(values[j]) : 0.0;
+    int done = k && vectors && values;
+    if (done) {
+        tribo_half_solve(&c, k, n);
+        transpose(k, n);
+        tribo_half_solve(&c, k, n);
+        done = tribo_symmetric_eigen(k, n, values, vectors);
+    }
+    status = done ? TRIBO_OK : no_memory(m);
+    const double noise = done ? 1e-13 * (double)n * fabs(values[n - 1]) : 0.0;
+    for (size_t j = 0; !status && j < m->nmode; j++) {
+        if (values[j] < -noise) {
+            status =
+                fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu", values[j], j);
         }
-        half_solve_back(&c, vectors, n);
+        omega[j] = values[j] > noise ? sqrt(values[j]) : 0.0;
+    }
+    if (!status) {
+        tribo_half_solve_back(&c, vectors, n);
         for (size_t i = 0; i < n; i++) {
             memcpy(modes + i * m->nmode, vectors + i * n, m->nmode * sizeof *modes);
         }
     }
-    gsl_eigen_symmv_free(work);
     free(k);
     free(vectors);
     free(values);
-    cholesky_free(&c);
+    tribo_cholesky_free(&c);
     return status;
 }
 
@@ -477,14 +423,9 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         return;
     }
     memcpy(to, force, sys->ndof * sizeof *to);
-    if (sys->inverse_mass) {
-        for (size_t i = 0; i < sys->ndof; i++) {
-            to[i] *= sys->inverse_mass[i];
-        }
-    } else {
-        const struct cholesky c = {sys->ndof, sys->mass, sys->order};
-        half_solve(&c, to, 1);
-        half_solve_back(&c, to, 1);
+    if (!sys->loads_accelerate) {
+        tribo_half_solve(&sys->factor, to, 1);
+        tribo_half_solve_back(&sys->factor, to, 1);
     }
 }
 
@@ -514,6 +455,7 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     }
     tribo_matrix_free(&sys->damping);
     sys->damping = damping;
+    sys->revision++;
     free(sys->dense);
     sys->dense = NULL;
     return TRIBO_OK;

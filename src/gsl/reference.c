@@ -53,14 +53,16 @@ static int build(tribo_system **sys, size_t n, const struct list *stiffness, con
     tribo_system *s;
     int status = tribo_system_build(&s, n, n, &k, &c, &j, &b);
     if (status || !ones) {
+        tribo_system_destroy(status ? NULL : s);
         free(ones);
         return TRIBO_ERR_MEMORY;
     }
     for (size_t i = 0; i < n; i++) {
         ones[i] = 1.0;
     }
-    s->inverse_mass = ones;
+    s->loads_accelerate = 1;
     status = tribo_set_operator_mass(s->contacts, n, ones, s->direction.first, s->direction.col, s->direction.val);
+    free(ones);
     if (!status) {
         status = tribo_set_limit(s->contacts, limit);
     }
@@ -112,6 +114,22 @@ static void chain_stiffness(struct list *k, size_t n)
     put(k, n - 1, n - 1, 4.0 * spring);
 }
 
+/* With 3/4 of the last row the stiffness is symmetric. */
+static int set_metric(tribo_system *sys, size_t n)
+{
+    double *weight = malloc(n * sizeof *weight), pivot;
+    size_t where;
+    int status = weight && tribo_matrix_identity(&sys->metric, n) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    for (size_t i = 0; !status && i < n; i++) {
+        weight[i] = i + 1 < n ? 1.0 : 0.75;
+    }
+    if (!status && !tribo_matrix_scale_rows(&sys->metric, weight)) {
+        status = TRIBO_ERR_MEMORY;
+    }
+    free(weight);
+    return status ? status : tribo_cholesky_create(&sys->factor, &sys->metric, &where, &pivot);
+}
+
 int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha, double omega)
 {
     if (!sys) {
@@ -138,6 +156,9 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
         status = build(&s, n, &k, &j, limits);
         if (!status) {
             s->power = 1.0 / (double)n;
+            status = set_metric(s, n);
+        }
+        if (!status) {
             status = tribo_system_add_load(s, omega, NULL, load);
         }
     }

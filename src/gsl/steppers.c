@@ -36,32 +36,21 @@ static int explain(tribo_driver *drv, int gsl_status, double t, double h)
                              gsl_strerror(gsl_status));
 }
 
-static int advance_fixed(tribo_driver *drv, double *t, double t1, double *y, int continues)
+static int rk4_step(tribo_driver *drv, double t, double next, double *y)
 {
     gsl_odeiv2_driver *gsl = drv->own;
-    (void)continues;
-    const double begin = *t, whole = (t1 - begin) / drv->dt;
-    /* a rest that is only rounding is spread over the steps */
-    const double steps = fabs(whole - round(whole)) < 1e-6 ? round(whole) : ceil(whole);
-    const double h = whole > steps ? (t1 - begin) / steps : drv->dt;
-    for (double k = 1.0; k <= steps; k++) {
-        const double next = k < steps ? begin + k * h : t1;
-        int status = tribo_system_begin_step(drv->sys, *t, y, drv->slope);
-        if (status) {
-            return explain(drv, GSL_EBADFUNC, *t, h);
-        }
-        status = gsl_odeiv2_step_apply(gsl->s, *t, next - *t, y, gsl->e->yerr, drv->slope, NULL, gsl->sys);
-        if (status) {
-            return explain(drv, status, *t, h);
-        }
-        *t = next;
-        drv->steps++;
-        status = tribo_driver_tell(drv, *t, y, 0);
-        if (status) {
-            return status;
-        }
+    int status = tribo_system_begin_step(drv->sys, t, y, drv->slope);
+    if (status) {
+        return explain(drv, GSL_EBADFUNC, t, next - t);
     }
-    return TRIBO_OK;
+    status = gsl_odeiv2_step_apply(gsl->s, t, next - t, y, gsl->e->yerr, drv->slope, NULL, gsl->sys);
+    return status ? explain(drv, status, t, next - t) : TRIBO_OK;
+}
+
+static int advance_fixed(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    (void)continues;
+    return tribo_driver_fixed_steps(drv, t, t1, y, rk4_step);
 }
 
 static int advance_adaptive(tribo_driver *drv, double *t, double t1, double *y, int continues)

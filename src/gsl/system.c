@@ -50,6 +50,13 @@ static void free_harmonic(struct harmonic *h)
     free(h->sine);
 }
 
+static void free_table(struct table *t)
+{
+    free(t->time);
+    free(t->value);
+    free(t->pattern);
+}
+
 void tribo_system_destroy(tribo_system *sys)
 {
     if (!sys) {
@@ -64,11 +71,15 @@ void tribo_system_destroy(tribo_system *sys)
         free_harmonic(&sys->harmonic[k]);
     }
     free(sys->harmonic);
-    free(sys->inverse_mass);
-    free(sys->mass);
+    for (size_t k = 0; k < sys->tables; k++) {
+        free_table(&sys->table[k]);
+    }
+    free(sys->table);
+    free_table(&sys->limits);
+    tribo_matrix_free(&sys->metric);
+    tribo_cholesky_free(&sys->factor);
     free(sys->modes);
     free(sys->omega);
-    free(sys->order);
     free(sys->v);
     free(sys->dense);
     free(sys);
@@ -101,20 +112,79 @@ const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)
 
 /* --------------------------------------------------------------------------------------------------------- motion */
 
-static void set_time(tribo_system *sys, double t)
+/* The knot at or before t, the first one if there is none. */
+static size_t knot_at(const struct table *table, double t)
 {
-    if (t != sys->time) {
-        for (size_t k = 0; k < sys->harmonics; k++) {
-            struct harmonic *h = &sys->harmonic[k];
-            h->cos_t = cos(h->omega * t);
-            h->sin_t = sin(h->omega * t);
-        }
-        sys->time = t;
+    size_t lo = 0, hi = table->knots;
+    while (hi - lo > 1) {
+        const size_t mid = lo + (hi - lo) / 2;
+        *(table->time[mid] <= t ? &lo : &hi) = mid;
+    }
+    return lo;
+}
+
+/* Value (order 0) or slope (1) of column i of a table with so many of them at time t. */
+static double look_up(const struct table *table, size_t columns, size_t i, double t, int order)
+{
+    const size_t k = table->at;
+    const double *v = table->value + k * columns + i;
+    if (k + 1 == table->knots || t < table->time[0]) {
+        return order ? 0.0 : *v;
+    }
+    const double slope = (v[columns] - v[0]) / (table->time[k + 1] - table->time[k]);
+    return order ? slope : v[0] + slope * (t - table->time[k]);
+}
+
+void tribo_system_set_time(tribo_system *sys, double t)
+{
+    if (t == sys->time) {
+        return;
+    }
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        struct harmonic *h = &sys->harmonic[k];
+        h->cos_t = cos(h->omega * t);
+        h->sin_t = sin(h->omega * t);
+    }
+    for (size_t k = 0; k < sys->tables; k++) {
+        sys->table[k].at = knot_at(&sys->table[k], t);
+    }
+    sys->time = t;
+    if (sys->limits.knots) {
+        sys->limits.at = knot_at(&sys->limits, t);
+        tribo_system_limits(sys, sys->v, sys->a);
+        tribo_set_limit(sys->contacts, sys->v);
     }
 }
 
-/* to += factor * (d/dt)^order of the harmonics that load the structure, or that move the base. */
-static void add_harmonics(const tribo_system *sys, int moves_base, int order, double factor, double *to)
+void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
+{
+    if (sys->limits.knots == 0) {
+        tribo_get_limit(sys->contacts, limit);
+        memset(rate, 0, sys->ncontact * sizeof *rate);
+        return;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] = look_up(&sys->limits, sys->ncontact, i, sys->time, 0);
+        rate[i] = look_up(&sys->limits, sys->ncontact, i, sys->time, 1);
+    }
+}
+
+double tribo_system_next_kink(const tribo_system *sys, double t)
+{
+    double next = HUGE_VAL;
+    for (size_t k = 0; k <= sys->tables; k++) {
+        const struct table *table = k < sys->tables ? &sys->table[k] : &sys->limits;
+        for (size_t i = table->knots ? knot_at(table, t) : 0; i < table->knots; i++) {
+            if (table->time[i] > t) {
+                next = fmin(next, table->time[i]);
+                break;
+            }
+        }
+    }
+    return next;
+}
+
+void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *h = &sys->harmonic[k];
@@ -131,22 +201,66 @@ static void add_harmonics(const tribo_system *sys, int moves_base, int order, do
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
+    for (size_t k = 0; !moves_base && order < 2 && k < sys->tables; k++) {
+        const double value = factor * look_up(&sys->table[k], 1, 0, sys->time, order);
+        for (size_t i = 0; i < sys->ndof; i++) {
+            to[i] += value * sys->table[k].pattern[i];
+        }
+    }
+}
+
+double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
+{
+    const struct matrix *a = &sys->direction;
+    double sum = 0.0;
+    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        sum += a->val[k] * tribo_matrix_get(&sys->response, a->col[k], j);
+    }
+    return sum;
+}
+
+double tribo_system_weight(const tribo_system *sys, size_t i)
+{
+    /* only the chain has a metric of its own, and there contact i is on degree of freedom i */
+    return sys->loads_accelerate && sys->metric.rows ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
+}
+
+void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x)
+{
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        if (mode[i] == 0 && count == 1) {
+            x[j->col[first]] = base[i] / j->val[first];
+        } else if (mode[i] == 0 && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
+            x[j->col[first + 1]] = (base[i] - j->val[first] * x[j->col[first]]) / j->val[first + 1];
+        }
+    }
+}
+
+void tribo_system_project(tribo_system *sys, const signed char *mode, double t, double *u)
+{
+    double *base = sys->dv_dt;
+    tribo_system_set_time(sys, t);
+    memset(base, 0, sys->ncontact * sizeof *base);
+    tribo_system_loads(sys, 1, 0, 1.0, base);
+    tribo_system_snap(sys, mode, base, u);
 }
 
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
 {
     const size_t n = sys->ndof;
-    set_time(sys, t);
+    tribo_system_set_time(sys, t);
     memset(acceleration, 0, n * sizeof *acceleration);
-    add_harmonics(sys, 0, 0, 1.0, acceleration);
+    tribo_system_loads(sys, 0, 0, 1.0, acceleration);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
-    add_harmonics(sys, 1, 0, -1.0, v);
-    add_harmonics(sys, 1, 1, -1.0, a);
+    tribo_system_loads(sys, 1, 0, -1.0, v);
+    tribo_system_loads(sys, 1, 1, -1.0, a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, y + n, v);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
 }
@@ -295,9 +409,9 @@ static int jacobian(double t, const double y[], double *dfdy, double dfdt[], voi
     memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
     memset(sys->a, 0, m * sizeof *sys->a);
     memset(df_dt, 0, m * sizeof *df_dt);
-    add_harmonics(sys, 0, 1, 1.0, d.load);
-    add_harmonics(sys, 1, 1, -1.0, sys->dv_dt);
-    add_harmonics(sys, 1, 2, -1.0, sys->a);
+    tribo_system_loads(sys, 0, 1, 1.0, d.load);
+    tribo_system_loads(sys, 1, 1, -1.0, sys->dv_dt);
+    tribo_system_loads(sys, 1, 2, -1.0, sys->a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
     multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
     multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
@@ -455,6 +569,7 @@ static int add_harmonic(tribo_system *sys, int moves_base, double omega, const d
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
     }
     sys->harmonic[sys->harmonics++] = h;
+    sys->revision++;
     sys->time = NAN;
     return TRIBO_OK;
 }
@@ -467,4 +582,95 @@ int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine,
 int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
     return add_harmonic(sys, 1, omega, cosine, sine);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- tables */
+
+static int check_table(const tribo_system *sys, size_t knots, size_t columns, const double *time, const double *value)
+{
+    if (!time || !value) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? "value" : "time");
+    }
+    for (size_t k = 0; k < knots; k++) {
+        if (!isfinite(time[k])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "time[%zu] = %g is not finite", k, time[k]);
+        }
+        if (k && time[k] <= time[k - 1]) {
+            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1,
+                                     time[k - 1]);
+        }
+    }
+    return check_amplitudes(sys, "value", value, knots * columns);
+}
+
+/* A copy of the table; 0 if out of memory. */
+static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
+{
+    t->knots = knots;
+    t->time = malloc((knots + 1) * sizeof *t->time);
+    t->value = malloc((knots * columns + 1) * sizeof *t->value);
+    if (!t->time || !t->value) {
+        return 0;
+    }
+    memcpy(t->time, time, knots * sizeof *time);
+    memcpy(t->value, value, knots * columns * sizeof *value);
+    return 1;
+}
+
+int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (knots == 0 || !pattern) {
+        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL")
+                     : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+    }
+    int status = check_table(sys, knots, 1, time, value);
+    status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
+    if (status) {
+        return status;
+    }
+    struct table t = {0};
+    struct table *all = realloc(sys->table, (sys->tables + 1) * sizeof *all);
+    sys->table = all ? all : sys->table;
+    if (all && create_table(&t, knots, 1, time, value)) {
+        t.pattern = malloc((sys->ndof + 1) * sizeof *t.pattern);
+    }
+    if (!t.pattern) {
+        free_table(&t);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+    }
+    tribo_system_accelerate(sys, pattern, t.pattern);
+    sys->table[sys->tables++] = t;
+    sys->time = NAN;
+    return TRIBO_OK;
+}
+
+int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    struct table t = {0};
+    if (knots) {
+        const int status = check_table(sys, knots, sys->ncontact, time, limit);
+        if (status) {
+            return status;
+        }
+        for (size_t k = 0; k < knots * sys->ncontact; k++) {
+            if (limit[k] < 0.0) {
+                return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / sys->ncontact,
+                                         limit[k], k % sys->ncontact);
+            }
+        }
+        if (!create_table(&t, knots, sys->ncontact, time, limit)) {
+            free_table(&t);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+        }
+    }
+    free_table(&sys->limits);
+    sys->limits = t;
+    sys->time = NAN;
+    return TRIBO_OK;
 }

@@ -5,7 +5,7 @@
 
 #include "tribo/tribo_gsl.h"
 
-#include "matrix.h"
+#include "dense.h"
 
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero. */
 struct harmonic {
@@ -16,6 +16,15 @@ struct harmonic {
     double *cosine, *sine;
 };
 
+/* A function of time, linear between knots and constant outside: times pattern it adds to the load, or, with a row of limits to
+ * each knot, it is the limits of the contacts. */
+struct table {
+    size_t knots, at; /* at: the knot at or before sys->time */
+    double *time;
+    double *value;   /* [knots], or [knots][ncontact] */
+    double *pattern; /* [ndof] accelerations, or NULL */
+};
+
 struct tribo_system {
     size_t ndof, ncontact;
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
@@ -24,13 +33,20 @@ struct tribo_system {
 
     size_t harmonics;
     struct harmonic *harmonic;
-    double time; /* that cos_t and sin_t belong to; NaN: none yet */
+    size_t tables;
+    struct table *table;
+    struct table limits; /* knots 0: the limits are those of the context */
+    size_t revision;     /* counts changes of harmonics and damping */
+    double time;         /* that cos_t and sin_t belong to; NaN: none yet */
 
-    /* how forces on the given degrees of freedom become accelerations: inverse masses, or the mass matrix (factorized), or modes
-     */
+    /* The metric W, in which AK is symmetric: the mass matrix, but for chain and reduced systems. No rows: the identity. */
+    struct matrix metric;
+    struct cholesky factor; /* of W */
+
+    /* How forces on the given degrees of freedom become accelerations: by the modes, or as they are, or by the mass matrix W. */
     size_t given;
-    double *inverse_mass, *mass, *modes, *omega; /* [given], [given][given] with order, [given][ndof], [ndof] */
-    size_t *order;
+    double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
+    int loads_accelerate;
 
     gsl_odeiv2_system odeiv2;
     size_t evaluations, jacobians;
@@ -44,6 +60,30 @@ struct tribo_system {
  * all zeros: no rows. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
                        struct matrix *direction, struct matrix *response);
+
+/* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
+void tribo_system_set_time(tribo_system *sys, double t);
+
+/* Adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load makes to `to`, at the time
+ * set. */
+void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to);
+
+/* limit, and its derivative, each [ncontact], at the time set. */
+void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
+
+/* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
+double tribo_system_next_kink(const tribo_system *sys, double t);
+
+/* R_ij. */
+double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
+
+/* w_i such that W B_i = w_i J_i'. */
+double tribo_system_weight(const tribo_system *sys, size_t i);
+
+/* Takes the last bits of rounding out of J_i x = base_i for contacts at rest (mode 0) that have one degree of freedom, or the difference of
+ * two; the other one does so for the velocities at time t. */
+void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x);
+void tribo_system_project(tribo_system *sys, const signed char *mode, double t, double *u);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);

@@ -1,0 +1,144 @@
+#include "dense.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_permute_vector.h>
+
+#include "tribo/tribo.h"
+
+void tribo_cholesky_free(struct cholesky *c)
+{
+    free(c->factor);
+    free(c->order);
+    free(c->root);
+    memset(c, 0, sizeof *c);
+}
+
+int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot)
+{
+    const int diagonal = tribo_matrix_is_diagonal(a);
+    memset(c, 0, sizeof *c);
+    c->n = a->rows;
+    c->root = malloc(c->n * sizeof *c->root);
+    c->order = malloc(c->n * sizeof *c->order);
+    c->factor = diagonal ? NULL : tribo_matrix_to_dense(a);
+    if (!c->root || !c->order || (!diagonal && !c->factor)) {
+        tribo_cholesky_free(c);
+        return TRIBO_ERR_MEMORY;
+    }
+    if (diagonal) {
+        for (size_t i = 0; i < c->n; i++) {
+            c->order[i] = i;
+        }
+    } else {
+        gsl_matrix_view m = gsl_matrix_view_array(c->factor, c->n, c->n);
+        gsl_permutation p = {c->n, c->order};
+        gsl_linalg_pcholesky_decomp(&m.matrix, &p);
+    }
+    for (size_t i = 0; i < c->n; i++) {
+        const double d = diagonal ? tribo_matrix_get(a, i, i) : c->factor[i * c->n + i];
+        c->root[i] = sqrt(d);
+        if (!(d > 0.0) || !isfinite(1.0 / d)) {
+            *where = c->order[i];
+            *pivot = d;
+            tribo_cholesky_free(c);
+            return TRIBO_ERR_INDEFINITE;
+        }
+    }
+    return TRIBO_OK;
+}
+
+static void divide_by_root(const struct cholesky *c, double *x, size_t cols)
+{
+    for (size_t i = 0; i < c->n; i++) {
+        for (size_t j = 0; j < cols; j++) {
+            x[i * cols + j] /= c->root[i];
+        }
+    }
+}
+
+void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
+{
+    if (c->factor && cols) {
+        gsl_permutation p = {c->n, c->order};
+        gsl_matrix_view l = gsl_matrix_view_array(c->factor, c->n, c->n), b = gsl_matrix_view_array(x, c->n, cols);
+        for (size_t j = 0; j < cols; j++) {
+            gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
+            gsl_permute_vector(&p, &column.vector);
+        }
+        gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
+    }
+    divide_by_root(c, x, cols);
+}
+
+void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
+{
+    divide_by_root(c, x, cols);
+    if (c->factor && cols) {
+        gsl_permutation p = {c->n, c->order};
+        gsl_matrix_view l = gsl_matrix_view_array(c->factor, c->n, c->n), b = gsl_matrix_view_array(x, c->n, cols);
+        gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
+        for (size_t j = 0; j < cols; j++) {
+            gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
+            gsl_permute_vector_inverse(&p, &column.vector);
+        }
+    }
+}
+
+size_t tribo_independent_rows(double *a, size_t n, const unsigned char *last, size_t *order)
+{
+    /* a Cholesky factorization of a scaled to a diagonal of ones, with the largest pivot next, of rows that are not to be last if there is one */
+    const double least = 1e-12 * (double)(n + 1);
+    size_t rank = 0;
+    for (size_t i = 0; i < n; i++) {
+        order[i] = i;
+        const double d = a[i * n + i] > 0.0 ? 1.0 / sqrt(a[i * n + i]) : 0.0;
+        for (size_t j = 0; j < n; j++) {
+            a[i * n + j] *= d;
+            a[j * n + i] *= d;
+        }
+    }
+    for (; rank < n; rank++) {
+        size_t best = n;
+        for (size_t k = rank; k < n; k++) {
+            const size_t i = order[k], b = best < n ? order[best] : i;
+            const int better = last[i] != last[b] ? last[i] < last[b] : a[i * n + i] > a[b * n + b];
+            best = a[i * n + i] > least && (best == n || better) ? k : best;
+        }
+        if (best == n) {
+            break;
+        }
+        const size_t p = order[best];
+        order[best] = order[rank];
+        order[rank] = p;
+        for (size_t k = rank + 1; k < n; k++) {
+            const double factor = a[order[k] * n + p] / a[p * n + p];
+            for (size_t l = rank + 1; l < n; l++) {
+                a[order[k] * n + order[l]] -= factor * a[p * n + order[l]];
+            }
+        }
+    }
+    return rank;
+}
+
+int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
+{
+    if (n == 0) {
+        return 1;
+    }
+    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
+    if (!work) {
+        return 0;
+    }
+    gsl_matrix_view m = gsl_matrix_view_array(a, n, n), v = gsl_matrix_view_array(vectors, n, n);
+    gsl_vector_view e = gsl_vector_view_array(values, n);
+    gsl_eigen_symmv(&m.matrix, &e.vector, &v.matrix, work);
+    gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_ASC);
+    gsl_eigen_symmv_free(work);
+    return 1;
+}

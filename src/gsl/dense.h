@@ -1,0 +1,31 @@
+/* Dense symmetric positive definite matrices, in factors that never make GSL's error handler speak. */
+#ifndef TRIBO_DENSE_H
+#define TRIBO_DENSE_H
+
+#include "matrix.h"
+
+/* A^-1 = S S', S = P' L^-T D^-1/2 from P A P' = L D L', with L in the lower triangle of factor. A diagonal A has only root. */
+struct cholesky {
+    size_t n; /* 0: the identity */
+    double *factor;
+    size_t *order;
+    double *root; /* [n] D^1/2 */
+};
+
+/* Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE with the place and value of a pivot that is not positive. */
+int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
+void tribo_cholesky_free(struct cholesky *c);
+
+/* x [n][cols] = S' x, and x = S x; one after the other they solve A y = x. */
+void tribo_half_solve(const struct cholesky *c, double *x, size_t cols);
+void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols);
+
+/* Order [n] names n rows of a semidefinite a [n][n]: first independent ones, which are rather taken where last is 0. Returns how many they
+ * are. Overwrites a. */
+size_t tribo_independent_rows(double *a, size_t n, const unsigned char *last, size_t *order);
+
+/* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. 0 if out of
+ * memory. */
+int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors);
+
+#endif

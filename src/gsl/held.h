@@ -1,0 +1,63 @@
+/* A structure some of whose contacts are held: its modes of vibration, and what the motion in them means for every contact.
+ *
+ * With the contacts of a set I held (J_I q' = b_I), q = Phi eta + what the held contacts are moved by, and the amplitudes eta are
+ * free: eta'' + C~ eta' + diag(omega^2) eta = constant + ramp + harmonics. Apart from the response to the right-hand side they
+ * are sums of damped complex exponentials, eta = Re(r z), z_p' = lambda_p z_p, and so are the velocities of the sliding contacts
+ * and the forces of the held ones. All of it depends on which contacts are held, and not on where the others slide to: it is kept
+ * for sets that come back. */
+#ifndef TRIBO_HELD_H
+#define TRIBO_HELD_H
+
+#include "system.h"
+
+/* What a contact's velocity (sliding) or force (held) is made of: Re(sum c_p z_p) + Re(sum response_h e^{i Omega_h t}) + constant
+ * + ramp t. */
+struct watch {
+    size_t contact;
+    double *cr, *ci;          /* [exponents] c_p */
+    double *size;             /* [exponents] |c_p| */
+    double *bend;             /* [exponents] |c_p| |lambda_p|^6 */
+    double *rr, *ri;          /* [harmonics] response */
+    double *wave, *wave_bend; /* [harmonics] its size, and that of its sixth derivative */
+    double *on_rate; /* [modes] held contacts: what a constant eta' adds to the ramp; sliding ones: what a constant eta'' does */
+    double ramp;     /* from belts of constant speed */
+};
+
+struct held {
+    signed char *key; /* [ncontact] 1: the contact rests, 2: and holds */
+    size_t rest;      /* contacts at rest that hold; others depend on them */
+
+    size_t moving, *dof; /* degrees of freedom that move */
+    size_t modes;
+    double *phi, *psi; /* [modes][moving] and W phi */
+    double *omega2, *damping;
+    double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
+    unsigned char *drifts; /* [modes] omega = 0 and no damping */
+
+    size_t exponents;
+    double *lr, *li, *size;    /* lambda, and its absolute value */
+    double *ar, *ai, *br, *bi; /* z = a eta + b eta';  [exponents], or [exponents][modes] if coupled */
+    double *rr, *ri;           /* eta = Re(r z), coupled only: [modes][exponents] */
+    size_t *owner;             /* the mode of an exponent, if not coupled (then r = 1) */
+
+    size_t harmonics;
+    double *gr, *gi, *xr, *xi; /* [harmonics][modes] forcing and response of eta */
+    double *yr, *yi;           /* [harmonics][moving] velocities from the belts that hold */
+    double *y0;                /* [moving] the same from belts of constant speed */
+    double *ramp;              /* [modes] forcing per unit of time, from belts of constant speed */
+    int any_resonant;
+    unsigned char *resonant; /* [harmonics][modes] the response is not in x, since it would be close to infinite */
+
+    size_t watches, sliding; /* the first ones watch sliding contacts, the others held ones */
+    struct watch *watch;
+    double fastest; /* largest |lambda| */
+    void *memory;   /* all arrays */
+    size_t bytes;
+};
+
+/* For the contacts whose mode is 0, those of them that hold being marked (see modes.h). Returns a status; its message is on the
+ * system's context. */
+int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode, const unsigned char *holds);
+void tribo_held_free(struct held *h);
+
+#endif

@@ -1,0 +1,407 @@
+#include "modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A balancing force this close to the limit counts as just at it: mostly far above rounding, and far below what a wrong guess could change. */
+#define AT_LIMIT 1e-9
+
+/* Velocities and accelerations are known to this part of what they are the sum of. */
+#define NOISE 2e-14
+
+/* So many derivatives are asked when contacts are at their limit. */
+#define ORDERS 4
+
+int tribo_modes_create(struct modes *m, tribo_system *sys)
+{
+    const size_t c = sys->ncontact + 1, n = sys->ndof;
+    memset(m, 0, sizeof *m);
+    m->patience = 64 + 16 * sys->ncontact;
+    int status = tribo_clone(sys->contacts, &m->judge);
+    status = status ? status : tribo_clone(sys->contacts, &m->hold);
+    double *work = malloc((12 * c + (1 + ORDERS) * n + m->patience) * sizeof *work);
+    m->mode = malloc(4 * c);
+    m->limit = work;
+    if (status || !work || !m->mode) {
+        tribo_modes_free(m);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of %zu contacts", sys->ncontact);
+    }
+    m->weak = m->mode + c;
+    m->holds = (unsigned char *)m->mode + 2 * c;
+    m->rested = m->holds + c;
+    m->force = work + c;
+    m->v = work + 2 * c;
+    m->a = work + 3 * c;
+    m->rate = work + 4 * c;
+    m->lo = work + 5 * c;
+    m->hi = work + 6 * c;
+    m->diagonal = work + 7 * c;
+    m->base = work + 8 * c;
+    m->limit_rate = work + 9 * c;
+    m->noise = work + 10 * c;
+    m->slope = work + 11 * c;
+    m->acceleration = work + 12 * c;
+    m->jerk = m->acceleration + n;
+    m->recent = m->jerk + ORDERS * n;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->diagonal[i] = tribo_system_delassus(sys, i, i);
+    }
+    size_t islands;
+    tribo_get_count(m->judge, TRIBO_COUNT_ISLANDS, &islands);
+    m->uncoupled = islands == sys->ncontact;
+    tribo_set_law(m->judge, TRIBO_COULOMB);
+    tribo_set_coupling(m->judge, TRIBO_CONSISTENT);
+    tribo_set_law(m->hold, TRIBO_COULOMB);
+    tribo_set_coupling(m->hold, TRIBO_PARTITION);
+    m->simple = 1;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
+    }
+    return TRIBO_OK;
+}
+
+void tribo_modes_free(struct modes *m)
+{
+    tribo_destroy(m->judge);
+    tribo_destroy(m->hold);
+    free(m->limit);
+    free(m->mode);
+    memset(m, 0, sizeof *m);
+}
+
+/* What of the velocities may be rounding, as far as the state alone tells. */
+static void find_noise(struct modes *m, const tribo_system *sys, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    const double *u = y + sys->ndof;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        double size = fabs(m->base[i]);
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            size += fabs(j->val[k] * u[j->col[k]]);
+        }
+        m->noise[i] = NOISE * size;
+    }
+}
+
+static signed char mode_of_velocity(const struct modes *m, size_t i)
+{
+    return (signed char)(fabs(m->v[i]) <= m->noise[i] ? 0 : m->v[i] > 0.0 ? 1 : -1);
+}
+
+/* Brings limits, and with them which contacts are open, up to the time of v. */
+static void update_limits(struct modes *m, const tribo_system *sys)
+{
+    tribo_system_limits(sys, m->limit, m->limit_rate);
+    tribo_set_limit(m->judge, m->limit);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->limit[i] == 0.0 && m->limit_rate[i] == 0.0) {
+            m->mode[i] = 2;
+        } else if (m->mode[i] == 2) {
+            m->mode[i] = mode_of_velocity(m, i);
+        }
+    }
+}
+
+int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, int continues)
+{
+    tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
+    tribo_system_limits(sys, m->limit, m->limit_rate);
+    memset(m->base, 0, sys->ncontact * sizeof *m->base);
+    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    find_noise(m, sys, y);
+    for (size_t i = 0; !continues && i < sys->ncontact; i++) {
+        m->mode[i] = (signed char)(m->limit[i] == 0.0 ? 2 : mode_of_velocity(m, i));
+    }
+    m->events = 0;
+    return tribo_modes_decide(m, sys, t, y);
+}
+
+/* Bounds for the rates of forces (order 1) or their further derivatives: sliding ones follow their limit, those at their limit and not decided
+ * about yet may not go beyond. */
+static void set_rate_bounds(struct modes *m, size_t c, int order, double bound)
+{
+    for (size_t i = 0; i < c; i++) {
+        const int rests = m->mode[i] == 0;
+        const double side = !rests ? -m->mode[i] : m->force[i] > 0.0 ? 1.0 : -1.0;
+        const double along = m->mode[i] == 2 || order > 1 ? 0.0 : side * m->limit_rate[i];
+        m->lo[i] = rests && !(m->weak[i] == 1 && side < 0.0) ? -bound : along;
+        m->hi[i] = rests && !(m->weak[i] == 1 && side > 0.0) ? bound : along;
+    }
+}
+
+/* The rates that go with accelerations' rates a. scale is what they are like. */
+static int solve_rates(struct modes *m, const tribo_system *sys, int order, double scale)
+{
+    int beyond = 1;
+    double bound = scale;
+    /* the box wants bounds where there are none; if they matter, they were too narrow */
+    for (int round = 0; round < 4 && beyond; round++) {
+        bound *= 1e3;
+        set_rate_bounds(m, sys->ncontact, order, bound);
+        const int status = tribo_solve_box(m->judge, m->a, m->lo, m->hi, m->rate);
+        if (status) {
+            return tribo_system_fail(sys, status, "%s", tribo_message(m->judge));
+        }
+        beyond = 0;
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            beyond |= m->mode[i] == 0 && fabs(m->rate[i]) >= bound && bound > 0.0;
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* Of the contacts at their limit, those slide off whose rate of f_eq would take it beyond the limit, and those keep hold that it takes back
+ * inside; if it does neither, the next derivative decides. */
+static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
+{
+    const size_t n = sys->ndof, c = sys->ncontact;
+    const double *older = y + n, *old = m->acceleration;
+    size_t undecided = 1;
+    for (int order = 1; order <= ORDERS && undecided; order++) {
+        double *next = m->jerk + (size_t)(order - 1) * n, scale = 0.0;
+        memset(next, 0, n * sizeof *next);
+        memset(m->a, 0, c * sizeof *m->a);
+        tribo_system_loads(sys, 0, order, 1.0, next);
+        tribo_matrix_multiply_add(&sys->stiffness, -1.0, older, next);
+        if (sys->damping.rows) {
+            tribo_matrix_multiply_add(&sys->damping, -1.0, old, next);
+        }
+        tribo_system_loads(sys, 1, order + 1, -1.0, m->a);
+        tribo_matrix_multiply_add(&sys->direction, 1.0, next, m->a);
+        for (size_t i = 0; i < c; i++) {
+            m->slope[i] = order == 1 ? m->a[i] : m->slope[i];
+            scale = fmax(scale, m->diagonal[i] > 0.0 ? fabs(m->a[i]) / m->diagonal[i] : 0.0);
+            scale = fmax(scale, order == 1 ? fabs(m->limit_rate[i]) : 0.0);
+        }
+        const int status = solve_rates(m, sys, order, scale);
+        if (status) {
+            return status;
+        }
+        tribo_matrix_multiply_add(&sys->response, 1.0, m->rate, next);
+        memset(m->a, 0, c * sizeof *m->a);
+        tribo_system_loads(sys, 1, order + 1, -1.0, m->a);
+        tribo_matrix_multiply_add(&sys->direction, 1.0, next, m->a);
+        undecided = 0;
+        for (size_t i = 0; i < c; i++) {
+            const double side = m->force[i] > 0.0 ? -1.0 : 1.0;
+            const double along = order == 1 ? -side * m->limit_rate[i] : 0.0;
+            if (m->weak[i] == 1 && side * m->a[i] > AT_LIMIT * m->diagonal[i] * scale) {
+                m->mode[i] = (signed char)side;
+                m->force[i] = -side * m->limit[i];
+                m->weak[i] = 0;
+            } else if (m->weak[i] == 1 && side * (m->rate[i] - along) > AT_LIMIT * scale) {
+                m->weak[i] = 2;
+            }
+            undecided += m->weak[i] == 1;
+        }
+        older = old;
+        old = next;
+    }
+    return TRIBO_OK;
+}
+
+static void add_sizes(const struct matrix *a, const double *x, double *y)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            y[i] += fabs(a->val[k] * x[a->col[k]]);
+        }
+    }
+}
+
+/* How close to its limit a balancing force counts as just at it: what rounding of all the forces on the contact's bodies comes to. lo gets it. */
+static void find_margins(struct modes *m, const tribo_system *sys)
+{
+    for (size_t d = 0; d < sys->ndof; d++) {
+        m->jerk[d] = fabs(m->acceleration[d]);
+    }
+    add_sizes(&sys->response, m->force, m->jerk);
+    memset(m->lo, 0, sys->ncontact * sizeof *m->lo);
+    add_sizes(&sys->direction, m->jerk, m->lo);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->lo[i] = fmax(AT_LIMIT * m->limit[i], m->diagonal[i] > 0.0 ? NOISE * m->lo[i] / m->diagonal[i] : 0.0);
+    }
+}
+
+/* Forces and accelerations with the contacts at rest as they are marked, and what the forces say about them. */
+static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const double *y)
+{
+    tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
+    update_limits(m, sys);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = m->mode[i] == 2 ? 0.0 : m->mode[i];
+    }
+    const int status = tribo_balance(m->judge, m->v, m->a, m->rate, m->force);
+    if (status) {
+        return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(m->judge));
+    }
+    int weak = 0;
+    find_margins(m, sys);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double feq = m->rate[i], limit = m->limit[i];
+        m->weak[i] = 0;
+        if (m->mode[i] == 0 && fabs(feq) > limit + m->lo[i]) {
+            m->mode[i] = feq > 0.0 ? -1 : 1;
+        } else if (m->mode[i] == 0 && fabs(feq) >= limit - m->lo[i]) {
+            m->weak[i] = 1;
+            weak = 1;
+        }
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
+    return weak ? decide_by_rates(m, sys, y) : TRIBO_OK;
+}
+
+/* The contacts that hold get limits in the context that finds their forces, the others none. */
+static void set_hold(struct modes *m, const tribo_system *sys)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+    }
+    tribo_set_limit(m->hold, m->lo);
+}
+
+/* Marks an independent set of the rest contacts at rest, those named at, as holding; rather such that are inside their limits, or go there. */
+static int choose_holds(struct modes *m, const tribo_system *sys, const size_t *at, size_t rest)
+{
+    size_t *order = malloc(rest * sizeof *order);
+    double *r = malloc(rest * rest * sizeof *r);
+    unsigned char *last = malloc(rest);
+    const int done = order && r && last;
+    for (size_t p = 0; done && p < rest; p++) {
+        last[p] = (unsigned char)(m->weak[at[p]] == 0 ? 0 : m->weak[at[p]] == 2 ? 1 : 2);
+        m->holds[at[p]] = 1;
+        for (size_t q = 0; q < rest; q++) {
+            r[p * rest + q] = tribo_system_delassus(sys, at[p], at[q]);
+        }
+    }
+    for (size_t k = done ? tribo_independent_rows(r, rest, last, order) : rest; k < rest; k++) {
+        m->holds[at[order[k]]] = 0;
+    }
+    free(order);
+    free(r);
+    free(last);
+    return done;
+}
+
+/* A contact that holds, but would go beyond its limit while those that do not hold keep their forces; ncontact if there is none. */
+static size_t misplaced(struct modes *m, const tribo_system *sys)
+{
+    memset(m->v, 0, sys->ncontact * sizeof *m->v);
+    if (tribo_balance(m->hold, m->v, m->slope, m->rate, NULL) != TRIBO_OK) {
+        return sys->ncontact;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double side = m->force[i] > 0.0 ? 1.0 : -1.0;
+        if (m->holds[i] && m->weak[i] == 2 && side * m->rate[i] > m->limit_rate[i]) {
+            return i;
+        }
+    }
+    return sys->ncontact;
+}
+
+/* Which of the contacts at rest hold. */
+static int find_holds(struct modes *m, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    size_t rest = 0, *at = malloc((c + 1) * sizeof *at), found = 0;
+    for (size_t i = 0; at && i < c; i++) {
+        m->holds[i] = m->mode[i] == 0 && m->diagonal[i] > 0.0;
+        at[rest] = i;
+        rest += m->holds[i];
+    }
+    int done = at != NULL;
+    do {
+        done = done && (m->uncoupled || rest < 2 || choose_holds(m, sys, at, rest));
+        set_hold(m, sys);
+        found = done && !m->uncoupled ? misplaced(m, sys) : c;
+        if (found < c) {
+            m->weak[found] = 1;
+        }
+    } while (found < c);
+    free(at);
+    return done ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+}
+
+/* x -= B_I R_II^-1 (J_I x - base) over the contacts that hold, twice, since the first time leaves rounding; then the last bits. */
+int tribo_modes_hold(struct modes *m, tribo_system *sys, const double *base, double *x)
+{
+    const size_t c = sys->ncontact;
+    for (int pass = 0; pass < 2 && !m->simple; pass++) {
+        memset(m->v, 0, c * sizeof *m->v);
+        for (size_t i = 0; i < c; i++) {
+            m->a[i] = -base[i];
+        }
+        tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->a);
+        const int status = tribo_balance(m->hold, m->v, m->a, m->rate, NULL);
+        if (status) {
+            return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+        }
+        tribo_matrix_multiply_add(&sys->response, 1.0, m->rate, x);
+    }
+    tribo_system_snap(sys, m->mode, base, x);
+    return TRIBO_OK;
+}
+
+int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, double *y)
+{
+    double *u = y + sys->ndof;
+    memset(m->base, 0, sys->ncontact * sizeof *m->base);
+    tribo_system_set_time(sys, t);
+    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    memset(m->weak, 0, sys->ncontact);
+    int status = TRIBO_OK;
+    size_t found = 1;
+    /* whoever has no velocity is decided about, also those that another contact now holds, or that have only just been let go */
+    while (!status && found) {
+        status = find_holds(m, sys);
+        status = status ? status : tribo_modes_hold(m, sys, m->base, u);
+        found = 0;
+        for (size_t i = 0; !status && i < sys->ncontact; i++) {
+            if ((m->mode[i] == 1 || m->mode[i] == -1) && fabs(tribo_modes_velocity(m, sys, i, y)) <= m->noise[i]) {
+                m->mode[i] = 0;
+                found++;
+            }
+        }
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = tribo_modes_velocity(m, sys, i, y);
+        m->rested[i] = m->mode[i] == 0;
+    }
+    status = status ? status : decide_by_forces(m, sys, t, y);
+    return status ? status : find_holds(m, sys);
+}
+
+double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    double v = -m->base[i];
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        v += j->val[k] * y[sys->ndof + j->col[k]];
+    }
+    return v;
+}
+
+int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct search *search, const struct guard *event, double t, double *y,
+                        double shortest)
+{
+    for (size_t k = 0; k < search->guards; k++) {
+        const struct guard *g = &search->guard[k];
+        m->noise[g->contact] = g->offset == 0.0 ? NOISE * g->size : m->noise[g->contact];
+    }
+    if (event) {
+        const size_t slot = m->events++ % m->patience;
+        drv->events++;
+        if (m->events > m->patience && t - m->recent[slot] < 1e-6 * shortest) {
+            return tribo_driver_fail(drv, TRIBO_ERR_CHATTER,
+                                     "%zu events up to t = %.17g took no time, the last one of contact %zu", m->patience, t,
+                                     event->contact);
+        }
+        m->recent[slot] = t;
+        if (event->offset == 0.0) {
+            m->mode[event->contact] = 0;
+        }
+    }
+    const int status = tribo_modes_decide(m, drv->sys, t, y);
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
+}
