@@ -62,7 +62,8 @@ module tribo
     TRIBO_ERR_NO_CONVERGENCE = 41, &
     TRIBO_ERR_STOPPED = 60, &     !< the observer ended the run
     TRIBO_ERR_STEP = 61, &        !< the step size fell below what time resolves
-    TRIBO_ERR_CALLBACK = 62       !< a procedure of the caller's failed
+    TRIBO_ERR_CALLBACK = 62, &   !< a procedure of the caller's failed
+    TRIBO_ERR_CHATTER = 63        !< too many events in too short a time
 
   !> Friction laws; set_law takes their names too: "coulomb", "velocity-limited", "smooth", "karnopp", "quinn",
   !> "quinn-reversal".

@@ -64,8 +64,8 @@ enum {
     TRIBO_ERR_INCONSISTENT = 40, /* partition coupling: no f_eq balances this a; the outputs hold the least-squares one */
     TRIBO_ERR_NO_CONVERGENCE = 41,
     /* drivers */
-    TRIBO_ERR_STOPPED = 60, /* the observer ended the run */
-    TRIBO_ERR_STEP = 61,    /* the step size fell below what time resolves */
+    TRIBO_ERR_STOPPED = 60,  /* the observer ended the run */
+    TRIBO_ERR_STEP = 61,     /* the step size fell below what time resolves */
     TRIBO_ERR_CALLBACK = 62, /* a function of the caller's failed */
     TRIBO_ERR_CHATTER = 63   /* too many events in too short a time */
 };
@@ -254,7 +254,7 @@ enum {
     TRIBO_COUNT_RANK = 1,           /* sum of the ranks of the matrices that the last call solved with */
     TRIBO_COUNT_ISLANDS = 2,        /* groups of coupled contacts in the operator */
     TRIBO_COUNT_SOLVES = 3,         /* islands that had to be solved */
-    TRIBO_COUNT_SKIPPED = 4,        /* islands left alone: no contact near stick */
+    TRIBO_COUNT_SKIPPED = 4,        /* islands that needed no solver: a single contact, or none near stick */
     TRIBO_COUNT_FACTORIZATIONS = 5, /* matrices factorized */
     TRIBO_COUNT_UPDATES = 6,        /* changes of a stick set */
     TRIBO_COUNT_MEMORY = 7          /* reversal marks that tribo_accept has set or cleared */

@@ -7,6 +7,12 @@
 
 #include "internal.h"
 
+/* f_eq of a contact that shares no body. */
+static double single_feq(const tribo_context *ctx, size_t i, double a)
+{
+    return ctx->limit[i] > 0.0 ? clamp(-a / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX) : 0.0;
+}
+
 /* One island and its contacts near stick: near[0..count), by their place in it. */
 struct island {
     const size_t *member;
@@ -146,6 +152,12 @@ static int balance_islands(tribo_context *ctx, const double *v, const double *a,
     int status = TRIBO_OK;
     for (size_t k = 0; k < ctx->op.islands; k++) {
         struct island is = island_of(ctx, k);
+        if (is.size == 1) {
+            ctx->feq[*is.member] = single_feq(ctx, *is.member, a[*is.member]);
+            law_force(ctx, *is.member, v, ctx->f);
+            ctx->skipped++;
+            continue;
+        }
         split(ctx, v, &is);
         for (size_t q = is.count; q < is.size; q++) {
             law_force(ctx, is.member[ctx->near[q]], v, ctx->f);
@@ -225,6 +237,12 @@ static int box_islands(tribo_context *ctx, const double *a, double scale, const 
     for (size_t k = 0; k < ctx->op.islands; k++) {
         struct island is = island_of(ctx, k);
         size_t behind = is.size;
+        if (is.size == 1) {
+            const size_t i = *is.member;
+            ctx->f[i] = clamp(-(scale * a[i]) / ctx->op.diagonal[i], lower[i], upper[i]);
+            ctx->skipped++;
+            continue;
+        }
         for (size_t p = is.size; p-- > 0;) {
             const size_t i = is.member[p];
             if (lower[i] == upper[i]) {

@@ -39,7 +39,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
     const struct contacts c = tribo_contacts(ctx);
-    ctx->law->force(&c, ctx->n, v, feq, f);
+    ctx->law->force(&c, ctx->n, v, ctx->law->uses_feq ? feq : v, f);
     return TRIBO_OK;
 }
 
@@ -54,6 +54,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
         return status;
     }
     const struct contacts all = tribo_contacts(ctx);
+    feq = ctx->law->uses_feq ? feq : v;
     for (size_t i = 0; i < ctx->n; i++) {
         const struct contacts c = tribo_contacts_from(&all, i);
         struct tangent d;

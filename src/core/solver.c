@@ -425,9 +425,13 @@ int tribo_solver_linear(struct solver *s, size_t n)
             s->rhs[i] = s->gradient[s->set[i]];
         }
         project(basis, n - s->rank, n, s->rhs);
+        double rounding = DBL_MIN;
+        for (size_t i = 0; i < n; i++) {
+            rounding = fmax(rounding, 16.0 * s->noise[i]);
+        }
         for (size_t i = 0; i < n; i++) {
             const size_t k = s->set[i];
-            consistent &= refine > 0 || fabs(s->rhs[i] - s->gradient[k]) <= 16.0 * s->noise[k] + DBL_MIN;
+            consistent &= refine > 0 || fabs(s->rhs[i] - s->gradient[k]) <= rounding;
             s->gradient[k] = s->rhs[i];
         }
         newton(s);

@@ -92,7 +92,8 @@ void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
 
 size_t tribo_independent_rows(double *a, size_t n, const unsigned char *last, size_t *order)
 {
-    /* a Cholesky factorization of a scaled to a diagonal of ones, with the largest pivot next, of rows that are not to be last if there is one */
+    /* a Cholesky factorization of a scaled to a diagonal of ones, with the largest pivot next, of rows that are not to be last if
+     * there is one */
     const double least = 1e-12 * (double)(n + 1);
     size_t rank = 0;
     for (size_t i = 0; i < n; i++) {

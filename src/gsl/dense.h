@@ -20,8 +20,8 @@ void tribo_cholesky_free(struct cholesky *c);
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols);
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols);
 
-/* Order [n] names n rows of a semidefinite a [n][n]: first independent ones, which are rather taken where last is 0. Returns how many they
- * are. Overwrites a. */
+/* Order [n] names n rows of a semidefinite a [n][n]: first independent ones, which are rather taken where last is 0. Returns how
+ * many they are. Overwrites a. */
 size_t tribo_independent_rows(double *a, size_t n, const unsigned char *last, size_t *order);
 
 /* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. 0 if out of

@@ -8,10 +8,10 @@
 #include "driver.h"
 
 static const struct method *const methods[] = {
-    &tribo_method_exact,     &tribo_method_event, &tribo_method_central_fixed, &tribo_method_moreau_fixed,
     &tribo_method_rk4_fixed, &tribo_method_rk2,   &tribo_method_rk4,           &tribo_method_rkf45,
     &tribo_method_rkck,      &tribo_method_rk8pd, &tribo_method_rk1imp,        &tribo_method_rk2imp,
     &tribo_method_rk4imp,    &tribo_method_bsimp, &tribo_method_msadams,       &tribo_method_msbdf,
+    &tribo_method_exact,     &tribo_method_event, &tribo_method_central_fixed, &tribo_method_moreau_fixed,
 };
 
 int tribo_method_count(void)

@@ -19,7 +19,7 @@ struct event {
     struct search search;
     size_t order;
     double tolerance; /* relative */
-    double fastest; /* bound on the frequencies of the motion */
+    double fastest;   /* bound on the frequencies of the motion */
     size_t revision;
     double tau;    /* where look() was */
     double *q, *u; /* [order + 1][ndof] coefficients of the powers of time */
@@ -316,7 +316,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         drv->steps++;
         status = tribo_modes_proceed(&e->modes, drv, &e->search, event, *t, y, 1.0 / e->fastest);
         if (!status) {
-                    status = tribo_driver_tell(drv, *t, y, event != NULL);
+            status = tribo_driver_tell(drv, *t, y, event != NULL);
         }
     }
     return status;

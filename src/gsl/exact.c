@@ -424,7 +424,8 @@ static void add_guards(struct exact *x, const struct watch *w, int slides, doubl
         ramp += w->on_rate[k] * (slides ? x->acc[k] : x->vel[k]);
     }
     const double range = size - fabs(now) + fabs(start) + fabs(ramp) * longest, limit = x->modes.limit[i];
-    struct guard g = {.contact = i, .watch = w, .side = x->modes.mode[i], .start = start, .ramp = ramp, .size = size, .bend = bend};
+    struct guard g = {
+        .contact = i, .watch = w, .side = x->modes.mode[i], .start = start, .ramp = ramp, .size = size, .bend = bend};
     if (slides) {
         g.from_zero = x->modes.rested[i];
         x->search.guard[x->search.guards++] = g;

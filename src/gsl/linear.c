@@ -1,5 +1,6 @@
 /* Linear structures from their matrices: as they are if the mass matrix is diagonal, solved for the accelerations if not, or
  * reduced to their lowest modes. */
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -231,7 +232,7 @@ static int find_modes(const struct model *m, double *modes, double *omega)
         done = tribo_symmetric_eigen(k, n, values, vectors);
     }
     status = done ? TRIBO_OK : no_memory(m);
-    const double noise = done ? 1e-13 * (double)n * fabs(values[n - 1]) : 0.0;
+    const double noise = done ? 4.0 * DBL_EPSILON * (double)n * fabs(values[n - 1]) : 0.0;
     for (size_t j = 0; !status && j < m->nmode; j++) {
         if (values[j] < -noise) {
             status =
@@ -252,16 +253,18 @@ static int find_modes(const struct model *m, double *modes, double *omega)
     return status;
 }
 
+/* a = diag(factor x), or of the squares of x; zeroed if out of memory. */
 static int diagonal_matrix(struct matrix *a, const double *x, double factor, int square, size_t n)
 {
-    if (!tribo_matrix_identity(a, n)) {
-        return 0;
-    }
     double *scale = malloc(n * sizeof *scale);
-    for (size_t i = 0; scale && i < n; i++) {
+    int done = scale != NULL && tribo_matrix_identity(a, n);
+    for (size_t i = 0; done && i < n; i++) {
         scale[i] = factor * x[i] * (square ? x[i] : 1.0);
     }
-    const int done = scale && tribo_matrix_scale_rows(a, scale);
+    if (!done || !tribo_matrix_scale_rows(a, scale)) {
+        *a = (struct matrix){0};
+        done = 0;
+    }
     free(scale);
     return done;
 }
@@ -423,9 +426,12 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         return;
     }
     memcpy(to, force, sys->ndof * sizeof *to);
-    if (!sys->loads_accelerate) {
+    if (sys->factor.factor) {
         tribo_half_solve(&sys->factor, to, 1);
         tribo_half_solve_back(&sys->factor, to, 1);
+    }
+    for (size_t i = 0; !sys->factor.factor && !sys->loads_accelerate && i < sys->ndof; i++) {
+        to[i] *= 1.0 / tribo_matrix_get(&sys->metric, i, i);
     }
 }
 

@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A balancing force this close to the limit counts as just at it: mostly far above rounding, and far below what a wrong guess could change. */
+/* A balancing force this close to the limit counts as just at it: mostly far above rounding, and far below what a wrong guess
+ * could change. */
 #define AT_LIMIT 1e-9
 
 /* Velocities and accelerations are known to this part of what they are the sum of. */
@@ -117,8 +118,8 @@ int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, i
     return tribo_modes_decide(m, sys, t, y);
 }
 
-/* Bounds for the rates of forces (order 1) or their further derivatives: sliding ones follow their limit, those at their limit and not decided
- * about yet may not go beyond. */
+/* Bounds for the rates of forces (order 1) or their further derivatives: sliding ones follow their limit, those at their limit
+ * and not decided about yet may not go beyond. */
 static void set_rate_bounds(struct modes *m, size_t c, int order, double bound)
 {
     for (size_t i = 0; i < c; i++) {
@@ -151,8 +152,8 @@ static int solve_rates(struct modes *m, const tribo_system *sys, int order, doub
     return TRIBO_OK;
 }
 
-/* Of the contacts at their limit, those slide off whose rate of f_eq would take it beyond the limit, and those keep hold that it takes back
- * inside; if it does neither, the next derivative decides. */
+/* Of the contacts at their limit, those slide off whose rate of f_eq would take it beyond the limit, and those keep hold that it
+ * takes back inside; if it does neither, the next derivative decides. */
 static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
@@ -210,7 +211,8 @@ static void add_sizes(const struct matrix *a, const double *x, double *y)
     }
 }
 
-/* How close to its limit a balancing force counts as just at it: what rounding of all the forces on the contact's bodies comes to. lo gets it. */
+/* How close to its limit a balancing force counts as just at it: what rounding of all the forces on the contact's bodies comes
+ * to. lo gets it. */
 static void find_margins(struct modes *m, const tribo_system *sys)
 {
     for (size_t d = 0; d < sys->ndof; d++) {
@@ -261,7 +263,8 @@ static void set_hold(struct modes *m, const tribo_system *sys)
     tribo_set_limit(m->hold, m->lo);
 }
 
-/* Marks an independent set of the rest contacts at rest, those named at, as holding; rather such that are inside their limits, or go there. */
+/* Marks an independent set of the rest contacts at rest, those named at, as holding; rather such that are inside their limits, or
+ * go there. */
 static int choose_holds(struct modes *m, const tribo_system *sys, const size_t *at, size_t rest)
 {
     size_t *order = malloc(rest * sizeof *order);
@@ -284,7 +287,8 @@ static int choose_holds(struct modes *m, const tribo_system *sys, const size_t *
     return done;
 }
 
-/* A contact that holds, but would go beyond its limit while those that do not hold keep their forces; ncontact if there is none. */
+/* A contact that holds, but would go beyond its limit while those that do not hold keep their forces; ncontact if there is none.
+ */
 static size_t misplaced(struct modes *m, const tribo_system *sys)
 {
     memset(m->v, 0, sys->ncontact * sizeof *m->v);
@@ -323,7 +327,8 @@ static int find_holds(struct modes *m, const tribo_system *sys)
     return done ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
 }
 
-/* x -= B_I R_II^-1 (J_I x - base) over the contacts that hold, twice, since the first time leaves rounding; then the last bits. */
+/* x -= B_I R_II^-1 (J_I x - base) over the contacts that hold, twice, since the first time leaves rounding; then the last bits.
+ */
 int tribo_modes_hold(struct modes *m, tribo_system *sys, const double *base, double *x)
 {
     const size_t c = sys->ncontact;
@@ -382,8 +387,8 @@ double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size
     return v;
 }
 
-int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct search *search, const struct guard *event, double t, double *y,
-                        double shortest)
+int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct search *search, const struct guard *event, double t,
+                        double *y, double shortest)
 {
     for (size_t k = 0; k < search->guards; k++) {
         const struct guard *g = &search->guard[k];

@@ -9,23 +9,23 @@
 struct modes {
     tribo_context *judge; /* a clone of the system's context under Coulomb's law */
     tribo_context *hold;  /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */
-    signed char *mode;          /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
+    signed char *mode;    /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
     double *limit, *limit_rate; /* [ncontact] */
     unsigned char *holds; /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest by
                              themselves */
     double *force;        /* [ncontact] after tribo_modes_decide: friction */
     double *acceleration; /* [ndof] and q'' */
     double *v, *a;        /* [ncontact] relative velocity, and acceleration without friction */
-    double *base, *noise;     /* [ncontact] b(t); what of v may be rounding */
-    double *diagonal;         /* [ncontact] R_ii */
-    double *rate, *lo, *hi;   /* [ncontact] workspace */
-    double *slope;            /* [ncontact] rate of a, if any contact is weak */
-    double *jerk;             /* [ORDERS][ndof] workspace: derivatives of the acceleration */
-    signed char *weak;        /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
-    unsigned char *rested;    /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
-    double *recent;           /* [patience] times of the last events */
-    int uncoupled;            /* R is diagonal */
-    int simple;               /* no contact has more than one degree of freedom */
+    double *base, *noise; /* [ncontact] b(t); what of v may be rounding */
+    double *diagonal;     /* [ncontact] R_ii */
+    double *rate, *lo, *hi; /* [ncontact] workspace */
+    double *slope;          /* [ncontact] rate of a, if any contact is weak */
+    double *jerk;           /* [ORDERS][ndof] workspace: derivatives of the acceleration */
+    signed char *weak;      /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    unsigned char *rested;  /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
+    double *recent;         /* [patience] times of the last events */
+    int uncoupled;          /* R is diagonal */
+    int simple;             /* no contact has more than one degree of freedom */
     size_t patience, events;
 };
 
@@ -50,7 +50,7 @@ double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size
 /* A phase has ended at (t, y), where search left off: with an event, or without (NULL). Brings the velocities of
  * contacts at rest to zero and decides anew. Counts events; fails if there have been too many of them in too short a time,
  * shortest being the structure's shortest. The message of a failure is on the driver. */
-int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct search *search, const struct guard *event, double t, double *y,
-                        double shortest);
+int tribo_modes_proceed(struct modes *m, tribo_driver *drv, const struct search *search, const struct guard *event, double t,
+                        double *y, double shortest);
 
 #endif

@@ -12,7 +12,8 @@ static double noise(const struct guard *g)
     return 4.0 * DBL_EPSILON * g->size;
 }
 
-/* Samples of all guards at the start. Of those that start at zero, rounding may say that they fall; one that really does is returned. */
+/* Samples of all guards at the start. Of those that start at zero, rounding may say that they fall; one that really does is
+ * returned. */
 static const struct guard *sample_start(struct search *s)
 {
     s->look(s->motion, 0.0);
@@ -111,7 +112,7 @@ static double last_bit(const struct guard *g)
  * [*a, *b] must be divided to tell. */
 static const struct guard *find_zero(struct search *s, double *a, double *b, double *when)
 {
-    double at;
+    double at = 0.0;
     struct guard *falls = first_to_fall(s, *b - *a, &at);
     while (falls->right.g < -noise(falls) && *a + at > *a && *a + at < *b) {
         const double trial = *a + at;

@@ -304,12 +304,8 @@ int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double
     tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
     sys->status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, sys->f);
     if (!sys->status) {
+        /* the forces stay: where a mark changes, the law's two forms agree */
         sys->status = tribo_accept(sys->contacts, sys->v, sys->feq);
-    }
-    if (!sys->status) {
-        sys->status = tribo_force(sys->contacts, sys->v, sys->feq, sys->f);
-    }
-    if (!sys->status) {
         add_forces(sys, y, dydt);
     }
     return sys->status;

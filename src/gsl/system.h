@@ -80,8 +80,8 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 /* w_i such that W B_i = w_i J_i'. */
 double tribo_system_weight(const tribo_system *sys, size_t i);
 
-/* Takes the last bits of rounding out of J_i x = base_i for contacts at rest (mode 0) that have one degree of freedom, or the difference of
- * two; the other one does so for the velocities at time t. */
+/* Takes the last bits of rounding out of J_i x = base_i for contacts at rest (mode 0) that have one degree of freedom, or the
+ * difference of two; the other one does so for the velocities at time t. */
 void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x);
 void tribo_system_project(tribo_system *sys, const signed char *mode, double t, double *u);
 

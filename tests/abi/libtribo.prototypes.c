@@ -39,6 +39,7 @@ TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
+TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);
 TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);
 TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);

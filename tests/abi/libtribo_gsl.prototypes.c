@@ -12,6 +12,9 @@ TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix 
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
 TRIBO_API int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
+TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
+                                          const double *pattern);
+TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
 TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
@@ -24,6 +27,7 @@ TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y
 TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
+TRIBO_API const char *tribo_driver_method(const tribo_driver *drv);
 TRIBO_API int tribo_method_count(void);
 TRIBO_API const char *tribo_method_name(int method);
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);

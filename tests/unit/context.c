@@ -320,6 +320,7 @@ TEST(texts_of_statuses)
                          TRIBO_ERR_STOPPED,
                          TRIBO_ERR_STEP,
                          TRIBO_ERR_CALLBACK,
+                         TRIBO_ERR_CHATTER,
                          TRIBO_ERR_NOT_SYMMETRIC,
                          TRIBO_ERR_DUPLICATE,
                          TRIBO_ERR_INDEFINITE,
@@ -332,7 +333,7 @@ TEST(texts_of_statuses)
             ck_assert_str_ne(tribo_strerror(known[i]), tribo_strerror(known[j]));
         }
     }
-    const int odd[] = {INT_MIN, INT_MAX, -77, 12, 19, 59, 63, 1000};
+    const int odd[] = {INT_MIN, INT_MAX, -77, 12, 19, 59, 64, 1000};
     for (size_t i = 0; i < COUNT(odd); i++) {
         ck_assert_str_eq(tribo_strerror(odd[i]), unknown);
     }

@@ -178,19 +178,6 @@ TEST(creation_errors)
     tribo_system_destroy(sys);
 }
 
-/* This changes with the next version. */
-TEST(planned_methods)
-{
-    const char *const names[] = {"event", "exact", "central/fixed", "moreau/fixed"};
-    tribo_system *sys = chain(TRIBO_QUINN);
-    tribo_driver *drv = NULL;
-    for (size_t i = 0; i < COUNT(names); i++) {
-        assert_status(tribo_driver_create(&drv, sys, names[i], 0.1, 1e-6, 0.0), TRIBO_ERR_UNSUPPORTED);
-        assert_says(tribo_message(tribo_system_context(sys)), names[i]);
-    }
-    tribo_system_destroy(sys);
-}
-
 TEST(advance_errors)
 {
     const char *const methods[] = {"rk4/fixed", "rkf45", "bsimp"};
@@ -305,5 +292,4 @@ TEST(overflow)
 }
 
 TEST_MAIN("driver", {four_evaluations_a_step, 6}, {last_steps, 1}, {classical_runge_kutta, 1}, {pieces, 6}, {observer_stops, 3},
-          {creation_errors, 1}, {planned_methods, 1}, {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3},
-          {overflow, 3})
+          {creation_errors, 1}, {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3}, {overflow, 3})

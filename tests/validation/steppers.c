@@ -44,10 +44,14 @@ static const struct {
 
 TEST(names)
 {
-    ck_assert_int_eq(tribo_method_count(), COUNT(steppers) + 1);
+    const char *const others[] = {"exact", "event", "central/fixed", "moreau/fixed"};
+    ck_assert_int_eq(tribo_method_count(), COUNT(steppers) + 1 + COUNT(others));
     ck_assert_str_eq(tribo_method_name(0), "rk4/fixed");
     for (size_t i = 0; i < COUNT(steppers); i++) {
         ck_assert_str_eq(tribo_method_name((int)i + 1), steppers[i].name);
+    }
+    for (size_t i = 0; i < COUNT(others); i++) {
+        ck_assert_str_eq(tribo_method_name((int)(COUNT(steppers) + 1 + i)), others[i]);
     }
     ck_assert_ptr_null(tribo_method_name(-1));
     ck_assert_ptr_null(tribo_method_name(tribo_method_count()));

@@ -1,0 +1,71 @@
+#include "output.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tribo/tribo.h"
+
+const char *program = "example";
+
+void die(const char *format, ...)
+{
+    va_list args;
+    fflush(stdout);
+    fprintf(stderr, "%s: ", program);
+    va_start(args, format);
+    vfprintf(stderr, format, args);
+    va_end(args);
+    fputc('\n', stderr);
+    exit(EXIT_FAILURE);
+}
+
+void need(int status, const char *detail)
+{
+    if (status && detail && *detail) {
+        die("%s: %s", tribo_strerror(status), detail);
+    }
+    if (status) {
+        die("%s", tribo_strerror(status));
+    }
+}
+
+void *need_memory(size_t count, size_t size)
+{
+    void *memory = calloc(count ? count : 1, size);
+    if (!memory) {
+        die("out of memory for %zu times %zu bytes", count, size);
+    }
+    return memory;
+}
+
+FILE *create_file(const char *folder, const char *name)
+{
+    const size_t length = strlen(folder) + strlen(name) + 2;
+    char *path = need_memory(length, 1);
+    snprintf(path, length, "%s/%s", folder, name);
+    FILE *file = fopen(path, "w");
+    if (!file) {
+        die("cannot create %s: %s", path, strerror(errno));
+    }
+    free(path);
+    return file;
+}
+
+void close_file(FILE *file, const char *name)
+{
+    const int failed = ferror(file);
+    if (fclose(file) || failed) {
+        die("cannot write %s", name);
+    }
+}
+
+void write_value(FILE *file, double value, const char *key, ...)
+{
+    va_list args;
+    va_start(args, key);
+    vfprintf(file, key, args);
+    va_end(args);
+    fprintf(file, " %.17g\n", value);
+}

@@ -1,0 +1,30 @@
+#ifndef EXAMPLES_STRUCTURE_H
+#define EXAMPLES_STRUCTURE_H
+
+#include <stddef.h>
+
+#include <gsl/gsl_spmatrix.h>
+
+#include "options.h"
+
+/* A structure as finite-element programs hand it over. */
+struct structure {
+    size_t ndof;
+    gsl_spmatrix *mass, *stiffness;
+    struct degree {
+        double at[3];
+        int direction; /* 1, 2, 3 for x, y, z; 0 not read yet */
+    } * dof;
+};
+
+/* Reads matrices and degrees of freedom; ends the program, naming file and line, if anything is wrong with them. */
+struct structure read_structure(const struct options *o);
+void free_structure(struct structure *s);
+
+/* The row of a place, which belongs to the option of that name; ends the program if the structure has none there. */
+size_t find_degree(const struct structure *s, const char *option, const struct place *p);
+
+/* Frequencies in Hz from a file, at most room of them, into hz; returns their number. */
+size_t read_frequencies(const char *path, double *hz, size_t room);
+
+#endif

@@ -1,0 +1,16 @@
+# One job of run.sh: sh job.sh BINARIES RESULTS PROGRAM [CASE LAW]. Its output goes to a log, and its last line to the terminal.
+set -eu
+bin=$1 results=$2 program=$3
+shift 3
+log=$results/log-$program${1:+-$1}${2:+-$2}.txt
+begin=$(date +%s)
+printf '   started   %s\n' "$program $*"
+case $program in
+friction_damper) set -- --out "$results" ;;
+*) set -- "$results" "$@" ;;
+esac
+if ! "$bin/$program" "$@" >"$log" 2>&1; then
+    printf '   FAILED    %s: %s\n' "$program" "$(tail -n 1 "$log")"
+    exit 1
+fi
+printf '   %3d s     %s\n' $(($(date +%s) - begin)) "$(tail -n 1 "$log")"

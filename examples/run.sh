@@ -1,0 +1,56 @@
+#!/bin/sh
+# Runs the paper's figures and a beam with friction through the library, and leaves tables and pictures in build/results.
+# Complete on a bare Debian 12 machine: installs what is missing, see tests/setup.sh. Takes some minutes on two cores.
+# Its status is 0 only if every quantity of the closing table is within its tolerance (expected.txt).
+set -eu
+CDPATH= cd -- "$(dirname -- "$0")/.."
+. tests/setup.sh
+
+setup gcc libc6-dev make cmake pkg-config libgsl-dev gnuplot-nox
+
+build=build/release bin=build/release/examples results=$PWD/build/results
+programs='paper_oscillator paper_dissipation paper_belt friction_damper'
+cores=$(getconf _NPROCESSORS_ONLN)
+begin=$(date +%s)
+
+echo "== Building in $build"
+# A folder that tests/run.sh has configured stays as it is; else only what is needed here.
+[ -f $build/CMakeCache.txt ] || parts='-DTRIBO_FORTRAN=OFF -DTRIBO_BUILD_TESTS=OFF'
+cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_GSL=ON -DTRIBO_BUILD_EXAMPLES=ON ${parts-}
+cmake --build $build --parallel "$cores" --target $programs
+
+echo "== Running, $cores at a time; tables, pictures and logs go to $results"
+rm -rf "$results"
+mkdir -p "$results"
+# The longest first, so that no core is left waiting.
+{
+    echo friction_damper
+    for figure in fig7a fig9 fig7b; do
+        for law in smooth karnopp quinn-reversal quinn velocity-limited coulomb; do
+            echo paper_dissipation $figure $law
+        done
+    done
+    printf '%s\n' paper_belt paper_oscillator 'paper_dissipation rod quinn'
+} | xargs -P "$cores" -L 1 sh examples/job.sh "$bin" "$results"
+
+echo "== Drawing"
+for script in examples/plot/*.gp; do
+    [ "$script" = examples/plot/style.gp ] && continue
+    for format in png svg; do
+        (cd examples/plot && LC_ALL=C.UTF-8 gnuplot -e "results='$results'; format='$format'" "${script##*/}")
+    done
+done
+ls "$results"/*.png
+
+echo "== Tables"
+for figure in fig7a fig7b fig9; do
+    sh examples/table.sh "$results" $figure
+done
+cat "$results/log-paper_oscillator.txt" "$results/log-paper_belt.txt" "$results/log-friction_damper.txt"
+
+echo
+echo "== Summary, after $(($(date +%s) - begin)) s"
+status=0
+awk -f examples/summary.awk "$results"/values-*.txt examples/expected.txt >"$results/summary.txt" || status=$?
+cat "$results/summary.txt"
+exit $status
