@@ -6,6 +6,7 @@
 #include <float.h>
 
 #include "internal.h"
+#include "../real.h"
 
 /* f_eq of a contact that shares no body. */
 static double single_feq(const tribo_context *ctx, size_t i, double a)
@@ -79,7 +80,7 @@ static int solve_box(tribo_context *ctx, const struct island *is)
     for (size_t p = 0; p < is->count; p++) {
         const size_t i = is->member[ctx->near[p]];
         const double fixed_point = clamp(s->x[p] - s->gradient[p] / ctx->op.diagonal[i], s->lo[p], s->hi[p]);
-        ctx->residual = fmax(ctx->residual, fabs(s->x[p] - fixed_point) / fmax(ctx->limit[i], 0.5 * (s->hi[p] - s->lo[p])));
+        ctx->residual = greater(ctx->residual, fabs(s->x[p] - fixed_point) / greater(ctx->limit[i], 0.5 * (s->hi[p] - s->lo[p])));
     }
     ctx->rank += s->rank;
     return TRIBO_OK;
@@ -93,8 +94,8 @@ static int solve_consistent(tribo_context *ctx, const struct island *is, const d
     for (size_t p = 0; p < is->count; p++) {
         const size_t i = is->member[ctx->near[p]];
         const double limit = ctx->limit[i], kappa = ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
-        s->lo[p] = kappa < 0.0 ? fmin(limit, -limit - kappa) : -limit;
-        s->hi[p] = kappa > 0.0 ? fmax(-limit, limit - kappa) : limit;
+        s->lo[p] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
+        s->hi[p] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
         s->q[p] += ctx->op.diagonal[i] * kappa;
     }
     const int status = solve_box(ctx, is);
@@ -116,7 +117,7 @@ static int solve_partition(tribo_context *ctx, const struct island *is, const do
     for (size_t p = 0; p < is->count; p++) {
         const size_t i = is->member[ctx->near[p]];
         const double off = s->gradient[p] / ctx->op.diagonal[i];
-        ctx->residual = fmax(ctx->residual, fabs(off) / ctx->limit[i]);
+        ctx->residual = greater(ctx->residual, fabs(off) / ctx->limit[i]);
         ctx->feq[i] = clamp(s->x[p], -DBL_MAX, DBL_MAX);
     }
     ctx->rank += s->rank;

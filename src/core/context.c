@@ -6,12 +6,13 @@
 #include <string.h>
 
 #include "internal.h"
+#include "../real.h"
 
 #define DEFAULT_EPSILON 1e-6
 
 double tribo_slope(double limit, double epsilon)
 {
-    return fmin(2.0 * limit / epsilon, DBL_MAX);
+    return lesser(2.0 * limit / epsilon, DBL_MAX);
 }
 
 struct contacts tribo_contacts(const tribo_context *ctx)
@@ -31,7 +32,7 @@ void tribo_refresh(tribo_context *ctx)
         if (ctx->step > 0.0) {
             const double time = ctx->step / ctx->lambda_dt;
             ctx->epsilon[i] = clamp(2.0 * ctx->limit[i] * (r * time), DBL_MIN, DBL_MAX);
-            ctx->slope[i] = fmin(1.0 / (r * time), DBL_MAX);
+            ctx->slope[i] = lesser(1.0 / (r * time), DBL_MAX);
         } else {
             ctx->epsilon[i] = ctx->given[i];
             ctx->slope[i] = tribo_slope(ctx->limit[i], ctx->given[i]);
@@ -366,7 +367,7 @@ static double max_rate(const tribo_context *ctx)
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
         if (ctx->limit[i] > 0.0) {
-            rate = fmax(rate, ctx->slope[i] * ctx->op.diagonal[i]);
+            rate = greater(rate, ctx->slope[i] * ctx->op.diagonal[i]);
         }
     }
     if (!ctx->law->uses_feq) {

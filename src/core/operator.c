@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "internal.h"
+#include "../real.h"
 
 /* Entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
 #define ASYMMETRY 1e-10
@@ -112,7 +113,7 @@ static int install_diagonal(tribo_context *ctx, const double *r)
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contacts", ctx->n);
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        op.diagonal[i] = fmax(r[i], DBL_MIN);
+        op.diagonal[i] = greater(r[i], DBL_MIN);
     }
     return install(ctx, &op, &solver);
 }
@@ -174,7 +175,7 @@ static int symmetrize(const tribo_context *ctx, const struct rows *a)
             if (!isfinite(x)) {
                 return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r of contacts %zu, %zu is %g", i, j, x);
             }
-            if (fabs(x - y) > ASYMMETRY * fmax(size, fmax(fabs(x), fabs(y)))) {
+            if (fabs(x - y) > ASYMMETRY * greater(size, greater(fabs(x), fabs(y)))) {
                 return tribo_fail(ctx, TRIBO_ERR_NOT_SYMMETRIC, "r of contacts %zu, %zu is %g one way and %g the other", i, j, x,
                                   y);
             }
@@ -259,8 +260,8 @@ static void fill_islands(struct op *op, const struct rows *a, const size_t *labe
                 sum += fabs(a->val[e]);
             }
         }
-        op->diagonal[i] = fmax(diagonal_of(a, i), DBL_MIN);
-        op->row_sum = fmax(op->row_sum, sum / op->diagonal[i]);
+        op->diagonal[i] = greater(diagonal_of(a, i), DBL_MIN);
+        op->row_sum = greater(op->row_sum, sum / op->diagonal[i]);
     }
 }
 

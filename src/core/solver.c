@@ -1,4 +1,5 @@
 #include "solver.h"
+#include "../real.h"
 
 #include <float.h>
 #include <math.h>
@@ -269,13 +270,13 @@ static int move(struct solver *s, double longest)
         const double p = s->step[i];
         const double room = p > 0.0 ? (s->hi[k] - s->x[k]) / p : p < 0.0 ? (s->lo[k] - s->x[k]) / p : length;
         if (room < length) {
-            length = fmax(room, 0.0);
+            length = greater(room, 0.0);
             hit = i;
         }
     }
     for (size_t i = 0; i < s->size; i++) {
         const size_t k = s->set[i];
-        s->x[k] = fmin(fmax(s->x[k] + length * s->step[i], s->lo[k]), s->hi[k]);
+        s->x[k] = lesser(greater(s->x[k] + length * s->step[i], s->lo[k]), s->hi[k]);
     }
     if (hit == s->size) {
         return 0;
@@ -294,7 +295,7 @@ static size_t worst_dependent(const struct solver *s)
     double most = 1.0;
     for (size_t i = s->rank; i < s->size; i++) {
         const size_t k = s->set[i];
-        const double excess = fabs(s->gradient[k]) / fmax(s->noise[k], DBL_MIN);
+        const double excess = fabs(s->gradient[k]) / greater(s->noise[k], DBL_MIN);
         if (excess > most) {
             most = excess;
             worst = i;
@@ -309,7 +310,7 @@ static size_t worst_bound(const struct solver *s, size_t n)
     size_t worst = n;
     double most = 1.0;
     for (size_t i = 0; i < n; i++) {
-        const double excess = (double)s->at[i] * s->gradient[i] / fmax(s->noise[i], DBL_MIN);
+        const double excess = (double)s->at[i] * s->gradient[i] / greater(s->noise[i], DBL_MIN);
         if (s->lo[i] < s->hi[i] && excess > most) {
             most = excess;
             worst = i;
@@ -322,7 +323,7 @@ static size_t worst_bound(const struct solver *s, size_t n)
 static int active_set(struct solver *s, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        s->x[i] = fmin(fmax(s->x[i], s->lo[i]), s->hi[i]);
+        s->x[i] = lesser(greater(s->x[i], s->lo[i]), s->hi[i]);
         s->at[i] = s->x[i] <= s->lo[i] ? -1 : s->x[i] >= s->hi[i] ? 1 : 0;
     }
     for (size_t round = 0; round < 100 + 20 * n; round++) {
@@ -427,7 +428,7 @@ int tribo_solver_linear(struct solver *s, size_t n)
         project(basis, n - s->rank, n, s->rhs);
         double rounding = DBL_MIN;
         for (size_t i = 0; i < n; i++) {
-            rounding = fmax(rounding, 16.0 * s->noise[i]);
+            rounding = greater(rounding, 16.0 * s->noise[i]);
         }
         for (size_t i = 0; i < n; i++) {
             const size_t k = s->set[i];

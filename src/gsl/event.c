@@ -12,6 +12,7 @@
 #include "driver.h"
 #include "modes.h"
 #include "search.h"
+#include "../real.h"
 
 struct event {
     tribo_system *sys;
@@ -71,9 +72,8 @@ static int expand(struct event *e, double t, const double *y)
         tribo_matrix_multiply_add(&sys->response, 1.0, e->force, acc);
         tribo_system_loads(sys, 1, (int)k + 1, -1.0 / factorial, a);
         tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
-        memset(v, 0, c * sizeof *v);
         double *held = e->largest;
-        int status = tribo_balance(e->modes.hold, v, a, held, NULL);
+        int status = tribo_modes_balance(&e->modes, a, held);
         if (status) {
             return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(e->modes.hold));
         }
@@ -110,7 +110,7 @@ static double largest(const double *x, size_t n)
 {
     double most = 0.0;
     for (size_t i = 0; i < n; i++) {
-        most = fmax(most, fabs(x[i]));
+        most = greater(most, fabs(x[i]));
     }
     return most;
 }
@@ -123,13 +123,13 @@ static double step_length(const struct event *e, const tribo_driver *drv)
     const double d = drv->abstol + drv->reltol * fabs(e->d[0]);
     double h = 0.5 * (double)stride / e->fastest;
     for (size_t k = e->order - 1; k <= e->order; k++) {
-        double term = fmax(largest(e->q + k * n, n) / q, fmax(largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
+        double term = greater(largest(e->q + k * n, n) / q, greater(largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
             /* contacts at rest: their forces, to the same part of the limit; sliding ones: their velocities */
             const int rests = e->modes.mode[i] == 0;
-            term = fmax(term, fabs((rests ? e->f : e->v)[i * stride + k]) / (rests ? e->tolerance * e->modes.limit[i] : u));
+            term = greater(term, fabs((rests ? e->f : e->v)[i * stride + k]) / (rests ? e->tolerance * e->modes.limit[i] : u));
         }
-        h = term > 0.0 ? fmin(h, pow(term, -1.0 / (double)k)) : h;
+        h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
     }
     return h;
 }
@@ -189,7 +189,7 @@ static void set_guards(struct event *e, double h)
         }
         g.offset = m->limit[i];
         g.ramp = m->limit_rate[i];
-        const int near = g.size >= fmin(m->limit[i], m->limit[i] + m->limit_rate[i] * h);
+        const int near = g.size >= lesser(m->limit[i], m->limit[i] + m->limit_rate[i] * h);
         g.size += m->limit[i] + fabs(m->limit_rate[i]) * h;
         for (int side = -1; near && side <= 1; side += 2) {
             g.side = side;
@@ -223,7 +223,7 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(sys, status, "out of memory for method event");
     }
     /* the more digits are wanted, the more terms pay */
-    e->tolerance = fmin(fmax(fmin(drv->abstol, fmax(drv->reltol, drv->abstol)), 1e-16), 1e-2);
+    e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t stride = e->order + 1;
     double *work = malloc((2 * stride * n + 2 * stride * c + stride + n + 4 * c + 1) * sizeof *work);
@@ -257,7 +257,7 @@ static double row_sum(const struct matrix *a)
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             sum += fabs(a->val[k]);
         }
-        most = fmax(most, sum);
+        most = greater(most, sum);
     }
     return most;
 }
@@ -266,9 +266,9 @@ static double row_sum(const struct matrix *a)
 static void find_fastest(struct event *e)
 {
     const tribo_system *sys = e->sys;
-    e->fastest = fmax(sqrt(row_sum(&sys->stiffness)), sys->damping.rows ? row_sum(&sys->damping) : 0.0);
+    e->fastest = greater(sqrt(row_sum(&sys->stiffness)), sys->damping.rows ? row_sum(&sys->damping) : 0.0);
     for (size_t s = 0; s < sys->harmonics; s++) {
-        e->fastest = fmax(e->fastest, fabs(sys->harmonic[s].omega));
+        e->fastest = greater(e->fastest, fabs(sys->harmonic[s].omega));
     }
     e->revision = sys->revision;
 }
@@ -303,14 +303,15 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         if (status) {
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
         }
-        const double end = fmin(t1, tribo_system_next_kink(sys, *t)), length = step_length(e, drv), h = fmin(length, end - *t);
+        const double end = lesser(t1, tribo_system_next_kink(sys, *t)), length = step_length(e, drv),
+                     h = lesser(length, end - *t);
         if (!(*t + h > *t)) {
             return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
         }
         double when = h;
         set_guards(e, h);
         const struct guard *event = tribo_search(&e->search, h, &when);
-        when = event ? fmin(when, h) : h;
+        when = event ? lesser(when, h) : h;
         move_to(e, when, y);
         *t = when < end - *t ? *t + when : end;
         drv->steps++;

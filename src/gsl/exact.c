@@ -11,6 +11,7 @@
 #include "held.h"
 #include "modes.h"
 #include "search.h"
+#include "../real.h"
 
 /* Decompositions are dropped when they take more than this. */
 #define CACHE_BYTES ((size_t)256 << 20)
@@ -384,9 +385,9 @@ static double bound_motion(struct exact *x, double longest)
 {
     const struct held *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        longest = h->lr[p] > 0.0 ? fmin(longest, 1.0 / h->lr[p]) : longest;
+        longest = h->lr[p] > 0.0 ? lesser(longest, 1.0 / h->lr[p]) : longest;
     }
-    longest = h->any_resonant ? fmin(longest, 16.0 / h->fastest) : longest;
+    longest = h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
     for (size_t p = 0; p < h->exponents; p++) {
         const double lambda = h->size[p];
         x->growth[p] = sqrt(x->zr[p] * x->zr[p] + x->zi[p] * x->zi[p]) * (h->lr[p] > 0.0 ? exp(h->lr[p] * longest) : 1.0);
@@ -556,15 +557,15 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     while (!status && *t < t1) {
         double longest = begin_phase(x, sys, *t, y, t1 - *t), when = 0.0;
         const struct guard *event = tribo_search(&x->search, longest, &when);
-        when = event ? fmin(when, longest) : longest;
+        when = event ? lesser(when, longest) : longest;
         status = show(x, drv, when, y);
         if (status) {
             break;
         }
         move_to(x, sys, when, y, y);
-        *t = !event && longest == t1 - *t ? t1 : fmin(*t + when, t1);
+        *t = !event && longest == t1 - *t ? t1 : lesser(*t + when, t1);
         drv->steps++;
-        status = tribo_modes_proceed(&x->modes, drv, &x->search, event, *t, y, 1.0 / fmax(x->h->fastest, x->slowest));
+        status = tribo_modes_proceed(&x->modes, drv, &x->search, event, *t, y, 1.0 / greater(x->h->fastest, x->slowest));
         status = status ? status : find_held(x, drv);
         if (!status && (event || *t >= t1)) {
             status = tribo_driver_tell(drv, *t, y, event != NULL);

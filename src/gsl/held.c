@@ -1,4 +1,5 @@
 #include "held.h"
+#include "../real.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -318,8 +319,8 @@ static int complete_modes(struct build *b)
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; b->sys->damping.rows && l < m; l++) {
             c[k * m + l] = dot(b->psi + k * n, b->ac_phi + l * n, n);
-            most = fmax(most, fabs(c[k * m + l]));
-            beside = k == l ? beside : fmax(beside, fabs(c[k * m + l]));
+            most = greater(most, fabs(c[k * m + l]));
+            beside = k == l ? beside : greater(beside, fabs(c[k * m + l]));
         }
     }
     if (beside > 1e-14 * most) {
@@ -329,7 +330,7 @@ static int complete_modes(struct build *b)
         }
         memcpy(h->coupling, c, m * m * sizeof *c);
     }
-    const double zero = m ? 1e-13 * (double)m * fmax(fabs(h->omega2[m - 1]), fabs(h->omega2[0])) : 0.0;
+    const double zero = m ? 1e-13 * (double)m * greater(fabs(h->omega2[m - 1]), fabs(h->omega2[0])) : 0.0;
     for (size_t k = 0; k < m; k++) {
         h->damping[k] = fabs(c[k * m + k]) > 1e-14 * most ? c[k * m + k] : 0.0;
         h->omega2[k] = fabs(h->omega2[k]) > zero ? h->omega2[k] : 0.0;
@@ -365,7 +366,7 @@ static int exponents_decoupled(struct build *b)
         if (h->drifts[k]) {
             continue;
         }
-        if (fabs(square) < CRITICAL * fmax(fabs(h->omega2[k]), half * half)) {
+        if (fabs(square) < CRITICAL * greater(fabs(h->omega2[k]), half * half)) {
             return unsupported(b, "a mode is critically damped");
         }
         if (square > 0.0) {
@@ -844,7 +845,7 @@ static int build(struct build *b, const signed char *mode, const unsigned char *
     h->size = keep(b, h->exponents);
     for (size_t p = 0; h->size && p < h->exponents; p++) {
         h->size[p] = hypot(h->lr[p], h->li[p]);
-        h->fastest = fmax(h->fastest, h->size[p]);
+        h->fastest = greater(h->fastest, h->size[p]);
     }
     return h->size && find_forcing(b) && find_response(b) && find_watches(b) && compress(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }

@@ -1,4 +1,5 @@
 #include "matrix.h"
+#include "../real.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -273,7 +274,7 @@ int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t
                 return 1;
             }
             const double size = symmetric ? sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j))) : 0.0;
-            if (symmetric && fabs(*value - *mirror) > ASYMMETRY * fmax(size, fmax(fabs(*value), fabs(*mirror)))) {
+            if (symmetric && fabs(*value - *mirror) > ASYMMETRY * greater(size, greater(fabs(*value), fabs(*mirror)))) {
                 return 1;
             }
         }

@@ -1,5 +1,7 @@
 #include "modes.h"
+#include "../real.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,16 +23,19 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->patience = 64 + 16 * sys->ncontact;
     int status = tribo_clone(sys->contacts, &m->judge);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double *work = malloc((12 * c + (1 + ORDERS) * n + m->patience) * sizeof *work);
-    m->mode = malloc(4 * c);
+    double *work = malloc((13 * c + (1 + ORDERS) * n + m->patience) * sizeof *work);
+    m->mode = malloc(5 * c);
+    m->at = malloc(c * sizeof *m->at);
     m->limit = work;
-    if (status || !work || !m->mode) {
+    if (status || !work || !m->mode || !m->at) {
         tribo_modes_free(m);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the modes of %zu contacts", sys->ncontact);
     }
     m->weak = m->mode + c;
     m->holds = (unsigned char *)m->mode + 2 * c;
     m->rested = m->holds + c;
+    m->before = m->mode + 4 * c;
+    m->contacts = sys->ncontact;
     m->force = work + c;
     m->v = work + 2 * c;
     m->a = work + 3 * c;
@@ -42,7 +47,9 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->limit_rate = work + 9 * c;
     m->noise = work + 10 * c;
     m->slope = work + 11 * c;
-    m->acceleration = work + 12 * c;
+    m->still = work + 12 * c;
+    m->acceleration = work + 13 * c;
+    memset(m->still, 0, c * sizeof *m->still);
     m->jerk = m->acceleration + n;
     m->recent = m->jerk + ORDERS * n;
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -68,6 +75,10 @@ void tribo_modes_free(struct modes *m)
     tribo_destroy(m->hold);
     free(m->limit);
     free(m->mode);
+    free(m->at);
+    free(m->order);
+    free(m->block);
+    free(m->last);
     memset(m, 0, sizeof *m);
 }
 
@@ -93,8 +104,10 @@ static signed char mode_of_velocity(const struct modes *m, size_t i)
 /* Brings limits, and with them which contacts are open, up to the time of v. */
 static void update_limits(struct modes *m, const tribo_system *sys)
 {
-    tribo_system_limits(sys, m->limit, m->limit_rate);
-    tribo_set_limit(m->judge, m->limit);
+    if (sys->limits.knots) {
+        tribo_system_limits(sys, m->limit, m->limit_rate);
+        tribo_set_limit(m->judge, m->limit);
+    }
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (m->limit[i] == 0.0 && m->limit_rate[i] == 0.0) {
             m->mode[i] = 2;
@@ -108,6 +121,8 @@ int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, i
 {
     tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
     tribo_system_limits(sys, m->limit, m->limit_rate);
+    tribo_set_limit(m->judge, m->limit);
+    m->fresh = 1;
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, 1, 0, 1.0, m->base);
     find_noise(m, sys, y);
@@ -172,8 +187,8 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
         tribo_matrix_multiply_add(&sys->direction, 1.0, next, m->a);
         for (size_t i = 0; i < c; i++) {
             m->slope[i] = order == 1 ? m->a[i] : m->slope[i];
-            scale = fmax(scale, m->diagonal[i] > 0.0 ? fabs(m->a[i]) / m->diagonal[i] : 0.0);
-            scale = fmax(scale, order == 1 ? fabs(m->limit_rate[i]) : 0.0);
+            scale = greater(scale, m->diagonal[i] > 0.0 ? fabs(m->a[i]) / m->diagonal[i] : 0.0);
+            scale = greater(scale, order == 1 ? fabs(m->limit_rate[i]) : 0.0);
         }
         const int status = solve_rates(m, sys, order, scale);
         if (status) {
@@ -222,7 +237,7 @@ static void find_margins(struct modes *m, const tribo_system *sys)
     memset(m->lo, 0, sys->ncontact * sizeof *m->lo);
     add_sizes(&sys->direction, m->jerk, m->lo);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->lo[i] = fmax(AT_LIMIT * m->limit[i], m->diagonal[i] > 0.0 ? NOISE * m->lo[i] / m->diagonal[i] : 0.0);
+        m->lo[i] = greater(AT_LIMIT * m->limit[i], m->diagonal[i] > 0.0 ? NOISE * m->lo[i] / m->diagonal[i] : 0.0);
     }
 }
 
@@ -254,91 +269,141 @@ static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const 
     return weak ? decide_by_rates(m, sys, y) : TRIBO_OK;
 }
 
-/* The contacts that hold get limits in the context that finds their forces, the others none. */
-static void set_hold(struct modes *m, const tribo_system *sys)
+int tribo_modes_balance(struct modes *m, const double *a, double *f)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
+        f[i] = m->holds[i] ? -a[i] / m->diagonal[i] : 0.0;
     }
-    tribo_set_limit(m->hold, m->lo);
+    return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
 }
 
-/* Marks an independent set of the rest contacts at rest, those named at, as holding; rather such that are inside their limits, or
- * go there. */
-static int choose_holds(struct modes *m, const tribo_system *sys, const size_t *at, size_t rest)
+/* Room for what choose_holds needs for so many contacts. */
+static int make_room(struct modes *m, size_t rest)
 {
-    size_t *order = malloc(rest * sizeof *order);
-    double *r = malloc(rest * rest * sizeof *r);
-    unsigned char *last = malloc(rest);
-    const int done = order && r && last;
-    for (size_t p = 0; done && p < rest; p++) {
-        last[p] = (unsigned char)(m->weak[at[p]] == 0 ? 0 : m->weak[at[p]] == 2 ? 1 : 2);
-        m->holds[at[p]] = 1;
+    if (rest <= m->room) {
+        return 1;
+    }
+    free(m->order);
+    free(m->block);
+    free(m->last);
+    m->order = malloc(rest * sizeof *m->order);
+    m->block = malloc(rest * rest * sizeof *m->block);
+    m->last = malloc(rest);
+    m->room = m->order && m->block && m->last ? rest : 0;
+    return m->room > 0;
+}
+
+/* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
+ * there. */
+static int choose_holds(struct modes *m, const tribo_system *sys, size_t rest)
+{
+    if (!make_room(m, rest)) {
+        return 0;
+    }
+    for (size_t p = 0; p < rest; p++) {
+        const signed char weak = m->weak[m->at[p]];
+        m->last[p] = (unsigned char)(weak == 0 ? 0 : weak == 2 ? 1 : 2);
+        m->holds[m->at[p]] = 1;
         for (size_t q = 0; q < rest; q++) {
-            r[p * rest + q] = tribo_system_delassus(sys, at[p], at[q]);
+            m->block[p * rest + q] = tribo_system_delassus(sys, m->at[p], m->at[q]);
         }
     }
-    for (size_t k = done ? tribo_independent_rows(r, rest, last, order) : rest; k < rest; k++) {
-        m->holds[at[order[k]]] = 0;
+    for (size_t k = tribo_independent_rows(m->block, rest, m->last, m->order); k < rest; k++) {
+        m->holds[m->at[m->order[k]]] = 0;
     }
-    free(order);
-    free(r);
-    free(last);
-    return done;
+    return 1;
 }
 
 /* A contact that holds, but would go beyond its limit while those that do not hold keep their forces; ncontact if there is none.
  */
-static size_t misplaced(struct modes *m, const tribo_system *sys)
+static size_t misplaced(struct modes *m)
 {
-    memset(m->v, 0, sys->ncontact * sizeof *m->v);
-    if (tribo_balance(m->hold, m->v, m->slope, m->rate, NULL) != TRIBO_OK) {
-        return sys->ncontact;
+    int inward = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        inward |= m->holds[i] && m->weak[i] == 2;
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    if (!inward || tribo_modes_balance(m, m->slope, m->rate) != TRIBO_OK) {
+        return m->contacts;
+    }
+    for (size_t i = 0; i < m->contacts; i++) {
         const double side = m->force[i] > 0.0 ? 1.0 : -1.0;
         if (m->holds[i] && m->weak[i] == 2 && side * m->rate[i] > m->limit_rate[i]) {
             return i;
         }
     }
-    return sys->ncontact;
+    return m->contacts;
 }
 
 /* Which of the contacts at rest hold. */
 static int find_holds(struct modes *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
-    size_t rest = 0, *at = malloc((c + 1) * sizeof *at), found = 0;
-    for (size_t i = 0; at && i < c; i++) {
-        m->holds[i] = m->mode[i] == 0 && m->diagonal[i] > 0.0;
-        at[rest] = i;
-        rest += m->holds[i];
+    size_t rest = 0, changes = 0;
+    for (size_t i = 0; i < c; i++) {
+        const signed char now = (signed char)(m->mode[i] == 0 ? 1 + m->weak[i] : 0);
+        changes += now != m->before[i];
+        m->before[i] = now;
+        m->at[rest] = i;
+        rest += m->mode[i] == 0 && m->diagonal[i] > 0.0;
     }
-    int done = at != NULL;
+    if (changes == 0 && !m->fresh) {
+        return TRIBO_OK;
+    }
+    m->fresh = 0;
+    size_t found = c;
     do {
-        done = done && (m->uncoupled || rest < 2 || choose_holds(m, sys, at, rest));
-        set_hold(m, sys);
-        found = done && !m->uncoupled ? misplaced(m, sys) : c;
+        for (size_t i = 0; i < c; i++) {
+            m->holds[i] = m->mode[i] == 0 && m->diagonal[i] > 0.0;
+        }
+        if (m->uncoupled) {
+            break;
+        }
+        if (rest > 1 && !choose_holds(m, sys, rest)) {
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+        }
+        for (size_t i = 0; i < c; i++) {
+            m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+        }
+        tribo_set_limit(m->hold, m->lo);
+        found = misplaced(m);
         if (found < c) {
             m->weak[found] = 1;
         }
     } while (found < c);
-    free(at);
-    return done ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+    return TRIBO_OK;
 }
 
-/* x -= B_I R_II^-1 (J_I x - base) over the contacts that hold, twice, since the first time leaves rounding; then the last bits.
- */
-int tribo_modes_hold(struct modes *m, tribo_system *sys, const double *base, double *x)
+/* 1 if J x - base is more than the rounding of x for a contact that holds. */
+static int moves(struct modes *m, const tribo_system *sys, const double *base, const double *x)
 {
-    const size_t c = sys->ncontact;
-    for (int pass = 0; pass < 2 && !m->simple; pass++) {
-        memset(m->v, 0, c * sizeof *m->v);
-        for (size_t i = 0; i < c; i++) {
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; i < m->contacts; i++) {
+        double sum = -base[i], size = fabs(base[i]);
+        for (size_t k = m->holds[i] ? j->first[i] : j->first[i + 1]; k < j->first[i + 1]; k++) {
+            sum += j->val[k] * x[j->col[k]];
+            size += fabs(j->val[k] * x[j->col[k]]);
+        }
+        if (m->holds[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* First the last bits of simple contacts; then, if there is more, x -= B_I R_II^-1 (J_I x - base), twice, since the first time
+ * leaves rounding of what it takes away. */
+int tribo_modes_hold(struct modes *m, const tribo_system *sys, const double *base, double *x)
+{
+    tribo_system_snap(sys, m->mode, base, x);
+    if (m->simple || !moves(m, sys, base, x)) {
+        return TRIBO_OK;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < m->contacts; i++) {
             m->a[i] = -base[i];
         }
         tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->a);
-        const int status = tribo_balance(m->hold, m->v, m->a, m->rate, NULL);
+        const int status = tribo_modes_balance(m, m->a, m->rate);
         if (status) {
             return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
         }

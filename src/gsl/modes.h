@@ -26,6 +26,14 @@ struct modes {
     double *recent;         /* [patience] times of the last events */
     int uncoupled;          /* R is diagonal */
     int simple;             /* no contact has more than one degree of freedom */
+    size_t contacts;
+    double *still;       /* [ncontact] zeros */
+    signed char *before; /* [ncontact] what find_holds saw last */
+    int fresh;           /* it saw nothing yet */
+    size_t *at;          /* [ncontact] workspace of find_holds, and for as many as room contacts at rest: */
+    size_t room, *order;
+    double *block;
+    unsigned char *last;
     size_t patience, events;
 };
 
@@ -41,8 +49,11 @@ int tribo_modes_start(struct modes *m, tribo_system *sys, double t, double *y, i
  * the rates of the forces does so for those that are just at their limit. Sets mode, holds, force and acceleration. */
 int tribo_modes_decide(struct modes *m, tribo_system *sys, double t, double *y);
 
+/* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
+int tribo_modes_balance(struct modes *m, const double *a, double *f);
+
 /* Takes what is not zero in J x - base for the contacts at rest out of x [ndof]. */
-int tribo_modes_hold(struct modes *m, tribo_system *sys, const double *base, double *x);
+int tribo_modes_hold(struct modes *m, const tribo_system *sys, const double *base, double *x);
 
 /* v_i in a state, at the time that tribo_modes_decide was last called for. */
 double tribo_modes_velocity(const struct modes *m, const tribo_system *sys, size_t i, const double *y);

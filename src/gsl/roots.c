@@ -1,4 +1,5 @@
 #include "roots.h"
+#include "../real.h"
 
 #include <math.h>
 
@@ -22,52 +23,38 @@ int tribo_positive(const struct sample *a, const struct sample *b, double h, dou
     bernstein(a, b, h, c);
     const double h_3 = h * h * h, doubt = bend * h_3 * h_3 / 14400.0;
     const double low =
-        fmin(fmin(c[0] + 5.0 * c[1], 2.0 * c[1] + 4.0 * c[2]), fmin(4.0 * c[3] + 2.0 * c[4], 5.0 * c[4] + c[5])) / 6.0;
-    return fmin(fmin(low, fmin(c[0], c[5])), 0.5 * (c[2] + c[3]) - doubt) >= -noise;
-}
-
-/* Value at s of the polynomial of this degree with Bernstein coefficients c, and its slope. */
-static double value(const double *c, int degree, double s, double *slope)
-{
-    const double r = 1.0 - s;
-    double p[6];
-    for (int i = 0; i <= degree; i++) {
-        p[i] = c[i];
-    }
-    for (int k = degree; k > 1; k--) {
-        for (int i = 0; i < k; i++) {
-            p[i] = r * p[i] + s * p[i + 1];
-        }
-    }
-    *slope = degree * (p[1] - p[0]);
-    return r * p[0] + s * p[1];
+        lesser(lesser(c[0] + 5.0 * c[1], 2.0 * c[1] + 4.0 * c[2]), lesser(4.0 * c[3] + 2.0 * c[4], 5.0 * c[4] + c[5])) / 6.0;
+    return lesser(lesser(low, lesser(c[0], c[5])), 0.5 * (c[2] + c[3]) - doubt) >= -noise;
 }
 
 double tribo_root_guess(const struct sample *a, const struct sample *b, double h)
 {
-    double c[6], lo = 0.0, hi = 1.0, slope;
-    int degree = 5;
-    bernstein(a, b, h, c);
+    const double d = h * a->d, e = h * h * a->e;
+    const double rise = b->g - a->g - d - 0.5 * e, tilt = h * b->d - d - e, curve = h * h * b->e - e;
+    double p[6] = {a->g,
+                   d,
+                   0.5 * e,
+                   10.0 * rise - 4.0 * tilt + 0.5 * curve,
+                   7.0 * tilt - 15.0 * rise - curve,
+                   6.0 * rise - 3.0 * tilt + 0.5 * curve};
     /* roots at the start are divided out */
-    while (degree > 1 && c[0] <= 0.0) {
-        for (int i = 0; i < degree; i++) {
-            c[i] = c[i + 1] * degree / (i + 1.0);
-        }
-        degree--;
+    int first = 0;
+    while (first < 3 && p[first] <= 0.0) {
+        p[first++] = 0.0;
     }
-    double s = c[0] > 0.0 ? c[0] / (c[0] - c[degree]) : 0.5;
-    for (int i = 0; i < 20 && hi - lo > 1e-12; i++) {
-        const double p = value(c, degree, s, &slope);
-        if (p > 0.0) {
-            lo = s;
-        } else {
-            hi = s;
+    double lo = 0.0, hi = 1.0, s = p[0] > 0.0 ? a->g / (a->g - b->g) : 0.5;
+    for (int i = 0; i < 30; i++) {
+        double value = 0.0, slope = 0.0;
+        for (int k = 5; k >= first; k--) {
+            slope = slope * s + value;
+            value = value * s + p[k];
         }
-        const double next = s - p / slope;
-        if (slope < 0.0 && fabs(next - s) < 1e-12) {
+        *(value > 0.0 ? &lo : &hi) = s;
+        const double step = -value / slope;
+        if (slope < 0.0 && fabs(step) < 1e-10) {
             break;
         }
-        s = next > lo && next < hi ? next : 0.5 * (lo + hi);
+        s = s + step > lo && s + step < hi ? s + step : 0.5 * (lo + hi);
     }
     return s * h;
 }

@@ -1,4 +1,5 @@
 #include "search.h"
+#include "../real.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,6 +13,21 @@ static double noise(const struct guard *g)
     return 4.0 * DBL_EPSILON * g->size;
 }
 
+/* x^(1/6) within a factor of 1.13. */
+static double sixth_root(double x)
+{
+    static const double root[] = {1.0, 1.122, 1.26, 1.414, 1.587, 1.782};
+    int e;
+    frexp(x, &e);
+    e += 6000;
+    return x > 0.0 && x <= DBL_MAX ? ldexp(root[e % 6], e / 6 - 1000) : x;
+}
+
+static int falls_fast(const struct guard *g)
+{
+    return g->size > 0.0 && g->left.d < -FALLS * g->size * sixth_root(g->bend / g->size);
+}
+
 /* Samples of all guards at the start. Of those that start at zero, rounding may say that they fall; one that really does is
  * returned. */
 static const struct guard *sample_start(struct search *s)
@@ -22,13 +38,12 @@ static const struct guard *sample_start(struct search *s)
         struct guard *g = &s->guard[k];
         g->left = s->read(s->motion, g);
         if (g->from_zero || g->left.g <= 0.0) {
-            const double rate = g->size > 0.0 ? cbrt(sqrt(g->bend / g->size)) : 0.0;
-            if (g->left.d < -FALLS * g->size * rate) {
+            if (g->left.d < 0.0 && falls_fast(g)) {
                 return g;
             }
             g->left.g = 0.0;
-            g->left.d = fmax(g->left.d, 0.0);
-            g->left.e = g->left.d > 0.0 ? g->left.e : fmax(g->left.e, 0.0);
+            g->left.d = greater(g->left.d, 0.0);
+            g->left.e = g->left.d > 0.0 ? g->left.e : greater(g->left.e, 0.0);
         }
     }
     return NULL;
@@ -49,7 +64,7 @@ static int all_positive(const struct search *s, double h, int to_middle)
     for (size_t k = 0; k < s->guards; k++) {
         const struct guard *g = &s->guard[k];
         struct sample end = to_middle ? g->middle : g->right;
-        end.g = fmax(end.g, 0.0);
+        end.g = greater(end.g, 0.0);
         if (!tribo_positive(&g->left, &end, h, g->bend, noise(g))) {
             return 0;
         }
@@ -62,9 +77,9 @@ static double first_length(const struct search *s, double longest)
 {
     double ratio = HUGE_VAL;
     for (size_t k = 0; k < s->guards; k++) {
-        ratio = fmin(ratio, s->guard[k].bend > 0.0 ? s->guard[k].size / s->guard[k].bend : HUGE_VAL);
+        ratio = lesser(ratio, s->guard[k].bend > 0.0 ? s->guard[k].size / s->guard[k].bend : HUGE_VAL);
     }
-    return fmin(cbrt(sqrt(300.0 * ratio)), longest);
+    return lesser(sixth_root(300.0 * ratio), longest);
 }
 
 /* The guard that, among those not positive where the interval of length h ends, is the first to fall to zero as far as one can
@@ -133,7 +148,7 @@ static const struct guard *find_zero(struct search *s, double *a, double *b, dou
             keep_right(s);
             return NULL;
         }
-        *when = fmax(trial + step, 0.0);
+        *when = greater(trial + step, 0.0);
         if (step != 0.0 || falls->middle.g <= noise(falls)) {
             return falls;
         }
@@ -158,7 +173,7 @@ const struct guard *tribo_search(struct search *s, double longest, double *when)
         return falls;
     }
     while (a < longest) {
-        double b = fmin(a + h, longest);
+        double b = lesser(a + h, longest);
         sample(s, b);
         keep_right(s);
         if (first_to_fall(s, b - a, &ignored)) {

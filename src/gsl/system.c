@@ -1,4 +1,5 @@
 #include "system.h"
+#include "../real.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -176,7 +177,7 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
         const struct table *table = k < sys->tables ? &sys->table[k] : &sys->limits;
         for (size_t i = table->knots ? knot_at(table, t) : 0; i < table->knots; i++) {
             if (table->time[i] > t) {
-                next = fmin(next, table->time[i]);
+                next = lesser(next, table->time[i]);
                 break;
             }
         }
