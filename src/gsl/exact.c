@@ -16,6 +16,9 @@
 /* Decompositions are dropped when they take more than this. */
 #define CACHE_BYTES ((size_t)256 << 20)
 
+/* Over a time this short, in terms of the fastest exponent, three terms of a series are all of it. */
+#define CLOSE 1e-6
+
 struct exact {
     tribo_system *sys;
     struct modes modes;
@@ -26,6 +29,7 @@ struct exact {
      * Re(r z) */
     const struct held *h;
     double t0, tau;                          /* tau: where w is */
+    double fastest;                          /* exponent or harmonic */
     double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
     double *drift, *drift_rate;              /* [modes] of those that drift: what harmonics do not explain, at t0 */
     double *zr, *zi;                         /* [exponents] at t0 */
@@ -172,21 +176,47 @@ static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
     }
 }
 
-/* z and its derivatives, and the harmonics, at t0 + tau. */
+/* e^{lambda delta} of an exponent. */
+static void grow(const struct held *h, size_t p, double delta, double *re, double *im)
+{
+    const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0;
+    *re = size * cos(h->li[p] * delta);
+    *im = size * sin(h->li[p] * delta);
+}
+
+/* The same where |lambda delta| is tiny. */
+static void grow_little(const struct held *h, size_t p, double delta, double *re, double *im)
+{
+    const double x = h->lr[p] * delta, y = h->li[p] * delta;
+    *re = 1.0 + x + 0.5 * (x * x - y * y);
+    *im = y + x * y;
+}
+
+/* z and its derivatives, and the harmonics, at t0 + tau: from t0, or, if that is close, from the last look. */
 static void look(void *motion, double tau)
 {
     struct exact *x = motion;
     const tribo_system *sys = x->sys;
     const struct held *h = x->h;
+    const double delta = tau - x->tau;
+    const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double phase = sys->harmonic[s].omega * (x->t0 + tau);
-        x->cos_t[s] = cos(phase);
-        x->sin_t[s] = sin(phase);
+        const double omega = sys->harmonic[s].omega;
+        if (close) {
+            const double turn = omega * delta, c = 1.0 - 0.5 * turn * turn, ct = x->cos_t[s], st = x->sin_t[s];
+            x->cos_t[s] = c * ct - turn * st;
+            x->sin_t[s] = c * st + turn * ct;
+        } else {
+            const double phase = omega * (x->t0 + tau);
+            x->cos_t[s] = cos(phase);
+            x->sin_t[s] = sin(phase);
+        }
     }
     for (size_t p = 0; p < h->exponents; p++) {
-        const double lr = h->lr[p], li = h->li[p], e = lr != 0.0 ? exp(lr * tau) : 1.0;
-        const double er = e * cos(li * tau), ei = e * sin(li * tau);
-        const double wr = x->zr[p] * er - x->zi[p] * ei, wi = x->zr[p] * ei + x->zi[p] * er;
+        const double lr = h->lr[p], li = h->li[p], zr = close ? x->wr[p] : x->zr[p], zi = close ? x->wi[p] : x->zi[p];
+        double er, ei;
+        (close ? grow_little : grow)(h, p, close ? delta : tau, &er, &ei);
+        const double wr = zr * er - zi * ei, wi = zr * ei + zi * er;
         const double w1r = lr * wr - li * wi, w1i = lr * wi + li * wr;
         x->wr[p] = wr;
         x->wi[p] = wi;
@@ -314,13 +344,14 @@ static void move_to(struct exact *x, const tribo_system *sys, double tau, const 
 /* ------------------------------------------------------------------------------------------------------------- phases */
 
 /* Amplitudes of eta at t0, split into what the right-hand side makes of it and exponentials. */
-static void split_motion(struct exact *x, const tribo_system *sys, const double *y)
+static void split_motion(struct exact *x, tribo_system *sys, const double *y)
 {
     const struct held *h = x->h;
     const size_t n = sys->ndof, m = h->modes;
+    tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
-        x->cos_0[s] = cos(sys->harmonic[s].omega * x->t0);
-        x->sin_0[s] = sin(sys->harmonic[s].omega * x->t0);
+        x->cos_0[s] = sys->harmonic[s].cos_t;
+        x->sin_0[s] = sys->harmonic[s].sin_t;
     }
     for (size_t k = 0; k < m; k++) {
         const double *psi = h->psi + k * h->moving;
@@ -448,6 +479,15 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
     const struct held *h = x->h;
     x->t0 = t;
     split_motion(x, sys, y);
+    x->tau = 0.0;
+    x->fastest = h->fastest;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        x->fastest = greater(x->fastest, fabs(sys->harmonic[s].omega));
+        x->cos_t[s] = x->cos_0[s];
+        x->sin_t[s] = x->sin_0[s];
+    }
+    memcpy(x->wr, x->zr, h->exponents * sizeof *x->wr);
+    memcpy(x->wi, x->zi, h->exponents * sizeof *x->wi);
     longest = bound_motion(x, longest);
     x->search.guards = 0;
     for (size_t k = 0; k < h->watches; k++) {

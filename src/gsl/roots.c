@@ -50,11 +50,13 @@ double tribo_root_guess(const struct sample *a, const struct sample *b, double h
             value = value * s + p[k];
         }
         *(value > 0.0 ? &lo : &hi) = s;
-        const double step = -value / slope;
-        if (slope < 0.0 && fabs(step) < 1e-10) {
-            break;
+        const double next = s - value / slope;
+        const int inside = next > lo && next < hi;
+        /* a step this short leaves an error of its square */
+        if (slope < 0.0 && fabs(next - s) < 1e-6) {
+            return next * h;
         }
-        s = s + step > lo && s + step < hi ? s + step : 0.5 * (lo + hi);
+        s = inside ? next : 0.5 * (lo + hi);
     }
     return s * h;
 }

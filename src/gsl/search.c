@@ -123,12 +123,11 @@ static double last_bit(const struct guard *g)
     return g->middle.d < 0.0 && fabs(0.5 * g->middle.e * step * step) <= noise(g) ? step : 0.0;
 }
 
-/* A guard is not positive at *b. Narrows [*a, *b] to the first zero of all guards: returns that guard, with *when, or NULL if
+/* A guard is not positive at *b; falls seems to be the first to be so, at from *a. Narrows [*a, *b] to the first zero of all
+ * guards: returns that guard, with *when, or NULL if
  * [*a, *b] must be divided to tell. */
-static const struct guard *find_zero(struct search *s, double *a, double *b, double *when)
+static const struct guard *find_zero(struct search *s, struct guard *falls, double at, double *a, double *b, double *when)
 {
-    double at = 0.0;
-    struct guard *falls = first_to_fall(s, *b - *a, &at);
     while (falls->right.g < -noise(falls) && *a + at > *a && *a + at < *b) {
         const double trial = *a + at;
         sample(s, trial);
@@ -166,7 +165,7 @@ const struct guard *tribo_search(struct search *s, double longest, double *when)
     if (s->guards == 0) {
         return NULL;
     }
-    double a = 0.0, h = first_length(s, longest), ignored;
+    double a = 0.0, h = first_length(s, longest), at = 0.0;
     const struct guard *falls = sample_start(s);
     if (falls) {
         *when = 0.0;
@@ -176,8 +175,9 @@ const struct guard *tribo_search(struct search *s, double longest, double *when)
         double b = lesser(a + h, longest);
         sample(s, b);
         keep_right(s);
-        if (first_to_fall(s, b - a, &ignored)) {
-            falls = find_zero(s, &a, &b, when);
+        struct guard *below = first_to_fall(s, b - a, &at);
+        if (below) {
+            falls = find_zero(s, below, at, &a, &b, when);
             if (falls) {
                 return falls;
             }
