@@ -1,6 +1,13 @@
+include(CheckCSourceCompiles)
 include(CheckLinkerFlag)
 
 check_linker_flag(C "LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/src/core/tribo.map" TRIBO_HAVE_VERSION_SCRIPT)
+# Clang 14 leaves a global symbol of a fixed name for every static function with clones.
+if(TRIBO_SIMD AND CMAKE_C_COMPILER_ID STREQUAL "GNU")
+  check_c_source_compiles([[
+    __attribute__((target_clones("avx2", "default"))) static int one(void) { return 1; }
+    int main(void) { return one(); }]] TRIBO_HAVE_CLONES)
+endif()
 find_library(TRIBO_LIBM m)
 mark_as_advanced(TRIBO_LIBM)
 
@@ -36,6 +43,9 @@ function(tribo_library target)
   target_compile_options(${target} PRIVATE
     "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-ffp-contract=off;-fno-math-errno;-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>"
     "$<$<AND:$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>")
+  if(TRIBO_SIMD AND TRIBO_HAVE_CLONES)
+    target_compile_definitions(${target} PRIVATE TRIBO_CLONES)
+  endif()
   if(TRIBO_LIBM)
     target_link_libraries(${target} PRIVATE m)
   endif()

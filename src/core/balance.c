@@ -182,16 +182,14 @@ static int balance_islands(tribo_context *ctx, const double *v, const double *a,
     return status;
 }
 
-static void balance_diagonal(tribo_context *ctx, const double *v, const double *a)
+/* f_eq of contacts that share no body: single_feq for all of them. */
+TRIBO_SIMD static void diagonal_feq(size_t n, const double *restrict r, const double *restrict limit, const double *restrict a,
+                                    double *restrict feq)
 {
-    const double *restrict r = ctx->op.diagonal, *restrict limit = ctx->limit, *restrict a_ = a;
-    double *restrict feq = ctx->feq;
-    for (size_t i = 0; i < ctx->n; i++) {
-        const double x = clamp(-a_[i] / r[i], -DBL_MAX, DBL_MAX);
+    for (size_t i = 0; i < n; i++) {
+        const double x = clamp(-a[i] / r[i], -DBL_MAX, DBL_MAX);
         feq[i] = limit[i] > 0.0 ? x : 0.0;
     }
-    const struct contacts c = tribo_contacts(ctx);
-    ctx->law->force(&c, ctx->n, v, feq, ctx->f);
 }
 
 int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
@@ -210,7 +208,9 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     ctx->residual = 0.0;
     ctx->balanced = 0;
     if (ctx->op.islands == 0) {
-        balance_diagonal(ctx, v, a);
+        const struct contacts c = tribo_contacts(ctx);
+        diagonal_feq(ctx->n, ctx->op.diagonal, ctx->limit, a, ctx->feq);
+        ctx->law->force(&c, ctx->n, v, ctx->feq, ctx->f);
     } else {
         status = balance_islands(ctx, v, a, feq != NULL);
         if (status == TRIBO_ERR_NO_CONVERGENCE) {

@@ -7,6 +7,8 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "../simd.h"
+
 /* Per contact: limit N; epsilon; slope = 2N/epsilon, kept apart so that nothing divides by N; moving, the reversal memory. */
 struct contacts {
     const double *limit, *epsilon, *slope;
@@ -48,8 +50,8 @@ static inline double sign(double x)
 
 /* Defines force_all and tangent_all from the law's functions of one contact. */
 #define TRIBO_LAW_LOOPS                                                                                                          \
-    static void force_all(const struct contacts *c, size_t n, const double *restrict v, const double *restrict feq,              \
-                          double *restrict f)                                                                                    \
+    TRIBO_SIMD static void force_all(const struct contacts *c, size_t n, const double *restrict v, const double *restrict feq,   \
+                                     double *restrict f)                                                                         \
     {                                                                                                                            \
         const double *restrict limit = c->limit, *restrict epsilon = c->epsilon, *restrict slope = c->slope;                     \
         const unsigned char *restrict moving = c->moving;                                                                        \

@@ -1,5 +1,6 @@
 #include "matrix.h"
 #include "../real.h"
+#include "../simd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -189,21 +190,28 @@ int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
     return done;
 }
 
+/* y += factor A x, one full diagonal after the other. */
+TRIBO_SIMD static void add_diagonals(const struct matrix *a, double factor, const double *x, double *y)
+{
+    for (size_t d = 0; d < a->diagonals; d++) {
+        const ptrdiff_t shift = a->offset[d];
+        const size_t begin = shift < 0 ? (size_t)-shift : 0;
+        const size_t room = (size_t)((ptrdiff_t)a->cols - shift), end = room < a->rows ? room : a->rows;
+        const double *restrict val = a->fast + d * a->rows + begin, *restrict from = x + (size_t)((ptrdiff_t)begin + shift);
+        double *restrict to = y + begin;
+        for (size_t i = 0; i < end - begin; i++) {
+            to[i] += factor * val[i] * from[i];
+        }
+    }
+}
+
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *restrict x, double *restrict y)
 {
     if (a->diagonals) {
-        for (size_t d = 0; d < a->diagonals; d++) {
-            const double *restrict val = a->fast + d * a->rows;
-            const ptrdiff_t shift = a->offset[d];
-            const size_t begin = shift < 0 ? (size_t)-shift : 0;
-            const size_t room = (size_t)((ptrdiff_t)a->cols - shift), end = room < a->rows ? room : a->rows;
-            for (size_t i = begin; i < end; i++) {
-                y[i] += factor * val[i] * x[(ptrdiff_t)i + shift];
-            }
-        }
+        add_diagonals(a, factor, x, y);
     } else if (a->fast) {
         for (size_t i = 0; i < a->rows; i++) {
-            const double *restrict val = a->fast + i * a->cols;
+            const double *val = a->fast + i * a->cols;
             double sum = 0.0;
             for (size_t j = 0; j < a->cols; j++) {
                 sum += val[j] * x[j];

@@ -6,6 +6,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "rk4.h"
+#include "../simd.h"
 
 struct state {
     double *k, *sum, *y; /* slope, weighted sum of slopes, state of a stage */
@@ -33,8 +34,8 @@ static void *allocate(size_t dimension)
     return s;
 }
 
-static int apply(void *state, size_t dimension, double t, double h, double y[], double yerr[], const double dydt_in[],
-                 double dydt_out[], const gsl_odeiv2_system *system)
+TRIBO_SIMD static int apply(void *state, size_t dimension, double t, double h, double y[], double yerr[], const double dydt_in[],
+                            double dydt_out[], const gsl_odeiv2_system *system)
 {
     static const double node[] = {0.0, 0.5, 0.5, 1.0}, weight[] = {1.0, 2.0, 2.0, 1.0};
     const struct state *s = state;
