@@ -185,6 +185,16 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
     return next;
 }
 
+void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to)
+{
+    for (size_t k = 0; order < 2 && k < sys->tables; k++) {
+        const double value = factor * look_up(&sys->table[k], 1, 0, sys->time, order);
+        for (size_t i = 0; i < sys->ndof; i++) {
+            to[i] += value * sys->table[k].pattern[i];
+        }
+    }
+}
+
 void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
@@ -202,11 +212,8 @@ void tribo_system_loads(const tribo_system *sys, int moves_base, int order, doub
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
-    for (size_t k = 0; !moves_base && order < 2 && k < sys->tables; k++) {
-        const double value = factor * look_up(&sys->table[k], 1, 0, sys->time, order);
-        for (size_t i = 0; i < sys->ndof; i++) {
-            to[i] += value * sys->table[k].pattern[i];
-        }
+    if (!moves_base) {
+        tribo_system_tables(sys, order, factor, to);
     }
 }
 

@@ -68,6 +68,9 @@ void tribo_system_set_time(tribo_system *sys, double t);
  * set. */
 void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to);
 
+/* The part of it that comes from tables. */
+void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to);
+
 /* limit, and its derivative, each [ncontact], at the time set. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 
