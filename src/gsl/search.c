@@ -5,7 +5,7 @@
 #include <math.h>
 
 /* A slope this far below zero, in terms of what the guard's parts do together, is no rounding. */
-#define FALLS 1e-7
+#define FALLS 1e-6
 
 /* Values of a guard that are rounding. */
 static double noise(const struct guard *g)
