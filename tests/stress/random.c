@@ -30,7 +30,7 @@ static void agree(const struct structure *s, int seed, const char *method, const
 {
     const size_t n = 2 * s->ndof + 1;
     const double off = distance(y, want, n), size = size_of(want, n);
-    require(off <= tolerance * size, "seed %d, %s: %s is off by %.3g of %.3g, the largest number in the state", seed, s->name,
+    require(off <= tolerance * fmax(size, 1e-6), "seed %d, %s: %s is off by %.3g of %.3g, the largest number in the state", seed, s->name,
             method, off, size);
 }
 
