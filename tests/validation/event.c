@@ -245,18 +245,17 @@ TEST(grazing_velocity)
     tribo_system_destroy(sys);
 }
 
-/* Load cos t, limit 1: the force touches the limit at the start and at every k pi, and the block never moves. The same with two
- * loads whose sum touches it by its fourth derivative. */
+/* Load cos t, limit 1: the force touches the limit at the start and at every k pi, and the block never moves. The same with the
+ * load 1 - (1 - cos t)^2/2, which touches it by its fourth derivative. */
 TEST(grazing_force)
 {
-    const double one = 1.0, wave[] = {4.0 / 3.0, -1.0 / 3.0};
+    const double one = 1.0, quarter[] = {0.25, -0.25};
     double y[3] = {0};
     tribo_system *sys = block(1.0, 0.0, 1.0);
-    if (_i < 2) {
-        assert_ok(tribo_system_add_load(sys, 1.0, &one, NULL));
-    } else {
-        assert_ok(tribo_system_add_load(sys, 1.0, &wave[0], NULL));
-        assert_ok(tribo_system_add_load(sys, 2.0, &wave[1], NULL));
+    assert_ok(tribo_system_add_load(sys, 1.0, &one, NULL));
+    if (_i >= 2) {
+        constant_load(sys, quarter[0]);
+        assert_ok(tribo_system_add_load(sys, 2.0, &quarter[1], NULL));
     }
     const size_t events = go(sys, methods[_i % 2], 1e-12, 20.0, y);
     require(events <= 40, "%zu events", events);
@@ -287,7 +286,7 @@ TEST(break_away_and_stick)
         assert_close(y[2], 20.0 * slid, 1e-11);
         assert_close(y[0], 0.0, 1e-11);
         assert_exact(y[1], 0.0);
-        require(slid > 0.0 && (deltas[k] < 1e-5 || y[2] > 1e-6), "slid %g", slid);
+        require(slid > 0.0 && y[2] > 10.0 * slid, "slid %g, in all %g", slid, y[2]);
         tribo_system_destroy(sys);
     }
 }
