@@ -29,8 +29,8 @@ static const struct {
     int reference, method;
     double dt, error;
 } seen[] = {
-    {0, 0, 0.04, 1e-4},   {3, 0, 0.003, 1e-4},  {4, 0, 0.02, 1e-4},    {0, 1, 0.04, 1e-4},   {4, 1, 0.015, 1e-4},
-    {3, 0, 0.03, 3.7e-3}, {3, 0, 0.01, 8.2e-4}, {3, 0, 0.001, 5.2e-6}, {4, 1, 0.01, 2.6e-5}, {4, 1, 0.001, 2.8e-7},
+    {0, 0, 0.04, 1e-4},   {3, 0, 0.003, 1e-4},   {4, 0, 0.02, 1e-4},   {0, 1, 0.04, 1e-4},    {4, 1, 0.015, 1e-4},
+    {3, 0, 0.01, 8.2e-4}, {3, 0, 0.001, 5.2e-6}, {4, 1, 0.01, 2.6e-5}, {4, 1, 0.001, 2.8e-7},
 };
 
 TEST(errors_seen)
@@ -122,7 +122,8 @@ TEST(balance_of_energy)
     require(a.dissipated > 1.0, "dissipation %g", a.dissipated);
     assert_close(a.y[2 * DOFS], a.dissipated, 1e-12 * a.exchanged);
     assert_close(a.stray, 0.0, 1e-11);
-    assert_close(y[2 * DOFS], a.dissipated, 0.1); /* and at the end a half step of central's more */
+    /* at the end central adds half a step */
+    assert_close(y[2 * DOFS], a.dissipated, _i % 2 ? 1e-12 * a.exchanged : 0.25);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 }
