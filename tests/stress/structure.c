@@ -122,8 +122,8 @@ struct structure structure_create(int seed)
     return s;
 }
 
-/* Small integers everywhere, and halves of them: events coincide, limits are touched and not exceeded, contacts repeat each other,
- * loads are in resonance. */
+/* Small integers everywhere, and halves of them: events coincide, limits are touched and not exceeded, contacts repeat each
+ * other, loads are in resonance. */
 struct structure structure_even(int seed)
 {
     static const double omegas[] = {0.0, 0.5, 1.0, 1.0, 2.0, 3.0}, limits[] = {0.0, 0.5, 1.0, 1.0, 2.0, 4.0};
