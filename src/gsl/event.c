@@ -365,7 +365,8 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
             return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
         }
         double when = h;
-        set_guards(e, h);
+        /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
+        set_guards(e, e->fastest > 0.0 ? greater(h, lesser(length, 1.0 / e->fastest)) : h);
         const struct guard *event = tribo_search(&e->search, h, &when);
         when = event ? lesser(when, h) : h;
         move_to(e, when, y);

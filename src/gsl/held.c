@@ -289,6 +289,16 @@ static int modes_by_projection(struct build *b)
     return 1;
 }
 
+/* Sum of the diagonal's absolute values: of a semidefinite matrix no eigenvalue is larger. */
+static double trace(const struct matrix *a)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < a->rows; i++) {
+        sum += fabs(tribo_matrix_get(a, i, i));
+    }
+    return sum;
+}
+
 /* What follows from phi: W phi, AK phi, AC phi, damping, and which modes drift. */
 static int complete_modes(struct build *b)
 {
@@ -315,11 +325,11 @@ static int complete_modes(struct build *b)
             tribo_matrix_multiply_add(&b->sys->damping, 1.0, phi, b->ac_phi + k * n);
         }
     }
-    double most = 0.0, beside = 0.0;
+    /* what is left where motion is held may be nothing but rounding of the whole: zero is in terms of that */
+    double most = trace(&b->sys->damping), beside = 0.0;
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; b->sys->damping.rows && l < m; l++) {
             c[k * m + l] = dot(b->psi + k * n, b->ac_phi + l * n, n);
-            most = greater(most, fabs(c[k * m + l]));
             beside = k == l ? beside : greater(beside, fabs(c[k * m + l]));
         }
     }
@@ -330,7 +340,7 @@ static int complete_modes(struct build *b)
         }
         memcpy(h->coupling, c, m * m * sizeof *c);
     }
-    const double zero = m ? 1e-13 * (double)m * greater(fabs(h->omega2[m - 1]), fabs(h->omega2[0])) : 0.0;
+    const double zero = 1e-13 * trace(&b->sys->stiffness);
     for (size_t k = 0; k < m; k++) {
         h->damping[k] = fabs(c[k * m + k]) > 1e-14 * most ? c[k * m + k] : 0.0;
         h->omega2[k] = fabs(h->omega2[k]) > zero ? h->omega2[k] : 0.0;
@@ -578,7 +588,7 @@ static int find_response(struct build *b)
             const double re = h->omega2[k] - omega * omega, im = omega * h->damping[k], square = re * re + im * im;
             h->resonant[w * m + k] = sqrt(square) < RESONANCE * fabs(h->omega2[k]) && (gr[k] != 0.0 || gi[k] != 0.0);
             h->any_resonant |= h->resonant[w * m + k];
-            if (!h->resonant[w * m + k]) {
+            if (!h->resonant[w * m + k] && (gr[k] != 0.0 || gi[k] != 0.0)) {
                 h->xr[w * m + k] = (gr[k] * re + gi[k] * im) / square;
                 h->xi[w * m + k] = (gi[k] * re - gr[k] * im) / square;
             }

@@ -10,6 +10,9 @@
  * could change. */
 #define AT_LIMIT 1e-9
 
+/* Where a force only touches its limit, the time of that is known to the square root of rounding, and its rate to no more. */
+#define STATIONARY 1e-7
+
 /* Velocities and accelerations are known to this part of what they are the sum of. */
 #define NOISE 2e-14
 
@@ -23,7 +26,7 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->patience = 64 + 16 * sys->ncontact;
     int status = tribo_clone(sys->contacts, &m->judge);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double *work = malloc((13 * c + (1 + ORDERS) * n + m->patience) * sizeof *work);
+    double *work = malloc((13 * c + (2 + 2 * ORDERS) * n + m->patience) * sizeof *work);
     m->mode = malloc(5 * c);
     m->at = malloc(c * sizeof *m->at);
     m->limit = work;
@@ -51,7 +54,8 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->acceleration = work + 13 * c;
     memset(m->still, 0, c * sizeof *m->still);
     m->jerk = m->acceleration + n;
-    m->recent = m->jerk + ORDERS * n;
+    m->size = m->jerk + ORDERS * n;
+    m->recent = m->size + (1 + ORDERS) * n;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
     }
@@ -167,18 +171,73 @@ static int solve_rates(struct modes *m, const tribo_system *sys, int order, doub
     return TRIBO_OK;
 }
 
+static void add_sizes(const struct matrix *a, const double *x, double *y)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            y[i] += fabs(a->val[k] * x[a->col[k]]);
+        }
+    }
+}
+
+/* The same for the order-th derivatives of the loads, or of b. */
+static void add_amplitudes(const tribo_system *sys, int moves_base, int order, double *y)
+{
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        const double rate = pow(fabs(w->omega), order);
+        for (size_t k = 0; w->moves_base == moves_base && k < w->count; k++) {
+            y[w->index[k]] += rate * (fabs(w->cosine[k]) + fabs(w->sine[k]));
+        }
+    }
+}
+
+/* What the order-th derivatives of q'' are like, to tell rounding from what they are: the sum of the sizes of their parts but
+ * friction. load is that of the load; older and old are the sizes of the two derivatives of q before. */
+static void find_sizes(const tribo_system *sys, int order, const double *load, const double *older, const double *old,
+                       double *size)
+{
+    for (size_t d = 0; d < sys->ndof; d++) {
+        size[d] = fabs(load[d]);
+    }
+    add_amplitudes(sys, 0, order, size);
+    add_sizes(&sys->stiffness, older, size);
+    if (sys->damping.rows) {
+        add_sizes(&sys->damping, old, size);
+    }
+}
+
+/* The largest force that takes: |J| size and the order-th derivative of b. lo is workspace. */
+static double force_scale(struct modes *m, const tribo_system *sys, int order, const double *size)
+{
+    double scale = 0.0;
+    memset(m->lo, 0, sys->ncontact * sizeof *m->lo);
+    add_sizes(&sys->direction, size, m->lo);
+    add_amplitudes(sys, 1, order, m->lo);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        scale = greater(scale, m->diagonal[i] > 0.0 ? m->lo[i] / m->diagonal[i] : 0.0);
+    }
+    return scale;
+}
+
 /* Of the contacts at their limit, those slide off whose rate of f_eq would take it beyond the limit, and those keep hold that it
  * takes back inside; if it does neither, the next derivative decides. */
 static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    const double *older = y + n, *old = m->acceleration;
+    const double *older = y + n, *old = m->acceleration, *older_size = older, *old_size = m->size;
     size_t undecided = 1;
+    memset(m->jerk, 0, n * sizeof *m->jerk);
+    tribo_system_loads(sys, 0, 0, 1.0, m->jerk);
+    find_sizes(sys, 0, m->jerk, y, older, m->size);
+    add_sizes(&sys->response, m->force, m->size);
     for (int order = 1; order <= ORDERS && undecided; order++) {
-        double *next = m->jerk + (size_t)(order - 1) * n, scale = 0.0;
+        double *next = m->jerk + (size_t)(order - 1) * n, *size = m->size + (size_t)order * n;
         memset(next, 0, n * sizeof *next);
         memset(m->a, 0, c * sizeof *m->a);
         tribo_system_loads(sys, 0, order, 1.0, next);
+        find_sizes(sys, order, next, older_size, old_size, size);
+        double scale = force_scale(m, sys, order + 1, size);
         tribo_matrix_multiply_add(&sys->stiffness, -1.0, older, next);
         if (sys->damping.rows) {
             tribo_matrix_multiply_add(&sys->damping, -1.0, old, next);
@@ -187,7 +246,6 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
         tribo_matrix_multiply_add(&sys->direction, 1.0, next, m->a);
         for (size_t i = 0; i < c; i++) {
             m->slope[i] = order == 1 ? m->a[i] : m->slope[i];
-            scale = greater(scale, m->diagonal[i] > 0.0 ? fabs(m->a[i]) / m->diagonal[i] : 0.0);
             scale = greater(scale, order == 1 ? fabs(m->limit_rate[i]) : 0.0);
         }
         const int status = solve_rates(m, sys, order, scale);
@@ -195,6 +253,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
             return status;
         }
         tribo_matrix_multiply_add(&sys->response, 1.0, m->rate, next);
+        add_sizes(&sys->response, m->rate, size);
         memset(m->a, 0, c * sizeof *m->a);
         tribo_system_loads(sys, 1, order + 1, -1.0, m->a);
         tribo_matrix_multiply_add(&sys->direction, 1.0, next, m->a);
@@ -202,28 +261,21 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
         for (size_t i = 0; i < c; i++) {
             const double side = m->force[i] > 0.0 ? -1.0 : 1.0;
             const double along = order == 1 ? -side * m->limit_rate[i] : 0.0;
-            if (m->weak[i] == 1 && side * m->a[i] > AT_LIMIT * m->diagonal[i] * scale) {
+            if (m->weak[i] == 1 && side * m->a[i] > STATIONARY * m->diagonal[i] * scale) {
                 m->mode[i] = (signed char)side;
                 m->force[i] = -side * m->limit[i];
                 m->weak[i] = 0;
-            } else if (m->weak[i] == 1 && side * (m->rate[i] - along) > AT_LIMIT * scale) {
+            } else if (m->weak[i] == 1 && side * (m->rate[i] - along) > STATIONARY * scale) {
                 m->weak[i] = 2;
             }
             undecided += m->weak[i] == 1;
         }
         older = old;
         old = next;
+        older_size = old_size;
+        old_size = size;
     }
     return TRIBO_OK;
-}
-
-static void add_sizes(const struct matrix *a, const double *x, double *y)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            y[i] += fabs(a->val[k] * x[a->col[k]]);
-        }
-    }
 }
 
 /* How close to its limit a balancing force counts as just at it: what rounding of all the forces on the contact's bodies comes
@@ -241,9 +293,31 @@ static void find_margins(struct modes *m, const tribo_system *sys)
     }
 }
 
+/* A contact that friction cannot move is at rest for a moment only, unless b is: it goes where b's first derivative that is not
+ * zero takes it. Returns that direction. */
+static signed char driven_direction(struct modes *m, const tribo_system *sys, size_t i)
+{
+    for (int order = 1; order <= ORDERS; order++) {
+        memset(m->a, 0, sys->ncontact * sizeof *m->a);
+        memset(m->lo, 0, sys->ncontact * sizeof *m->lo);
+        tribo_system_loads(sys, 1, order, -1.0, m->a);
+        add_amplitudes(sys, 1, order, m->lo);
+        if (fabs(m->a[i]) > AT_LIMIT * m->lo[i]) {
+            return m->a[i] > 0.0 ? 1 : -1;
+        }
+    }
+    return 0;
+}
+
 /* Forces and accelerations with the contacts at rest as they are marked, and what the forces say about them. */
 static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const double *y)
 {
+    tribo_system_set_time(sys, t);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->mode[i] == 0 && m->diagonal[i] == 0.0) {
+            m->mode[i] = driven_direction(m, sys, i);
+        }
+    }
     tribo_system_free_motion(sys, t, y, m->acceleration, m->v, m->a);
     update_limits(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {

@@ -20,12 +20,12 @@ struct modes {
     double *diagonal;     /* [ncontact] R_ii */
     double *rate, *lo, *hi; /* [ncontact] workspace */
     double *slope;          /* [ncontact] rate of a, if any contact is weak */
-    double *jerk;           /* [ORDERS][ndof] workspace: derivatives of the acceleration */
-    signed char *weak;      /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
-    unsigned char *rested;  /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
-    double *recent;         /* [patience] times of the last events */
-    int uncoupled;          /* R is diagonal */
-    int simple;             /* no contact has more than one degree of freedom */
+    double *jerk, *size;   /* [ORDERS][ndof], [1 + ORDERS][ndof] workspace: derivatives of the acceleration; their parts' sizes */
+    signed char *weak;     /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
+    double *recent;        /* [patience] times of the last events */
+    int uncoupled;         /* R is diagonal */
+    int simple;            /* no contact has more than one degree of freedom */
     size_t contacts;
     double *still;       /* [ncontact] zeros */
     signed char *before; /* [ncontact] what find_holds saw last */

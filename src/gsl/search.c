@@ -5,7 +5,7 @@
 #include <math.h>
 
 /* A slope this far below zero, in terms of what the guard's parts do together, is no rounding. */
-#define FALLS 1e-7
+#define FALLS 1e-6
 
 /* Values of a guard that are rounding. */
 static double noise(const struct guard *g)
@@ -58,13 +58,14 @@ static void sample(struct search *s, double tau)
     s->looks++;
 }
 
-/* 1 if no guard can be zero between its left sample and the next one, h later, which is middle or right. At its end it may be. */
+/* 1 if no guard can be zero between its left sample and the next one, h later, which is middle or right. There it may be, but not
+ * below. */
 static int all_positive(const struct search *s, double h, int to_middle)
 {
     for (size_t k = 0; k < s->guards; k++) {
         const struct guard *g = &s->guard[k];
         struct sample end = to_middle ? g->middle : g->right;
-        end.g = greater(end.g, 0.0);
+        end.g = end.g >= -noise(g) ? greater(end.g, 0.0) : end.g;
         if (!tribo_positive(&g->left, &end, h, g->bend, noise(g))) {
             return 0;
         }
@@ -90,7 +91,7 @@ static struct guard *first_to_fall(struct search *s, double h, double *when)
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         if (g->right.g <= noise(g)) {
-            const double guess = g->right.g >= 0.0 ? h : tribo_root_guess(&g->left, &g->right, h);
+            const double guess = g->right.g >= -noise(g) ? h : tribo_root_guess(&g->left, &g->right, h);
             if (!first || guess < *when) {
                 first = g;
                 *when = guess;
@@ -189,7 +190,11 @@ const struct guard *tribo_search(struct search *s, double longest, double *when)
         }
         h = 0.5 * (b - a);
         if (!(a + h > a && a + h < b)) {
-            /* nothing left to divide: what is in doubt is rounding */
+            /* nothing left to divide: a guard that is below zero fell right here, and what else is in doubt is rounding */
+            *when = b;
+            if (below && below->right.g < -noise(below)) {
+                return below;
+            }
             a = b;
             keep_left(s);
         }

@@ -88,6 +88,20 @@ static double power(const tribo_system *sys, const double *f, const double *befo
     return -sys->power * sum;
 }
 
+static int grew(tribo_driver *drv, double t)
+{
+    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "the motion grew without bound before t = %.17g: is dt = %g too long?", t,
+                             drv->dt);
+}
+
+/* The limit that a step goes by is that of its middle. */
+static void set_limits(tribo_system *sys, double middle)
+{
+    if (sys->limits.knots) {
+        tribo_system_set_time(sys, middle);
+    }
+}
+
 /* Fails if the motion is not finite any more. */
 static int check_motion(tribo_driver *drv, double t, const double *y)
 {
@@ -95,9 +109,7 @@ static int check_motion(tribo_driver *drv, double t, const double *y)
     for (size_t i = 0; i < 2 * drv->sys->ndof; i++) {
         sum += fabs(y[i]);
     }
-    return isfinite(sum) ? TRIBO_OK
-                         : tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
-                                             "the motion grew without bound before t = %.17g: is dt = %g too long?", t, drv->dt);
+    return isfinite(sum) ? TRIBO_OK : grew(drv, t);
 }
 
 /* --------------------------------------------------------------------------------------------------------- central */
@@ -122,7 +134,11 @@ static int kick(tribo_driver *drv, double begin, double t, double end, const dou
         u[i] += time * s->a[i];
     }
     relative(sys, end, u, s->free);
+    set_limits(sys, t);
     const int status = tribo_step_force(sys->contacts, time, s->free, s->f);
+    if (status == TRIBO_ERR_NOT_FINITE) {
+        return grew(drv, t);
+    }
     if (status) {
         return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(sys->contacts));
     }
@@ -301,12 +317,16 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
         s->u[i] = u[i] + du[i];
     }
     relative(sys, next, s->u, s->free);
+    set_limits(sys, t + 0.5 * h);
     tribo_get_limit(sys->contacts, s->limit);
     for (size_t i = 0; i < c; i++) {
         s->limit[i] *= tribo_system_weight(sys, i);
     }
     tribo_set_limit(s->contacts, s->limit);
     const int status = tribo_step_force(s->contacts, h, s->free, s->f);
+    if (status == TRIBO_ERR_NOT_FINITE) {
+        return grew(drv, t);
+    }
     if (status) {
         return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(s->contacts));
     }

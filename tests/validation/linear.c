@@ -1,8 +1,8 @@
 /* Structures from their matrices: in every form of input, with any mass, reduced or not; a finite-element beam. */
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "beam.h"
 #include "model.h"
 
 #define EPSILON 0.05
@@ -251,26 +251,6 @@ TEST(rigid_body)
 
 /* ------------------------------------------------------------------------------------------------------------- the beam */
 
-/* A symmetric Matrix Market file, of which the lower triangle is stored. */
-static gsl_spmatrix *read_symmetric(const char *name)
-{
-    char path[500];
-    snprintf(path, sizeof path, "%s/%s", TRIBO_BEAM, name);
-    FILE *file = fopen(path, "r");
-    require(file, "cannot open %s", path);
-    gsl_spmatrix *lower = gsl_spmatrix_fscanf(file);
-    fclose(file);
-    require(lower, "cannot read %s", path);
-    gsl_spmatrix *whole = gsl_spmatrix_alloc(lower->size1, lower->size2);
-    for (size_t k = 0; k < lower->nz; k++) {
-        const size_t i = (size_t)lower->i[k], j = (size_t)lower->p[k];
-        gsl_spmatrix_set(whole, i, j, lower->data[k]);
-        gsl_spmatrix_set(whole, j, i, lower->data[k]);
-    }
-    gsl_spmatrix_free(lower);
-    return whole;
-}
-
 /* CalculiX's natural frequencies in Hz, to their seven printed digits. Only the first, so far below the highest of 1.49 MHz that
  * the 14 digits of the files leave it no more, is 26.69259 to any solver. */
 TEST(beam)
@@ -279,7 +259,7 @@ TEST(beam)
     const double digit[] = {1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-3, 1e-3, 1e-3};
     double omega[COUNT(want)];
     char text[200] = "";
-    gsl_spmatrix *mass = read_symmetric("M.mtx"), *stiffness = read_symmetric("K.mtx"), *direction = gsl_spmatrix_alloc(1, 288);
+    gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"), *direction = gsl_spmatrix_alloc(1, BEAM_DOFS);
     tribo_system *sys = NULL;
     gsl_spmatrix_set(direction, 0, 2, 1.0);
     const int status = tribo_system_linear_sparse(&sys, mass, NULL, stiffness, direction, COUNT(want), text, sizeof text);

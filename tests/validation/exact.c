@@ -1,0 +1,446 @@
+/* Method "exact": the reference values to 12 digits, what it costs, what it refuses; and what "auto" makes of that. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "beam.h"
+#include "coulomb.h"
+#include "model.h"
+
+TEST(reference_values)
+{
+    const struct reference *r = &references[_i];
+    const double error = reference_error(r, "exact", 1.0, 0.0, NULL);
+    require(error <= 1e-11, "%s: error %.3g", r->name, error);
+}
+
+/* 373 events in the chain's four cycles, by the code that computed the reference values; it saw the start as one, too, and so do
+ * not we. */
+TEST(events_of_the_chain)
+{
+    struct effort effort;
+    reference_error(&references[3], "exact", 1.0, 0.0, &effort);
+    require(effort.events >= 372 && effort.events <= 374, "%zu events", effort.events);
+    ck_assert_uint_ge(effort.steps, effort.events);
+}
+
+/* ------------------------------------------------------------------------------------------------------ against event */
+
+/* Chains for which no values are known. */
+TEST(chains)
+{
+    const size_t blocks[] = {2, 3, 8, 17, 64, 128};
+    const size_t n = blocks[_i];
+    double y[2][MOST_STATES] = {{0}};
+    for (size_t k = 0; k < 2; k++) {
+        tribo_system *sys;
+        double t = 0.0;
+        assert_ok(tribo_system_chain(&sys, n, 1.0, n < 8 ? 1.5 : 0.25, 0.5));
+        tribo_driver *drv = driver_relative(sys, k ? "event" : "exact", 1.0, 1e-13, 1e-12);
+        driver_advance(drv, &t, 8.0 * PI, y[k]);
+        require(driver_count(drv, TRIBO_COUNT_EVENTS) > 2, "nothing happens");
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    assert_all_close(y[1], y[0], 2 * n + 1, 1e-11);
+    assert_close(y[1][2 * n] / y[0][2 * n], 1.0, 1e-11);
+}
+
+#define BEAM_MODES 12
+#define BEAM_STATES (2 * BEAM_MODES + 1)
+
+/* The beam as the example has it: three contacts on its lower edge, a load at its tip in the first resonance; rows are those of
+ * dofs.txt. */
+static tribo_system *beam(double limit)
+{
+    gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"), *direction = gsl_spmatrix_alloc(3, BEAM_DOFS);
+    const size_t rows[] = {117, 189, 261}, tip = 264;
+    double load[BEAM_DOFS] = {0}, omega[BEAM_MODES];
+    tribo_system *sys = NULL;
+    for (size_t i = 0; i < 3; i++) {
+        gsl_spmatrix_set(direction, i, rows[i] - 1, 1.0);
+    }
+    assert_ok(tribo_system_linear_sparse(&sys, mass, NULL, stiffness, direction, BEAM_MODES, NULL, 0));
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    load[tip - 1] = 0.1;
+    assert_ok(tribo_system_add_load(sys, omega[0], NULL, load));
+    assert_ok(tribo_system_set_damping_ratio(sys, 0.002));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
+    return sys;
+}
+
+/* Everything to 1e-9 of the largest of its kind: positions, velocities, energy. */
+TEST(beam_against_event)
+{
+    const double limits[] = {1e-3, 0.02, 0.06}, period = 1.0 / 26.69254;
+    double y[2][BEAM_STATES] = {{0}};
+    size_t events[2];
+    for (size_t k = 0; k < 2; k++) {
+        double t = 0.0;
+        tribo_system *sys = beam(limits[_i]);
+        tribo_driver *drv = driver_relative(sys, k ? "event" : "exact", period, 1e-14, 1e-12);
+        driver_advance(drv, &t, 10.0 * period, y[k]);
+        events[k] = driver_count(drv, TRIBO_COUNT_EVENTS);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    require(events[0] > 20 && events[0] == events[1], "%zu and %zu events", events[0], events[1]);
+    for (size_t from = 0; from < BEAM_STATES; from += BEAM_MODES) {
+        const size_t n = from < 2 * BEAM_MODES ? BEAM_MODES : 1;
+        double most = 0.0;
+        for (size_t i = from; i < from + n; i++) {
+            most = fmax(most, fabs(y[0][i]));
+        }
+        require(most > 0.0, "nothing moves");
+        assert_all_close(y[1] + from, y[0] + from, n, 1e-9 * most);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------------- stick */
+
+/* Stuck far inside their limits from start to end: one phase, no events, and hardly a look at the motion; velocities are zero. */
+TEST(stuck_for_good)
+{
+    double t = 0.0, y[17] = {0};
+    tribo_system *sys;
+    assert_ok(tribo_system_chain(&sys, 8, 10.0, 0.25, 0.5));
+    tribo_driver *drv = driver_create(sys, _i ? "event" : "exact", 1.0, 1e-9);
+    driver_advance(drv, &t, 1000.0, y);
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_EVENTS), 0);
+    for (size_t i = 0; i < 17; i++) {
+        assert_exact(y[i], 0.0);
+    }
+    if (!_i) {
+        ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), 1);
+        ck_assert_uint_le(driver_count(drv, TRIBO_COUNT_EVALUATIONS), 4);
+    }
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- resonances */
+
+/* x'' + x = cos t - sgn x' 1/2 from rest: between turns at k pi, where |x| has grown by pi/2 - 1, the motion is that of an
+ * undamped oscillator in exact resonance. Amplitudes are (k pi/2 - k). */
+TEST(resonance)
+{
+    const double one = 1.0, pi = PI;
+    tribo_system *sys = block(1.0, 1.0, 0.5);
+    assert_ok(tribo_system_add_load(sys, 1.0, NULL, &one));
+    double y[3] = {0}, z[3] = {0};
+    tribo_driver *exact = driver_create(sys, "exact", 1.0, 0.0), *event = driver_create(sys, "event", 1.0, 1e-13);
+    double t = 0.0, s = 0.0;
+    for (int k = 1; k <= 8; k++) {
+        driver_advance(exact, &t, k * 2.0 * pi, y);
+        driver_advance(event, &s, k * 2.0 * pi, z);
+        assert_all_close(z, y, 3, 1e-10);
+    }
+    /* what a cycle adds to the amplitude: pi by the load, 4 N/k/2 less by friction */
+    double before = fabs(y[0]);
+    driver_advance(exact, &t, 18.0 * pi, y);
+    require(before > 5.0, "amplitude %g", before);
+    assert_close(fabs(y[0]) - before, pi - 2.0, 0.05);
+    tribo_driver_destroy(exact);
+    tribo_driver_destroy(event);
+    tribo_system_destroy(sys);
+}
+
+/* A harmonic that does not act on a mode leaves it alone, also at its very frequency: the first mass turns freely, the load at
+ * the second one's frequency moves the first. */
+TEST(resonance_elsewhere)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1.0, 0.0, 0.0, 4.0}, direction[] = {1.0, 0.0}, load[] = {3.0, 0.0};
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(sys, 2.0, load, NULL));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
+    double y[5] = {0.0, 1.0, 0.0, 0.0, 0.0}, want[5] = {0.0, 1.0, 0.0, 0.0, 0.0};
+    run(sys, "exact", 1.0, 0.0, 20.0, y);
+    run(sys, "event", 1.0, 1e-13, 20.0, want);
+    assert_all_close(y, want, 5, 1e-10);
+    assert_close(y[1], cos(40.0), 1e-12);
+    require(y[4] > 1.0, "nothing slides");
+    tribo_system_destroy(sys);
+}
+
+/* Two masses that a held contact makes one, on no ground: what is left of their stiffness is rounding, and must not be taken for
+ * a spring. A third force slides along. */
+TEST(held_together)
+{
+    const double mass[] = {0.7500071, 0.0, 0.0, 0.517392}, spring = 0.7297691;
+    const double stiffness[] = {spring, -spring, -spring, spring}, damping[] = {0.01281, -0.01281, -0.01281, 0.01281};
+    const double direction[] = {-1.0, 1.0, 1.0, 0.0}, limit[] = {50.0, 0.05}, load[] = {0.3028, 0.0};
+    double y[5] = {0}, want[5] = {0};
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 2, 2, mass, _i ? damping : NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(sys, 0.447, NULL, load));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    run(sys, "exact", 1.0, 0.0, 20.0, y);
+    run(sys, "event", 1.0, 1e-13, 20.0, want);
+    assert_all_close(y, want, 5, 1e-10);
+    assert_close(y[0], y[1], 1e-13);
+    assert_exact(y[2], y[3]);
+    require(fabs(y[0]) > 0.1, "nothing moves");
+    tribo_system_destroy(sys);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- energy */
+
+struct work {
+    const struct model *m;
+    tribo_system *twin;
+    double t, sum;
+};
+
+/* Power of load, damping and moving bases at (t, y). */
+static double power_at(const struct work *w, double t, const double *y)
+{
+    const struct model *m = w->m;
+    double f[CONTACTS], power = -form(m->damping, y + DOFS, y + DOFS);
+    assert_ok(tribo_system_contacts(w->twin, t, y, NULL, NULL, f));
+    for (size_t i = 0; i < DOFS; i++) {
+        power += y[DOFS + i] * (m->load[0][i] * cos(m->load_omega * t) + m->load[1][i] * sin(m->load_omega * t));
+    }
+    for (size_t i = 0; i < CONTACTS; i++) {
+        power += f[i] * (m->motion[0][i] * cos(m->motion_omega * t) + m->motion[1][i] * sin(m->motion_omega * t));
+    }
+    return power;
+}
+
+/* The dissipated energy closes the balance to 1e-12 of what is exchanged: the work between events by Gauss's rule of 8 points, on
+ * pieces that end at events. Forces are those of Coulomb's law at the state: contacts at rest have velocity 0 to the last bit
+ * only if they are blocks on the ground, so they are. */
+TEST(balance_of_energy)
+{
+    static const double x[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
+    static const double weight[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+    struct random g = random_of(_i);
+    struct model m = model_create(&g, 0);
+    memset(m.direction, 0, sizeof m.direction);
+    memset(m.motion, 0, sizeof m.motion);
+    for (size_t i = 0; i < CONTACTS; i++) {
+        m.direction[i * DOFS + 2 * i] = 1.0;
+    }
+    tribo_system *sys = model_system(&m, 1, 0, 0.1);
+    struct work w = {&m, model_system(&m, 1, 0, 0.1), 0.0, 0.0};
+    assert_ok(tribo_set_law(tribo_system_context(w.twin), TRIBO_COULOMB));
+    static struct log log;
+    memset(&log, 0, sizeof log);
+    double t = 0.0, y[DIMENSION] = {1.0}, end = 20.0;
+    const double start = 0.5 * form(m.stiffness, y, y);
+    tribo_driver *drv = driver_create(sys, _i % 2 ? "event" : "exact", 100.0, 1e-13);
+    assert_ok(tribo_driver_set_observer(drv, log_event, &log));
+    driver_advance(drv, &t, end, y);
+    tribo_driver_destroy(drv);
+    const double whole = y[2 * DOFS], kept = 0.5 * (form(m.stiffness, y, y) + form(m.mass, y + DOFS, y + DOFS)) - start;
+    require(log.events > 5 && log.events < MOST_SEEN, "%zu events", log.events);
+    /* the same again, stopping at the points of the rule */
+    drv = driver_create(sys, _i % 2 ? "event" : "exact", 100.0, 1e-13);
+    memset(y, 0, sizeof y);
+    y[0] = 1.0;
+    t = 0.0;
+    for (size_t k = 0; k <= log.events; k++) {
+        const double to = k < log.events ? log.t[k] : end, from = t, pieces = ceil((to - from) / 0.2);
+        for (double piece = 0.0; piece < pieces; piece++) {
+            const double half = 0.5 * (to - from) / pieces, middle = from + (2.0 * piece + 1.0) * half;
+            for (int p = 0; p < 8; p++) {
+                const double at = p < 4 ? middle - half * x[3 - p] : middle + half * x[p - 4];
+                if (at > t) {
+                    driver_advance(drv, &t, at, y);
+                }
+                w.sum += half * weight[p < 4 ? 3 - p : p - 4] * power_at(&w, t, y);
+            }
+        }
+        if (to > t) {
+            driver_advance(drv, &t, to, y);
+        }
+    }
+    require(whole > 1.0, "dissipation %g", whole);
+    assert_close((whole + kept) / whole, w.sum / whole, 1e-11);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    tribo_system_destroy(w.twin);
+}
+
+/* ----------------------------------------------------------------------------------------------------------- observers */
+
+struct grid {
+    double dt, last, at[200], x[200];
+    size_t steps, events, stop_after;
+};
+
+static int see(double t, const double *y, int event, void *data)
+{
+    struct grid *g = data;
+    require(t >= g->last, "%.17g after %.17g", t, g->last);
+    g->last = t;
+    if (event) {
+        g->events++;
+    } else {
+        g->at[g->steps] = t;
+        g->x[g->steps] = y[0];
+        g->steps++;
+    }
+    return g->stop_after && g->steps == g->stop_after ? 3 : 0;
+}
+
+/* dt only says how often the observer looks: each dt, and at the end; it disturbs nothing. */
+TEST(observer_sees_the_motion)
+{
+    double y[3] = {0}, want[3] = {0}, x[3] = {0}, t = 0.0, s = 0.0;
+    struct grid grid = {0.25, 0.0, {0}, {0}, 0, 0, 0};
+    tribo_system *sys = oscillator(TRIBO_QUINN, 1.5, 0.5);
+    tribo_driver *drv = driver_create(sys, "exact", 0.25, 0.0), *other = driver_create(sys, "exact", 7.0, 0.0);
+    run(sys, "exact", 1.0, 0.0, 20.0, want);
+    assert_ok(tribo_driver_set_observer(drv, see, &grid));
+    driver_advance(drv, &t, 20.0, y);
+    assert_all_close(y, want, 3, 1e-14);
+    ck_assert_uint_eq(grid.steps, 80);
+    ck_assert_uint_eq(grid.events, driver_count(drv, TRIBO_COUNT_EVENTS));
+    ck_assert_uint_gt(grid.events, 4);
+    for (size_t k = 0; k < 80; k++) {
+        assert_close(grid.at[k], 0.25 * (double)(k + 1), 1e-13);
+        driver_advance(other, &s, grid.at[k], x);
+        assert_close(grid.x[k], x[0], 1e-12);
+    }
+    tribo_driver_destroy(drv);
+    tribo_driver_destroy(other);
+    tribo_system_destroy(sys);
+}
+
+/* Stopped, t and y are those of the last phase that ended; sent on, the run ends where it would have. */
+TEST(observer_stops)
+{
+    double y[3] = {0}, want[3] = {0}, t = 0.0;
+    struct grid grid = {0.25, 0.0, {0}, {0}, 0, 0, 50};
+    tribo_system *sys = oscillator(TRIBO_QUINN, 1.5, 0.5);
+    tribo_driver *drv = driver_create(sys, "exact", 0.25, 0.0);
+    run(sys, "exact", 1.0, 0.0, 20.0, want);
+    assert_ok(tribo_driver_set_observer(drv, see, &grid));
+    assert_status(tribo_driver_advance(drv, &t, 20.0, y), TRIBO_ERR_STOPPED);
+    assert_says(tribo_driver_message(drv), "observer answered 3");
+    require(t > 0.0 && t <= grid.last, "t = %g, seen %g", t, grid.last);
+    grid.last = 0.0;
+    driver_advance(drv, &t, 20.0, y);
+    assert_all_close(y, want, 3, 1e-13);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* In pieces the answer is the same to rounding, and a load that comes later is taken into account. */
+TEST(in_pieces)
+{
+    const double push = 0.5;
+    double y[3] = {0}, want[3] = {0}, t = 0.0;
+    tribo_system *sys = oscillator(TRIBO_QUINN, 1.5, 0.5);
+    tribo_driver *drv = driver_create(sys, "exact", 1.0, 0.0);
+    run(sys, "exact", 1.0, 0.0, 20.0, want);
+    for (int k = 1; k <= 40; k++) {
+        driver_advance(drv, &t, 0.5 * k, y);
+    }
+    assert_all_close(y, want, 3, 1e-12);
+    assert_ok(tribo_system_add_load(sys, 1.3, &push, NULL));
+    memcpy(want, y, sizeof want);
+    driver_advance(drv, &t, 30.0, y);
+    tribo_driver *event = driver_create(sys, "event", 1.0, 1e-13);
+    t = 20.0;
+    driver_advance(event, &t, 30.0, want);
+    assert_all_close(y, want, 3, 1e-10);
+    tribo_driver_destroy(drv);
+    tribo_driver_destroy(event);
+    tribo_system_destroy(sys);
+}
+
+/* -------------------------------------------------------------------------------------------------------- auto, errors */
+
+TEST(automatic)
+{
+    const double times[] = {0.0, 1.0}, values[] = {0.0, 1.0}, pattern[] = {1.0}, limits[] = {1.0, 2.0};
+    tribo_system *small = oscillator(TRIBO_QUINN, 1.5, 0.5), *loaded = oscillator(TRIBO_QUINN, 1.5, 0.5);
+    tribo_system *pressed = oscillator(TRIBO_QUINN, 1.5, 0.5), *large;
+    assert_ok(tribo_system_add_load_table(loaded, 2, times, values, pattern));
+    assert_ok(tribo_system_set_limit_table(pressed, 2, times, limits));
+    assert_ok(tribo_system_chain(&large, 1000, 1.0, 0.25, 0.5));
+    const struct {
+        tribo_system *sys;
+        const char *asked, *got;
+    } cases[] = {{small, "auto", "exact"},          {loaded, "auto", "event"},
+                 {pressed, "auto", "event"},        {large, "auto", "event"},
+                 {large, "exact", "exact"},         {small, "event", "event"},
+                 {small, "rk4/fixed", "rk4/fixed"}, {small, "moreau/fixed", "moreau/fixed"}};
+    for (size_t k = 0; k < COUNT(cases); k++) {
+        tribo_driver *drv = driver_create(cases[k].sys, cases[k].asked, 1.0, 1e-9);
+        ck_assert_str_eq(tribo_driver_method(drv), cases[k].got);
+        tribo_driver_destroy(drv);
+    }
+    ck_assert_ptr_null(tribo_driver_method(NULL));
+    /* a table that ends makes it exact again */
+    assert_ok(tribo_system_set_limit_table(pressed, 0, NULL, NULL));
+    tribo_driver *drv = driver_create(pressed, "auto", 1.0, 0.0);
+    ck_assert_str_eq(tribo_driver_method(drv), "exact");
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(small);
+    tribo_system_destroy(loaded);
+    tribo_system_destroy(pressed);
+    tribo_system_destroy(large);
+}
+
+/* What "auto" runs is what its name says. */
+TEST(automatic_runs)
+{
+    double y[3] = {0}, want[3] = {0};
+    tribo_system *sys = oscillator(TRIBO_QUINN, 1.5, 0.5);
+    run(sys, "auto", 1.0, 0.0, 20.0, y);
+    run(sys, "exact", 1.0, 0.0, 20.0, want);
+    assert_all_exact(y, want, 3);
+    tribo_system_destroy(sys);
+}
+
+/* Tables, a mode damped just critically, and (with damping that couples modes) resonance without damping have no closed form
+ * here; time and state stay. */
+TEST(unsupported)
+{
+    const double times[] = {0.0, 1.0}, values[] = {0.0, 1.0}, one = 1.0, limits[] = {1.0, 2.0}, two = 2.0;
+    tribo_system *cases[3];
+    const char *const texts[] = {"takes harmonic loads only", "takes harmonic loads only", "critically damped"};
+    cases[0] = block(1.0, 1.0, 1.0);
+    assert_ok(tribo_system_add_load_table(cases[0], 2, times, values, &one));
+    cases[1] = block(1.0, 1.0, 1.0);
+    assert_ok(tribo_system_set_limit_table(cases[1], 2, times, limits));
+    assert_ok(tribo_system_linear(&cases[2], 1, 1, &one, &two, &one, &one, 0, NULL, 0));
+    for (size_t k = 0; k < 3; k++) {
+        double t = 0.5, y[3] = {0.25, 2.0, 0.0};
+        tribo_driver *drv = driver_create(cases[k], "exact", 1.0, 0.0);
+        assert_status(tribo_driver_advance(drv, &t, 3.0, y), TRIBO_ERR_UNSUPPORTED);
+        assert_says(tribo_driver_message(drv), texts[k]);
+        assert_says(tribo_driver_message(drv), "method event");
+        assert_exact(t, 0.5);
+        assert_exact(y[0], 0.25);
+        assert_exact(y[1], 2.0);
+        tribo_driver_destroy(drv);
+        drv = driver_create(cases[k], "event", 1.0, 1e-9);
+        driver_advance(drv, &t, 3.0, y);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(cases[k]);
+    }
+}
+
+/* No tolerances are asked for. */
+TEST(creation)
+{
+    tribo_driver *drv;
+    tribo_system *sys = block(1.0, 1.0, 1.0);
+    assert_ok(tribo_driver_create(&drv, sys, "exact", 1.0, 0.0, 0.0));
+    tribo_driver_destroy(drv);
+    assert_status(tribo_driver_create(&drv, sys, "exact", 0.0, 0.0, 0.0), TRIBO_ERR_NOT_POSITIVE);
+    assert_status(tribo_driver_create(&drv, sys, "event", 1.0, 0.0, 0.0), TRIBO_ERR_NOT_POSITIVE);
+    assert_says(tribo_message(tribo_system_context(sys)), "abstol = 0");
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("exact", {reference_values, REFERENCES}, {events_of_the_chain, 1}, {chains, 6}, {beam_against_event, 3},
+          {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1}, {held_together, 2}, {balance_of_energy, 8},
+          {observer_sees_the_motion, 1}, {observer_stops, 1}, {in_pieces, 1}, {automatic, 1}, {automatic_runs, 1},
+          {unsupported, 1}, {creation, 1})
