@@ -1,15 +1,16 @@
+#define _POSIX_C_SOURCE 199309L /* clock_gettime */
+
 #include "harness.h"
 
 #include <stdlib.h>
 #include <time.h>
 
-/* Below this a measurement is that of the clock and of what else the processor remembers: runs are repeated to last so long. */
+/* Below this a measurement is that of the clock: jobs are repeated to last so long. */
 #define SHORTEST 2e-3
 
 enum { MOST = 64 };
 
-/* Of the processor, so that what the machine does for others in the meantime does not count; memory and caches are shared still,
- * and the speed of the processor changes, which is what ratios are for. */
+/* Memory and caches are shared with others still, and the speed of the processor changes; ratios are for that. */
 double cpu_seconds(void)
 {
     struct timespec t;
@@ -17,19 +18,21 @@ double cpu_seconds(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static double seconds_of(const struct method *m, const struct scene *s, double setting, size_t times)
+double probe_job(struct job *job)
 {
     const double begin = cpu_seconds();
-    for (size_t k = 0; k < times; k++) {
-        struct outcome o = {.failure = ""};
-        m->run(m, s, setting, &o);
-    }
-    return (cpu_seconds() - begin) / (double)times;
+    job->run(job->data);
+    return job->about = cpu_seconds() - begin;
 }
 
-static size_t times_for(double seconds)
+static double seconds_of(const struct job *job)
 {
-    return seconds < SHORTEST ? (size_t)(SHORTEST / (seconds + 1e-7)) + 1 : 1;
+    const size_t times = job->about < SHORTEST ? (size_t)(SHORTEST / (job->about + 1e-7)) + 1 : 1;
+    const double begin = cpu_seconds();
+    for (size_t k = 0; k < times; k++) {
+        job->run(job->data);
+    }
+    return (cpu_seconds() - begin) / (double)times;
 }
 
 static int ascending(const void *a, const void *b)
@@ -38,38 +41,30 @@ static int ascending(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double quantile(const double *sorted, size_t n, double q)
+/* Sorts the values. */
+static double quantile(double *value, size_t n, double q)
 {
+    qsort(value, n, sizeof *value, ascending);
     const double at = q * (double)(n - 1);
-    const size_t i = (size_t)at < n - 1 ? (size_t)at : n - 1;
-    return i + 1 < n ? sorted[i] + (at - (double)i) * (sorted[i + 1] - sorted[i]) : sorted[i];
+    const size_t i = (size_t)at;
+    return i + 1 < n ? value[i] + (at - (double)i) * (value[i + 1] - value[i]) : value[i];
 }
 
-struct timing time_run(const struct method *m, const struct scene *s, double setting, double first, const struct effort *effort)
+struct timing time_job(const struct job *job, const struct job *unit, const struct effort *effort)
 {
-    double seconds[MOST], ratio[MOST], sorted_seconds[MOST], sorted[MOST];
-    const size_t times = times_for(first);
-    double unit = seconds_of(unit_method, s, s->dt, 1);
-    const size_t unit_times = times_for(unit);
+    double seconds[MOST], ratio[MOST], before = seconds_of(unit);
+    const double end = cpu_seconds() + effort->budget;
     struct timing t = {0};
-    unit = seconds_of(unit_method, s, s->dt, unit_times);
-    while (t.repeats < effort->repeats ||
-           (t.high - t.low > effort->spread * t.ratio && t.repeats < effort->most_repeats && t.repeats < MOST)) {
-        const double here = seconds_of(m, s, setting, times), after = seconds_of(unit_method, s, s->dt, unit_times);
-        seconds[t.repeats] = here;
-        ratio[t.repeats] = here / (0.5 * (unit + after) * s->unit_part);
-        unit = after;
+    while (t.repeats < effort->least || (t.repeats < effort->most && t.repeats < MOST && cpu_seconds() < end)) {
+        seconds[t.repeats] = seconds_of(job);
+        const double after = seconds_of(unit);
+        ratio[t.repeats] = seconds[t.repeats] / (0.5 * (before + after));
+        before = after;
         t.repeats++;
-        for (size_t i = 0; i < t.repeats; i++) {
-            sorted_seconds[i] = seconds[i];
-            sorted[i] = ratio[i];
-        }
-        qsort(sorted_seconds, t.repeats, sizeof *sorted_seconds, ascending);
-        qsort(sorted, t.repeats, sizeof *sorted, ascending);
-        t.seconds = quantile(sorted_seconds, t.repeats, 0.5);
-        t.ratio = quantile(sorted, t.repeats, 0.5);
-        t.low = quantile(sorted, t.repeats, 0.25);
-        t.high = quantile(sorted, t.repeats, 0.75);
     }
+    t.seconds = quantile(seconds, t.repeats, 0.5);
+    t.ratio = quantile(ratio, t.repeats, 0.5);
+    t.low = quantile(ratio, t.repeats, 0.25);
+    t.high = quantile(ratio, t.repeats, 0.75);
     return t;
 }

@@ -1,25 +1,34 @@
-/* Times runs on a machine that others use too. */
+/* Times runs on a machine that others use too: each is compared to a unit, run just before and just after it. For all programs of
+ * this folder; knows nothing of friction. */
 #ifndef TRIBO_BENCH_HARNESS_H
 #define TRIBO_BENCH_HARNESS_H
 
-#include "methods.h"
+#include <stddef.h>
 
-struct timing {
-    double seconds;          /* median */
-    double ratio, low, high; /* to the unit, measured before and after each run: median and quartiles */
-    size_t repeats;
+struct job {
+    void (*run)(void *data);
+    void *data;
+    double about; /* seconds that it takes, roughly: short jobs are timed many at a time */
 };
 
 struct effort {
-    size_t repeats;      /* at least */
-    double longest;      /* seconds; a method's longer settings are left out */
-    double spread;       /* of the quartiles, that is good enough */
-    size_t most_repeats; /* if it is not */
+    size_t least, most; /* repeats */
+    double budget;      /* seconds, after which no repeat beyond the least begins */
 };
 
-double cpu_seconds(void);
+struct timing {
+    double seconds;          /* of a run, median */
+    double ratio, low, high; /* to the unit: median and quartiles */
+    size_t repeats;
+};
 
-/* Times a run against the unit, and leaves its outcome. first: seconds that a run takes, about. */
-struct timing time_run(const struct method *m, const struct scene *s, double setting, double first, const struct effort *effort);
+/* Runs a job once, notes how long it takes, and returns that. */
+double probe_job(struct job *job);
+
+/* Both jobs must have been probed. */
+struct timing time_job(const struct job *job, const struct job *unit, const struct effort *effort);
+
+/* Of the processor, so that what the machine does for others in the meantime does not count. */
+double cpu_seconds(void);
 
 #endif

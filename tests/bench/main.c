@@ -7,28 +7,38 @@
 
 #include "../../examples/common/output.h"
 #include "harness.h"
+#include "methods.h"
 
 static const char help[] = "bench: run time against error of methods for friction, on systems whose answer is known.\n"
                            "\n"
                            "  --out FOLDER     where the tables go, which must exist; \".\"\n"
                            "  --system NAME    only this one; may be given several times\n"
-                           "  --method NAME    only methods whose package, name or law is NAME\n"
+                           "  --method NAME    only methods whose package, name or law is NAME; may be given several times\n"
                            "  --quick          fewer settings and shorter runs\n"
-                           "  --full           longer runs too\n"
-                           "  --smoke          no times: checks what cheap settings answer, for ctest\n"
+                           "  --smoke          no times: fails if cheap settings answer wrong, for ctest\n"
                            "  --list           names of systems and methods\n";
 
-enum { MOST_CHOSEN = 32, PER_DECADE = 4 };
+enum { MOST_CHOSEN = 32 };
 
 struct options {
     const char *out, *system[MOST_CHOSEN], *method[MOST_CHOSEN];
     size_t systems, methods;
     int smoke, list;
-    size_t skip; /* of the settings all but each skip-th are left out */
-    struct effort effort;
+    int per_decade;       /* settings of a sweep */
+    double longest;       /* seconds of a run; slower settings are left out */
+    struct effort effort; /* of its timing */
 };
 
-static const struct methods *const packages[] = {&plain_methods, &tribo_methods, &sundials_methods, &siconos_methods};
+static const struct methods *const packages[] = {
+    &plain_methods, &tribo_methods,
+#ifdef HAVE_SUNDIALS
+    &sundials_methods,
+#endif
+#ifdef HAVE_SICONOS
+    &siconos_methods,
+#endif
+};
+enum { PACKAGES = sizeof packages / sizeof *packages };
 
 /* ----------------------------------------------------------------------------------------------------------- settings */
 
@@ -48,89 +58,85 @@ static int is_chosen(const struct options *o, const struct method *m)
            chosen(o->method, o->methods, m->law);
 }
 
-/* The k-th setting of a sweep, from coarse to fine; 0 after the last. */
-static double setting_of(const struct method *m, const struct scene *s, size_t k)
+/* The k-th setting of a sweep, from coarse to fine; 0 after the last. Steps begin where the method is stable, four decades
+ * down, scene.dt among them. */
+static double setting_of(const struct options *o, const struct method *m, const struct scene *s, int k)
 {
-    const double longest = m->stable > 0.0 ? m->stable / s->model.fastest : HUGE_VAL;
-    switch (m->sweep) {
-    case STEP:
-        /* four to a factor of ten, scene.dt among them; beginning where the method is stable */
-        for (int i = PER_DECADE;; i--) {
-            const double dt = s->dt * pow(10.0, (double)i / PER_DECADE);
-            if (dt <= longest * (1.0 + 1e-9)) {
-                return k <= 4 * PER_DECADE ? dt * pow(10.0, -(double)k / PER_DECADE) : 0.0;
-            }
-        }
-    case TOLERANCE:
-        return k <= 11 ? pow(10.0, -2.0 - (double)k) : 0.0;
-    default:
+    if (m->sweep == TOLERANCE) {
+        return k <= 11 ? pow(10.0, -2 - k) : 0.0;
+    }
+    if (m->sweep == NO_SETTING) {
         return k == 0 ? 1.0 : 0.0;
     }
+    const double longest = m->stable > 0.0 ? m->stable / s->model.fastest : 10.0 * s->dt;
+    const double first = floor(o->per_decade * log10(longest / s->dt) * (1.0 + 1e-9));
+    return k <= 4 * o->per_decade ? s->dt * pow(10.0, (first - k) / o->per_decade) : 0.0;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- rows */
+/* --------------------------------------------------------------------------------------------------------------- runs */
 
-static void write_header(FILE *file)
-{
-    fprintf(file, "system,package,method,law,setting,error,seconds,ratio,ratio low,ratio high,repeats,evaluations,events,steps\n");
-}
+struct run {
+    const struct method *method;
+    const struct scene *scene;
+    double setting, deadline;
+    struct outcome outcome;
+};
 
-static void write_row(FILE *file, const struct scene *s, const struct method *m, double setting, double error,
-                      const struct timing *t, const struct outcome *o)
+static void run_once(void *data)
 {
-    fprintf(file, "%s,%s,%s,%s,%.4g,%.4g,%.5g,%.4g,%.4g,%.4g,%zu,%zu,%zu,%zu\n", s->name, m->package, m->name, m->law,
-            m->sweep == NO_SETTING ? (double)NAN : setting, error, t->seconds, t->ratio, t->low, t->high, t->repeats, o->evaluations,
-            o->events, o->steps);
-    fflush(file);
+    struct run *r = data;
+    r->outcome = (struct outcome){.deadline = r->deadline};
+    r->method->run(r->method, r->scene, r->setting, &r->outcome);
 }
 
 /* The method that the reference is from is judged by the other one. */
-static double error_of(const struct scene *s, const struct method *m, const struct outcome *o)
+static double error_of(const struct run *r)
 {
-    const int own = !s->printed && strcmp(m->name, "exact") == 0;
-    return scene_error(s, o->answer, own ? s->second : s->reference);
+    const struct scene *s = r->scene;
+    const int own = !s->printed && strcmp(r->method->name, "exact") == 0;
+    return scene_error(s, r->outcome.answer, own ? s->second : s->reference);
+}
+
+static void write_row(FILE *file, const struct run *r, const struct timing *t)
+{
+    const struct method *m = r->method;
+    const struct outcome *o = &r->outcome;
+    const double part = r->scene->unit_part;
+    fprintf(file, "%s,%s,%s,%s,%.4g,%.4g,%.5g,%.4g,%.4g,%.4g,%zu,%zu,%zu,%zu\n", r->scene->name, m->package, m->name, m->law,
+            m->sweep == NO_SETTING ? (double)NAN : r->setting, error_of(r), t->seconds, t->ratio / part, t->low / part,
+            t->high / part, t->repeats, o->evaluations, o->events, o->steps);
+    fflush(file);
 }
 
 /* All settings of a method, until a run takes too long. */
-static void run_method(const struct options *options, FILE *file, const struct scene *s, const struct method *m)
+static void run_method(const struct options *options, FILE *file, const struct scene *s, const struct method *m,
+                       const struct job *unit)
 {
-    double setting, last = 0.0;
-    for (size_t k = 0; (setting = setting_of(m, s, k)) > 0.0; k++) {
-        if (k % options->skip && !(m->sweep == STEP && setting == s->dt)) {
-            continue;
+    struct run r = {m, s, 0.0, 0.0, {.failure = ""}};
+    struct job job = {run_once, &r, 0.0};
+    for (int k = 0; (r.setting = setting_of(options, m, s, k)) > 0.0 && job.about < options->longest; k++) {
+        r.deadline = cpu_seconds() + 4.0 * options->longest;
+        probe_job(&job);
+        if (r.outcome.failure[0]) {
+            printf("  %s %s, %s, setting %.3g: %s\n", m->package, m->name, m->law, r.setting, r.outcome.failure);
+        } else {
+            r.deadline = 0.0;
+            const struct timing t = time_job(&job, unit, &options->effort);
+            write_row(file, &r, &t);
         }
-        struct outcome o = {.failure = ""};
-        const double begin = cpu_seconds();
-        m->run(m, s, setting, &o);
-        const double seconds = cpu_seconds() - begin;
-        if (o.failure[0]) {
-            printf("  %s %s, %s, setting %.3g failed: %s\n", m->package, m->name, m->law, setting, o.failure);
-            if (last > 0.0 && seconds > options->effort.longest) {
-                break;
-            }
-            continue;
-        }
-        struct effort effort = options->effort;
-        if (seconds > effort.longest) {
-            if (last > 0.0 || seconds > 20.0 * effort.longest) {
-                printf("  %s %s, %s: from setting %.3g on more than %.2g s\n", m->package, m->name, m->law, setting, effort.longest);
-                break;
-            }
-            effort.repeats = effort.most_repeats = 3;
-        }
-        last = seconds;
-        const struct timing t = time_run(m, s, setting, seconds, &effort);
-        write_row(file, s, m, setting, error_of(s, m, &o), &t, &o);
     }
 }
 
 /* ---------------------------------------------------------------------------------------------------------- references */
 
-static const struct method *find_method(const char *name)
+static const struct method *find_method(const char *package, const char *name, const char *law)
 {
-    for (size_t i = 0; i < tribo_methods.count; i++) {
-        if (strcmp(tribo_methods.method[i].name, name) == 0) {
-            return &tribo_methods.method[i];
+    for (size_t p = 0; p < PACKAGES; p++) {
+        for (size_t i = 0; i < packages[p]->count; i++) {
+            const struct method *m = &packages[p]->method[i];
+            if (strcmp(m->package, package) == 0 && strcmp(m->name, name) == 0 && strcmp(m->law, law) == 0) {
+                return m;
+            }
         }
     }
     return NULL;
@@ -138,13 +144,12 @@ static const struct method *find_method(const char *name)
 
 static void ask(const struct scene *s, const char *name, double setting, double *answer)
 {
-    const struct method *m = find_method(name);
-    struct outcome o = {.failure = ""};
-    m->run(m, s, setting, &o);
-    if (o.failure[0]) {
-        die("%s: no reference from method %s: %s", s->name, name, o.failure);
+    struct run r = {find_method("tribo", name, "coulomb"), s, setting, 0.0, {.failure = ""}};
+    run_once(&r);
+    if (r.outcome.failure[0]) {
+        die("%s: no reference from method %s: %s", s->name, name, r.outcome.failure);
     }
-    memcpy(answer, o.answer, s->answers * sizeof *answer);
+    memcpy(answer, r.outcome.answer, s->answers * sizeof *answer);
 }
 
 /* Two independent methods must agree before one of them may judge. */
@@ -168,18 +173,20 @@ static void find_reference(struct scene *s)
 
 /* ------------------------------------------------------------------------------------------------------------- program */
 
-static void run_scene(const struct options *options, struct scene *s)
+static void run_scene(const struct options *options, const struct scene *s)
 {
     char name[40];
     snprintf(name, sizeof name, "%s.csv", s->name);
-    find_reference(s);
     FILE *file = create_file(options->out, name);
-    write_header(file);
-    for (size_t p = 0; p < sizeof packages / sizeof *packages; p++) {
+    fprintf(file, "system,package,method,law,setting,error,seconds,ratio,ratio low,ratio high,repeats,evaluations,events,steps\n");
+    struct run r = {unit_method, s, s->dt, 0.0, {.failure = ""}};
+    struct job unit = {run_once, &r, 0.0};
+    probe_job(&unit);
+    for (size_t p = 0; p < PACKAGES; p++) {
         for (size_t i = 0; i < packages[p]->count; i++) {
             const struct method *m = &packages[p]->method[i];
             if (is_chosen(options, m) && (!m->fits || m->fits(s))) {
-                run_method(options, file, s, m);
+                run_method(options, file, s, m, &unit);
             }
         }
     }
@@ -191,7 +198,7 @@ static void list(const struct scene *scene, size_t count)
     for (size_t i = 0; i < count; i++) {
         printf("system  %s\n", scene[i].name);
     }
-    for (size_t p = 0; p < sizeof packages / sizeof *packages; p++) {
+    for (size_t p = 0; p < PACKAGES; p++) {
         for (size_t i = 0; i < packages[p]->count; i++) {
             const struct method *m = &packages[p]->method[i];
             printf("method  %s %s, %s\n", m->package, m->name, m->law);
@@ -209,7 +216,7 @@ static const char *value_of(int argc, char **argv, int *i)
 
 static struct options read_options(int argc, char **argv)
 {
-    struct options o = {.out = ".", .skip = 1, .effort = {5, 0.4, 0.1, 15}};
+    struct options o = {.out = ".", .per_decade = 4, .longest = 0.2, .effort = {3, 15, 0.1}};
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--help") == 0) {
             fputs(help, stdout);
@@ -221,10 +228,9 @@ static struct options read_options(int argc, char **argv)
         } else if (strcmp(argv[i], "--method") == 0 && o.methods < MOST_CHOSEN) {
             o.method[o.methods++] = value_of(argc, argv, &i);
         } else if (strcmp(argv[i], "--quick") == 0) {
-            o.skip = 2;
-            o.effort = (struct effort){5, 0.06, 0.2, 9};
-        } else if (strcmp(argv[i], "--full") == 0) {
-            o.effort.longest = 4.0;
+            o.per_decade = 2;
+            o.longest = 0.02;
+            o.effort.budget = 0.03;
         } else if (strcmp(argv[i], "--smoke") == 0) {
             o.smoke = 1;
         } else if (strcmp(argv[i], "--list") == 0) {
@@ -247,6 +253,7 @@ int main(int argc, char **argv)
     }
     for (size_t i = 0; i < count && !options.list; i++) {
         if (chosen(options.system, options.systems, scene[i].name)) {
+            find_reference(&scene[i]);
             run_scene(&options, &scene[i]);
         }
     }

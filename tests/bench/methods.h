@@ -7,6 +7,7 @@
 struct outcome {
     double answer[ANSWERS];
     size_t steps, evaluations, events;
+    double deadline;   /* in, as cpu_seconds() counts: adaptive methods may give up then; 0: none */
     char failure[160]; /* "": none */
 };
 
@@ -19,7 +20,7 @@ struct method {
     enum sweep sweep;
     double stable; /* STEP: the longest is this over the highest frequency; 0: any */
     int (*fits)(const struct scene *s); /* NULL: all scenes */
-    /* From nothing to the answer, as a user's first run would be. */
+    /* From nothing to the answer, as a user's first run would be: system, driver, run. (The beam's modes are there already.) */
     void (*run)(const struct method *m, const struct scene *s, double setting, struct outcome *o);
     int number; /* the package's own: law, solver ... */
 };
@@ -29,7 +30,7 @@ struct methods {
     size_t count;
 };
 
-/* One a package; those that were not found have none. */
+/* One a package; that of a peer is there if it was found. */
 extern const struct methods plain_methods, tribo_methods, sundials_methods, siconos_methods;
 
 /* The unit of time: plain rk4 with Quinn's law, in steps of the scene's dt. */
