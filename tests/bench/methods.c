@@ -112,8 +112,14 @@ static int is_moderate(const struct scene *s)
     return s->model.n <= 32;
 }
 
+/* A decomposition of the structure for every new set of held contacts: with n = 512 that takes 19 s. */
+static int is_decomposable(const struct scene *s)
+{
+    return s->model.n <= 128;
+}
+
 static const struct method all[] = {
-    {"tribo", "exact", "coulomb", NO_SETTING, 0.0, NULL, run, 0},
+    {"tribo", "exact", "coulomb", NO_SETTING, 0.0, is_decomposable, run, 0},
     {"tribo", "event", "coulomb", TOLERANCE, 0.0, NULL, run, 0},
     {"tribo", "central/fixed", "coulomb", STEP, 1.95, NULL, run, 0},
     {"tribo", "moreau/fixed", "coulomb", STEP, 0.0, NULL, run, 0},

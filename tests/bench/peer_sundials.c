@@ -18,6 +18,7 @@
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include "../../examples/common/output.h"
+#include "harness.h"
 #include "methods.h"
 #include "motion.h"
 
@@ -42,7 +43,7 @@ struct run {
     double *scratch, *ahead; /* [2 n] */
     double *feq, *base;  /* [c] of contacts at rest; position at the begin of a slide */
     double rest[CONTACTS][CONTACTS]; /* R_SS^-1 of the contacts at rest, in their places; coupled only */
-    double dissipated;
+    double dissipated, deadline;
     size_t evaluations, events, steps;
 };
 
@@ -99,8 +100,9 @@ static void move(struct run *r, double t, const double *y, double *dy)
 
 static int right_hand_side(realtype t, N_Vector y, N_Vector dy, void *run)
 {
+    const struct run *r = run;
     move(run, t, N_VGetArrayPointer(y), N_VGetArrayPointer(dy));
-    return 0;
+    return r->deadline > 0.0 && r->evaluations % 64 == 0 && cpu_seconds() > r->deadline ? -1 : 0;
 }
 
 static int roots(realtype t, N_Vector y, realtype *g, void *run)
@@ -356,7 +358,7 @@ static void advance(struct package *p, struct run *r, double *t, double t1, stru
 static void run(const struct method *method, const struct scene *s, double tolerance, struct outcome *o)
 {
     const struct model *m = &s->model;
-    struct run r = {.model = m, .motion = motion_of(m), .n = m->n, .c = m->c};
+    struct run r = {.model = m, .motion = motion_of(m), .n = m->n, .c = m->c, .deadline = o->deadline};
     struct package p = {.solver = (enum solver)method->number};
     r.stride = m->kind == CHAIN && p.solver == BDF ? 2 : 1;
     r.coupled = m->kind > CHAIN;

@@ -217,19 +217,20 @@ static void run_rk4(const struct method *method, const struct scene *s, double d
 
 /* ------------------------------------------------------------------------------------------------------- Moreau-Jean */
 
-/* The implicit midpoint rule; friction over the step by trying the cases. */
+/* The implicit midpoint rule, its load the mean of both ends; friction over the step by trying the cases. */
 static void moreau_oscillator(const struct model *m, double t, double h, size_t steps, double *y)
 {
     const double w = 1.0 / (1.0 + 0.25 * h * h), begin = t;
-    double q = y[0], v = y[1], d = y[2];
+    double q = y[0], v = y[1], d = y[2], last = 0.5 * m->alpha * sin(m->omega * t);
     for (size_t s = 1; s <= steps; s++) {
-        const double load = m->alpha * sin(m->omega * (t + 0.5 * h));
+        t = begin + (double)s * h;
+        const double next = 0.5 * m->alpha * sin(m->omega * t), load = last + next;
         const double free = v + h * w * (load - q - 0.5 * h * v);
         const double f = clamp(-free / (h * w), m->limit[0]), after = free + h * w * f;
         d -= 0.5 * h * f * (v + after);
         q += 0.5 * h * (v + after);
         v = after;
-        t = begin + (double)s * h;
+        last = next;
     }
     y[0] = q;
     y[1] = v;
