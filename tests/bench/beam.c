@@ -70,7 +70,8 @@ static tribo_system *reduce(const struct structure *s, const size_t *row, size_t
  * back is its inverse. */
 static void find_coordinates(struct modal *b)
 {
-    gsl_matrix *jt = gsl_matrix_alloc(MODES, CONTACTS), *q = gsl_matrix_alloc(MODES, MODES), *r = gsl_matrix_alloc(MODES, CONTACTS);
+    gsl_matrix *jt = gsl_matrix_alloc(MODES, CONTACTS), *q = gsl_matrix_alloc(MODES, MODES),
+               *r = gsl_matrix_alloc(MODES, CONTACTS);
     gsl_vector *tau = gsl_vector_alloc(CONTACTS);
     gsl_matrix *forth = gsl_matrix_alloc(MODES, MODES);
     gsl_matrix_view back = gsl_matrix_view_array(b->back[0], MODES, MODES);

@@ -18,7 +18,7 @@ struct method {
     const char *name;
     const char *law; /* "coulomb" is Coulomb's law itself, without epsilon */
     enum sweep sweep;
-    double stable; /* STEP: the longest is this over the highest frequency; 0: any */
+    double stable;                      /* STEP: the longest is this over the highest frequency; 0: any */
     int (*fits)(const struct scene *s); /* NULL: all scenes */
     /* From nothing to the answer, as a user's first run would be: system, driver, run. (The beam's modes are there already.) */
     void (*run)(const struct method *m, const struct scene *s, double setting, struct outcome *o);

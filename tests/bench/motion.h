@@ -1,6 +1,6 @@
-/* Accelerations of the models, by hand, without friction. Plain code and other packages share them: their compilers see all of it.
- * State: q and velocities s, each with a stride. The velocities are those of the contacts, v = s, followed for the beam by others
- * (see modal.back); chain and oscillator have J = 1. */
+/* Accelerations of the models, by hand, without friction. Plain code and other packages share them: their compilers see all of
+ * it. State: q and velocities s, each with a stride. The velocities are those of the contacts, v = s, followed for the beam by
+ * others (see modal.back); chain and oscillator have J = 1. */
 #ifndef TRIBO_BENCH_MOTION_H
 #define TRIBO_BENCH_MOTION_H
 
@@ -9,7 +9,8 @@
 #include "systems.h"
 
 /* q' and s' into dq and ds. */
-typedef void free_motion(const struct model *m, double t, const double *q, const double *s, double *dq, double *ds, size_t stride);
+typedef void free_motion(const struct model *m, double t, const double *q, const double *s, double *dq, double *ds,
+                         size_t stride);
 
 static inline void oscillator_motion(const struct model *m, double t, const double *q, const double *s, double *dq, double *ds,
                                      size_t stride)

@@ -1,9 +1,9 @@
 /* SUNDIALS as an expert would use it for Coulomb's law: the contacts' modes are held in the right-hand side, roots of the sliding
  * velocities and of what is left to the limits end a mode, and integration starts again behind each.
  *
- * What it takes to do this well, all of it learned the hard way by others: velocities of the contacts are states, so that contacts
- * at rest are so exactly; no step is longer than the structure's fastest motion allows, or else roots are missed in pairs; the
- * dissipated energy is no state, but the limit times the way slid. Linear solvers see the band that chains have. */
+ * What it takes to do this well, all of it learned the hard way by others: velocities of the contacts are states, so that
+ * contacts at rest are so exactly; no step is longer than the structure's fastest motion allows, or else roots are missed in
+ * pairs; the dissipated energy is no state, but the limit times the way slid. Linear solvers see the band that chains have. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,12 +36,12 @@ static const double longest_step = 1.0;
 struct run {
     const struct model *model;
     free_motion *motion;
-    size_t n, c, stride; /* stride 1: q, s; 2: q_0, s_0, q_1 ... */
-    int coupled;         /* R is not diagonal */
-    signed char *mode;   /* [c] 0: at rest, else the direction */
-    int *found;          /* [c] */
-    double *scratch, *ahead; /* [2 n] */
-    double *feq, *base;  /* [c] of contacts at rest; position at the begin of a slide */
+    size_t n, c, stride;             /* stride 1: q, s; 2: q_0, s_0, q_1 ... */
+    int coupled;                     /* R is not diagonal */
+    signed char *mode;               /* [c] 0: at rest, else the direction */
+    int *found;                      /* [c] */
+    double *scratch, *ahead;         /* [2 n] */
+    double *feq, *base;              /* [c] of contacts at rest; position at the begin of a slide */
     double rest[CONTACTS][CONTACTS]; /* R_SS^-1 of the contacts at rest, in their places; coupled only */
     double dissipated, deadline;
     size_t evaluations, events, steps;

@@ -53,7 +53,7 @@ struct scene {
     int printed;            /* whether the reference is a printed value; else it is method exact's */
     double reference[ANSWERS];
     double second[ANSWERS]; /* method event's, at the tightest tolerance */
-    tribo_system *beam;     /* shared by its scenes */
+    tribo_system *beam;     /* NULL for the others, which each run makes for itself */
 };
 
 /* All scenes, count of them; their references still unknown, unless printed. Ends the program if one cannot be made. */
