@@ -169,7 +169,7 @@ static void find_reference(struct scene *s)
     }
     const double apart = scene_error(s, s->second, s->reference);
     printf("%s: %s and event at 1e-13 differ by %.1e\n", s->name, s->printed ? "the printed value" : "exact", apart);
-    if (!(apart < 1e-11)) {
+    if (!(apart < 1e-10)) {
         die("%s: there is no reference", s->name);
     }
 }

@@ -91,7 +91,7 @@ static void run(const struct method *m, const struct scene *s, double setting, s
     tribo_driver *drv;
     need(tribo_driver_create(&drv, sys, m->name, dt, tolerance * s->size, m->sweep == TOLERANCE ? tolerance : 0.0),
          tribo_message(contacts));
-    if (o->deadline > 0.0 && m->sweep == TOLERANCE) {
+    if (o->deadline > 0.0 && m->sweep != NO_SETTING) {
         need(tribo_driver_set_observer(drv, in_time, &o->deadline), NULL);
     }
     if (s->begin > 0.0) {

@@ -7,7 +7,7 @@
 struct outcome {
     double answer[ANSWERS];
     size_t steps, evaluations, events;
-    double deadline;   /* in, as cpu_seconds() counts: adaptive methods give up then; 0: none */
+    double deadline;   /* in, as cpu_seconds() counts: a method may give up then; 0: none */
     char failure[160]; /* "": none */
 };
 
