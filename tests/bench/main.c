@@ -24,10 +24,9 @@ struct options {
     const char *out, *system[MOST_CHOSEN], *method[MOST_CHOSEN];
     size_t systems, methods;
     int smoke, list;
-    int per_decade;       /* settings of a sweep */
-    double longest;       /* seconds of a run, or as many units if that is more; slower settings are left out */
-    double units;         /* a run that only these allow is timed once */
-    struct effort effort; /* of its timing */
+    int per_decade;        /* settings of a sweep */
+    double longest, units; /* seconds of a run, or units if that is more; slower settings are left out */
+    struct effort effort;  /* of its timing */
 };
 
 static const struct methods *const packages[] = {
@@ -111,16 +110,17 @@ static void write_row(FILE *file, const struct run *r, const struct timing *t)
     fflush(file);
 }
 
-/* All settings of a method, until a run takes too long. */
+/* All settings of a method, until a run takes too long; of long runs every other one, timed once. */
 static void run_method(const struct options *options, FILE *file, const struct scene *s, const struct method *m,
                        const struct job *unit)
 {
     const double longest = fmax(options->longest, options->units * unit->about);
+    const double limit = longest * fmax(m->patience, 1.0);
     struct run r = {m, s, 0.0, 0.0, {.failure = ""}};
     struct job job = {run_once, &r, 0.0};
-    for (int k = 0; (r.setting = setting_of(options, m, s, k)) > 0.0; k++) {
-        r.deadline = cpu_seconds() + longest;
-        if (probe_job(&job) > longest) {
+    for (int k = 0; (r.setting = setting_of(options, m, s, k)) > 0.0; k += job.about > longest ? 2 : 1) {
+        r.deadline = cpu_seconds() + limit;
+        if (probe_job(&job) > limit) {
             break;
         }
         r.deadline = 0.0;
@@ -268,7 +268,7 @@ static const char *value_of(int argc, char **argv, int *i)
 
 static struct options read_options(int argc, char **argv)
 {
-    struct options o = {.out = ".", .per_decade = 3, .longest = 0.15, .units = 20.0, .effort = {3, 15, 0.05}};
+    struct options o = {.out = ".", .per_decade = 3, .longest = 0.15, .units = 4.0, .effort = {3, 15, 0.05}};
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--help") == 0) {
             fputs(help, stdout);
@@ -282,6 +282,7 @@ static struct options read_options(int argc, char **argv)
         } else if (strcmp(argv[i], "--quick") == 0) {
             o.per_decade = 2;
             o.longest = 0.03;
+            o.units = 1.5;
             o.effort.budget = 0.0;
         } else if (strcmp(argv[i], "--smoke") == 0) {
             o.smoke = 1;

@@ -22,7 +22,8 @@ struct method {
     int (*fits)(const struct scene *s); /* NULL: all scenes */
     /* From nothing to the answer, as a user's first run would be: system, driver, run. (The beam's modes are there already.) */
     void (*run)(const struct method *m, const struct scene *s, double setting, struct outcome *o);
-    int number; /* the package's own: law, solver ... */
+    double patience; /* its runs may take so many times as long as others' may; 0: 1 */
+    int number;      /* the package's own: law, solver ... */
 };
 
 struct methods {

@@ -109,7 +109,7 @@ int fits(const struct scene *s)
     return s->model.kind == OSCILLATOR || (s->model.kind == CHAIN && s->model.n <= 128);
 }
 
-const struct method all[] = {{"siconos", "moreau-jean", "coulomb", STEP, 0.0, fits, run, 0}};
+const struct method all[] = {{"siconos", "moreau-jean", "coulomb", STEP, 0.0, fits, run, 0.0, 0}};
 
 } // namespace
 

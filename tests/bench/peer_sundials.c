@@ -394,9 +394,9 @@ static void run(const struct method *method, const struct scene *s, double toler
 }
 
 static const struct method all[] = {
-    {"sundials", "cvode-bdf", "coulomb", TOLERANCE, 0.0, NULL, run, BDF},
-    {"sundials", "cvode-adams", "coulomb", TOLERANCE, 0.0, NULL, run, ADAMS},
-    {"sundials", "arkode-5", "coulomb", TOLERANCE, 0.0, NULL, run, ERK_5},
-    {"sundials", "arkode-8", "coulomb", TOLERANCE, 0.0, NULL, run, ERK_8},
+    {"sundials", "cvode-bdf", "coulomb", TOLERANCE, 0.0, NULL, run, 0.0, BDF},
+    {"sundials", "cvode-adams", "coulomb", TOLERANCE, 0.0, NULL, run, 0.0, ADAMS},
+    {"sundials", "arkode-5", "coulomb", TOLERANCE, 0.0, NULL, run, 0.0, ERK_5},
+    {"sundials", "arkode-8", "coulomb", TOLERANCE, 0.0, NULL, run, 0.0, ERK_8},
 };
 const struct methods sundials_methods = {all, sizeof all / sizeof *all};

@@ -290,8 +290,8 @@ static int is_small(const struct scene *s)
 }
 
 static const struct method all[] = {
-    {"plain", "rk4", "quinn", STEP, 2.6, NULL, run_rk4, 0},
-    {"plain", "moreau", "coulomb", STEP, 0.0, is_small, run_moreau, 0},
+    {"plain", "rk4", "quinn", STEP, 2.6, NULL, run_rk4, 0.0, 0},
+    {"plain", "moreau", "coulomb", STEP, 0.0, is_small, run_moreau, 0.0, 0},
 };
 const struct methods plain_methods = {all, sizeof all / sizeof *all};
 const struct method *const unit_method = &all[0];

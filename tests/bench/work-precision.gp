@@ -33,7 +33,14 @@ do for [s in systems] {
     set ylabel 'error'
     set title s
     set key outside right center samplen 2 font ',10'
-    points(curve) = "< awk -F, '$2 \",\" $3 \",\" $4 == \"".curve."\"' '".results."/".s.".csv'"
-    plot for [i = 1:words(curves)] points(word(curves, i)) using 8:($6 > 1e-14 ? $6 : 1e-14) with linespoints linestyle i title word(titles, i)
+    # only what this system has
+    table = results.'/'.s.'.csv'
+    has(curve) = int(system("grep -c ',".curve.",' '".table."' || true"))
+    points(curve) = "< grep ',".curve.",' '".table."'"
+    shown = ''
+    do for [i = 1:words(curves)] {
+        if (has(word(curves, i))) { shown = shown.' '.i }
+    }
+    plot for [i in shown] points(word(curves, i + 0)) using 8:($6 > 1e-14 ? $6 : 1e-14) with linespoints linestyle i + 0 title word(titles, i + 0)
     unset output
 }
