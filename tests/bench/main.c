@@ -268,7 +268,7 @@ static const char *value_of(int argc, char **argv, int *i)
 
 static struct options read_options(int argc, char **argv)
 {
-    struct options o = {.out = ".", .per_decade = 3, .longest = 0.15, .units = 4.0, .effort = {3, 15, 0.05}};
+    struct options o = {.out = ".", .per_decade = 3, .longest = 0.15, .units = 4.0, .effort = {3, 15, 0.03}};
     for (int i = 1; i < argc; i++) {
         if (strcmp(argv[i], "--help") == 0) {
             fputs(help, stdout);
@@ -281,7 +281,7 @@ static struct options read_options(int argc, char **argv)
             o.method[o.methods++] = value_of(argc, argv, &i);
         } else if (strcmp(argv[i], "--quick") == 0) {
             o.per_decade = 2;
-            o.longest = 0.03;
+            o.longest = 0.02;
             o.units = 1.5;
             o.effort.budget = 0.0;
         } else if (strcmp(argv[i], "--smoke") == 0) {

@@ -27,9 +27,9 @@ do for [s in systems] {
     set style line 14 linecolor '#808080' dashtype (6, 3) pointtype 6 pointsize 0.8 linewidth 1.1
     set logscale xy
     set format '10^{%T}'
-    set yrange [1e-14:3]
+    set yrange [1e-15:3]
     set xrange [0.01:300]
-    set xlabel 'run time, in units of rk4 with Quinn''s law by hand at dt = 0.01'
+    set xlabel 'run time, in units of rk4 with Quinn''s law by hand at dt = '.(s eq 'beam' ? '0.25/ω_{max}' : '0.01')
     set ylabel 'error'
     set title s
     set key outside right center samplen 2 font ',10'
@@ -41,6 +41,6 @@ do for [s in systems] {
     do for [i = 1:words(curves)] {
         if (has(word(curves, i))) { shown = shown.' '.i }
     }
-    plot for [i in shown] points(word(curves, i + 0)) using 8:($6 > 1e-14 ? $6 : 1e-14) with linespoints linestyle i + 0 title word(titles, i + 0)
+    plot for [i in shown] points(word(curves, i + 0)) using 8:($6 > 2e-15 ? $6 : 2e-15) with linespoints linestyle i + 0 title word(titles, i + 0)
     unset output
 }
