@@ -281,9 +281,9 @@ static struct options read_options(int argc, char **argv)
             o.method[o.methods++] = value_of(argc, argv, &i);
         } else if (strcmp(argv[i], "--quick") == 0) {
             o.per_decade = 2;
-            o.longest = 0.02;
+            o.longest = 0.015;
             o.units = 1.5;
-            o.effort.budget = 0.0;
+            o.effort = (struct effort){2, 2, 0.0};
         } else if (strcmp(argv[i], "--smoke") == 0) {
             o.smoke = 1;
         } else if (strcmp(argv[i], "--list") == 0) {
