@@ -1,0 +1,103 @@
+# From the bench's tables, in Markdown: run times that issue 3 asks for and what they are, and the fastest method for each error.
+# A method reaches an error if all its finer settings do, too. Times are in units of plain rk4 + Quinn at dt = 0.01.
+BEGIN {
+    FS = ","
+    columns = split("oscillator-7a oscillator-7b chain-32 belt", column, " ")
+    levels = split("1e-3 1e-4 1e-6 1e-8", level, " ")
+    wanted["exact"] = "0.03 0.05 1 0.1"
+    wanted["event"] = "0.3 0.5 5 0.6"
+    wanted["fixed"] = "0.05 - 0.25 0.15"
+    today["1e-3"] = "0.024 0.5 1 0.11"
+    today["1e-4"] = "0.08 0.7 3.7 0.25"
+    today["1e-6"] = "0.24 1.6 9.5 1.5"
+    today["1e-8"] = "2.6 2.7 51 3.2"
+}
+
+FNR == 1 { next }
+
+{
+    if (!($1 in known)) {
+        known[$1] = 1
+        name[++systems] = $1
+    }
+    who = $2 " " $3 ($4 == "coulomb" ? "" : ", " $4)
+    key = $1 "," who
+    if (!(key in rows)) {
+        method[$1, ++methods[$1]] = who
+    }
+    rows[key]++
+    error[key, rows[key]] = $6
+    ratio[key, rows[key]] = $8
+}
+
+# Time in which a method stays below an error; 0 if it never does.
+function time_for(system_name, who, most,    key, i, best) {
+    key = system_name "," who
+    best = 0
+    for (i = rows[key]; i > 0 && error[key, i] + 0 <= most + 0; i--) {
+        if (!best || ratio[key, i] < best) {
+            best = ratio[key, i]
+        }
+    }
+    return best
+}
+
+# The fastest of the methods that match; leaves its name in fastest.
+function best_for(system_name, pattern, most,    i, time, best) {
+    best = 0
+    fastest = ""
+    for (i = 1; i <= methods[system_name]; i++) {
+        if (method[system_name, i] ~ pattern) {
+            time = time_for(system_name, method[system_name, i], most)
+            if (time && (!best || time < best)) {
+                best = time
+                fastest = method[system_name, i]
+            }
+        }
+    }
+    return best
+}
+
+function number(x) { return x ? sprintf("%.2g", x) : "-" }
+
+function wanted_row(text, list, pattern, most,    i, want, line, here) {
+    split(list, want, " ")
+    line = "| " text " |"
+    for (i = 1; i <= columns; i++) {
+        here = best_for(column[i], pattern, most)
+        line = line sprintf(" %s / %s%s |", want[i], number(here), want[i] != "-" && (!here || here > want[i]) ? " *" : "")
+    }
+    print line
+}
+
+END {
+    print "\n## Wanted / here; * is not reached\n"
+    print "| | oscillator 7a | 7b | chain n = 32 | belt |\n|---|---|---|---|---|"
+    wanted_row("exact, error <= 1e-11", wanted["exact"], "^tribo exact$", 1e-11)
+    wanted_row("event, error <= 1e-9", wanted["event"], "^tribo event$", 1e-9)
+    wanted_row("central or moreau, error <= 1e-4", wanted["fixed"], "^tribo (central|moreau)/fixed$", 1e-4)
+
+    print "\n## Best of other tools: what issue 3 says / here\n"
+    print "| error | oscillator 7a | 7b | chain n = 32 | belt |\n|---|---|---|---|---|"
+    for (l = 1; l <= levels; l++) {
+        split(today[level[l]], want, " ")
+        line = "| " level[l] " |"
+        for (i = 1; i <= columns; i++) {
+            line = line sprintf(" %s / %s %s |", want[i], number(best_for(column[i], "^(plain|gsl|sundials|siconos) ", level[l])), fastest)
+        }
+        print line
+    }
+
+    print "\n## This library: exact, event at two errors, the fastest fixed-step method at three\n"
+    print "| system | exact | event, 1e-4 | 1e-9 | fixed steps, 1e-2 | 1e-3 | 1e-4 |\n|---|---|---|---|---|---|---|"
+    for (s = 1; s <= systems; s++) {
+        line = "| " name[s] " | " number(best_for(name[s], "^tribo exact$", 1e-10)) " |"
+        line = line " " number(best_for(name[s], "^tribo event$", 1e-4)) " | " number(best_for(name[s], "^tribo event$", 1e-9)) " |"
+        for (most = 1e-2; most > 0.5e-4; most /= 10) {
+            line = line sprintf(" %s", number(best_for(name[s], "^tribo .*/fixed", most)))
+            sub(/^tribo /, "", fastest)
+            line = line " " fastest " |"
+        }
+        print line
+    }
+}
