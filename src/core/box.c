@@ -245,12 +245,13 @@ static int slide(struct program *p, size_t d)
 {
     double size;
     const double pull = p->gradient[d];
+    memset(p->step, 0, p->island->size * sizeof *p->step);
     tribo_null_vector(p, d, p->step);
     for (size_t k = 0; pull > 0.0 && k < p->island->rank + p->island->dependents; k++) {
         p->step[p->order[k]] *= -1.0;
     }
-    tribo_row_dot(p, d, p->step, &size);
-    return move(p, fabs(pull) / greater(tribo_resolution(p->island->size) * size, DBL_MIN));
+    const double curvature = fabs(tribo_row_dot(p, d, p->step, &size));
+    return move(p, fabs(pull) / greater(greater(curvature, tribo_resolution(p->island->size) * size), DBL_MIN));
 }
 
 /* 1 if something moved as far as a bound. */

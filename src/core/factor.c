@@ -11,6 +11,13 @@ double tribo_resolution(size_t n)
     return 4.0 * (double)(n + 4) * DBL_EPSILON;
 }
 
+double tribo_scale(double diagonal)
+{
+    int e;
+    frexp(diagonal, &e);
+    return ldexp(1.0, -(e >= 0 ? e / 2 : -((1 - e) / 2)));
+}
+
 void tribo_factor_add(struct program *p, size_t i)
 {
     if (p->island->sparse) {

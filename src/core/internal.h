@@ -73,13 +73,20 @@ int tribo_check_finite(const tribo_context *ctx, const char *name, const double 
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
-/* islands.c: an operator of rows with sorted columns, symmetric and finite; a status, and *where and *value of what is
- * indefinite. */
+/* islands.c */
 struct rows;
-void tribo_op_free(struct op *op);
-int tribo_op_create(struct op *op, const struct rows *a, size_t *where, double *value);
-int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* 1s if r is NULL */
+
+/* Where R is not positive semidefinite. */
+struct flaw {
+    size_t contact, group; /* how many contacts are coupled there */
+    double pivot;          /* relative to the diagonal */
+};
+
+/* The operator of rows that are symmetric and finite, with sorted columns; a status. */
+int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw);
+int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* 1s if r is NULL; 1, or 0 if out of memory */
 int tribo_op_copy(struct op *to, const struct op *from, size_t n);
+void tribo_op_free(struct op *op);
 
 /* Views of group k in op's program. */
 struct program *tribo_op_program(struct op *op, size_t k);

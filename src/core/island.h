@@ -16,6 +16,9 @@ enum { AT_LOWER = -1, FREE = 0, AT_UPPER = 1, AWAY = 2 };
 /* Pivots below this, relative to the diagonal, are not trusted without a look at the others. */
 #define TRIBO_DOUBTFUL 1e-7
 
+/* Without a choice of pivots, those of a sparse factor below this count as zero. */
+#define TRIBO_SPARSE_ZERO 1e-10
+
 /* Redundant contacts of one sparse island whose share is found; of a dense one, all of them. */
 #define TRIBO_SPARSE_REDUNDANT 64
 
@@ -63,6 +66,9 @@ struct program {
 /* Rounding of a sum of n terms of size 1 leaves about this; what is smaller counts as zero. */
 double tribo_resolution(size_t n);
 
+/* A power of 2 that takes a diagonal entry to between 1/2 and 2, from both sides. */
+double tribo_scale(double diagonal);
+
 /* ---- factor */
 
 /* A contact has become free: it enters the factor, or the dependents. Or it no longer is, and leaves. */
@@ -89,8 +95,9 @@ size_t tribo_sparse_terms(const struct program *p, size_t i);
 double tribo_sparse_dot(const struct program *p, size_t i, const double *x, double *size);
 void tribo_sparse_spread(const struct program *p, size_t i, double factor, double *y);
 
-/* Prepares the factor of an island with these rows (sorted columns, by place): allocates. NULL in *s if the factor would have so
- * many entries that a dense one is the better choice. 1, or 0 if out of memory. */
+/* Prepares the factor of an island with these rows (sorted columns, by place): allocates. NULL in *s if a dense one is the better
+ * choice: the sparse one would have too many entries, or the island has redundant contacts, or nearly so, and is not too large
+ * for a factor that chooses its pivots. 1, or 0 if out of memory. */
 struct rows;
 int tribo_sparse_create(struct sparse **s, const struct rows *r);
 int tribo_sparse_clone(struct sparse **s, const struct sparse *from); /* NULL for NULL */

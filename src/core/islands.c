@@ -245,14 +245,6 @@ static double diagonal_of(const struct rows *a, size_t i)
     return entry ? *entry : 0.0;
 }
 
-/* A power of 2 that takes the diagonal to between 1/2 and 2. */
-static double scale_of(double diagonal)
-{
-    int e;
-    frexp(diagonal, &e);
-    return ldexp(1.0, -(e >= 0 ? e / 2 : -((1 - e) / 2)));
-}
-
 static void fill(struct op *op, const struct rows *a, const size_t *place)
 {
     for (size_t i = 0; i < a->n; i++) {
@@ -267,7 +259,7 @@ static void fill(struct op *op, const struct rows *a, const size_t *place)
         }
         struct island *is = &op->group[op->group_of[i]];
         is->row_sum = greater(is->row_sum, sum);
-        op->scale[is->first + place[i]] = scale_of(op->diagonal[i]);
+        op->scale[is->first + place[i]] = tribo_scale(op->diagonal[i]);
         double *row = op->r + is->block + place[i] * is->size;
         for (size_t e = a->first[i]; !is->sparse && e < a->first[i + 1]; e++) {
             if (a->val[e] != 0.0) {
@@ -278,7 +270,7 @@ static void fill(struct op *op, const struct rows *a, const size_t *place)
 }
 
 /* The ranks of all groups. */
-static int check_definite(struct op *op, size_t *where, double *value)
+static int check_definite(struct op *op, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct program *p = tribo_op_program(op, k);
@@ -288,9 +280,10 @@ static int check_definite(struct op *op, size_t *where, double *value)
             p->at[i] = FREE;
         }
         p->count = is->size;
-        *value = tribo_factor_rebuild(p, where);
-        if (fabs(*value) > 16.0 * tribo_resolution(is->size)) {
-            *where = op->member[is->first + *where];
+        size_t where = 0;
+        const double left = tribo_factor_rebuild(p, &where);
+        if (fabs(left) > 16.0 * (is->sparse ? TRIBO_SPARSE_ZERO : tribo_resolution(is->size))) {
+            *flaw = (struct flaw){op->member[is->first + where], is->size, left};
             return TRIBO_ERR_INDEFINITE;
         }
         is->nullity = is->dependents;
@@ -301,7 +294,7 @@ static int check_definite(struct op *op, size_t *where, double *value)
     return TRIBO_OK;
 }
 
-static int create_groups(struct op *op, const struct rows *a, const size_t *place, size_t *where, double *value)
+static int create_groups(struct op *op, const struct rows *a, const size_t *place, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct island *is = &op->group[k];
@@ -315,11 +308,11 @@ static int create_groups(struct op *op, const struct rows *a, const size_t *plac
         return TRIBO_ERR_MEMORY;
     }
     fill(op, a, place);
-    const int status = check_definite(op, where, value);
+    const int status = check_definite(op, flaw);
     return status || allocate_basis(op) ? status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_op_create(struct op *op, const struct rows *a, size_t *where, double *value)
+int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw)
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
@@ -334,7 +327,7 @@ int tribo_op_create(struct op *op, const struct rows *a, size_t *where, double *
             }
             status = TRIBO_OK;
         } else if (find_groups(op, n, label, count, place)) {
-            status = create_groups(op, a, place, where, value);
+            status = create_groups(op, a, place, flaw);
         }
     }
     if (status) {

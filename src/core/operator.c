@@ -90,13 +90,14 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
 static int install_rows(tribo_context *ctx, struct rows *a)
 {
     struct op op = {0};
-    size_t where = 0;
-    double value = 0.0, *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
+    struct flaw flaw;
+    double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
     int status = diagonal ? symmetrize(ctx, a, diagonal) : out_of_memory(ctx);
     if (!status) {
-        status = tribo_op_create(&op, a, &where, &value);
+        status = tribo_op_create(&op, a, &flaw);
         if (status == TRIBO_ERR_INDEFINITE) {
-            tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu", value, where);
+            tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contacts",
+                       flaw.pivot, flaw.contact, flaw.group);
         } else {
             status = status ? out_of_memory(ctx) : install(ctx, &op);
         }

@@ -12,6 +12,9 @@
 
 #include "../real.h"
 
+/* A dense factor of this many contacts is affordable where a sparse one is not trusted. */
+#define DENSE_UP_TO 2048
+
 void tribo_sparse_free(struct sparse *s)
 {
     if (s) {
@@ -145,13 +148,13 @@ static void fill_rows(struct sparse *s, size_t *count)
     }
 }
 
-/* 1; 0 if out of memory; -1 if a dense factor is better. */
+/* 1; 0 if a dense factor is better; -1 if out of memory. */
 static int find_pattern(struct sparse *s)
 {
     const size_t size = s->r.n;
     size_t *parent = malloc(3 * size * sizeof *parent);
     if (!parent) {
-        return 0;
+        return -1;
     }
     size_t *seen = parent + size, *count = parent + 2 * size;
     find_tree(s, parent, seen);
@@ -161,34 +164,13 @@ static int find_pattern(struct sparse *s)
         s->column[j + 1] = s->column[j] + count[j];
         count[j] = s->column[j];
     }
-    int done = s->column[size] > size * size / 8 ? -1 : allocate_slots(s, s->column[size]);
-    if (done == 1) {
+    const int good = s->column[size] > size * size / 8 ? 0 : allocate_slots(s, s->column[size]) ? 1 : -1;
+    if (good > 0) {
         walk(s, parent, seen, count, 1);
         fill_rows(s, count);
     }
     free(parent);
-    return done;
-}
-
-int tribo_sparse_create(struct sparse **s, const struct rows *r)
-{
-    const size_t size = r->n;
-    *s = NULL;
-    if (r->first[size] > size * size / 8) {
-        return 1;
-    }
-    struct sparse *c = calloc(1, sizeof *c);
-    int done = c && copy_rows(&c->r, r) && allocate_contacts(c, size) && tribo_sparse_order(r, c->place);
-    for (size_t k = 0; done && k < size; k++) {
-        c->position[c->place[k]] = k;
-    }
-    done = done ? find_pattern(c) : 0;
-    if (done == 1) {
-        *s = c;
-    } else {
-        tribo_sparse_free(c);
-    }
-    return done != 0;
+    return good;
 }
 
 /* ------------------------------------------------------------------------------------------------------- rows of R */
@@ -259,11 +241,6 @@ static double eliminate(const struct program *p, size_t k, double *left)
     return pivot;
 }
 
-static double resolution(const struct sparse *s, size_t k)
-{
-    return tribo_resolution(s->row[k + 1] - s->row[k] + 1);
-}
-
 static void clear_row(struct sparse *s, size_t k)
 {
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
@@ -288,7 +265,7 @@ double tribo_sparse_rebuild(struct program *p, size_t *where)
             continue;
         }
         const double pivot = eliminate(p, k, &left);
-        if (pivot > resolution(s, k)) {
+        if (pivot > TRIBO_SPARSE_ZERO) {
             s->d[k] = 1.0 / pivot;
             p->order[is->rank++] = i;
         } else {
@@ -351,7 +328,7 @@ static int modify(struct sparse *s, size_t k, double alpha)
             continue;
         }
         const double before = 1.0 / s->d[j], after = before + alpha * x * x;
-        good = after > resolution(s, j);
+        good = after > TRIBO_SPARSE_ZERO;
         const double beta = alpha * x / after;
         alpha *= before / after;
         s->d[j] = 1.0 / after;
@@ -370,7 +347,7 @@ static int enter(struct program *p, size_t k)
     const size_t i = s->place[k];
     double ignored = 0.0;
     const double pivot = eliminate(p, k, &ignored);
-    if (!(pivot > resolution(s, k))) {
+    if (!(pivot > TRIBO_SPARSE_ZERO)) {
         return 0;
     }
     s->d[k] = 1.0 / pivot;
@@ -415,7 +392,7 @@ void tribo_sparse_add(struct program *p, size_t i)
         }
     }
     p->order[is->rank + is->dependents] = i;
-    if (own + pivot <= tribo_resolution(end - row) * (own + size)) {
+    if (own + pivot <= 2.0 * TRIBO_SPARSE_ZERO * (own + size)) {
         is->dependents++;
     } else if (enter(p, k)) {
         size_t to = is->rank;
@@ -458,4 +435,55 @@ void tribo_sparse_remove(struct program *p, size_t i)
     for (size_t d = 0; d < waiting && p->work.factorizations == work; d++) {
         tribo_sparse_add(p, p->order[is->rank + is->dependents]);
     }
+}
+
+/* ---------------------------------------------------------------------------------------------------------- creation */
+
+/* Whether all pivots of R are well above zero: 1 or 0, or -1 if out of memory. */
+static int well_conditioned(struct sparse *s)
+{
+    const size_t size = s->r.n;
+    struct island island = {.size = size, .sparse = s};
+    double smallest = 1.0, *scale = malloc(size * sizeof *scale);
+    struct program p = {.island = &island, .scale = scale, .at = calloc(size, 1), .order = malloc(size * sizeof *p.order)};
+    const int memory = scale && p.at && p.order;
+    if (memory) {
+        for (size_t i = 0; i < size; i++) {
+            const double *diagonal = tribo_rows_entry(&s->r, i, i);
+            scale[i] = tribo_scale(diagonal ? *diagonal : 0.0);
+        }
+        tribo_sparse_rebuild(&p, NULL);
+        for (size_t k = 0; k < size; k++) {
+            smallest = lesser(smallest, s->d[k] > 0.0 ? 1.0 / s->d[k] : 0.0);
+        }
+    }
+    free(scale);
+    free(p.at);
+    free(p.order);
+    return memory ? smallest > TRIBO_DOUBTFUL : -1;
+}
+
+int tribo_sparse_create(struct sparse **s, const struct rows *r)
+{
+    const size_t size = r->n;
+    *s = NULL;
+    if (r->first[size] > size * size / 8) {
+        return 1;
+    }
+    struct sparse *c = calloc(1, sizeof *c);
+    int good = c && copy_rows(&c->r, r) && allocate_contacts(c, size) && tribo_sparse_order(r, c->place) ? 1 : -1;
+    for (size_t k = 0; good > 0 && k < size; k++) {
+        c->position[c->place[k]] = k;
+    }
+    good = good > 0 ? find_pattern(c) : good;
+    if (good > 0) {
+        const int well = well_conditioned(c);
+        good = well < 0 ? well : well || size > DENSE_UP_TO;
+    }
+    if (good > 0) {
+        *s = c;
+    } else {
+        tribo_sparse_free(c);
+    }
+    return good >= 0;
 }
