@@ -14,10 +14,6 @@
 /* Contacts that stay in the first-level cache while all that is done for them alone is done. */
 #define CHUNK 512
 
-/* What a caller's rounding may do to a must not pit redundant contacts against each other: so much of R_ii N_i they may disagree
- * by. */
-#define DISAGREEMENT 5e-13
-
 /* Marks the contacts near stick, |v| <= band (0 for all if band is NULL). */
 TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
                                  unsigned char *restrict near)
@@ -97,7 +93,7 @@ static int solve(tribo_context *ctx, struct program *p)
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        p->slack[i] = is->nullity ? DISAGREEMENT * ctx->op.diagonal[member[i]] * (0.5 * (p->hi[i] - p->lo[i])) : 0.0;
+        p->unit[i] = lesser(ctx->op.diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]), DBL_MAX);
     }
     ctx->solves++;
     if (!tribo_box_solve(p)) {
@@ -108,7 +104,7 @@ static int solve(tribo_context *ctx, struct program *p)
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         const double to = clamp(p->x[i] - p->gradient[i] / ctx->op.diagonal[member[i]], p->lo[i], p->hi[i]);
-        const double size = greater(ctx->limit[member[i]], 0.5 * (p->hi[i] - p->lo[i]));
+        const double size = greater(ctx->limit[member[i]], 0.5 * p->hi[i] - 0.5 * p->lo[i]);
         ctx->residual = greater(ctx->residual, size > 0.0 ? fabs(p->x[i] - to) / size : 0.0);
     }
     ctx->rank += is->rank;
@@ -143,7 +139,7 @@ static int solve_partition(tribo_context *ctx, struct program *p, const double *
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         p->q[k] = a[i];
-        p->slack[k] = is->nullity ? DISAGREEMENT * ctx->op.diagonal[i] * ctx->limit[i] : 0.0;
+        p->unit[k] = lesser(ctx->op.diagonal[i] * ctx->limit[i], DBL_MAX);
     }
     ctx->solves++;
     const int consistent = tribo_box_linear(p);

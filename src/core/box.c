@@ -9,12 +9,23 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "../real.h"
 
+/* What a caller's rounding may do to a must not pit redundant contacts against each other: so much of its unit the gradient of
+ * one may have. */
+#define DISAGREEMENT 5e-13
+
+/* So much of its unit is no gradient at all, though it may be all that there is. */
+#define NOTHING 1e-30
+
 /* Beyond this an x on its way overflows; no bound is there. */
 #define FAR 1e300
+
+/* Refinement ends with gradients of so much rounding, or the factor is not what it should be. */
+#define SETTLED 4.0
 
 void tribo_box_gradient(struct program *p)
 {
@@ -22,7 +33,7 @@ void tribo_box_gradient(struct program *p)
         const size_t i = p->near[e];
         double size;
         p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
-        p->noise[i] = tribo_resolution(tribo_row_terms(p, i)) * (size + fabs(p->q[i]));
+        p->noise[i] = tribo_resolution(tribo_row_terms(p, i)) * (size + fabs(p->q[i])) + NOTHING * p->unit[i];
     }
 }
 
@@ -113,17 +124,6 @@ static void refine(struct program *p)
     }
 }
 
-/* The same, and if rounding has gathered in the factor over many changes, with a new one. */
-static void solve(struct program *p)
-{
-    const size_t factorizations = p->work.factorizations;
-    refine(p);
-    if (!settled(p, 64.0) && p->work.factorizations == factorizations) {
-        tribo_factor_rebuild(p, NULL);
-        refine(p);
-    }
-}
-
 static int outside(double x, double lo, double hi)
 {
     return (x > hi) - (x < lo);
@@ -131,7 +131,7 @@ static int outside(double x, double lo, double hi)
 
 double tribo_box_tolerance(const struct program *p, size_t i)
 {
-    return p->noise[i] + p->slack[i];
+    return p->noise[i] + (p->island->nullity ? DISAGREEMENT * p->unit[i] : 0.0);
 }
 
 /* Where each x wants to be, in p->to. Returns whether that is where it is. */
@@ -170,15 +170,33 @@ static void put_at_bounds(struct program *p)
     }
 }
 
+/* x with the sets as they are; if rounding has gathered in the factor over many changes, with a new one. */
+static void solve(struct program *p)
+{
+    put_at_bounds(p);
+    refine(p);
+    if (!settled(p, SETTLED)) {
+        tribo_factor_rebuild(p, NULL);
+        put_at_bounds(p);
+        refine(p);
+    }
+}
+
+/* Patience as with block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21, 587): it ends when the number of changes has
+ * reached no new low for a while. */
 static int primal_dual(struct program *p)
 {
-    for (int round = 0; round < 12; round++) {
-        put_at_bounds(p);
+    size_t least = SIZE_MAX;
+    for (int patience = 10; patience > 0; patience--) {
         solve(p);
         if (revise(p)) {
             return 1;
         }
-        change_all(p);
+        const size_t changes = change_all(p);
+        if (changes < least) {
+            least = changes;
+            patience = 11;
+        }
     }
     return 0;
 }
@@ -290,12 +308,72 @@ static int primal(struct program *p)
         }
         tribo_box_gradient(p);
         const size_t i = worst(p, 0);
-        if (i == p->island->size) {
+        if (i < p->island->size) {
+            tribo_box_change(p, i, FREE);
+        } else if (settled(p, SETTLED)) {
             return 1;
+        } else {
+            tribo_factor_rebuild(p, NULL);
         }
-        tribo_box_change(p, i, FREE);
     }
     return 0;
+}
+
+/* How far x is from the fixed point, in parts of the box. */
+static double violation(const struct program *p)
+{
+    double most = 0.0;
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        const double half = 0.5 * p->hi[i] - 0.5 * p->lo[i];
+        const double to = p->x[i] - p->gradient[i] / p->unit[i] * half;
+        const double off = fabs(lesser(greater(to, p->lo[i]), p->hi[i]) - p->x[i]);
+        most = half > 0.0 ? greater(most, off / half) : most;
+    }
+    return most;
+}
+
+static void restore(struct program *p, const double *x)
+{
+    for (size_t e = 0; e < p->count; e++) {
+        p->x[p->near[e]] = x[p->near[e]];
+    }
+    tribo_box_gradient(p);
+}
+
+static int inside(const struct program *p)
+{
+    int all = 1;
+    for (size_t k = 0; k < p->island->rank; k++) {
+        const size_t i = p->order[k];
+        all &= p->lo[i] <= p->x[i] && p->x[i] <= p->hi[i];
+    }
+    return all;
+}
+
+/* The shares of redundant contacts. Their rounding may be much to a contact that carries little: then it is taken away again,
+ * where the boxes have room for that, and otherwise the contacts share as they did before. */
+static void share(struct program *p)
+{
+    const double good = 1e-12;
+    double *before = p->spare[0], *split = p->spare[1];
+    memcpy(before, p->x, p->island->size * sizeof *before);
+    if (!tribo_split(p)) {
+        return;
+    }
+    memcpy(split, p->x, p->island->size * sizeof *split);
+    refine(p);
+    if (!inside(p)) {
+        restore(p, split);
+    }
+    const double after = violation(p);
+    if (after > good) {
+        memcpy(split, p->x, p->island->size * sizeof *split);
+        restore(p, before);
+        if (violation(p) > after) {
+            restore(p, split);
+        }
+    }
 }
 
 int tribo_box_solve(struct program *p)
@@ -305,7 +383,7 @@ int tribo_box_solve(struct program *p)
         return 0;
     }
     if (p->island->nullity) {
-        tribo_split(p);
+        share(p);
     }
     return 1;
 }
@@ -331,7 +409,7 @@ int tribo_box_linear(struct program *p)
             tribo_project(p, vectors, p->gradient);
             for (size_t e = 0; e < p->count; e++) {
                 const size_t i = p->near[e];
-                consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + p->slack[i];
+                consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + DISAGREEMENT * p->unit[i];
             }
         } else if (settled(p, 1.0)) {
             break;

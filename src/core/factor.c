@@ -51,6 +51,12 @@ void tribo_factor_solve(const struct program *p, double *step)
     }
 }
 
+int tribo_factor_many(const struct program *p, size_t changes, size_t free)
+{
+    /* dense: about rank^2 for each, and a third of that for every free contact */
+    return p->island->sparse ? tribo_sparse_many(p, changes) : 3 * changes > free;
+}
+
 /* Sums side by side, since one would have to be added up in order. */
 TRIBO_SIMD static double dense_dot(const double *restrict row, const double *restrict x, size_t n, double *size)
 {

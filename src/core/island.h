@@ -53,13 +53,13 @@ struct program {
     size_t *near, count; /* near[0 .. count): the contacts in the program, near[count .. size): the others; both ascending */
     double *q, *lo, *hi, *x;
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
-    double *slack;      /* gradient that redundant contacts may disagree by: what a caller's rounding does to a must not pit them
-                           against each other */
-    signed char *to;    /* workspace */
-    double *step, *row; /* workspace, [size]; row is zero between calls */
-    double *basis;      /* workspace: orthonormal null vectors, [redundant][size] */
-    size_t redundant;   /* how many there is room for */
-    size_t *held;       /* workspace, [redundant] */
+    double *unit;             /* R_ii times the limit: what gradients are compared with */
+    signed char *to;          /* workspace */
+    double *step, *spare[2];  /* workspace, [size] */
+    double *row;              /* the same, zero between calls */
+    double *basis;            /* workspace: orthonormal null vectors, [redundant][size] */
+    size_t redundant;         /* how many there is room for */
+    size_t *held;             /* workspace, [redundant] */
     struct work work;
 };
 
@@ -82,6 +82,9 @@ double tribo_factor_rebuild(struct program *p, size_t *where);
 /* step = R^-1 step over the independent ones. Entries of the others are left alone. */
 void tribo_factor_solve(const struct program *p, double *step);
 
+/* Whether so many changes, towards so many free contacts, cost more than a new factor. */
+int tribo_factor_many(const struct program *p, size_t changes, size_t free);
+
 void tribo_dense_add(struct program *p, size_t i);
 void tribo_dense_remove(struct program *p, size_t i);
 double tribo_dense_rebuild(struct program *p, size_t *where);
@@ -91,6 +94,7 @@ void tribo_sparse_add(struct program *p, size_t i);
 void tribo_sparse_remove(struct program *p, size_t i);
 double tribo_sparse_rebuild(struct program *p, size_t *where);
 void tribo_sparse_solve(const struct program *p, double *step);
+int tribo_sparse_many(const struct program *p, size_t changes);
 size_t tribo_sparse_terms(const struct program *p, size_t i);
 double tribo_sparse_dot(const struct program *p, size_t i, const double *x, double *size);
 void tribo_sparse_spread(const struct program *p, size_t i, double factor, double *y);
@@ -147,7 +151,7 @@ size_t tribo_null_basis(struct program *p);
 /* Takes the part of y [size] in the span of the first k vectors of basis out of it. */
 void tribo_project(const struct program *p, size_t k, double *y);
 
-/* Of all solutions of the program, x becomes the one of least norm. */
-void tribo_split(struct program *p);
+/* Of all solutions of the program, x becomes the one of least norm. Returns 0 if there is only one. */
+int tribo_split(struct program *p);
 
 #endif

@@ -69,7 +69,7 @@ static int allocate_pools(struct op *op, size_t n)
 
 static int allocate_program(struct op *op)
 {
-    enum { VECTORS = 8 };
+    enum { VECTORS = 10 };
     const size_t s = op->largest + 1;
     struct program *p = &op->program;
     p->near = malloc(s * sizeof *p->near);
@@ -78,7 +78,7 @@ static int allocate_program(struct op *op)
     if (!p->near || !p->to || !p->q) {
         return 0;
     }
-    double **const vector[] = {&p->lo, &p->hi, &p->gradient, &p->noise, &p->slack, &p->step, &p->row};
+    double **const vector[] = {&p->lo, &p->hi, &p->gradient, &p->noise, &p->unit, &p->step, &p->row, &p->spare[0], &p->spare[1]};
     for (size_t k = 0; k < VECTORS - 1; k++) {
         *vector[k] = p->q + (k + 1) * s;
     }

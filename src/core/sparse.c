@@ -31,13 +31,14 @@ void tribo_sparse_free(struct sparse *s)
 /* What depends on the number of contacts, or of slots. */
 static int allocate_contacts(struct sparse *s, size_t size)
 {
-    s->position = malloc(2 * size * sizeof *s->position);
+    s->position = malloc(3 * size * sizeof *s->position);
     s->column = calloc(2 * (size + 1), sizeof *s->column);
     s->d = calloc(2 * size, sizeof *s->d);
     if (!s->position || !s->column || !s->d) {
         return 0;
     }
     s->place = s->position + size;
+    s->index = s->position + 2 * size;
     s->row = s->column + size + 1;
     s->w = s->d + size;
     return 1;
@@ -79,11 +80,13 @@ int tribo_sparse_clone(struct sparse **s, const struct sparse *from)
         tribo_sparse_free(c);
         return 0;
     }
-    memcpy(c->position, from->position, 2 * size * sizeof *c->position);
+    memcpy(c->position, from->position, 3 * size * sizeof *c->position);
     memcpy(c->column, from->column, 2 * (size + 1) * sizeof *c->column);
     memcpy(c->row_of, from->row_of, 3 * slots * sizeof *c->row_of);
     memcpy(c->l, from->l, slots * sizeof *c->l);
     memcpy(c->d, from->d, 2 * size * sizeof *c->d);
+    c->change = from->change;
+    c->rebuild = from->rebuild;
     *s = c;
     return 1;
 }
@@ -148,6 +151,18 @@ static void fill_rows(struct sparse *s, size_t *count)
     }
 }
 
+/* What a change and a new factor cost, in entries of L visited: a change goes from its column to the root. */
+static void estimate(struct sparse *s, const size_t *parent)
+{
+    for (size_t j = s->r.n; j-- > 0;) {
+        const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
+        s->w[j] = entries + (parent[j] == NONE ? 0.0 : s->w[parent[j]]);
+        s->change += s->w[j] / (double)s->r.n;
+        s->rebuild += 0.5 * entries * entries;
+    }
+    memset(s->w, 0, s->r.n * sizeof *s->w);
+}
+
 /* 1; 0 if a dense factor is better; -1 if out of memory. */
 static int find_pattern(struct sparse *s)
 {
@@ -168,6 +183,7 @@ static int find_pattern(struct sparse *s)
     if (good > 0) {
         walk(s, parent, seen, count, 1);
         fill_rows(s, count);
+        estimate(s, parent);
     }
     free(parent);
     return good;
@@ -282,37 +298,34 @@ double tribo_sparse_rebuild(struct program *p, size_t *where)
     for (size_t d = 0; d < is->dependents; d++) {
         clear_row(s, s->position[p->order[is->rank + d]]);
     }
+    for (size_t k = 0; k < is->rank + is->dependents; k++) {
+        s->index[p->order[k]] = k;
+    }
     return most;
 }
 
 void tribo_sparse_solve(const struct program *p, double *step)
 {
     const struct sparse *s = p->island->sparse;
-    const size_t rank = p->island->rank;
+    const size_t size = p->island->size;
     double *y = p->row;
-    for (size_t k = 0; k < rank; k++) {
-        y[s->position[p->order[k]]] = p->scale[p->order[k]] * step[p->order[k]];
-    }
-    for (size_t k = 0; k < rank; k++) {
-        const size_t j = s->position[p->order[k]];
-        const double x = y[j];
-        for (size_t q = s->column[j]; x != 0.0 && q < s->column[j + 1]; q++) {
-            y[s->row_of[q]] -= s->l[q] * x;
+    for (size_t j = 0; j < size; j++) {
+        y[j] = s->d[j] == 0.0 ? 0.0 : y[j] + p->scale[s->place[j]] * step[s->place[j]];
+        for (size_t q = s->column[j]; y[j] != 0.0 && q < s->column[j + 1]; q++) {
+            y[s->row_of[q]] -= s->l[q] * y[j];
         }
     }
-    for (size_t k = rank; k-- > 0;) {
-        const size_t j = s->position[p->order[k]];
-        double x = y[j] * s->d[j];
-        for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
-            x -= s->l[q] * y[s->row_of[q]];
+    for (size_t j = size; j-- > 0;) {
+        if (s->d[j] != 0.0) {
+            double x = y[j] * s->d[j];
+            for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
+                x -= s->l[q] * y[s->row_of[q]];
+            }
+            y[j] = x;
+            step[s->place[j]] = p->scale[s->place[j]] * x;
         }
-        y[j] = x;
     }
-    for (size_t k = 0; k < rank; k++) {
-        const size_t j = s->position[p->order[k]];
-        step[p->order[k]] = p->scale[p->order[k]] * y[j];
-        y[j] = 0.0;
-    }
+    memset(y, 0, size * sizeof *y);
 }
 
 /* L D L' += alpha w w' behind position k, w being in the workspace, with entries where column k of L may have some. Returns 0 if
@@ -372,13 +385,18 @@ static int enter(struct program *p, size_t k)
     return modify(s, k, -pivot);
 }
 
-void tribo_sparse_add(struct program *p, size_t i)
+static void put(struct program *p, size_t at, size_t i)
 {
-    struct island *is = p->island;
-    struct sparse *s = is->sparse;
-    const size_t k = s->position[i], row = s->r.first[i], end = s->r.first[i + 1];
+    p->order[at] = i;
+    p->island->sparse->index[i] = at;
+}
+
+/* Whether contact i depends on those in the factor: by the pivot that it would have as the last one. */
+static int depends(struct program *p, size_t i)
+{
+    const struct sparse *s = p->island->sparse;
+    const size_t row = s->r.first[i], end = s->r.first[i + 1];
     double own = 0.0, pivot = 0.0, size = 0.0;
-    /* the pivot that it would have as the last one tells if it depends on the others */
     tribo_sparse_spread(p, i, 1.0, p->step);
     tribo_sparse_solve(p, p->step);
     for (size_t e = row; e < end; e++) {
@@ -391,17 +409,20 @@ void tribo_sparse_add(struct program *p, size_t i)
             size += fabs(x * p->step[j]);
         }
     }
-    p->order[is->rank + is->dependents] = i;
-    if (own + pivot <= 2.0 * TRIBO_SPARSE_ZERO * (own + size)) {
-        is->dependents++;
-    } else if (enter(p, k)) {
-        size_t to = is->rank;
-        while (to > 0 && s->position[p->order[to - 1]] > k) {
-            to--;
+    return own + pivot <= 2.0 * TRIBO_SPARSE_ZERO * (own + size);
+}
+
+void tribo_sparse_add(struct program *p, size_t i)
+{
+    struct island *is = p->island;
+    if (is->nullity && depends(p, i)) {
+        put(p, is->rank + is->dependents++, i);
+    } else if (enter(p, is->sparse->position[i])) {
+        /* the first dependent makes room at the end of the independent ones */
+        if (is->dependents) {
+            put(p, is->rank + is->dependents, p->order[is->rank]);
         }
-        memmove(p->order + to + 1, p->order + to, (is->rank + is->dependents - to) * sizeof *p->order);
-        p->order[to] = i;
-        is->rank++;
+        put(p, is->rank++, i);
     } else {
         tribo_factor_rebuild(p, NULL);
     }
@@ -411,17 +432,17 @@ void tribo_sparse_remove(struct program *p, size_t i)
 {
     struct island *is = p->island;
     struct sparse *s = is->sparse;
-    const size_t k = s->position[i], waiting = is->dependents, work = p->work.factorizations;
-    size_t at = 0;
-    while (p->order[at] != i) {
-        at++;
-    }
-    memmove(p->order + at, p->order + at + 1, (is->rank + waiting - at - 1) * sizeof *p->order);
+    const size_t k = s->position[i], at = s->index[i], waiting = is->dependents, work = p->work.factorizations;
     if (at >= is->rank) {
         is->dependents--;
+        put(p, at, p->order[is->rank + is->dependents]);
         return;
     }
     is->rank--;
+    put(p, at, p->order[is->rank]);
+    if (waiting) {
+        put(p, is->rank, p->order[is->rank + waiting]);
+    }
     clear_row(s, k);
     for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
         s->w[s->row_of[q]] = s->l[q];
@@ -435,6 +456,13 @@ void tribo_sparse_remove(struct program *p, size_t i)
     for (size_t d = 0; d < waiting && p->work.factorizations == work; d++) {
         tribo_sparse_add(p, p->order[is->rank + is->dependents]);
     }
+}
+
+int tribo_sparse_many(const struct program *p, size_t changes)
+{
+    const struct sparse *s = p->island->sparse;
+    const double search = p->island->nullity ? 2.0 * (double)s->column[s->r.n] : 0.0;
+    return (double)changes * (4.0 * s->change + search) > s->rebuild;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- creation */

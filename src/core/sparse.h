@@ -17,6 +17,8 @@ struct sparse {
     size_t *column_of, *slot; /* [slots] by rows: the columns, ascending, and the slots */
     double *l, *d;            /* [slots]; [size] 1/d, 0 for contacts that are not in the factor */
     double *w;                /* [size] workspace, zero between calls */
+    size_t *index;            /* [size] where a free contact stands in the program's order */
+    double change, rebuild;   /* cost of a change, on average, and of a new factor */
 };
 
 /* An order of elimination that keeps L sparse: place [size] by position. 1, or 0 if out of memory. */

@@ -123,7 +123,7 @@ static int release(struct program *p, size_t vectors, size_t *held)
     return 0;
 }
 
-void tribo_split(struct program *p)
+int tribo_split(struct program *p)
 {
     const size_t size = p->island->size;
     /* those at a bound that nothing pushes against may share, too */
@@ -145,7 +145,5 @@ void tribo_split(struct program *p)
             break;
         }
     }
-    if (vectors) {
-        tribo_box_gradient(p);
-    }
+    return vectors > 0;
 }
