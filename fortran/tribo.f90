@@ -89,7 +89,8 @@ module tribo
     TRIBO_COUNT_SKIPPED = 4, &    !< islands left alone: no contact near stick
     TRIBO_COUNT_FACTORIZATIONS = 5, & !< matrices factorized
     TRIBO_COUNT_UPDATES = 6, &    !< changes of a stick set
-    TRIBO_COUNT_MEMORY = 7        !< reversal marks that accept has set or cleared
+    TRIBO_COUNT_MEMORY = 7, &     !< reversal marks that accept has set or cleared
+    TRIBO_COUNT_REUSED = 8        !< of the solves: those that ended with the stick set and the factor they began with
 
   !> For get_real.
   integer, parameter, public :: &

@@ -186,6 +186,14 @@ TRIBO_API int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, c
 TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr,
                                       const size_t *col, const double *val);
 
+/* R = J M^-1 J' for a mass matrix that only the caller can solve with; J as above. R is found column by column, and where
+ * contacts do not feel each other its entries (those below 1e-17 of the diagonal too) are not kept. apply  in  called once a
+ * contact: acceleration [ndof] out = M^-1 force [ndof] in, to 1e-11; 0, or anything else to end it: then this returns
+ *            TRIBO_ERR_CALLBACK. data is handed to it. */
+TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
+                                          int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
+                                          void *data, const size_t *rowptr, const size_t *col, const double *val);
+
 /* How f_eq of contacts that share bodies is found.
  *   CONSISTENT  f_eq of each contact balances the forces that the others really carry. Continuous, has a solution for every
  *               a, and at v = 0 it is Coulomb's law exactly. Beyond the paper.
@@ -223,6 +231,12 @@ TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
 
+/* Product of these derivatives with a change of v and a, for solvers that need no matrix: df = df_dv dv + df_da da at the point
+ * of the last tribo_balance_tangent, whose matrices may be NULL. In O(s^2) for s coupled contacts near stick. dv, da  [n] in each
+ * or NULL for none df      [n] out Returns TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another balance or
+ * setting since. */
+TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
+
 /* Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step,
  * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
  * dt     in       step, > 0
@@ -256,8 +270,9 @@ enum {
     TRIBO_COUNT_SOLVES = 3,         /* islands that had to be solved */
     TRIBO_COUNT_SKIPPED = 4,        /* islands that needed no solver: a single contact, or none near stick */
     TRIBO_COUNT_FACTORIZATIONS = 5, /* matrices factorized */
-    TRIBO_COUNT_UPDATES = 6,        /* changes of a stick set */
-    TRIBO_COUNT_MEMORY = 7          /* reversal marks that tribo_accept has set or cleared */
+    TRIBO_COUNT_UPDATES = 6,        /* contacts that entered or left a stick set */
+    TRIBO_COUNT_MEMORY = 7,         /* reversal marks that tribo_accept has set or cleared */
+    TRIBO_COUNT_REUSED = 8          /* of the solves: those that ended with the stick set and the factor they began with */
 };
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
 

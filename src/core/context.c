@@ -27,6 +27,8 @@ struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
 
 void tribo_refresh(tribo_context *ctx)
 {
+    ctx->op.reaches = 0;
+    ctx->linearized = 0;
     for (size_t i = 0; i < ctx->n; i++) {
         const double r = ctx->op.diagonal[i];
         if (ctx->step > 0.0) {
@@ -40,7 +42,7 @@ void tribo_refresh(tribo_context *ctx)
     }
 }
 
-/* Everything but operator and solver. One contact more than asked for, so that no array is empty. */
+/* Everything but the operator. One contact more than asked for, so that no array is empty. */
 static int allocate(tribo_context *ctx, size_t n)
 {
     const size_t m = n + 1;
@@ -53,10 +55,12 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->moving = calloc(m, sizeof *ctx->moving);
     ctx->feq = calloc(m, sizeof *ctx->feq);
     ctx->f = calloc(m, sizeof *ctx->f);
-    ctx->column = malloc(m * sizeof *ctx->column);
-    ctx->near = malloc(m * sizeof *ctx->near);
+    ctx->v = malloc(m * sizeof *ctx->v);
+    ctx->lower = malloc(m * sizeof *ctx->lower);
+    ctx->near = calloc(m, sizeof *ctx->near);
+    ctx->tangent = malloc(m * sizeof *ctx->tangent);
     return ctx->message && ctx->given && ctx->limit && ctx->epsilon && ctx->slope && ctx->moving && ctx->feq && ctx->f &&
-           ctx->column && ctx->near;
+           ctx->v && ctx->lower && ctx->near && ctx->tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -68,7 +72,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         return TRIBO_ERR_SIZE;
     }
     tribo_context *c = calloc(1, sizeof *c);
-    if (!c || !allocate(c, ncontact) || !tribo_op_identity(&c->op, ncontact)) {
+    if (!c || !allocate(c, ncontact) || !tribo_op_diagonal(&c->op, ncontact, NULL)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
@@ -94,13 +98,11 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     }
     *c = *ctx;
     memset(&c->op, 0, sizeof c->op);
-    memset(&c->solver, 0, sizeof c->solver);
-    if (!allocate(c, n) || !tribo_op_copy(&c->op, &ctx->op, n) || !tribo_solver_create(&c->solver, ctx->op.largest)) {
+    if (!allocate(c, n) || !tribo_op_copy(&c->op, &ctx->op, n)) {
         tribo_destroy(c);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }
-    c->solver.factorizations = ctx->solver.factorizations;
-    c->solver.updates = ctx->solver.updates;
+    c->linearized = 0;
     tribo_copy(c->given, ctx->given, n);
     tribo_copy(c->limit, ctx->limit, n);
     tribo_copy(c->epsilon, ctx->epsilon, n);
@@ -108,6 +110,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     tribo_copy(c->feq, ctx->feq, n);
     tribo_copy(c->f, ctx->f, n);
     memcpy(c->moving, ctx->moving, n);
+    memcpy(c->near, ctx->near, n);
     *copy = c;
     return TRIBO_OK;
 }
@@ -118,7 +121,6 @@ void tribo_destroy(tribo_context *ctx)
         return;
     }
     tribo_op_free(&ctx->op);
-    tribo_solver_free(&ctx->solver);
     free(ctx->message);
     free(ctx->given);
     free(ctx->limit);
@@ -127,8 +129,10 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx->moving);
     free(ctx->feq);
     free(ctx->f);
-    free(ctx->column);
+    free(ctx->v);
+    free(ctx->lower);
     free(ctx->near);
+    free(ctx->tangent);
     free(ctx);
 }
 
@@ -154,6 +158,7 @@ int tribo_set_law(tribo_context *ctx, int law)
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
     }
     ctx->law = l;
+    ctx->linearized = 0;
     memset(ctx->moving, 0, ctx->n);
     return TRIBO_OK;
 }
@@ -291,6 +296,7 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
     }
     ctx->coupling = coupling;
+    ctx->linearized = 0;
     return TRIBO_OK;
 }
 
@@ -346,12 +352,13 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     const size_t counts[] = {
         [TRIBO_COUNT_STUCK] = stuck,
         [TRIBO_COUNT_RANK] = ctx->rank,
-        [TRIBO_COUNT_ISLANDS] = ctx->op.islands ? ctx->op.islands : ctx->n,
+        [TRIBO_COUNT_ISLANDS] = ctx->op.islands,
         [TRIBO_COUNT_SOLVES] = ctx->solves,
         [TRIBO_COUNT_SKIPPED] = ctx->skipped,
-        [TRIBO_COUNT_FACTORIZATIONS] = ctx->solver.factorizations,
-        [TRIBO_COUNT_UPDATES] = ctx->solver.updates,
+        [TRIBO_COUNT_FACTORIZATIONS] = ctx->op.program.work.factorizations,
+        [TRIBO_COUNT_UPDATES] = ctx->op.program.work.updates,
         [TRIBO_COUNT_MEMORY] = ctx->marks,
+        [TRIBO_COUNT_REUSED] = ctx->reused,
     };
     if (which < 0 || which >= (int)(sizeof counts / sizeof *counts)) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);

@@ -87,6 +87,7 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     if (status) {
         return status;
     }
+    ctx->linearized = 0;
     for (size_t i = 0; i < ctx->n; i++) {
         const unsigned char before = ctx->moving[i];
         if (fabs(v[i]) > ctx->epsilon[i]) {

@@ -3,24 +3,37 @@
 #define TRIBO_INTERNAL_H
 
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "tribo/tribo.h"
 
+#include "island.h"
 #include "law.h"
-#include "solver.h"
 
-/* R. Contacts that share no body have only the diagonal; the others stand in islands, the connected parts of R's graph,
- * each with its own dense block. */
+#define TRIBO_ALONE SIZE_MAX
+
+/* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. What a
+ * group keeps from call to call stands in pools, group by group; see struct program. */
 struct op {
-    double *diagonal; /* [n] R_ii, at least DBL_MIN, which is the limit R_ii -> +0 */
-    size_t islands;   /* 0: R is diagonal */
-    size_t *first;    /* [islands + 1] into member */
-    size_t *member;   /* [n] contacts, island by island, ascending within one */
-    size_t *offset;   /* [islands] into block */
-    double *block;    /* row-major blocks of R */
-    size_t largest;   /* size of the largest island */
-    double row_sum;   /* max over i of sum_j |R_ij|/R_ii */
+    double *diagonal;                /* [n] R_ii, at least DBL_MIN, which is the limit R_ii -> +0 */
+    double row_sum;                  /* max over i of sum_j |R_ij|/R_ii */
+    size_t islands;                  /* groups and single contacts */
+    size_t groups;                   /* of two contacts and more */
+    struct island *group;            /* [groups] */
+    size_t *group_of;                /* [n] TRIBO_ALONE if contact i is */
+    size_t *touched;                 /* [groups] those solved for in the last call, */
+    size_t touches;                  /* so many */
+    size_t members, largest, blocks; /* contacts in groups; in the largest; size of the pools r and l */
+    size_t basis;                    /* room for null vectors */
+    size_t *member;                  /* [members] contacts, ascending within a group */
+    double *r, *l;                   /* [blocks] */
+    double *scale, *x;               /* [members] */
+    double *reach;                   /* [n] sum of |R_ij| N_j: what friction can do to a contact at most */
+    int reaches;                     /* reach is that of the limits */
+    signed char *at;                 /* [members] */
+    size_t *order;                   /* [members] */
+    struct program program;          /* workspace of the largest group, with views of one */
 };
 
 struct message;
@@ -34,13 +47,16 @@ struct tribo_context {
     double *limit, *epsilon, *slope;
     unsigned char *moving; /* [n] reversal memory */
     struct op op;
-    struct solver solver;
-    double *feq, *f, *column; /* [n] workspace of tribo_balance and its tangents */
-    size_t *near;             /* [n] workspace: the contacts near stick of an island, by their place in it */
-    int balanced;             /* f is that of a tribo_balance or tribo_step_force, and modes follow from it */
-    double holds;             /* a contact holds if |f| is less than this part of the limit */
+    double *feq, *f;         /* [n] of the last balance */
+    unsigned char *near;     /* [n] contacts near stick in it */
+    double *v;               /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
+    struct tangent *tangent; /* [n] */
+    double *lower;           /* [n] workspace of tribo_step_force */
+    int balanced;            /* f is that of a tribo_balance or tribo_step_force, and modes follow from it */
+    int linearized;          /* tangent is that of the last balance */
+    double holds;            /* a contact holds if |f| is less than this part of the limit */
     double residual;
-    size_t rank, solves, skipped, marks;
+    size_t rank, solves, reused, skipped, marks;
     struct message *message;
 };
 
@@ -57,10 +73,26 @@ int tribo_check_finite(const tribo_context *ctx, const char *name, const double 
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
-/* operator.c */
-void tribo_op_free(struct op *op);
-int tribo_op_identity(struct op *op, size_t n);
+/* islands.c */
+struct rows;
+
+/* Where R is not positive semidefinite. */
+struct flaw {
+    size_t contact, group; /* how many contacts are coupled there */
+    double pivot;          /* relative to the diagonal */
+};
+
+/* The operator of rows that are symmetric and finite, with sorted columns; a status. */
+int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw);
+int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* 1s if r is NULL; 1, or 0 if out of memory */
 int tribo_op_copy(struct op *to, const struct op *from, size_t n);
+void tribo_op_free(struct op *op);
+
+/* Views of group k in op's program. */
+struct program *tribo_op_program(struct op *op, size_t k);
+
+/* balance.c: the contacts of group k in the program's order, those with ctx->near first. */
+struct program *tribo_collect(tribo_context *ctx, size_t k);
 
 /* memcpy, but fine with NULL for no elements. */
 static inline void tribo_copy(double *to, const double *from, size_t n)

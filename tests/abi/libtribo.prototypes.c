@@ -30,6 +30,9 @@ TRIBO_API int tribo_set_operator_dense(tribo_context *ctx, const double *r);
 TRIBO_API int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val);
 TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr,
                                       const size_t *col, const double *val);
+TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
+                                          int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
+                                          void *data, const size_t *rowptr, const size_t *col, const double *val);
 TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
 TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
 TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
@@ -38,6 +41,7 @@ TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, con
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
+TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
 TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);
 TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);

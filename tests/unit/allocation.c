@@ -35,7 +35,7 @@ static void work(tribo_context *c, const struct problem *p)
 TEST(hot_paths)
 {
     struct random g = random_of(_i);
-    const struct recipe recipe = recipe_random(&g, LARGEST, 0.5);
+    const struct recipe recipe = recipe_random(&g, USUAL, 0.5);
     struct problem p = problem_create(&g, &recipe);
     const size_t none = memory_calls();
     tribo_context *c = problem_context(&p, _i % tribo_law_count(), _i / tribo_law_count() % 2);
@@ -158,7 +158,7 @@ TEST(failures)
         tribo_destroy(c);
         require(memory_live() == none, "%s leaves %ld blocks behind", calls[_i].name, memory_live() - none);
     }
-    ck_assert_uint_gt(fails, 3);
+    ck_assert_uint_gt(fails, 2);
 }
 
 /* Refused operators leave nothing behind either. */

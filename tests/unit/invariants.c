@@ -29,7 +29,7 @@ TEST(odd_symmetry)
 {
     struct random g = random_of(_i);
     for (int k = 0; k < EVERY_LAW_AND_COUPLING; k++) {
-        const struct recipe recipe = recipe_random(&g, LARGEST, 0.5);
+        const struct recipe recipe = recipe_random(&g, USUAL, 0.5);
         const struct problem p = problem_create(&g, &recipe);
         struct problem mirrored = p;
         for (size_t i = 0; i < p.n; i++) {

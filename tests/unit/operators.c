@@ -203,7 +203,7 @@ TEST(products_are_accepted)
 {
     struct random g = random_of(_i);
     for (int k = 0; k < 10; k++) {
-        const struct recipe recipe = recipe_random(&g, LARGEST, 0.5 * (double)(k % 8));
+        const struct recipe recipe = recipe_random(&g, USUAL, 0.5 * (double)(k % 8));
         const struct problem p = problem_create(&g, &recipe);
         tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
         tribo_destroy(c);

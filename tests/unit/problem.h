@@ -4,7 +4,8 @@
 
 #include "support.h"
 
-#define LARGEST 40
+#define LARGEST 200 /* contacts of a problem */
+#define USUAL 40
 
 struct problem {
     size_t n;

@@ -1,0 +1,428 @@
+/* The box-constrained quadratic program of an island, min 1/2 x'Rx + q'x with lo <= x <= hi, which Coulomb's law comes down to:
+ * an x inside its box has no gradient, and the gradient at a bound pushes against it.
+ *
+ * It begins with the sets of the last call. Whole sets change at once at first (the primal-dual active set method of
+ * Hintermueller, Ito and Kunisch 2002, SIAM J. Optim. 13, 865, doi:10.1137/S1052623401383558): usually none does, and the call
+ * costs a solve and a look at the gradient. That method may cycle; then a primal active set method finishes, in which every
+ * change lowers the objective. Either ends only when the gradient shows that x is the solution, up to its own rounding. */
+#include "island.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "../real.h"
+
+/* What a caller's rounding may do to a must not pit redundant contacts against each other: so much of its unit the gradient of
+ * one may have. */
+#define DISAGREEMENT 5e-13
+
+/* So much of its unit is no gradient at all, though it may be all that there is. */
+#define NOTHING 1e-30
+
+/* Beyond this an x on its way overflows; no bound is there. */
+#define FAR 1e300
+
+/* Refinement ends with gradients of so much rounding, or the factor is not what it should be. */
+#define SETTLED 4.0
+
+void tribo_box_gradient(struct program *p)
+{
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        double size;
+        p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
+        p->noise[i] = tribo_resolution(tribo_row_terms(p, i)) * (size + fabs(p->q[i])) + NOTHING * p->unit[i];
+    }
+}
+
+void tribo_box_change(struct program *p, size_t i, signed char to)
+{
+    const signed char from = p->at[i];
+    p->at[i] = to;
+    if (from == FREE && to != FREE) {
+        p->work.updates++;
+        tribo_factor_remove(p, i);
+    } else if (from != FREE && to == FREE) {
+        p->work.updates++;
+        tribo_factor_add(p, i);
+    }
+}
+
+/* All contacts go to their places in p->to. Returns how many were free, or are now, but not both. */
+static size_t change_all(struct program *p)
+{
+    const size_t n = p->island->size;
+    size_t changes = 0, free = 0;
+    for (size_t i = 0; i < n; i++) {
+        changes += (p->at[i] == FREE) != (p->to[i] == FREE);
+        free += p->to[i] == FREE;
+    }
+    /* a change costs about rank^2, and a factorization a third of that for every free contact; one that loses contacts while
+     * others depend on them may end in a factorization of its own, over a set that is no longer that of at */
+    if (changes > 0 && (3 * changes > free || (p->island->dependents && changes > 1))) {
+        p->work.updates += changes;
+        memcpy(p->at, p->to, n);
+        tribo_factor_rebuild(p, NULL);
+        return changes;
+    }
+    for (int entering = 0; entering < 2; entering++) {
+        for (size_t i = 0; i < n; i++) {
+            if (p->at[i] != p->to[i] && (p->to[i] == FREE) == entering) {
+                tribo_box_change(p, i, p->to[i]);
+            }
+        }
+    }
+    return changes;
+}
+
+/* Contacts that are near for the first time enter the program, free unless their box is a point; those that no longer are leave
+ * it. */
+static void enter(struct program *p, int keep_bounds)
+{
+    for (size_t e = 0; e < p->island->size; e++) {
+        const size_t i = p->near[e];
+        const signed char from = keep_bounds ? p->at[i] : FREE;
+        p->to[i] = e >= p->count ? AWAY : keep_bounds && !(p->lo[i] < p->hi[i]) ? AT_LOWER : from == AWAY ? FREE : from;
+    }
+    change_all(p);
+}
+
+/* x += the move of the independent x that takes their gradient to zero; dependent ones stay. */
+static void newton(struct program *p, double *step)
+{
+    const size_t rank = p->island->rank;
+    for (size_t k = 0; k < rank; k++) {
+        step[p->order[k]] = -p->gradient[p->order[k]];
+    }
+    tribo_factor_solve(p, step);
+}
+
+static int settled(const struct program *p, double noises)
+{
+    for (size_t k = 0; k < p->island->rank; k++) {
+        const size_t i = p->order[k];
+        if (!(fabs(p->gradient[i]) <= noises * p->noise[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Takes the gradient of the independent x to zero. */
+static void refine(struct program *p)
+{
+    tribo_box_gradient(p);
+    for (int pass = 0; pass < 4 && !settled(p, 1.0); pass++) {
+        newton(p, p->step);
+        for (size_t k = 0; k < p->island->rank; k++) {
+            const size_t i = p->order[k];
+            p->x[i] = lesser(greater(p->x[i] + p->step[i], -FAR), FAR);
+        }
+        tribo_box_gradient(p);
+    }
+}
+
+static int outside(double x, double lo, double hi)
+{
+    return (x > hi) - (x < lo);
+}
+
+double tribo_box_tolerance(const struct program *p, size_t i)
+{
+    return p->noise[i] + (p->island->nullity ? DISAGREEMENT * p->unit[i] : 0.0);
+}
+
+/* Where each x wants to be, in p->to. Returns whether that is where it is. */
+static int revise(struct program *p)
+{
+    const struct island *is = p->island;
+    memcpy(p->to, p->at, is->size);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && (double)p->at[i] * p->gradient[i] > tribo_box_tolerance(p, i)) {
+            p->to[i] = FREE;
+        }
+    }
+    for (size_t k = 0; k < is->rank; k++) {
+        const size_t i = p->order[k];
+        p->to[i] = (signed char)outside(p->x[i], p->lo[i], p->hi[i]);
+    }
+    for (size_t k = is->rank; k < is->rank + is->dependents; k++) {
+        const size_t i = p->order[k];
+        if (fabs(p->gradient[i]) > tribo_box_tolerance(p, i)) {
+            p->to[i] = p->gradient[i] > 0.0 ? AT_LOWER : AT_UPPER;
+        }
+    }
+    return memcmp(p->to, p->at, is->size) == 0;
+}
+
+static void put_at_bounds(struct program *p)
+{
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = p->at[i] == AT_LOWER ? p->lo[i] : p->at[i] == AT_UPPER ? p->hi[i] : p->x[i];
+    }
+    for (size_t d = 0; d < p->island->dependents; d++) {
+        const size_t i = p->order[p->island->rank + d];
+        p->x[i] = lesser(greater(p->x[i], p->lo[i]), p->hi[i]);
+    }
+}
+
+/* x with the sets as they are; if rounding has gathered in the factor over many changes, with a new one. */
+static void solve(struct program *p)
+{
+    put_at_bounds(p);
+    refine(p);
+    if (!settled(p, SETTLED)) {
+        tribo_factor_rebuild(p, NULL);
+        put_at_bounds(p);
+        refine(p);
+    }
+}
+
+/* Patience as with block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21, 587): it ends when the number of changes has
+ * reached no new low for a while. */
+static int primal_dual(struct program *p)
+{
+    size_t least = SIZE_MAX;
+    for (int patience = 10; patience > 0; patience--) {
+        solve(p);
+        if (revise(p)) {
+            return 1;
+        }
+        const size_t changes = change_all(p);
+        if (changes < least) {
+            least = changes;
+            patience = 11;
+        }
+    }
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ primal active set */
+
+size_t tribo_box_advance(struct program *p, double longest)
+{
+    const size_t all = p->island->rank + p->island->dependents;
+    double length = longest;
+    size_t hit = p->island->size;
+    for (size_t k = 0; k < all; k++) {
+        const size_t i = p->order[k];
+        const double s = p->step[i];
+        const double room = s > 0.0 ? (p->hi[i] - p->x[i]) / s : s < 0.0 ? (p->lo[i] - p->x[i]) / s : length;
+        if (room < length) {
+            length = greater(room, 0.0);
+            hit = i;
+        }
+    }
+    for (size_t k = 0; k < all; k++) {
+        const size_t i = p->order[k];
+        p->x[i] = lesser(greater(p->x[i] + length * p->step[i], p->lo[i]), p->hi[i]);
+    }
+    if (hit < p->island->size) {
+        p->x[hit] = p->step[hit] > 0.0 ? p->hi[hit] : p->lo[hit];
+    }
+    return hit;
+}
+
+/* The same, and who met a bound stays there. Returns 1 if one did. */
+static int move(struct program *p, double longest)
+{
+    const size_t hit = tribo_box_advance(p, longest);
+    if (hit == p->island->size) {
+        return 0;
+    }
+    tribo_box_change(p, hit, p->step[hit] > 0.0 ? AT_UPPER : AT_LOWER);
+    return 1;
+}
+
+/* A contact whose gradient is farthest beyond rounding: a dependent one, or one at a bound that should leave it. size if there is
+ * none. */
+static size_t worst(const struct program *p, int dependent)
+{
+    const struct island *is = p->island;
+    size_t found = is->size;
+    double most = 1.0;
+    for (size_t e = 0; e < (dependent ? is->dependents : p->count); e++) {
+        const size_t i = dependent ? p->order[is->rank + e] : p->near[e];
+        const double pull = dependent ? fabs(p->gradient[i]) : p->lo[i] < p->hi[i] ? (double)p->at[i] * p->gradient[i] : 0.0;
+        const double excess = pull / greater(tribo_box_tolerance(p, i), DBL_MIN);
+        if (excess > most) {
+            most = excess;
+            found = i;
+        }
+    }
+    return found;
+}
+
+/* Down along the null vector in which the dependent d moves by 1: only what R is not singular by to rounding stops it before a
+ * bound. */
+static int slide(struct program *p, size_t d)
+{
+    double size;
+    const double pull = p->gradient[d];
+    memset(p->step, 0, p->island->size * sizeof *p->step);
+    tribo_null_vector(p, d, p->step);
+    for (size_t k = 0; pull > 0.0 && k < p->island->rank + p->island->dependents; k++) {
+        p->step[p->order[k]] *= -1.0;
+    }
+    const double curvature = fabs(tribo_row_dot(p, d, p->step, &size));
+    return move(p, fabs(pull) / greater(greater(curvature, tribo_resolution(p->island->size) * size), DBL_MIN));
+}
+
+/* 1 if something moved as far as a bound. */
+static int descend(struct program *p)
+{
+    tribo_box_gradient(p);
+    newton(p, p->step);
+    for (size_t d = 0; d < p->island->dependents; d++) {
+        p->step[p->order[p->island->rank + d]] = 0.0;
+    }
+    return move(p, 1.0);
+}
+
+/* Every round lowers the objective, or takes an x out of the set, so that no set comes back. */
+static int primal(struct program *p)
+{
+    memcpy(p->to, p->at, p->island->size);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = lesser(greater(p->x[i], p->lo[i]), p->hi[i]);
+        p->to[i] = p->x[i] <= p->lo[i] ? AT_LOWER : p->x[i] >= p->hi[i] ? AT_UPPER : FREE;
+    }
+    change_all(p);
+    for (size_t round = 0; round < 100 + 20 * p->count; round++) {
+        if (descend(p)) {
+            continue;
+        }
+        tribo_box_gradient(p);
+        const size_t d = worst(p, 1);
+        if (d < p->island->size) {
+            slide(p, d);
+            continue;
+        }
+        if (descend(p)) {
+            continue;
+        }
+        tribo_box_gradient(p);
+        const size_t i = worst(p, 0);
+        if (i < p->island->size) {
+            tribo_box_change(p, i, FREE);
+        } else if (settled(p, SETTLED)) {
+            return 1;
+        } else {
+            tribo_factor_rebuild(p, NULL);
+        }
+    }
+    return 0;
+}
+
+/* How far x is from the fixed point, in parts of the box. */
+static double violation(const struct program *p)
+{
+    double most = 0.0;
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        const double half = 0.5 * p->hi[i] - 0.5 * p->lo[i];
+        const double to = p->x[i] - p->gradient[i] / p->unit[i] * half;
+        const double off = fabs(lesser(greater(to, p->lo[i]), p->hi[i]) - p->x[i]);
+        most = half > 0.0 ? greater(most, off / half) : most;
+    }
+    return most;
+}
+
+static void restore(struct program *p, const double *x)
+{
+    for (size_t e = 0; e < p->count; e++) {
+        p->x[p->near[e]] = x[p->near[e]];
+    }
+    tribo_box_gradient(p);
+}
+
+static int inside(const struct program *p)
+{
+    int all = 1;
+    for (size_t k = 0; k < p->island->rank; k++) {
+        const size_t i = p->order[k];
+        all &= p->lo[i] <= p->x[i] && p->x[i] <= p->hi[i];
+    }
+    return all;
+}
+
+/* The shares of redundant contacts. Their rounding may be much to a contact that carries little: then it is taken away again,
+ * where the boxes have room for that, and otherwise the contacts share as they did before. */
+static void share(struct program *p)
+{
+    const double good = 1e-12;
+    double *before = p->spare[0], *split = p->spare[1];
+    memcpy(before, p->x, p->island->size * sizeof *before);
+    if (!tribo_split(p)) {
+        return;
+    }
+    memcpy(split, p->x, p->island->size * sizeof *split);
+    refine(p);
+    if (!inside(p)) {
+        restore(p, split);
+    }
+    const double after = violation(p);
+    if (after > good) {
+        memcpy(split, p->x, p->island->size * sizeof *split);
+        restore(p, before);
+        if (violation(p) > after) {
+            restore(p, split);
+        }
+    }
+}
+
+int tribo_box_solve(struct program *p)
+{
+    enter(p, 1);
+    if (!primal_dual(p) && !primal(p)) {
+        return 0;
+    }
+    if (p->island->nullity) {
+        share(p);
+    }
+    return 1;
+}
+
+/* ------------------------------------------------------------------------------------------------ the linear system */
+
+int tribo_box_linear(struct program *p)
+{
+    enter(p, 0);
+    for (size_t e = 0; e < p->count; e++) {
+        p->x[p->near[e]] = 0.0;
+    }
+    const size_t vectors = tribo_null_basis(p);
+    int consistent = 1;
+    for (int pass = 0; pass < 3; pass++) {
+        tribo_box_gradient(p);
+        if (vectors) {
+            double rounding = DBL_MIN;
+            for (size_t e = 0; e < p->count; e++) {
+                p->step[p->near[e]] = p->gradient[p->near[e]];
+                rounding = greater(rounding, 16.0 * p->noise[p->near[e]]);
+            }
+            tribo_project(p, vectors, p->gradient);
+            for (size_t e = 0; e < p->count; e++) {
+                const size_t i = p->near[e];
+                consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + DISAGREEMENT * p->unit[i];
+            }
+        } else if (settled(p, 1.0)) {
+            break;
+        }
+        newton(p, p->step);
+        for (size_t d = 0; d < p->island->dependents; d++) {
+            p->step[p->order[p->island->rank + d]] = 0.0;
+        }
+        tribo_project(p, vectors, p->step);
+        for (size_t e = 0; e < p->count; e++) {
+            p->x[p->near[e]] += p->step[p->near[e]];
+        }
+    }
+    tribo_box_gradient(p);
+    return consistent;
+}

@@ -1,0 +1,104 @@
+/* The factor of R over the free contacts of an island, and the rows of R, whichever way they are kept. */
+#include "island.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "../simd.h"
+
+double tribo_resolution(size_t n)
+{
+    return 4.0 * (double)(n + 4) * DBL_EPSILON;
+}
+
+double tribo_scale(double diagonal)
+{
+    int e;
+    frexp(diagonal, &e);
+    return ldexp(1.0, -(e >= 0 ? e / 2 : -((1 - e) / 2)));
+}
+
+void tribo_factor_add(struct program *p, size_t i)
+{
+    if (p->island->sparse) {
+        tribo_sparse_add(p, i);
+    } else {
+        tribo_dense_add(p, i);
+    }
+}
+
+void tribo_factor_remove(struct program *p, size_t i)
+{
+    if (p->island->sparse) {
+        tribo_sparse_remove(p, i);
+    } else {
+        tribo_dense_remove(p, i);
+    }
+}
+
+double tribo_factor_rebuild(struct program *p, size_t *where)
+{
+    p->work.factorizations++;
+    return p->island->sparse ? tribo_sparse_rebuild(p, where) : tribo_dense_rebuild(p, where);
+}
+
+void tribo_factor_solve(const struct program *p, double *step)
+{
+    if (p->island->sparse) {
+        tribo_sparse_solve(p, step);
+    } else {
+        tribo_dense_solve(p, step);
+    }
+}
+
+int tribo_factor_many(const struct program *p, size_t changes, size_t free)
+{
+    /* dense: about rank^2 for each, and a third of that for every free contact */
+    return p->island->sparse ? tribo_sparse_many(p, changes) : 3 * changes > free;
+}
+
+/* Sums side by side, since one would have to be added up in order. */
+TRIBO_SIMD static double dense_dot(const double *restrict row, const double *restrict x, size_t n, double *size)
+{
+    enum { SUMS = 4 };
+    double sum[SUMS] = {0.0}, all[SUMS] = {0.0};
+    size_t j = 0;
+    for (; j + SUMS <= n; j += SUMS) {
+        for (size_t k = 0; k < SUMS; k++) {
+            const double term = row[j + k] * x[j + k];
+            sum[k] += term;
+            all[k] += fabs(term);
+        }
+    }
+    for (; j < n; j++) {
+        sum[0] += row[j] * x[j];
+        all[0] += fabs(row[j] * x[j]);
+    }
+    *size = all[0] + all[1] + (all[2] + all[3]);
+    return sum[0] + sum[1] + (sum[2] + sum[3]);
+}
+
+size_t tribo_row_terms(const struct program *p, size_t i)
+{
+    return p->island->sparse ? tribo_sparse_terms(p, i) : p->island->size;
+}
+
+double tribo_row_dot(const struct program *p, size_t i, const double *x, double *size)
+{
+    if (p->island->sparse) {
+        return tribo_sparse_dot(p, i, x, size);
+    }
+    return dense_dot(p->r + i * p->island->size, x, p->island->size, size);
+}
+
+void tribo_row_spread(const struct program *p, size_t i, double factor, double *y)
+{
+    if (p->island->sparse) {
+        tribo_sparse_spread(p, i, factor, y);
+        return;
+    }
+    const size_t all = p->island->rank + p->island->dependents;
+    for (size_t k = 0; k < all; k++) {
+        y[p->order[k]] = factor * p->r[i * p->island->size + p->order[k]];
+    }
+}

@@ -1,0 +1,130 @@
+/* Nested dissection (George 1973): a level of a breadth-first search splits the graph of R in two; it is eliminated last, its two
+ * sides before it, and so on with each. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "sparse.h"
+
+/* Parts this small are not split. */
+#define LEAF 24
+
+struct graph {
+    const struct rows *r;
+    size_t *node;         /* parts are pieces of it */
+    size_t *list, *level; /* of a search; nodes in the order found, and their distance from the start */
+    size_t *mark, stamp;  /* mark[i] = stamp: in the part, and not found yet */
+};
+
+/* Appends what hangs together with start to list[count ...]; returns its new length. */
+static size_t search(struct graph *g, size_t start, size_t count)
+{
+    size_t next = count;
+    g->list[count++] = start;
+    g->level[start] = 0;
+    g->mark[start] = 0;
+    for (; next < count; next++) {
+        const size_t i = g->list[next];
+        for (size_t e = g->r->first[i]; e < g->r->first[i + 1]; e++) {
+            const size_t j = g->r->col[e];
+            if (g->mark[j] == g->stamp) {
+                g->mark[j] = 0;
+                g->level[j] = g->level[i] + 1;
+                g->list[count++] = j;
+            }
+        }
+    }
+    return count;
+}
+
+static void mark(struct graph *g, size_t begin, size_t end)
+{
+    g->stamp++;
+    for (size_t k = begin; k < end; k++) {
+        g->mark[g->node[k]] = g->stamp;
+    }
+}
+
+/* A level that is small and splits the rest evenly: list[*from, *to). 0 if there are no two sides. */
+static int find_level(const struct graph *g, size_t count, size_t *from, size_t *to)
+{
+    const size_t last = g->level[g->list[count - 1]];
+    size_t best = SIZE_MAX;
+    for (size_t k = 0; k < count;) {
+        const size_t level = g->level[g->list[k]], begin = k;
+        while (k < count && g->level[g->list[k]] == level) {
+            k++;
+        }
+        const size_t behind = count - k, cost = 4 * (k - begin) + (begin > behind ? begin - behind : behind - begin);
+        if (level > 0 && level < last && cost < best) {
+            best = cost;
+            *from = begin;
+            *to = k;
+        }
+    }
+    return best < SIZE_MAX;
+}
+
+struct part {
+    size_t begin, end;
+};
+
+/* Orders a part, and puts those that are left to order on the stack. */
+static void split(struct graph *g, struct part part, struct part *stack, size_t *depth)
+{
+    size_t *node = g->node + part.begin, count = 0, pieces = 0, from = 0, to = 0;
+    const size_t size = part.end - part.begin;
+    if (size <= LEAF) {
+        return;
+    }
+    mark(g, part.begin, part.end);
+    for (size_t k = 0; k < size; k++) {
+        if (g->mark[node[k]] == g->stamp) {
+            const size_t begin = count;
+            count = search(g, node[k], count);
+            pieces++;
+            if (count - begin < size) {
+                stack[(*depth)++] = (struct part){part.begin + begin, part.begin + count};
+            }
+        }
+    }
+    memcpy(node, g->list, size * sizeof *node);
+    if (pieces > 1) {
+        return;
+    }
+    /* once more from the far end, which makes more and smaller levels */
+    mark(g, part.begin, part.end);
+    search(g, node[size - 1], 0);
+    if (!find_level(g, size, &from, &to)) {
+        return;
+    }
+    memcpy(node, g->list, from * sizeof *node);
+    memcpy(node + from, g->list + to, (size - to) * sizeof *node);
+    memcpy(node + from + size - to, g->list + from, (to - from) * sizeof *node);
+    stack[(*depth)++] = (struct part){part.begin, part.begin + from};
+    stack[(*depth)++] = (struct part){part.begin + from, part.begin + from + size - to};
+}
+
+int tribo_sparse_order(const struct rows *r, size_t *place)
+{
+    struct graph g = {.r = r, .node = place};
+    struct part *stack = malloc((r->n + 2) * sizeof *stack);
+    g.list = malloc(2 * r->n * sizeof *g.list);
+    g.mark = calloc(r->n, sizeof *g.mark);
+    if (stack && g.list && g.mark) {
+        size_t depth = 1;
+        g.level = g.list + r->n;
+        for (size_t i = 0; i < r->n; i++) {
+            place[i] = i;
+        }
+        stack[0] = (struct part){0, r->n};
+        while (depth > 0) {
+            depth--;
+            split(&g, stack[depth], stack, &depth);
+        }
+    }
+    const int done = stack && g.list && g.mark;
+    free(stack);
+    free(g.list);
+    free(g.mark);
+    return done;
+}

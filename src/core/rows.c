@@ -1,0 +1,122 @@
+#include "rows.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+void tribo_rows_free(struct rows *a)
+{
+    free(a->first);
+    free(a->col);
+    free(a->val);
+}
+
+int tribo_rows_create(struct rows *a, size_t n, size_t entries)
+{
+    a->n = n;
+    a->first = calloc(n + 1, sizeof *a->first);
+    a->col = malloc((entries + 1) * sizeof *a->col);
+    a->val = malloc((entries + 1) * sizeof *a->val);
+    if (a->first && a->col && a->val) {
+        return 1;
+    }
+    tribo_rows_free(a);
+    return 0;
+}
+
+int tribo_rows_transpose(struct rows *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val)
+{
+    if (!tribo_rows_create(b, columns, rowptr[n])) {
+        return 0;
+    }
+    for (size_t k = 0; k < rowptr[n]; k++) {
+        b->first[col[k] + 1]++;
+    }
+    for (size_t j = 0; j < columns; j++) {
+        b->first[j + 1] += b->first[j];
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
+            const size_t to = b->first[col[k]]++;
+            b->col[to] = i;
+            b->val[to] = val[k];
+        }
+    }
+    for (size_t j = columns; j > 0; j--) {
+        b->first[j] = b->first[j - 1];
+    }
+    b->first[0] = 0;
+    return 1;
+}
+
+double *tribo_rows_entry(const struct rows *a, size_t i, size_t j)
+{
+    size_t lo = a->first[i], hi = a->first[i + 1];
+    while (lo < hi) {
+        const size_t mid = lo + (hi - lo) / 2;
+        if (a->col[mid] == j) {
+            return &a->val[mid];
+        }
+        if (a->col[mid] < j) {
+            lo = mid + 1;
+        } else {
+            hi = mid;
+        }
+    }
+    return NULL;
+}
+
+/* The columns that row i of J diag(w) J' has entries in; t is J'. seen [n] keeps i + 1 for each. With sum [n], adds up
+ * the entries too. */
+static size_t product_row(size_t i, const struct rows *t, const double *w, const size_t *rowptr, const size_t *col,
+                          const double *val, size_t *seen, size_t *column, double *sum)
+{
+    size_t count = 0;
+    for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
+        const size_t dof = col[k];
+        const double x = val[k] * w[dof];
+        for (size_t e = t->first[dof]; x != 0.0 && e < t->first[dof + 1]; e++) {
+            const size_t j = t->col[e];
+            if (seen[j] != i + 1) {
+                seen[j] = i + 1;
+                column[count++] = j;
+                sum[j] = 0.0;
+            }
+            sum[j] += x * t->val[e];
+        }
+    }
+    return count;
+}
+
+int tribo_rows_product(struct rows *a, size_t n, const struct rows *t, const double *w, const size_t *rowptr, const size_t *col,
+                       const double *val)
+{
+    size_t *seen = calloc(n + 1, sizeof *seen), *column = malloc((n + 1) * sizeof *column);
+    double *sum = malloc((n + 1) * sizeof *sum);
+    struct rows unsorted = {0};
+    int done = 0;
+    if (seen && column && sum) {
+        size_t entries = 0;
+        for (size_t i = 0; i < n; i++) {
+            entries += product_row(i, t, w, rowptr, col, val, seen, column, sum);
+        }
+        memset(seen, 0, n * sizeof *seen);
+        if (tribo_rows_create(&unsorted, n, entries)) {
+            for (size_t i = 0; i < n; i++) {
+                const size_t count = product_row(i, t, w, rowptr, col, val, seen, column, sum);
+                const size_t first = unsorted.first[i];
+                for (size_t k = 0; k < count; k++) {
+                    unsorted.col[first + k] = column[k];
+                    unsorted.val[first + k] = sum[column[k]];
+                }
+                unsorted.first[i + 1] = first + count;
+            }
+            /* it is symmetric, and transposing sorts */
+            done = tribo_rows_transpose(a, n, n, unsorted.first, unsorted.col, unsorted.val);
+            tribo_rows_free(&unsorted);
+        }
+    }
+    free(seen);
+    free(column);
+    free(sum);
+    return done;
+}

@@ -1,0 +1,149 @@
+/* The share of redundant contacts. Where R is singular R x is unique but x is not: of all solutions in the box the one of least
+ * norm is taken, which depends neither on the order of the contacts nor on how it was found.
+ *
+ * It is where the objective |x|^2 is least in the box along the null space of R over the contacts that have no gradient. That
+ * takes a primal active set method once more: basis holds the null space, its first vectors the directions in which the contacts
+ * at a bound do not move. */
+#include "island.h"
+
+#include <math.h>
+#include <string.h>
+
+void tribo_null_vector(const struct program *p, size_t d, double *y)
+{
+    const struct island *is = p->island;
+    tribo_row_spread(p, d, -1.0, y);
+    tribo_factor_solve(p, y);
+    for (size_t k = is->rank; k < is->rank + is->dependents; k++) {
+        y[p->order[k]] = p->order[k] == d ? 1.0 : 0.0;
+    }
+}
+
+static double dot(const struct program *p, const double *x, const double *y)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+        sum += x[p->order[k]] * y[p->order[k]];
+    }
+    return sum;
+}
+
+/* y += factor x */
+static void add(const struct program *p, double factor, const double *x, double *y)
+{
+    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+        y[p->order[k]] += factor * x[p->order[k]];
+    }
+}
+
+void tribo_project(const struct program *p, size_t k, double *y)
+{
+    for (size_t j = 0; j < k; j++) {
+        const double *b = p->basis + j * p->island->size;
+        add(p, -dot(p, b, y), b, y);
+    }
+}
+
+size_t tribo_null_basis(struct program *p)
+{
+    const size_t vectors = p->island->dependents;
+    if (vectors > p->redundant) {
+        return 0;
+    }
+    for (size_t j = 0; j < vectors; j++) {
+        double *b = p->basis + j * p->island->size;
+        tribo_null_vector(p, p->order[p->island->rank + j], b);
+        tribo_project(p, j, b);
+        tribo_project(p, j, b);
+        const double length = sqrt(dot(p, b, b));
+        for (size_t k = 0; k < p->island->rank + vectors; k++) {
+            b[p->order[k]] /= length;
+        }
+    }
+    return vectors;
+}
+
+/* A reflection of the first vectors, after which only the last of them moves contact i. */
+static void hold(struct program *p, size_t vectors, size_t i)
+{
+    const size_t size = p->island->size, last = vectors - 1;
+    double *u = p->row, square = 0.0;
+    for (size_t j = 0; j < vectors; j++) {
+        u[j] = p->basis[j * size + i];
+        square += u[j] * u[j];
+    }
+    const double length = sqrt(square);
+    u[last] += u[last] < 0.0 ? -length : length;
+    const double scale = length * fabs(u[last]); /* u'u/2 */
+    for (size_t k = 0; scale > 0.0 && k < p->island->rank + p->island->dependents; k++) {
+        double *column = p->basis + p->order[k], sum = 0.0;
+        for (size_t j = 0; j < vectors; j++) {
+            sum += u[j] * column[j * size];
+        }
+        for (size_t j = 0; j < vectors; j++) {
+            column[j * size] -= sum / scale * u[j];
+        }
+    }
+    for (size_t j = 0; j < last; j++) {
+        p->basis[j * size + i] = 0.0;
+    }
+    memset(u, 0, vectors * sizeof *u);
+}
+
+/* step = the way to least norm that the first vectors leave. */
+static void aim(struct program *p, size_t vectors)
+{
+    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+        p->step[p->order[k]] = 0.0;
+    }
+    for (size_t j = 0; j < vectors; j++) {
+        const double *b = p->basis + j * p->island->size;
+        add(p, -dot(p, b, p->x), b, p->step);
+    }
+}
+
+/* Lets one of the held contacts go, if its x then moves off its bound. */
+static int release(struct program *p, size_t vectors, size_t *held)
+{
+    const double noise = tribo_resolution(p->island->size) * sqrt(dot(p, p->x, p->x));
+    for (size_t tried = 0; tried < *held; tried++) {
+        const size_t i = p->held[0], others = *held - 1;
+        memmove(p->held, p->held + 1, others * sizeof *p->held);
+        for (size_t h = 0; h < others; h++) {
+            hold(p, vectors - h, p->held[h]);
+        }
+        aim(p, vectors - others);
+        if (p->x[i] <= p->lo[i] ? p->step[i] > noise : p->step[i] < -noise) {
+            *held = others;
+            return 1;
+        }
+        p->held[others] = i;
+        hold(p, vectors - others, i);
+    }
+    return 0;
+}
+
+int tribo_split(struct program *p)
+{
+    const size_t size = p->island->size;
+    /* those at a bound that nothing pushes against may share, too */
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && fabs(p->gradient[i]) <= tribo_box_tolerance(p, i)) {
+            tribo_box_change(p, i, FREE);
+        }
+    }
+    const size_t vectors = tribo_null_basis(p);
+    size_t held = 0;
+    for (size_t round = 0; vectors && round < 20 * (size + vectors); round++) {
+        aim(p, vectors - held);
+        const size_t hit = tribo_box_advance(p, 1.0);
+        if (hit < size && held < vectors) {
+            hold(p, vectors - held, hit);
+            p->held[held++] = hit;
+        } else if (!release(p, vectors, &held)) {
+            break;
+        }
+    }
+    return vectors > 0;
+}

@@ -1,0 +1,176 @@
+/* How the forces of coupled contacts follow velocities and accelerations. With the sets of contacts that the last balance found
+ * this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or f_eq, stay
+ * balanced, the others as their law or their bound tells. */
+#include "internal.h"
+
+/* What every contact's law says at the last balance, which was at v. */
+static void linearize(tribo_context *ctx, const double *v)
+{
+    const struct contacts c = tribo_contacts(ctx);
+    ctx->law->tangent(&c, ctx->n, v, ctx->feq, ctx->tangent);
+    tribo_copy(ctx->v, v, ctx->n);
+    ctx->linearized = 1;
+}
+
+/* How the force of contact i, at place k, follows its own velocity where it is not balanced. */
+static double own_rate(const tribo_context *ctx, const struct program *p, size_t k, size_t i)
+{
+    if (!ctx->near[i]) {
+        return ctx->tangent[i].dv;
+    }
+    /* the bound of a relaxing law moves with v while it is not at the other limit */
+    const double kappa = ctx->slope[i] * ctx->v[i];
+    const int moves =
+        ctx->law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && fabs(kappa) < 2.0 * ctx->limit[i];
+    return moves ? -ctx->slope[i] : 0.0;
+}
+
+/* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */
+static void follow(struct program *p, size_t vectors, const double *rhs, double *df)
+{
+    const size_t rank = p->island->rank, all = rank + p->island->dependents;
+    double ignored;
+    for (size_t k = 0; k < all; k++) {
+        df[p->order[k]] = 0.0;
+    }
+    /* the second pass takes away what rounding left */
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t k = 0; k < all; k++) {
+            const size_t i = p->order[k];
+            p->step[i] = -(tribo_row_dot(p, i, df, &ignored) + rhs[i]);
+        }
+        tribo_project(p, vectors, p->step);
+        tribo_factor_solve(p, p->step);
+        for (size_t k = rank; k < all; k++) {
+            p->step[p->order[k]] = 0.0;
+        }
+        tribo_project(p, vectors, p->step);
+        for (size_t k = 0; k < all; k++) {
+            df[p->order[k]] += p->step[p->order[k]];
+        }
+    }
+}
+
+/* df [size] of a group that was solved for, from dv and da [size], all by place. */
+static void group_product(const tribo_context *ctx, struct program *p, size_t vectors, const double *dv, const double *da,
+                          double *df)
+{
+    const int partition = ctx->coupling == TRIBO_PARTITION;
+    const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
+    double *rhs = p->noise, ignored;
+    for (size_t k = 0; k < size; k++) {
+        const size_t i = member[k];
+        df[k] = p->at[k] == FREE ? 0.0 : dv[k] != 0.0 ? own_rate(ctx, p, k, i) * dv[k] : 0.0;
+        rhs[k] = da[k] + (!partition && ctx->law->relaxes && dv[k] != 0.0 ? ctx->op.diagonal[i] * ctx->slope[i] * dv[k] : 0.0);
+    }
+    follow(p, vectors, rhs, df);
+    if (partition) {
+        for (size_t k = 0; k < size; k++) {
+            const struct tangent *d = &ctx->tangent[member[k]];
+            df[k] = p->at[k] == FREE ? d->dfeq * df[k] + (dv[k] != 0.0 ? d->dv * dv[k] : 0.0) : df[k];
+        }
+    } else if (ctx->law->remembers) {
+        /* the forces so far are those that f_eq balances; the law itself has another derivative where f_eq is beyond the limit */
+        memcpy(p->step, df, size * sizeof *df);
+        for (size_t k = 0; k < size; k++) {
+            const size_t i = member[k];
+            const struct tangent *d = &ctx->tangent[i];
+            const double own = p->step[k];
+            p->step[k] = 0.0;
+            const double dfeq = ctx->near[i] ? -(da[k] + tribo_row_dot(p, k, p->step, &ignored)) / ctx->op.diagonal[i] : 0.0;
+            p->step[k] = own;
+            df[k] = d->dfeq * dfeq + (dv[k] != 0.0 ? d->dv * dv[k] : 0.0);
+        }
+    }
+}
+
+/* Contacts for which nothing was solved. */
+static double alone(const tribo_context *ctx, size_t i, double dv, double da)
+{
+    const struct tangent *d = &ctx->tangent[i];
+    const int balanced = !ctx->op.groups || ctx->op.group_of[i] == TRIBO_ALONE;
+    const double by_v = dv != 0.0 ? d->dv * dv : 0.0;
+    return by_v - (balanced && ctx->limit[i] > 0.0 && da != 0.0 ? d->dfeq / ctx->op.diagonal[i] * da : 0.0);
+}
+
+static void touched_columns(tribo_context *ctx, struct program *p, double *df_dv, double *df_da)
+{
+    const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
+    const size_t vectors = tribo_null_basis(p);
+    double *zero = p->lo, *unit = p->hi, *df = p->gradient;
+    memset(zero, 0, size * sizeof *zero);
+    memset(unit, 0, size * sizeof *unit);
+    for (size_t c = 0; c < size; c++) {
+        unit[c] = 1.0;
+        for (int by_v = 0; by_v < 2; by_v++) {
+            double *out = by_v ? df_dv : df_da;
+            if (out) {
+                group_product(ctx, p, vectors, by_v ? unit : zero, by_v ? zero : unit, df);
+                for (size_t k = 0; k < size; k++) {
+                    out[member[k] * ctx->n + member[c]] = df[k];
+                }
+            }
+        }
+        unit[c] = 0.0;
+    }
+}
+
+int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
+                          double *df_da)
+{
+    const int status = tribo_balance(ctx, v, a, feq, f);
+    if (status) {
+        return status;
+    }
+    const size_t n = ctx->n;
+    linearize(ctx, v);
+    for (int by_v = 0; by_v < 2; by_v++) {
+        double *out = by_v ? df_dv : df_da;
+        if (out) {
+            for (size_t k = 0; k < n * n; k++) {
+                out[k] = 0.0;
+            }
+            for (size_t i = 0; i < n; i++) {
+                out[i * n + i] = alone(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0);
+            }
+        }
+    }
+    for (size_t k = 0; (df_dv || df_da) && k < ctx->op.touches; k++) {
+        touched_columns(ctx, tribo_collect(ctx, ctx->op.touched[k]), df_dv, df_da);
+    }
+    return TRIBO_OK;
+}
+
+int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = dv ? tribo_check_finite(ctx, "dv", dv, ctx->n) : TRIBO_OK;
+    status = status || !da ? status : tribo_check_finite(ctx, "da", da, ctx->n);
+    if (status) {
+        return status;
+    }
+    if (!df && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "df is NULL");
+    }
+    if (!ctx->linearized) {
+        return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance_tangent since the last balance or change");
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        df[i] = alone(ctx, i, dv ? dv[i] : 0.0, da ? da[i] : 0.0);
+    }
+    for (size_t g = 0; g < ctx->op.touches; g++) {
+        struct program *p = tribo_collect(ctx, ctx->op.touched[g]);
+        const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
+        for (size_t k = 0; k < size; k++) {
+            p->lo[k] = dv ? dv[member[k]] : 0.0;
+            p->hi[k] = da ? da[member[k]] : 0.0;
+        }
+        group_product(ctx, p, tribo_null_basis(p), p->lo, p->hi, p->gradient);
+        for (size_t k = 0; k < size; k++) {
+            df[member[k]] = p->gradient[k];
+        }
+    }
+    return TRIBO_OK;
+}

@@ -1,0 +1,584 @@
+/* Large and difficult groups of coupled contacts, and what of the work on them is skipped, kept and done again. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "problem.h"
+
+/* ---------------------------------------------------------------------------------------------------------- references */
+
+/* The consistent problem by projected Gauss-Seidel in long double, until a sweep changes nothing. 0 if that takes too long. */
+static int gauss_seidel(const struct problem *p, int law, long double *f)
+{
+    memset(f, 0, p->n * sizeof *f);
+    for (size_t sweep = 0; sweep < 40000000 / (p->n * p->n); sweep++) {
+        long double change = 0.0L;
+        for (size_t i = 0; i < p->n; i++) {
+            const long double limit = p->limit[i], r = p->r[i * p->n + i];
+            long double rest = p->a[i];
+            for (size_t j = 0; j < p->n; j++) {
+                rest += j == i ? 0.0L : p->r[i * p->n + j] * f[j];
+            }
+            long double x = fminl(fmaxl(-rest / r, -limit), limit);
+            if (fabs(p->v[i]) > (law == TRIBO_COULOMB ? 0.0 : p->epsilon[i])) {
+                x = p->v[i] > 0.0 ? -limit : limit;
+            } else if (law == TRIBO_QUINN) {
+                x = fminl(fmaxl(x - 2.0L * limit / p->epsilon[i] * p->v[i], -limit), limit);
+            }
+            change = fmaxl(change, fabsl(x - f[i]));
+            f[i] = x;
+        }
+        if (change < 1e-18L) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* R f is unique, f where R has full rank. */
+TEST(gauss_seidel_agrees)
+{
+    struct random g = random_of(_i);
+    const size_t n = 1 + below(&g, _i % 4 ? 30 : LARGEST);
+    const struct recipe recipe = {n, _i % 2 ? 2 * n : 1 + below(&g, n), 0.0, 2.0, 2.0, 0.1, 0.4, 0.0};
+    struct problem p = problem_create(&g, &recipe);
+    const int law = _i % 3 ? TRIBO_QUINN : TRIBO_COULOMB;
+    static long double want[LARGEST];
+    double f[LARGEST], feq[LARGEST];
+    tribo_context *c = problem_context(&p, law, TRIBO_CONSISTENT);
+    assert_ok(tribo_balance(c, p.v, p.a, feq, f));
+    tribo_destroy(c);
+    const int converged = gauss_seidel(&p, law, want);
+    require(converged || _i % 2 == 0, "no reference");
+    if (!converged) {
+        return;
+    }
+    for (size_t i = 0; i < n; i++) {
+        long double off = 0.0L, size = 0.0L;
+        for (size_t j = 0; j < n; j++) {
+            off += p.r[i * n + j] * ((long double)f[j] - want[j]);
+            size += fabsl(p.r[i * n + j] * want[j]) + fabs(p.r[i * n + j] * p.limit[j]);
+        }
+        assert_close((double)off, 0.0, 1e-12 * (double)size);
+    }
+}
+
+/* One warm context through many problems: the fixed point, to 1e-12 of the limits. */
+TEST(fixed_point_after_many_changes)
+{
+    struct random g = random_of(_i);
+    const struct recipe recipe = recipe_random(&g, LARGEST, _i % 2 ? 0.0 : 1.0);
+    struct problem p = problem_create(&g, &recipe);
+    double f[LARGEST], feq[LARGEST];
+    tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
+    for (int k = 0; k < 30; k++) {
+        assert_ok(tribo_balance(c, p.v, p.a, feq, f));
+        for (size_t i = 0; i < p.n; i++) {
+            const double noise = balancing_noise(&p, i, f);
+            const double want =
+                law_force(TRIBO_QUINN, p.v[i], p.limit[i] > 0.0 ? balancing(&p, i, f) : 0.0, p.limit[i], p.epsilon[i]);
+            assert_close(f[i], want, 1e-12 * p.limit[i] + noise);
+        }
+        for (size_t i = 0; i < p.n; i++) {
+            p.a[i] += below(&g, 4) ? 0.0 : p.r[i * p.n + i] * p.limit[i] * uniform(&g, -1.0, 1.0);
+            p.v[i] = below(&g, 8) ? p.v[i] : p.epsilon[i] * uniform(&g, -2.0, 2.0);
+        }
+    }
+    tribo_destroy(c);
+}
+
+/* ------------------------------------------------------------------------------------------------------ redundant contacts */
+
+/* m contacts that are all the same share what is asked of them: equal forces, but nobody more than the limit. */
+TEST(identical_contacts_share)
+{
+    struct random g = random_of(_i);
+    const size_t m = 2 + below(&g, 20);
+    struct problem p = {.n = m};
+    double total = 0.0, f[LARGEST], lo = 0.0, hi = 0.0;
+    for (size_t i = 0; i < m; i++) {
+        p.epsilon[i] = 1.0;
+        p.limit[i] = uniform(&g, 0.1, 2.0);
+        total += p.limit[i];
+        hi = fmax(hi, p.limit[i]);
+        for (size_t j = 0; j < m; j++) {
+            p.r[i * m + j] = 1.0;
+        }
+    }
+    const double pull = total * uniform(&g, -0.98, 0.98);
+    for (size_t i = 0; i < m; i++) {
+        p.a[i] = pull;
+    }
+    for (int k = 0; k < 100; k++) { /* sum of min(limit, level) = |pull| */
+        double sum = 0.0;
+        for (size_t i = 0; i < m; i++) {
+            sum += fmin(p.limit[i], 0.5 * (lo + hi));
+        }
+        *(sum < fabs(pull) ? &lo : &hi) = 0.5 * (lo + hi);
+    }
+    tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
+    assert_ok(tribo_balance(c, p.v, p.a, NULL, f));
+    for (size_t i = 0; i < m; i++) {
+        assert_close(f[i], -sgn(pull) * fmin(p.limit[i], lo), 1e-13 * total);
+    }
+    tribo_destroy(c);
+}
+
+/* The share does not depend on the order of the contacts, nor on what was solved before. */
+TEST(share_without_order)
+{
+    struct random g = random_of(_i);
+    const size_t n = 2 + below(&g, USUAL - 2);
+    const struct recipe recipe = {n, 1 + below(&g, n), 0.0, 0.9, 1.0, 0.05, 0.5, 0.0};
+    const struct problem p = problem_create(&g, &recipe);
+    struct problem q = p;
+    size_t to[LARGEST];
+    double f[LARGEST], other[LARGEST];
+    for (size_t i = 0; i < n; i++) {
+        to[i] = i;
+    }
+    for (size_t i = n; i-- > 1;) {
+        const size_t j = below(&g, i + 1), x = to[i];
+        to[i] = to[j];
+        to[j] = x;
+    }
+    for (size_t i = 0; i < n; i++) {
+        q.limit[to[i]] = p.limit[i];
+        q.epsilon[to[i]] = p.epsilon[i];
+        q.v[to[i]] = p.v[i];
+        q.a[to[i]] = p.a[i];
+        for (size_t j = 0; j < n; j++) {
+            q.r[to[i] * n + to[j]] = p.r[i * n + j];
+        }
+    }
+    tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT),
+                  *d = problem_context(&q, TRIBO_QUINN, TRIBO_CONSISTENT);
+    assert_ok(tribo_balance(c, p.v, p.a, NULL, f));
+    for (int k = 0; k < 2; k++) {
+        assert_ok(tribo_balance(d, q.v, q.a, NULL, other));
+        for (size_t i = 0; i < n; i++) {
+            assert_close(other[to[i]], f[i], 1e-9);
+        }
+        double disturbed[LARGEST];
+        for (size_t i = 0; i < n; i++) {
+            disturbed[i] = 3.0 * q.a[i] * uniform(&g, -1.0, 1.0);
+        }
+        assert_ok(tribo_balance(d, q.v, disturbed, NULL, other));
+    }
+    tribo_destroy(c);
+    tribo_destroy(d);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- scaling */
+
+/* A row of bodies with masses from 1e-6 to 1e6 and limits from 1e-300 to 1e300, in one scene. */
+TEST(extreme_limits_and_masses)
+{
+    struct random g = random_of(_i);
+    const size_t n = 2 + below(&g, 20);
+    struct problem p = {.n = n};
+    double f[LARGEST], feq[LARGEST], inverse[LARGEST + 1];
+    for (size_t i = 0; i <= n; i++) {
+        inverse[i] = log_uniform(&g, 6.0);
+    }
+    for (size_t i = 0; i < n; i++) {
+        p.r[i * n + i] = inverse[i] + inverse[i + 1];
+        if (i > 0) {
+            p.r[i * n + i - 1] = p.r[(i - 1) * n + i] = -inverse[i];
+        }
+        p.limit[i] = log_uniform(&g, i % 2 ? 300.0 : 3.0);
+        p.epsilon[i] = 1.0;
+        p.v[i] = below(&g, 2) ? 0.0 : uniform(&g, -0.5, 0.5);
+        p.a[i] = uniform(&g, -2.0, 2.0) * fmin(p.limit[i], 1e290);
+    }
+    tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
+    assert_ok(tribo_balance(c, p.v, p.a, feq, f));
+    for (size_t i = 0; i < n; i++) {
+        require(fabs(f[i]) <= p.limit[i], "|f| = %g is over the limit %g", fabs(f[i]), p.limit[i]);
+        assert_close(f[i], law_force(TRIBO_QUINN, p.v[i], balancing(&p, i, f), p.limit[i], p.epsilon[i]),
+                     1e-12 * p.limit[i] + 4.0 * balancing_noise(&p, i, f));
+    }
+    tribo_destroy(c);
+}
+
+/* R = V diag(1 ... 1e-14) V' with V a reflection. The residual is still rounding. */
+TEST(ill_conditioned)
+{
+    struct random g = random_of(_i);
+    const size_t n = 3 + below(&g, 40);
+    struct problem p = {.n = n};
+    double u[LARGEST], square = 0.0, f[LARGEST];
+    for (size_t i = 0; i < n; i++) {
+        u[i] = uniform(&g, -1.0, 1.0);
+        square += u[i] * u[i];
+        p.limit[i] = p.epsilon[i] = 1.0;
+        p.v[i] = below(&g, 3) ? 0.0 : uniform(&g, -0.1, 0.1);
+    }
+    for (size_t i = 0; i < n; i++) {
+        p.a[i] = uniform(&g, -0.5, 0.5);
+        for (size_t j = 0; j <= i; j++) {
+            long double sum = 0.0L;
+            for (size_t k = 0; k < n; k++) {
+                const long double vi = (i == k) - 2.0L * u[i] * u[k] / square, vj = (j == k) - 2.0L * u[j] * u[k] / square;
+                sum += vi * vj * powl(10.0L, -14.0L * k / (n - 1));
+            }
+            p.r[i * n + j] = p.r[j * n + i] = (double)sum;
+        }
+    }
+    tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
+    for (int k = 0; k < 5; k++) {
+        assert_ok(tribo_balance(c, p.v, p.a, NULL, f));
+        for (size_t i = 0; i < n; i++) {
+            assert_close(f[i], law_force(TRIBO_QUINN, p.v[i], balancing(&p, i, f), 1.0, 1.0), 1e-12 + balancing_noise(&p, i, f));
+            p.a[i] += uniform(&g, -0.1, 0.1);
+        }
+        require(real_of(c, TRIBO_REAL_RESIDUAL) < 1e-11, "residual %g", real_of(c, TRIBO_REAL_RESIDUAL));
+    }
+    tribo_destroy(c);
+}
+
+/* ------------------------------------------------------------------------------------------------- what is skipped and kept */
+
+struct counts {
+    size_t solves, skipped, reused, factorizations, updates, rank;
+};
+
+static struct counts counts_of(const tribo_context *c)
+{
+    return (struct counts){count_of(c, TRIBO_COUNT_SOLVES),  count_of(c, TRIBO_COUNT_SKIPPED),
+                           count_of(c, TRIBO_COUNT_REUSED),  count_of(c, TRIBO_COUNT_FACTORIZATIONS),
+                           count_of(c, TRIBO_COUNT_UPDATES), count_of(c, TRIBO_COUNT_RANK)};
+}
+
+/* A chain of n contacts between bodies of mass 1: tridiagonal R. */
+static tribo_context *chain(size_t n, size_t islands, int coupling)
+{
+    const size_t all = n * islands;
+    size_t *first = malloc((all + 1) * sizeof *first), *col = malloc(3 * all * sizeof *col), k = 0;
+    double *val = malloc(3 * all * sizeof *val);
+    tribo_context *c;
+    first[0] = 0;
+    for (size_t i = 0; i < all; i++) {
+        if (i % n > 0) {
+            col[k] = i - 1;
+            val[k++] = -1.0;
+        }
+        col[k] = i;
+        val[k++] = 2.0;
+        if (i % n + 1 < n) {
+            col[k] = i + 1;
+            val[k++] = -1.0;
+        }
+        first[i + 1] = k;
+    }
+    assert_ok(tribo_create(&c, all));
+    assert_ok(tribo_set_operator_csr(c, first, col, val));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    assert_ok(tribo_set_coupling(c, coupling));
+    free(first);
+    free(col);
+    free(val);
+    return c;
+}
+
+/* One contact enters or leaves the stick set of a group of 60 (dense) or 600 (sparse): one update, and no factorization. */
+TEST(one_change_is_one_update)
+{
+    const size_t n = _i % 2 ? 600 : 60;
+    const int coupling = _i / 2;
+    double *v = calloc(n, sizeof *v), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f);
+    tribo_context *c = chain(n, 1, coupling);
+    for (size_t i = 0; i < n; i++) {
+        a[i] = i % 2 ? 0.1 : -0.1;
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    /* with the same sets nothing is factorized */
+    struct counts before = counts_of(c), now;
+    for (int k = 0; k < 5; k++) {
+        a[3] += 0.01;
+        assert_ok(tribo_balance(c, v, a, NULL, f));
+    }
+    now = counts_of(c);
+    ck_assert_uint_eq(now.solves, before.solves + 5);
+    ck_assert_uint_eq(now.reused, before.reused + 5);
+    ck_assert_uint_eq(now.factorizations, before.factorizations);
+    ck_assert_uint_eq(now.updates, before.updates);
+    const size_t rank = now.rank;
+    /* contact 7 slides off, and comes to rest */
+    for (int k = 0; k < 6; k++) {
+        before = counts_of(c);
+        v[7] = k % 2 ? 0.0 : 3.0;
+        assert_ok(tribo_balance(c, v, a, NULL, f));
+        now = counts_of(c);
+        ck_assert_uint_eq(now.updates, before.updates + 1);
+        ck_assert_uint_eq(now.factorizations, before.factorizations);
+        ck_assert_uint_eq(now.reused, before.reused);
+        ck_assert_uint_eq(now.rank, k % 2 ? rank : rank - 1);
+        for (size_t i = 0; i < n; i++) {
+            const double sum = a[i] + 2.0 * f[i] - (i > 0 ? f[i - 1] : 0.0) - (i + 1 < n ? f[i + 1] : 0.0);
+            if (fabs(f[i]) < 1.0) {
+                assert_close(sum, 0.0, 1e-13);
+            }
+        }
+    }
+    tribo_destroy(c);
+    free(v);
+    free(a);
+    free(f);
+}
+
+/* Groups without a contact near stick are left alone, in the balance and in the step force. */
+TEST(sleeping_islands)
+{
+    const size_t n = 4, islands = 50, all = n * islands;
+    double v[200], a[200], f[200];
+    tribo_context *c = chain(n, islands, _i);
+    ck_assert_uint_eq(count_of(c, TRIBO_COUNT_ISLANDS), islands);
+    for (size_t i = 0; i < all; i++) {
+        v[i] = i % 2 ? 3.0 : -2.0;
+        a[i] = 0.5;
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    struct counts now = counts_of(c);
+    ck_assert_uint_eq(now.solves, 0);
+    ck_assert_uint_eq(now.skipped, islands);
+    ck_assert_uint_eq(now.factorizations, 0);
+    v[2 * n + 1] = v[7 * n] = v[7 * n + 3] = 0.0;
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    now = counts_of(c);
+    ck_assert_uint_eq(now.solves, 2);
+    ck_assert_uint_eq(now.skipped, 2 * islands - 2);
+    ck_assert_uint_eq(now.factorizations, 2);
+    /* nobody in the first 40 islands can be held: each is pulled with more than its own limit and its neighbours', 4, over a step
+     * of 1 */
+    for (size_t i = 0; i < all; i++) {
+        v[i] = i < 40 * n ? (i % 2 ? 4.1 : -5.0) : 0.5;
+    }
+    assert_ok(tribo_step_force(c, 1.0, v, f));
+    now = counts_of(c);
+    ck_assert_uint_eq(now.solves, 2 + 10);
+    ck_assert_uint_eq(now.skipped, 2 * islands - 2 + 40);
+    for (size_t i = 0; i < 40 * n; i++) {
+        assert_exact(f[i], -sgn(v[i]));
+    }
+    tribo_destroy(c);
+}
+
+/* ------------------------------------------------------------------------------------------------------ large sparse groups */
+
+/* A square of side x side bodies on a table, neighbours rubbing on each other too: contacts of every body with the table, and of
+ * every body with its right and its upper neighbour. */
+static tribo_context *carpet(struct random *g, size_t side, size_t *contacts)
+{
+    const size_t ndof = side * side, n = ndof + 2 * side * (side - 1);
+    size_t *first = malloc((n + 1) * sizeof *first), *col = malloc(2 * n * sizeof *col), k = 0, i = 0;
+    double *val = malloc(2 * n * sizeof *val), *inverse = malloc(ndof * sizeof *inverse);
+    tribo_context *c;
+    first[0] = 0;
+    for (size_t b = 0; b < ndof; b++) {
+        inverse[b] = uniform(g, 0.5, 2.0);
+        col[k] = b;
+        val[k++] = 1.0;
+        first[++i] = k;
+        for (int up = 0; up < 2; up++) {
+            if (up ? b + side < ndof : (b + 1) % side > 0) {
+                col[k] = b;
+                val[k++] = -1.0;
+                col[k] = up ? b + side : b + 1;
+                val[k++] = 1.0;
+                first[++i] = k;
+            }
+        }
+    }
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_operator_mass(c, ndof, inverse, first, col, val));
+    *contacts = n;
+    free(first);
+    free(col);
+    free(val);
+    free(inverse);
+    return c;
+}
+
+/* 100,000 contacts in one row, most of them stuck; the sets change from call to call. */
+TEST(long_chain)
+{
+    struct random g = random_of(_i);
+    const size_t n = 100000;
+    double *v = calloc(n, sizeof *v), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f);
+    tribo_context *c = chain(n, 1, TRIBO_CONSISTENT);
+    for (int k = 0; k < 4; k++) {
+        for (size_t i = 0; i < n; i++) {
+            v[i] = below(&g, 100) ? 0.0 : uniform(&g, -2.0, 2.0);
+            f[i] = uniform(&g, -0.8, 0.8);
+        }
+        for (size_t i = 0; i < n; i++) {
+            a[i] = (i > 0 ? f[i - 1] : 0.0) - 2.0 * f[i] + (i + 1 < n ? f[i + 1] : 0.0);
+        }
+        assert_ok(tribo_balance(c, v, a, NULL, f));
+        for (size_t i = 0; i < n; i++) {
+            const double rest = a[i] - (i > 0 ? f[i - 1] : 0.0) - (i + 1 < n ? f[i + 1] : 0.0);
+            assert_close(f[i], law_force(TRIBO_QUINN, v[i], -0.5 * rest, 1.0, 1.0), 1e-12);
+        }
+    }
+    require(count_of(c, TRIBO_COUNT_STUCK) > 9 * n / 10, "few are stuck");
+    tribo_destroy(c);
+    free(v);
+    free(a);
+    free(f);
+}
+
+/* A clone goes on where its original is, the sparse factor included, and both give the same bits. */
+TEST(sparse_clone)
+{
+    struct random g = random_of(_i);
+    size_t n;
+    tribo_context *c = carpet(&g, 15, &n), *d;
+    double *v = calloc(n, sizeof *v), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f), *h = calloc(n, sizeof *h);
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    assert_ok(tribo_clone(c, &d));
+    for (int k = 0; k < 5; k++) {
+        for (size_t i = 0; i < n; i++) {
+            a[i] += uniform(&g, -1.0, 1.0);
+        }
+        assert_ok(tribo_balance(c, v, a, NULL, f));
+        assert_ok(tribo_balance(d, v, a, NULL, h));
+        assert_all_exact(h, f, n);
+    }
+    tribo_destroy(c);
+    tribo_destroy(d);
+    free(v);
+    free(a);
+    free(f);
+    free(h);
+}
+
+/* ------------------------------------------------------------------------------------------------------ operators by callback */
+
+/* M^-1 of a mass matrix that is tridiagonal, 4 and 1, by elimination. */
+static int solve_mass(size_t ndof, const double *force, double *acceleration, void *data)
+{
+    double pivot[64];
+    int *calls = data;
+    if (--*calls < 0) {
+        return 7;
+    }
+    for (size_t i = 0; i < ndof; i++) {
+        pivot[i] = 4.0 - (i ? 1.0 / pivot[i - 1] : 0.0);
+        acceleration[i] = force[i] - (i ? acceleration[i - 1] / pivot[i - 1] : 0.0);
+    }
+    for (size_t i = ndof; i-- > 0;) {
+        acceleration[i] = (acceleration[i] - (i + 1 < ndof ? acceleration[i + 1] : 0.0)) / pivot[i];
+    }
+    return 0;
+}
+
+/* R from J and M^-1 is that which gives the same forces as the dense one. */
+TEST(consistent_mass)
+{
+    struct random g = random_of(_i);
+    const size_t n = 2 + below(&g, 20), ndof = n + below(&g, 30);
+    size_t first[30] = {0}, col[64];
+    double val[64], v[30], a[30], f[30], want[30], limit[30], column[64], force[64], *r = calloc(n * n, sizeof *r);
+    for (size_t i = 0; i < n; i++) {
+        col[2 * i] = i;
+        val[2 * i] = uniform(&g, 0.5, 2.0);
+        col[2 * i + 1] = (i + 1 + below(&g, ndof - 1)) % ndof;
+        val[2 * i + 1] = uniform(&g, -1.0, 1.0);
+        first[i + 1] = 2 * i + 2;
+        v[i] = below(&g, 2) ? 0.0 : uniform(&g, -1.5, 1.5);
+        a[i] = uniform(&g, -1.0, 1.0);
+        limit[i] = uniform(&g, 0.1, 2.0);
+    }
+    for (size_t j = 0; j < n; j++) {
+        int calls = 1;
+        memset(force, 0, sizeof force);
+        force[col[2 * j]] += val[2 * j];
+        force[col[2 * j + 1]] += val[2 * j + 1];
+        solve_mass(ndof, force, column, &calls);
+        for (size_t i = 0; i < n; i++) {
+            r[i * n + j] = val[2 * i] * column[col[2 * i]] + val[2 * i + 1] * column[col[2 * i + 1]];
+        }
+    }
+    for (int dense = 0; dense < 2; dense++) {
+        tribo_context *c;
+        int calls = (int)n;
+        assert_ok(tribo_create(&c, n));
+        assert_ok(dense ? tribo_set_operator_dense(c, r)
+                        : tribo_set_operator_callback(c, ndof, solve_mass, &calls, first, col, val));
+        assert_ok(tribo_set_limit(c, limit));
+        assert_ok(tribo_set_epsilon_all(c, 1.0));
+        assert_ok(tribo_balance(c, v, a, NULL, dense ? want : f));
+        tribo_destroy(c);
+    }
+    assert_all_close(f, want, n, 1e-12);
+    free(r);
+}
+
+/* The callback's failure is told, and nothing changes. */
+TEST(callback_fails)
+{
+    const size_t first[] = {0, 1, 2}, col[] = {0, 1};
+    const double val[] = {1.0, 1.0}, diagonal[] = {3.0, 5.0};
+    double v[2] = {0.0, 0.0}, a[2] = {0.3, 0.5}, f[2];
+    int calls = 1;
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_operator_diagonal(c, diagonal));
+    assert_status(tribo_set_operator_callback(c, 2, solve_mass, &calls, first, col, val), TRIBO_ERR_CALLBACK);
+    assert_says(tribo_message(c), "apply answered 7 for contact 1");
+    assert_status(tribo_set_operator_callback(c, 2, NULL, &calls, first, col, val), TRIBO_ERR_NULL);
+    assert_says(tribo_message(c), "apply is NULL");
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    assert_close(f[0], -0.1, 1e-16);
+    assert_close(f[1], -0.1, 1e-16);
+    tribo_destroy(c);
+}
+
+/* ------------------------------------------------------------------------------------------------------ product of tangents */
+
+/* The product is the matrices' product, for every law and coupling, groups and single contacts. */
+TEST(product_of_tangents)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2;
+    const struct recipe recipe = recipe_random(&g, USUAL, 0.3);
+    const struct problem p = problem_create(&g, &recipe);
+    const size_t n = p.n;
+    double *dv = malloc(n * n * sizeof *dv), *da = malloc(n * n * sizeof *da), x[LARGEST], y[LARGEST], df[LARGEST];
+    tribo_context *c = problem_context(&p, law, coupling);
+    assert_status(tribo_tangent_product(c, p.v, p.a, df), TRIBO_ERR_STATE);
+    const int status = tribo_balance_tangent(c, p.v, p.a, NULL, NULL, dv, da);
+    if (status != TRIBO_ERR_INCONSISTENT) {
+        assert_ok(status);
+        for (size_t i = 0; i < n; i++) {
+            x[i] = uniform(&g, -1.0, 1.0);
+            y[i] = uniform(&g, -1.0, 1.0);
+        }
+        for (int part = 1; part < 4; part++) {
+            assert_ok(tribo_tangent_product(c, part & 1 ? x : NULL, part & 2 ? y : NULL, df));
+            for (size_t i = 0; i < n; i++) {
+                double want = 0.0, size = 0.0;
+                for (size_t j = 0; j < n; j++) {
+                    const double terms[] = {part & 1 ? dv[i * n + j] * x[j] : 0.0, part & 2 ? da[i * n + j] * y[j] : 0.0};
+                    want += terms[0] + terms[1];
+                    size += fabs(terms[0]) + fabs(terms[1]);
+                }
+                assert_close(df[i], want, 1e-9 * size);
+            }
+        }
+        assert_ok(tribo_set_limit(c, p.limit));
+        assert_status(tribo_tangent_product(c, x, y, df), TRIBO_ERR_STATE);
+        assert_says(tribo_message(c), "tribo_balance_tangent");
+    }
+    tribo_destroy(c);
+    free(dv);
+    free(da);
+}
+
+TEST_MAIN("coupled", {gauss_seidel_agrees, 80}, {fixed_point_after_many_changes, 40}, {identical_contacts_share, 100},
+          {share_without_order, 200}, {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4},
+          {sleeping_islands, 2}, {long_chain, 2}, {sparse_clone, 3}, {consistent_mass, 40}, {callback_fails, 1},
+          {product_of_tangents, 120})
