@@ -319,16 +319,15 @@ static int primal(struct program *p)
     return 0;
 }
 
-/* How far x is from the fixed point, in parts of the box. */
+/* How far x is from the fixed point, in parts of what may be rounding. */
 static double violation(const struct program *p)
 {
     double most = 0.0;
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        const double half = 0.5 * p->hi[i] - 0.5 * p->lo[i];
-        const double to = p->x[i] - p->gradient[i] / p->unit[i] * half;
-        const double off = fabs(lesser(greater(to, p->lo[i]), p->hi[i]) - p->x[i]);
-        most = half > 0.0 ? greater(most, off / half) : most;
+        const double half = 0.5 * p->hi[i] - 0.5 * p->lo[i], r = p->unit[i] / half;
+        const double to = lesser(greater(p->x[i] - p->gradient[i] / r, p->lo[i]), p->hi[i]);
+        most = half > 0.0 ? greater(most, fabs(to - p->x[i]) * r / p->noise[i]) : most;
     }
     return most;
 }
@@ -355,7 +354,6 @@ static int inside(const struct program *p)
  * where the boxes have room for that, and otherwise the contacts share as they did before. */
 static void share(struct program *p)
 {
-    const double good = 1e-12;
     double *before = p->spare[0], *split = p->spare[1];
     memcpy(before, p->x, p->island->size * sizeof *before);
     if (!tribo_split(p)) {
@@ -367,7 +365,7 @@ static void share(struct program *p)
         restore(p, split);
     }
     const double after = violation(p);
-    if (after > good) {
+    if (after > SETTLED) {
         memcpy(split, p->x, p->island->size * sizeof *split);
         restore(p, before);
         if (violation(p) > after) {
