@@ -59,3 +59,550 @@
 !>   TRBMOD(IH, N, MODE, IERR)                                                         MODE(N): 0 stuck, +1 -1 sliding, 2 open
 !>   TRBCNT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_...            IVAL
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
+
+!> What they share.
+module tribo_fixed
+  use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_ptr
+  use tribo
+  use tribo_support, only: begin, c_law_name, c_law_reference, c_strerror, c_version_string, fail, forget, lend, message_of, &
+    shorten, to_text, work
+  implicit none
+  public
+
+contains
+
+  !> Lets c name the contacts of a handle; ierr says whether there are such, and n of them.
+  subroutine find(ih, c, ierr, n)
+    integer, intent(in) :: ih
+    type(tribo_context), intent(inout) :: c
+    integer, intent(out) :: ierr
+    integer, intent(in), optional :: n
+    type(work) :: w
+
+    if (ih > 0) call lend(c, -int(ih, c_int64_t))
+    w = begin(c)
+    if (present(n)) call expect_value(w, n == w%n, 'N', n, ', but the number of contacts is ', w%n)
+    ierr = int(w%status)
+  end subroutine find
+
+  !> The same, with the leading dimension of a matrix.
+  subroutine find_matrix(ih, c, ierr, n, name, leading)
+    integer, intent(in) :: ih, n, leading
+    type(tribo_context), intent(inout) :: c
+    integer, intent(out) :: ierr
+    character(len=*), intent(in) :: name
+    type(work) :: w
+
+    call find(ih, c, ierr, n)
+    if (ierr /= TRIBO_OK) return
+    w = begin(c)
+    call expect_value(w, leading >= n, name, leading, ' is less than N = ', n)
+    ierr = int(w%status)
+  end subroutine find_matrix
+
+  !> Fails unless holds; the text is made of the last four.
+  subroutine expect_value(w, holds, name, value, but, other)
+    type(work), intent(inout) :: w
+    logical, intent(in) :: holds
+    character(len=*), intent(in) :: name, but
+    integer, intent(in) :: value, other
+    character(len=80) :: text
+
+    if (holds .or. w%status /= TRIBO_OK) return
+    write (text, '(2a,i0,a,i0)') name, ' = ', value, but, other
+    call fail(w, TRIBO_ERR_SIZE, trim(text))
+  end subroutine expect_value
+
+  !> Moves the contacts of c to a new handle.
+  subroutine give(c, ih, ierr)
+    type(tribo_context), intent(inout) :: c
+    integer, intent(inout) :: ih
+    integer, intent(out) :: ierr
+    integer(c_int64_t) :: number
+
+    number = shorten(c)
+    ierr = TRIBO_ERR_MEMORY
+    if (number == 0) return
+    ih = -int(number)
+    ierr = TRIBO_OK
+  end subroutine give
+
+  !> Hands out a text of the library, if there is one.
+  subroutine hand_out(s, text, ierr)
+    type(c_ptr), intent(in) :: s
+    character(len=*), intent(inout) :: text
+    integer, intent(out) :: ierr
+    character(len=:), allocatable :: found
+
+    call to_text(s, found)
+    ierr = TRIBO_ERR_RANGE
+    if (len(found) == 0) return
+    text = found
+    ierr = TRIBO_OK
+  end subroutine hand_out
+end module tribo_fixed
+
+! ------------------------------------------------------------------------------------------------------------------------ registry
+
+subroutine trbver(iver, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(out) :: iver, ierr
+  iver = tribo_version()
+  ierr = TRIBO_OK
+end subroutine trbver
+
+subroutine trbvst(text, ierr)
+  use tribo_fixed
+  implicit none
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_version_string(), text, ierr)
+end subroutine trbvst
+
+subroutine trbtxt(icode, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: icode
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_strerror(int(icode, c_int)), text, ierr)
+end subroutine trbtxt
+
+subroutine trbnlw(nlaw, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(out) :: nlaw, ierr
+  nlaw = tribo_law_count()
+  ierr = TRIBO_OK
+end subroutine trbnlw
+
+subroutine trblnm(law, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: law
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_law_name(int(law, c_int)), text, ierr)
+end subroutine trblnm
+
+subroutine trbref(law, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: law
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_law_reference(int(law, c_int)), text, ierr)
+end subroutine trbref
+
+subroutine trbfnd(name, law, ierr)
+  use tribo_fixed
+  implicit none
+  character(len=*), intent(in) :: name
+  integer, intent(inout) :: law
+  integer, intent(out) :: ierr
+  call tribo_law_find(name, law, ierr)
+end subroutine trbfnd
+
+subroutine trbevl(law, v, feq, fmun, eps, f, dfdv, dfdq, dfdn, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: law
+  real(dp), intent(in) :: v, feq, fmun, eps
+  real(dp), intent(inout) :: f, dfdv, dfdq, dfdn
+  integer, intent(out) :: ierr
+  call tribo_law_eval(law, v, feq, fmun, eps, f, dfdv, dfdq, dfdn, ierr)
+end subroutine trbevl
+
+! ---------------------------------------------------------------------------------------------------------------------------- life
+
+subroutine trbnew(n, ih, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  integer, intent(inout) :: ih
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call c%create(n, ierr)
+  if (ierr == TRIBO_OK) call give(c, ih, ierr)
+end subroutine trbnew
+
+subroutine trbcpy(ih, ihnew, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: ihnew
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c, copy
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%clone(copy, ierr)
+  if (ierr == TRIBO_OK) call give(copy, ihnew, ierr)
+end subroutine trbcpy
+
+subroutine trbdel(ih, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call forget(-int(ih, c_int64_t))
+end subroutine trbdel
+
+subroutine trbnum(ih, n, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: n
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_ncontact(n, ierr)
+end subroutine trbnum
+
+subroutine trbmsg(ih, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+  character(len=:), allocatable :: found
+  character(len=80) :: none
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) then
+    call message_of(begin(c), found)
+    text = found
+  else
+    write (none, '(a,i0,a)') 'IH = ', ih, ' is no handle: it was never given, or has been deleted'
+    text = none
+  end if
+end subroutine trbmsg
+
+! ------------------------------------------------------------------------------------------------------------------------ settings
+
+subroutine trblaw(ih, law, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, law
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_law(law, ierr)
+end subroutine trblaw
+
+subroutine trbnam(ih, name, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  character(len=*), intent(in) :: name
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_law(name, ierr)
+end subroutine trbnam
+
+subroutine trbglw(ih, law, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: law
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_law(law, ierr)
+end subroutine trbglw
+
+subroutine trblim(ih, n, fmun, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: fmun(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_limit(fmun(:n), ierr)
+end subroutine trblim
+
+subroutine trblm1(ih, fmun, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: fmun
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_limit(fmun, ierr)
+end subroutine trblm1
+
+subroutine trbglm(ih, n, fmun, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(inout) :: fmun(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%get_limit(fmun(:n), ierr)
+end subroutine trbglm
+
+subroutine trbeps(ih, n, eps, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: eps(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_epsilon(eps(:n), ierr)
+end subroutine trbeps
+
+subroutine trbep1(ih, eps, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: eps
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_epsilon(eps, stat=ierr)
+end subroutine trbep1
+
+subroutine trbstp(ih, dt, rldt, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: dt, rldt
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_epsilon(step=dt, lambda_dt=rldt, stat=ierr)
+end subroutine trbstp
+
+subroutine trbgep(ih, n, eps, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(inout) :: eps(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%get_epsilon(eps(:n), ierr)
+end subroutine trbgep
+
+subroutine trbopd(ih, n, rdiag, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: rdiag(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_operator(rdiag(:n), ierr)
+end subroutine trbopd
+
+subroutine trbopf(ih, n, r, ldr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, ldr
+  real(dp), intent(in) :: r(ldr, *)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find_matrix(ih, c, ierr, n, 'LDR', ldr)
+  if (ierr == TRIBO_OK) call c%set_operator(r(:n, :n), ierr)
+end subroutine trbopf
+
+subroutine trbops(ih, n, irow, icol, val, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, irow(*), icol(*)
+  real(dp), intent(in) :: val(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_operator_csr(irow(:n + 1), icol(:irow(n + 1) - 1), val(:irow(n + 1) - 1), ierr)
+end subroutine trbops
+
+subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, ndof, irow(*), icol(*)
+  real(dp), intent(in) :: rminv(*), val(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr /= TRIBO_OK) return
+  call c%set_operator_mass(rminv(:ndof), irow(:n + 1), icol(:irow(n + 1) - 1), val(:irow(n + 1) - 1), ierr)
+end subroutine trbopm
+
+subroutine trbcpl(ih, icpl, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, icpl
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_coupling(icpl, ierr)
+end subroutine trbcpl
+
+subroutine trbgcp(ih, icpl, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: icpl
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_coupling(icpl, ierr)
+end subroutine trbgcp
+
+! -------------------------------------------------------------------------------------------------------------------------- forces
+
+subroutine trbfrc(ih, n, v, feq, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), feq(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%force(v(:n), feq(:n), f(:n), ierr)
+end subroutine trbfrc
+
+subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), feq(*)
+  real(dp), intent(inout) :: f(*), dfdv(*), dfdq(*), dfdn(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%force_tangent(v(:n), feq(:n), f(:n), dfdv(:n), dfdq(:n), dfdn(:n), ierr)
+end subroutine trbftn
+
+subroutine trbbal(ih, n, v, a, feq, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), a(*)
+  real(dp), intent(inout) :: feq(*), f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%balance(v(:n), a(:n), feq(:n), f(:n), ierr)
+end subroutine trbbal
+
+subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, ldj
+  real(dp), intent(in) :: v(*), a(*)
+  real(dp), intent(inout) :: feq(*), f(*), dfdv(ldj, *), dfda(ldj, *)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find_matrix(ih, c, ierr, n, 'LDJ', ldj)
+  if (ierr == TRIBO_OK) call c%balance_tangent(v(:n), a(:n), feq(:n), f(:n), dfdv(:n, :n), dfda(:n, :n), ierr)
+end subroutine trbbtn
+
+subroutine trbstf(ih, n, dt, vfree, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: dt, vfree(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%step_force(dt, vfree(:n), f(:n), ierr)
+end subroutine trbstf
+
+subroutine trbbox(ih, n, a, flo, fup, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: a(*), flo(*), fup(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%solve_box(a(:n), flo(:n), fup(:n), f(:n), ierr)
+end subroutine trbbox
+
+subroutine trbacc(ih, n, v, feq, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), feq(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%accept(v(:n), feq(:n), ierr)
+end subroutine trbacc
+
+! ------------------------------------------------------------------------------------------------------------------------- queries
+
+subroutine trbmod(ih, n, mode, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  integer, intent(inout) :: mode(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%get_modes(mode(:n), ierr)
+end subroutine trbmod
+
+subroutine trbcnt(ih, iwhich, ival, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, iwhich
+  integer, intent(inout) :: ival
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_count(iwhich, ival, ierr)
+end subroutine trbcnt
+
+subroutine trbval(ih, iwhich, val, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, iwhich
+  real(dp), intent(inout) :: val
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_real(iwhich, val, ierr)
+end subroutine trbval
