@@ -113,10 +113,6 @@ module tribo
     generic :: assignment(=) => assign
   end type tribo_context
 
-  interface find
-    procedure :: find_vector, find_matrix
-  end interface find
-
   ! The C library. Outputs are intent(inout) here as well, lest a compiler copies back a section that the call has not written.
   interface
     function c_version() result(version) bind(c, name='tribo_version')
@@ -403,7 +399,8 @@ contains
 
     w%status = c_law_find(trim(name) // c_null_char, number)
     if (w%status == TRIBO_OK) law = int(number)
-    call finish(w, stat, errmsg, 'no law is called "' // trim(name) // '"')
+    if (w%status /= TRIBO_OK) w%text = 'no law is called "' // trim(name) // '"'
+    call finish(w, stat, errmsg)
   end subroutine tribo_law_find
 
   !> One contact, no context: the force and its derivatives, one-sided at a kink, df_dv = 0 at a jump. Elemental: with arrays,
@@ -436,14 +433,13 @@ contains
     integer, intent(in) :: ncontact
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    character(len=60) :: text
     type(c_ptr) :: ctx
     type(work) :: w
 
     if (ncontact < 0) then
-      write (text, '(a,i0,a)') 'ncontact = ', ncontact, ' is negative'
+      write (w%text, '(a,i0,a)') 'ncontact = ', ncontact, ' is negative'
       w%status = TRIBO_ERR_NEGATIVE
-      call finish(w, stat, errmsg, trim(text))
+      call finish(w, stat, errmsg)
       return
     end if
     w%status = c_create(ctx, int(ncontact, c_size_t))
@@ -947,23 +943,4 @@ contains
     status = adopt(this, ctx, c_funloc(c_destroy))
     if (status /= TRIBO_OK) call c_destroy(ctx)
   end function adopted
-
-  !> Expects one value a contact, or a matrix of them, in an output that may be absent, and so goes to the library by its address.
-  subroutine find_vector(w, name, x, address)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(inout), contiguous, target :: x(:)
-    type(c_ptr), intent(inout) :: address
-    call expect_size(w, name, x, w%n)
-    if (size(x) > 0) address = c_loc(x)
-  end subroutine find_vector
-
-  subroutine find_matrix(w, name, x, address)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(inout), contiguous, target :: x(:,:)
-    type(c_ptr), intent(inout) :: address
-    call expect_size(w, name, x, w%n)
-    if (size(x) > 0) address = c_loc(x)
-  end subroutine find_matrix
 end module tribo

@@ -35,7 +35,7 @@ module tribo_support
     TRIBO_ERR_CHATTER = 63        !< too many events in too short a time
 
   public :: object_of, adopt, lend, shorten, register, forget
-  public :: begin, finish, fail, fail_at, expect_size, expect_shape, check_rows, from_zero, transpose_in_place
+  public :: begin, finish, fail, fail_at, expect_size, expect_shape, find, find_input, check_rows, from_zero, transpose_in_place
   public :: to_text, message_of, c_version_string, c_strerror, c_law_name, c_law_reference
 
   !> What every type of tribo is: the number of an object of the library, see handle.c. A lent one is destroyed by its owner only.
@@ -48,17 +48,23 @@ module tribo_support
     final :: finalize
   end type tribo_object
 
-  !> What a call works on: the object, the context that keeps its messages, a number of contacts, and how the call has gone so far.
+  !> What a call works on: the object, the context that keeps its messages, the number of contacts; how the call has gone so far,
+  !> and the text of an error found here, with indices from 0 as in the library's messages.
   type, public :: work
     type(c_ptr) :: object = c_null_ptr, ctx = c_null_ptr
     integer :: n = 0
     integer(c_int) :: status = TRIBO_ERR_NULL
     character(len=8) :: kind = 'context'
+    character(len=240) :: text = ''
   end type work
 
   interface expect_size
     procedure :: expect_vector, expect_matrix
   end interface expect_size
+
+  interface find
+    procedure :: find_vector, find_matrix
+  end interface find
 
   interface
     function c_strlen(s) result(n) bind(c, name='strlen')
@@ -213,22 +219,16 @@ contains
     if (begin%status == TRIBO_OK) begin%n = int(n)
   end function begin
 
-  !> Ends every call: hands over its status, and the text of an error, which is that of the context unless given; where there is
-  !> no stat to take it, an error ends the program.
-  subroutine finish(w, stat, errmsg, text)
+  !> Ends every call: hands over its status, and the text of an error; where there is no stat to take it, an error ends the program.
+  subroutine finish(w, stat, errmsg)
     type(work), intent(in) :: w
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    character(len=*), intent(in), optional :: text
     character(len=:), allocatable :: found
 
     if (present(stat)) stat = int(w%status)
     if (w%status == TRIBO_OK) return
-    if (present(text)) then
-      found = text
-    else
-      call message_of(w, found)
-    end if
+    call message_of(w, found)
     if (present(errmsg)) errmsg = found
     if (present(stat)) return
     write (error_unit, '(2a)') 'tribo: ', found
@@ -240,7 +240,9 @@ contains
     type(work), intent(inout) :: w
     integer, intent(in) :: status
     character(len=*), intent(in) :: text
-    if (w%status == TRIBO_OK) w%status = c_set_message(w%ctx, int(status, c_int), text // c_null_char)
+    if (w%status /= TRIBO_OK) return
+    w%status = c_set_message(w%ctx, int(status, c_int), text // c_null_char)
+    w%text = text
   end subroutine fail
 
   !> The same for one of many values.
@@ -273,6 +275,35 @@ contains
     if (present(rows)) wanted(1) = rows
     call expect_shape(w, name, shape(x), wanted)
   end subroutine expect_matrix
+
+  !> Expects one value a contact, or a matrix of them, in an output that may be absent, and so goes to the library by its address.
+  subroutine find_vector(w, name, x, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(inout), contiguous, target :: x(:)
+    type(c_ptr), intent(inout) :: address
+    call expect_size(w, name, x, w%n)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_vector
+
+  subroutine find_matrix(w, name, x, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(inout), contiguous, target :: x(:,:)
+    type(c_ptr), intent(inout) :: address
+    call expect_size(w, name, x, w%n)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_matrix
+
+  subroutine find_input(w, name, x, n, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in), contiguous, target :: x(:)
+    integer, intent(in) :: n
+    type(c_ptr), intent(inout) :: address
+    call expect_size(w, name, x, n)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_input
 
   subroutine expect_shape(w, name, found, wanted)
     type(work), intent(inout) :: w
@@ -356,7 +387,9 @@ contains
     character(len=:), allocatable, intent(out) :: text
     character(len=:), allocatable :: zero
 
-    if (c_associated(w%ctx)) then
+    if (w%text /= '') then
+      call from_one(trim(w%text), text)
+    else if (c_associated(w%ctx)) then
       call to_text(c_message(w%ctx), zero)
       call from_one(zero, text)
     else if (w%status /= TRIBO_ERR_NULL) then
