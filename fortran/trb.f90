@@ -47,7 +47,7 @@
 !>   TRBGCP(IH, ICPL, IERR)                                                            ICPL
 !> Forces
 !>   TRBFRC(IH, N, V, FEQ, F, IERR)                  V(N), FEQ(N)                      F(N)
-!>   TRBFTN(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      F(N), its derivatives by V, FEQ, limit, (N) each
+!>   TRBFTN(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      F(N), its derivatives by V, FEQ, limit
 !>          IERR)
 !>   TRBBAL(IH, N, V, A, FEQ, F, IERR)               V(N), A(N)                        FEQ(N), F(N)
 !>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
@@ -85,9 +85,9 @@ contains
     ierr = int(w%status)
   end subroutine find
 
-  !> The same, with the leading dimension of a matrix.
-  subroutine find_matrix(ih, c, ierr, n, name, leading)
-    integer, intent(in) :: ih, n, leading
+  !> The same, with one more size.
+  subroutine find_more(ih, c, ierr, n, name, value, least)
+    integer, intent(in) :: ih, n, value, least
     type(tribo_context), intent(inout) :: c
     integer, intent(out) :: ierr
     character(len=*), intent(in) :: name
@@ -96,9 +96,9 @@ contains
     call find(ih, c, ierr, n)
     if (ierr /= TRIBO_OK) return
     w = begin(c)
-    call expect_value(w, leading >= n, name, leading, ' is less than N = ', n)
+    call expect_value(w, value >= least, name, value, ' is less than ', least)
     ierr = int(w%status)
-  end subroutine find_matrix
+  end subroutine find_more
 
   !> Fails unless holds; the text is made of the last four.
   subroutine expect_value(w, holds, name, value, but, other)
@@ -425,7 +425,7 @@ subroutine trbopf(ih, n, r, ldr, ierr)
   integer, intent(out) :: ierr
   type(tribo_context) :: c
 
-  call find_matrix(ih, c, ierr, n, 'LDR', ldr)
+  call find_more(ih, c, ierr, n, 'LDR', ldr, n)
   if (ierr == TRIBO_OK) call c%set_operator(r(:n, :n), ierr)
 end subroutine trbopf
 
@@ -438,7 +438,7 @@ subroutine trbops(ih, n, irow, icol, val, ierr)
   type(tribo_context) :: c
 
   call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%set_operator_csr(irow(:n + 1), icol(:irow(n + 1) - 1), val(:irow(n + 1) - 1), ierr)
+  if (ierr == TRIBO_OK) call c%set_operator_csr(irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbops
 
 subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
@@ -449,9 +449,9 @@ subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
   integer, intent(out) :: ierr
   type(tribo_context) :: c
 
-  call find(ih, c, ierr, n)
+  call find_more(ih, c, ierr, n, 'NDOF', ndof, 0)
   if (ierr /= TRIBO_OK) return
-  call c%set_operator_mass(rminv(:ndof), irow(:n + 1), icol(:irow(n + 1) - 1), val(:irow(n + 1) - 1), ierr)
+  call c%set_operator_mass(rminv(:ndof), irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbopm
 
 subroutine trbcpl(ih, icpl, ierr)
@@ -527,7 +527,7 @@ subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
   integer, intent(out) :: ierr
   type(tribo_context) :: c
 
-  call find_matrix(ih, c, ierr, n, 'LDJ', ldj)
+  call find_more(ih, c, ierr, n, 'LDJ', ldj, n)
   if (ierr == TRIBO_OK) call c%balance_tangent(v(:n), a(:n), feq(:n), f(:n), dfdv(:n, :n), dfda(:n, :n), ierr)
 end subroutine trbbtn
 

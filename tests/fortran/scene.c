@@ -41,6 +41,9 @@ ALIGNED double scene_a[STATES][N] = {
 ALIGNED double scene_feq[STATES][N] = {
     {0.1, -0.3, 0.2, 0.4}, {0.7, 0.2, 0.0, -1.0}, {0.3, 0.1, 0.1, 2.5}, {-0.6, 0.2, 0.3, 1.6}, {0.0, 0.0, 0.0, 0.0}};
 
+ALIGNED double scene_lower[N] = {-0.2, -0.1, 0.0, -1.0};
+ALIGNED double scene_upper[N] = {0.3, -0.05, 0.5, 2.0};
+
 static double *tape;
 static size_t room, used;
 
@@ -146,6 +149,8 @@ static void forces(tribo_context *c)
         put_one(tribo_step_force(c, 0.125, v, f));
         put(N, f);
         queries(c);
+        put_one(tribo_solve_box(c, a, scene_lower, scene_upper, f));
+        put(N, f);
         put_one(tribo_accept(c, v, feq));
     }
 }
