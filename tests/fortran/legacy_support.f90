@@ -35,17 +35,18 @@ subroutine scstat(k, v, a, feq)
 end subroutine scstat
 
 subroutine scplay()
-  use scene, only: rewind_tape
-  call rewind_tape()
+  use scene, only: scene_play
+  use tape, only: record
+  call record(scene_play)
 end subroutine scplay
 
 subroutine scend()
-  use scene, only: end_of_tape
+  use tape, only: end_of_tape
   call end_of_tape()
 end subroutine scend
 
 subroutine cmpr(label, n, x)
-  use scene, only: compare
+  use tape, only: compare
   use tribo, only: dp
   implicit none
   character(len=*), intent(in) :: label
@@ -55,7 +56,7 @@ subroutine cmpr(label, n, x)
 end subroutine cmpr
 
 subroutine cmpi(label, i)
-  use scene, only: compare
+  use tape, only: compare
   implicit none
   character(len=*), intent(in) :: label
   integer, intent(in) :: i
@@ -64,7 +65,7 @@ end subroutine cmpi
 
 !> A text, up to its last character that is not blank.
 subroutine cmpt(label, text)
-  use scene, only: compare
+  use tape, only: compare
   implicit none
   character(len=*), intent(in) :: label, text
   call compare(label, trim(text))

@@ -4,10 +4,11 @@ program results
   use, intrinsic :: iso_fortran_env, only: int64
   use check, only: report, require, same_bits
   use scene
+  use tape, only: compare, end_of_tape, record
   use tribo
   implicit none
 
-  call rewind_tape()
+  call record(scene_play)
   call registry()
   call contexts()
   call end_of_tape()
