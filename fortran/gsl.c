@@ -1,7 +1,18 @@
-/* What of tribo_gsl.h Fortran cannot call as it is, since structures of GSL's stand in between. */
+/* What of tribo_gsl.h Fortran cannot call as it is, since structures of GSL's stand in between, and
+ * what must be pure there. */
 #include <string.h>
 
 #include "gsl.h"
+
+size_t tribo_fortran_ndof(const struct tribo_held *held)
+{
+    return held ? tribo_system_ndof(held->sys) : 0;
+}
+
+size_t tribo_fortran_ncontact(const struct tribo_held *held)
+{
+    return held ? tribo_system_ncontact(held->sys) : 0;
+}
 
 /* Borrows the arrays: nothing in here changes them. */
 static gsl_spmatrix borrow(const struct tribo_rows *a)

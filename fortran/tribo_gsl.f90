@@ -94,11 +94,10 @@ module tribo_gsl
     end function seen
   end interface
 
-  !> The library's system with what Fortran needs to know of it. users counts the variable and the drivers.
-  type :: held_system
+  !> The library's system with what Fortran needs to know of it: tribo_held of gsl.h. users counts the variable and the drivers.
+  type, bind(c) :: held_system
     type(c_ptr) :: sys
-    integer :: given, users = 1
-    integer(c_int64_t) :: context
+    integer(c_int64_t) :: context, given, users
   end type held_system
 
   type :: held_driver
@@ -214,6 +213,18 @@ module tribo_gsl
       real(c_double), intent(inout) :: full(*)
       integer(c_int) :: status
     end function c_expand
+
+    pure function c_held_ndof(held) result(n) bind(c, name='tribo_fortran_ndof')
+      import :: c_ptr, c_size_t
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: n
+    end function c_held_ndof
+
+    pure function c_held_ncontact(held) result(n) bind(c, name='tribo_fortran_ncontact')
+      import :: c_ptr, c_size_t
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: n
+    end function c_held_ncontact
 
     function c_ndof(sys) result(n) bind(c, name='tribo_system_ndof')
       import :: c_ptr, c_size_t
@@ -568,8 +579,8 @@ contains
     call find_system(this, held, w)
     at = c_null_ptr
     if (w%status == TRIBO_OK) then
-      if (present(cosine)) call find_input(w, 'cosine', cosine, held%given, at(1))
-      if (present(sine)) call find_input(w, 'sine', sine, held%given, at(2))
+      if (present(cosine)) call find_input(w, 'cosine', cosine, int(held%given), at(1))
+      if (present(sine)) call find_input(w, 'sine', sine, int(held%given), at(2))
     end if
     if (w%status == TRIBO_OK) w%status = c_add_load(held%sys, omega, at(1), at(2))
     call finish(w, stat, errmsg)
@@ -606,7 +617,7 @@ contains
 
     call find_system(this, held, w)
     call expect_size(w, 'value', value, size(time))
-    if (w%status == TRIBO_OK) call expect_size(w, 'pattern', pattern, held%given)
+    if (w%status == TRIBO_OK) call expect_size(w, 'pattern', pattern, int(held%given))
     if (w%status == TRIBO_OK) w%status = c_add_load_table(held%sys, size(time, kind=c_size_t), time, value, pattern)
     call finish(w, stat, errmsg)
   end subroutine add_load_table
@@ -668,32 +679,23 @@ contains
 
     call find_system(this, held, w)
     call expect_size(w, 'reduced', reduced, this%ndof())
-    if (w%status == TRIBO_OK) call expect_size(w, 'full', full, held%given)
+    if (w%status == TRIBO_OK) call expect_size(w, 'full', full, int(held%given))
     if (w%status == TRIBO_OK) w%status = c_expand(held%sys, reduced, full)
     call finish(w, stat, errmsg)
   end subroutine expand
 
-  !> Sizes; 0 for a system that has not been created. dimension is 2*ndof + 1.
-  integer function ndof(this)
+  !> Sizes; 0 for a system that has not been created. dimension is 2*ndof + 1. Arrays may be declared with them.
+  pure integer function ndof(this)
     class(tribo_system), intent(in) :: this
-    type(held_system), pointer :: held
-    type(work) :: w
-
-    call find_system(this, held, w)
-    ndof = 0
-    if (w%status == TRIBO_OK) ndof = int(c_ndof(held%sys))
+    ndof = int(c_held_ndof(object_of(this)))
   end function ndof
 
-  integer function ncontact(this)
+  pure integer function ncontact(this)
     class(tribo_system), intent(in) :: this
-    type(held_system), pointer :: held
-    type(work) :: w
-
-    call find_system(this, held, w)
-    ncontact = w%n
+    ncontact = int(c_held_ncontact(object_of(this)))
   end function ncontact
 
-  integer function dimension(this)
+  pure integer function dimension(this)
     class(tribo_system), intent(in) :: this
     dimension = 0
     if (c_associated(object_of(this))) dimension = 2*this%ndof() + 1
@@ -1018,7 +1020,8 @@ contains
     if (w%status /= TRIBO_OK) return
     allocate (held)
     held%sys = sys
-    held%given = int(c_ndof(sys))
+    held%users = 1
+    held%given = int(c_ndof(sys), c_int64_t)
     if (present(given)) held%given = given
     held%context = register(c_context(sys))
     if (held%context == 0) w%status = TRIBO_ERR_MEMORY

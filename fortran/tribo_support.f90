@@ -86,9 +86,9 @@ module tribo_support
       integer(c_int64_t) :: short
     end function c_handle_shorten
 
-    function c_handle_find(handle) result(object) bind(c, name='tribo_handle_find')
+    pure function c_handle_find(handle) result(object) bind(c, name='tribo_handle_find')
       import :: c_int64_t, c_ptr
-      integer(c_int64_t), value :: handle
+      integer(c_int64_t), intent(in), value :: handle
       type(c_ptr) :: object
     end function c_handle_find
 
@@ -160,7 +160,7 @@ contains
   end subroutine finalize
 
   !> Null if it has not been created, or has been destroyed.
-  type(c_ptr) function object_of(this)
+  pure type(c_ptr) function object_of(this)
     class(tribo_object), intent(in) :: this
     object_of = c_handle_find(this%handle)
   end function object_of

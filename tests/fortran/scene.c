@@ -1,4 +1,5 @@
-/* What results.f90 does from Fortran, through the C interface: data that both read, and a tape of results to compare with, see tape.h. */
+/* What results.f90 does from Fortran, through the C interface: data that both read, and a tape of results to compare with, see
+ * tape.h. */
 #include "tape.h"
 #include "tribo/tribo.h"
 
