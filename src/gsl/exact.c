@@ -511,6 +511,7 @@ static void destroy(tribo_driver *drv)
         free(x->held);
         tribo_modes_free(&x->modes);
         free(x->eta);
+        free(x->cos_t);
         free(x->search.guard);
         free(x);
     }

@@ -57,7 +57,7 @@ static void run(tribo_system *sys, const char *method, double most)
     const size_t n = tribo_system_dimension(sys);
     double y[32] = {0.0}, sums[4] = {0.0, 0.0, 0.0, most}, t = 0.0;
     tribo_driver *drv = NULL;
-    put_one(tribo_driver_create(&drv, sys, method, 0.05, 1e-8, 1e-8));
+    put_one(tribo_driver_create(&drv, sys, method, 0.05, 1e-5, 1e-5));
     put_text(tribo_driver_method(drv));
     put_one(tribo_driver_advance(drv, &t, 0.5, y));
     put_one(tribo_driver_set_observer(drv, seen, sums));

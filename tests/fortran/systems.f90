@@ -215,7 +215,7 @@ contains
 
     y = 0
     t = 0
-    call drv%create(sys, method, 0.05_dp, 1e-8_dp, 1e-8_dp, stat)
+    call drv%create(sys, method, 0.05_dp, 1e-5_dp, 1e-5_dp, stat)
     call compare('create', stat)
     call compare('method', drv%method())
     call drv%advance(t, 0.5_dp, y, stat)
