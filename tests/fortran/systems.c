@@ -10,7 +10,7 @@ static const double mass[DOF][DOF] = {{2.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}
 static const double stiffness[DOF][DOF] = {
     {3.0, -1.0, 0.0, 0.0}, {-1.0, 2.0, -1.0, 0.0}, {0.0, -1.0, 2.0, -1.0}, {0.0, 0.0, -1.0, 1.0}};
 static const double damping[DOF][DOF] = {
-    {0.3, -0.1, 0.0, 0.0}, {-0.1, 0.2, -0.1, 0.0}, {0.0, -0.1, 0.2, -0.1}, {0.0, 0.0, -0.1, 0.1}};
+    {0.3, -0.05, 0.0, 0.0}, {-0.1, 0.2, -0.1, 0.0}, {0.0, -0.1, 0.2, -0.1}, {0.0, 0.0, -0.1, 0.1}};
 static const double direction[CONTACTS][DOF] = {{1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, -1.0, 0.0}, {0.0, 0.0, 0.0, 2.0}};
 static const double cosine[DOF] = {1.0, 0.0, -0.5, 0.25}, sine[DOF] = {0.0, 0.75, 0.0, 0.5};
 static const double limits[CONTACTS] = {0.2, 0.1, 0.05};

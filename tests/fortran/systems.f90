@@ -41,7 +41,7 @@ program systems
   integer, parameter :: dof = 4, ncontact = 3, knots = 3
   real(dp), parameter :: mass(dof, dof) = reshape([real(dp) :: 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.5, 0, 0, 0, 0, 0.5], [dof, dof]), &
     stiffness(dof, dof) = reshape([real(dp) :: 3, -1, 0, 0, -1, 2, -1, 0, 0, -1, 2, -1, 0, 0, -1, 1], [dof, dof]), &
-    damping(dof, dof) = reshape([0.3_dp, -0.1_dp, 0.0_dp, 0.0_dp, -0.1_dp, 0.2_dp, -0.1_dp, 0.0_dp, &
+    damping(dof, dof) = reshape([0.3_dp, -0.1_dp, 0.0_dp, 0.0_dp, -0.05_dp, 0.2_dp, -0.1_dp, 0.0_dp, &
     0.0_dp, -0.1_dp, 0.2_dp, -0.1_dp, 0.0_dp, 0.0_dp, -0.1_dp, 0.1_dp], [dof, dof]), &
     direction(ncontact, dof) = reshape([real(dp) :: 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 2], [ncontact, dof]), &
     cosine(dof) = [1.0_dp, 0.0_dp, -0.5_dp, 0.25_dp], sine(dof) = [0.0_dp, 0.75_dp, 0.0_dp, 0.5_dp], &
@@ -96,7 +96,7 @@ contains
     call j%set_coo(ncontact, dof, [3, 2, 2, 1], [4, 3, 2, 1], [real(dp) :: 2, -1, 1, 1])
     call k%set_csr(dof, [1, 3, 6, 9, 11], [1, 2, 2, 1, 3, 2, 3, 4, 3, 4], [real(dp) :: 3, -1, 2, -1, -1, -1, 2, -1, -1, 1])
     call c%set_csr(dof, [1, 3, 6, 9, 11], [1, 2, 2, 1, 3, 2, 3, 4, 3, 4], &
-      [0.3_dp, -0.1_dp, 0.2_dp, -0.1_dp, -0.1_dp, -0.1_dp, 0.2_dp, -0.1_dp, -0.1_dp, 0.1_dp])
+      [0.3_dp, -0.05_dp, 0.2_dp, -0.1_dp, -0.1_dp, -0.1_dp, 0.2_dp, -0.1_dp, -0.1_dp, 0.1_dp])
     call sys%linear(m, k, j, stat=stat)
     call compare('linear, sparse', stat)
     call linear(sys, .false.)
