@@ -5,8 +5,8 @@
  * too). So it holds a number that is never given twice: when the object has gone, all that is left of the number finds nothing.
  *
  * A number is a place in a table, which grows by chunks that never move, and how often that place has been in use. A place that
- * has been in use as often as its numbers can tell is not used again. Finding takes no lock; an object belongs to one thread at a
- * time anyway. */
+ * has been in use as often as its numbers can tell is not used again. Finding takes no lock: an object belongs to one thread at a
+ * time, and a number of the past finds nothing at any time, since a place counts its use before it takes the object. */
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -34,7 +34,15 @@ struct table {
 /* The first gives positive numbers, the second negative ones. */
 static struct table longs = {INT64_MAX >> PLACE_BITS, 1, 0, 0, {NULL}}, shorts = {INT32_MAX >> PLACE_BITS, 1, 0, 0, {NULL}};
 
-/* Without these two, objects are to be created, copied and destroyed by one thread at a time. */
+/* Without these, objects are to be created, copied, found and destroyed by one thread at a time. */
+#if defined(__GNUC__)
+#define LOAD(object) __atomic_load_n(&(object), __ATOMIC_ACQUIRE)
+#define STORE(object, value) __atomic_store_n(&(object), value, __ATOMIC_RELEASE)
+#else
+#define LOAD(object) (object)
+#define STORE(object, value) ((object) = (value))
+#endif
+
 static char busy = 0;
 
 static void lock(void)
@@ -54,7 +62,7 @@ static void unlock(void)
 
 static struct place *at(const struct table *t, uint32_t i)
 {
-    struct place *chunk = t->chunks[i >> CHUNK_BITS];
+    struct place *chunk = LOAD(t->chunks[i >> CHUNK_BITS]);
     return chunk ? chunk + (i & (CHUNK - 1)) : NULL;
 }
 
@@ -75,7 +83,7 @@ static struct place *find(int64_t number)
         return NULL;
     }
     struct place *p = at(table_of(number), place_of(number));
-    return p && p->object && p->uses == (number > 0 ? number : -number) >> PLACE_BITS ? p : NULL;
+    return p && LOAD(p->object) && LOAD(p->uses) == (number > 0 ? number : -number) >> PLACE_BITS ? p : NULL;
 }
 
 /* A free place, or 0. */
@@ -90,7 +98,7 @@ static uint32_t take_place(struct table *t)
         return 0;
     }
     if (!at(t, t->used)) {
-        t->chunks[t->used >> CHUNK_BITS] = calloc(CHUNK, sizeof(struct place));
+        STORE(t->chunks[t->used >> CHUNK_BITS], (struct place *)calloc(CHUNK, sizeof(struct place)));
     }
     return at(t, t->used) ? t->used++ : 0;
 }
@@ -102,9 +110,9 @@ static int64_t add(struct table *t, void *object, void (*destroy)(void *))
         return 0;
     }
     struct place *p = at(t, i);
-    p->object = object;
+    STORE(p->uses, p->uses + 1);
     p->destroy = destroy;
-    p->uses++;
+    STORE(p->object, object);
     t->alive++;
     return p->uses << PLACE_BITS | i;
 }
@@ -115,7 +123,7 @@ static struct place take(int64_t number)
     if (p) {
         struct table *t = table_of(number);
         taken = *p;
-        p->object = NULL;
+        STORE(p->object, NULL);
         t->alive--;
         if (p->uses < t->most_uses) {
             p->next = t->free_place;
@@ -147,8 +155,8 @@ int64_t tribo_handle_shorten(int64_t number)
 
 void *tribo_handle_find(int64_t number)
 {
-    const struct place *p = find(number);
-    return p ? p->object : NULL;
+    struct place *p = find(number);
+    return p ? LOAD(p->object) : NULL;
 }
 
 void tribo_handle_drop(int64_t number)
