@@ -134,7 +134,7 @@ refused) # <name> <message> -S <folder> <cmake option>...
 
 archives) # A static library's names land in the program of its user.
     if nm -g --defined-only "$WORK"/elsewhere/lib/*.a |
-        awk 'NF == 3 && $3 !~ /^(tribo_|trb[a-z]*_$|__tribo[a-z_]*_MOD_)/ { print; bad = 1 } END { exit !bad }'; then
+        awk 'NF == 3 && $3 !~ /^(tribo_|trb[a-z0-9]*_$|__tribo[a-z_]*_MOD_)/ { print; bad = 1 } END { exit !bad }'; then
         say "names that may be the user's own"
         exit 1
     fi
