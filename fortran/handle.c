@@ -105,16 +105,19 @@ static uint32_t take_place(struct table *t)
 
 static int64_t add(struct table *t, void *object, void (*destroy)(void *))
 {
+    int64_t number = 0;
+    lock();
     const uint32_t i = take_place(t);
-    if (!i) {
-        return 0;
+    if (i) {
+        struct place *p = at(t, i);
+        STORE(p->uses, p->uses + 1);
+        p->destroy = destroy;
+        STORE(p->object, object);
+        t->alive++;
+        number = p->uses << PLACE_BITS | i;
     }
-    struct place *p = at(t, i);
-    STORE(p->uses, p->uses + 1);
-    p->destroy = destroy;
-    STORE(p->object, object);
-    t->alive++;
-    return p->uses << PLACE_BITS | i;
+    unlock();
+    return number;
 }
 
 static struct place take(int64_t number)
@@ -135,22 +138,12 @@ static struct place take(int64_t number)
 
 int64_t tribo_handle_add(void *object, void (*destroy)(void *))
 {
-    lock();
-    const int64_t number = add(&longs, object, destroy);
-    unlock();
-    return number;
+    return add(&longs, object, destroy);
 }
 
-int64_t tribo_handle_shorten(int64_t number)
+int64_t tribo_handle_add_short(void *object, void (*destroy)(void *))
 {
-    lock();
-    const struct place *p = find(number);
-    const int64_t moved = p ? -add(&shorts, p->object, p->destroy) : 0;
-    if (moved) {
-        take(number);
-    }
-    unlock();
-    return moved;
+    return -add(&shorts, object, destroy);
 }
 
 void *tribo_handle_find(int64_t number)

@@ -6,12 +6,12 @@
 
 #include "tribo/tribo.h"
 
-/* A number > 0 for object; 0 if memory runs out. destroy releases the object when its number is dropped, and may be NULL. */
+/* A number > 0 for object; 0 if memory or numbers run out. destroy releases the object when its number is dropped, and may be
+ * NULL. */
 TRIBO_API int64_t tribo_handle_add(void *object, void (*destroy)(void *));
 
-/* Moves an object to a number from -INT32_MAX to -1, whose opposite fits an integer of four bytes; 0, and nothing is moved, if
- * there is no such object or no number is left. */
-TRIBO_API int64_t tribo_handle_shorten(int64_t number);
+/* The same with a number from -INT32_MAX to -1, whose opposite fits an integer of four bytes. */
+TRIBO_API int64_t tribo_handle_add_short(void *object, void (*destroy)(void *));
 
 /* The object of a number, NULL if it has none; any number may be asked for. */
 TRIBO_API void *tribo_handle_find(int64_t number);

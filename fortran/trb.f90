@@ -60,27 +60,33 @@
 !>   TRBCNT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_...            IVAL
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
 
-!> What they share.
+!> What they share. A handle stands for a tribo_context, the object of minus its number, see handle.h.
 module tribo_fixed
-  use, intrinsic :: iso_c_binding, only: c_int, c_int64_t, c_ptr
+  use, intrinsic :: iso_c_binding, only: c_associated, c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_ptr
   use tribo
-  use tribo_support, only: begin, c_law_name, c_law_reference, c_strerror, c_version_string, fail, forget, lend, message_of, &
-    shorten, to_text, work
+  use tribo_support, only: begin, c_handle_add_short, c_handle_find, c_law_name, c_law_reference, c_strerror, c_version_string, &
+    fail, forget, message_of, to_text, work
   implicit none
   public
 
 contains
 
-  !> Lets c name the contacts of a handle; ierr says whether there are such, and n of them.
+  !> The contacts of a handle; ierr says whether there are such, and n of them.
   subroutine find(ih, c, ierr, n)
     integer, intent(in) :: ih
-    type(tribo_context), intent(inout) :: c
+    type(tribo_context), pointer, intent(out) :: c
     integer, intent(out) :: ierr
     integer, intent(in), optional :: n
     type(work) :: w
+    type(c_ptr) :: object
 
-    if (ih > 0) call lend(c, -int(ih, c_int64_t))
-    w = begin(c)
+    nullify (c)
+    ierr = TRIBO_ERR_NULL
+    if (ih <= 0) return
+    object = c_handle_find(-int(ih, c_int64_t))
+    if (.not. c_associated(object)) return
+    call c_f_pointer(object, c)
+    call begin(c, w)
     if (present(n)) call expect_value(w, n == w%n, 'N', n, ', but the number of contacts is ', w%n)
     ierr = int(w%status)
   end subroutine find
@@ -88,14 +94,14 @@ contains
   !> The same, with one more size.
   subroutine find_more(ih, c, ierr, n, name, value, least)
     integer, intent(in) :: ih, n, value, least
-    type(tribo_context), intent(inout) :: c
+    type(tribo_context), pointer, intent(out) :: c
     integer, intent(out) :: ierr
     character(len=*), intent(in) :: name
     type(work) :: w
 
     call find(ih, c, ierr, n)
     if (ierr /= TRIBO_OK) return
-    w = begin(c)
+    call begin(c, w)
     call expect_value(w, value >= least, name, value, ' is less than ', least)
     ierr = int(w%status)
   end subroutine find_more
@@ -113,19 +119,30 @@ contains
     call fail(w, TRIBO_ERR_SIZE, trim(text))
   end subroutine expect_value
 
-  !> Moves the contacts of c to a new handle.
+  !> A handle for c, if there is no error yet; else c goes.
   subroutine give(c, ih, ierr)
-    type(tribo_context), intent(inout) :: c
-    integer, intent(inout) :: ih
-    integer, intent(out) :: ierr
+    type(tribo_context), pointer, intent(inout) :: c
+    integer, intent(inout) :: ih, ierr
     integer(c_int64_t) :: number
 
-    number = shorten(c)
-    ierr = TRIBO_ERR_MEMORY
-    if (number == 0) return
-    ih = -int(number)
-    ierr = TRIBO_OK
+    number = 0
+    if (ierr == TRIBO_OK) then
+      number = c_handle_add_short(c_loc(c), c_funloc(release))
+      if (number == 0) ierr = TRIBO_ERR_MEMORY
+    end if
+    if (number == 0) then
+      deallocate (c)
+    else
+      ih = -int(number)
+    end if
   end subroutine give
+
+  subroutine release(object) bind(c, name='')
+    type(c_ptr), value :: object
+    type(tribo_context), pointer :: c
+    call c_f_pointer(object, c)
+    deallocate (c)
+  end subroutine release
 
   !> Hands out a text of the library, if there is one.
   subroutine hand_out(s, text, ierr)
@@ -222,10 +239,11 @@ subroutine trbnew(n, ih, ierr)
   integer, intent(in) :: n
   integer, intent(inout) :: ih
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
+  allocate (c)
   call c%create(n, ierr)
-  if (ierr == TRIBO_OK) call give(c, ih, ierr)
+  call give(c, ih, ierr)
 end subroutine trbnew
 
 subroutine trbcpy(ih, ihnew, ierr)
@@ -234,11 +252,13 @@ subroutine trbcpy(ih, ihnew, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: ihnew
   integer, intent(out) :: ierr
-  type(tribo_context) :: c, copy
+  type(tribo_context), pointer :: c, copy
 
   call find(ih, c, ierr)
-  if (ierr == TRIBO_OK) call c%clone(copy, ierr)
-  if (ierr == TRIBO_OK) call give(copy, ihnew, ierr)
+  if (ierr /= TRIBO_OK) return
+  allocate (copy)
+  call c%clone(copy, ierr)
+  call give(copy, ihnew, ierr)
 end subroutine trbcpy
 
 subroutine trbdel(ih, ierr)
@@ -246,7 +266,7 @@ subroutine trbdel(ih, ierr)
   implicit none
   integer, intent(in) :: ih
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call forget(-int(ih, c_int64_t))
@@ -258,7 +278,7 @@ subroutine trbnum(ih, n, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: n
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_ncontact(n, ierr)
@@ -270,13 +290,15 @@ subroutine trbmsg(ih, text, ierr)
   integer, intent(in) :: ih
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
+  type(work) :: w
   character(len=:), allocatable :: found
   character(len=80) :: none
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) then
-    call message_of(begin(c), found)
+    call begin(c, w)
+    call message_of(w, found)
     text = found
   else
     write (none, '(a,i0,a)') 'IH = ', ih, ' is no handle: it was never given, or has been deleted'
@@ -291,7 +313,7 @@ subroutine trblaw(ih, law, ierr)
   implicit none
   integer, intent(in) :: ih, law
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_law(law, ierr)
@@ -303,7 +325,7 @@ subroutine trbnam(ih, name, ierr)
   integer, intent(in) :: ih
   character(len=*), intent(in) :: name
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_law(name, ierr)
@@ -315,7 +337,7 @@ subroutine trbglw(ih, law, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: law
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_law(law, ierr)
@@ -327,7 +349,7 @@ subroutine trblim(ih, n, fmun, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: fmun(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%set_limit(fmun(:n), ierr)
@@ -339,7 +361,7 @@ subroutine trblm1(ih, fmun, ierr)
   integer, intent(in) :: ih
   real(dp), intent(in) :: fmun
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_limit(fmun, ierr)
@@ -351,7 +373,7 @@ subroutine trbglm(ih, n, fmun, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(inout) :: fmun(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%get_limit(fmun(:n), ierr)
@@ -363,7 +385,7 @@ subroutine trbeps(ih, n, eps, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: eps(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%set_epsilon(eps(:n), ierr)
@@ -375,7 +397,7 @@ subroutine trbep1(ih, eps, ierr)
   integer, intent(in) :: ih
   real(dp), intent(in) :: eps
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_epsilon(eps, stat=ierr)
@@ -387,7 +409,7 @@ subroutine trbstp(ih, dt, rldt, ierr)
   integer, intent(in) :: ih
   real(dp), intent(in) :: dt, rldt
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_epsilon(step=dt, lambda_dt=rldt, stat=ierr)
@@ -399,7 +421,7 @@ subroutine trbgep(ih, n, eps, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(inout) :: eps(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%get_epsilon(eps(:n), ierr)
@@ -411,7 +433,7 @@ subroutine trbopd(ih, n, rdiag, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: rdiag(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%set_operator(rdiag(:n), ierr)
@@ -423,7 +445,7 @@ subroutine trbopf(ih, n, r, ldr, ierr)
   integer, intent(in) :: ih, n, ldr
   real(dp), intent(in) :: r(ldr, *)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find_more(ih, c, ierr, n, 'LDR', ldr, n)
   if (ierr == TRIBO_OK) call c%set_operator(r(:n, :n), ierr)
@@ -435,7 +457,7 @@ subroutine trbops(ih, n, irow, icol, val, ierr)
   integer, intent(in) :: ih, n, irow(*), icol(*)
   real(dp), intent(in) :: val(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%set_operator_csr(irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
@@ -447,7 +469,7 @@ subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
   integer, intent(in) :: ih, n, ndof, irow(*), icol(*)
   real(dp), intent(in) :: rminv(*), val(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find_more(ih, c, ierr, n, 'NDOF', ndof, 0)
   if (ierr /= TRIBO_OK) return
@@ -459,7 +481,7 @@ subroutine trbcpl(ih, icpl, ierr)
   implicit none
   integer, intent(in) :: ih, icpl
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_coupling(icpl, ierr)
@@ -471,7 +493,7 @@ subroutine trbgcp(ih, icpl, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: icpl
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_coupling(icpl, ierr)
@@ -486,7 +508,7 @@ subroutine trbfrc(ih, n, v, feq, f, ierr)
   real(dp), intent(in) :: v(*), feq(*)
   real(dp), intent(inout) :: f(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%force(v(:n), feq(:n), f(:n), ierr)
@@ -499,7 +521,7 @@ subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
   real(dp), intent(in) :: v(*), feq(*)
   real(dp), intent(inout) :: f(*), dfdv(*), dfdq(*), dfdn(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%force_tangent(v(:n), feq(:n), f(:n), dfdv(:n), dfdq(:n), dfdn(:n), ierr)
@@ -512,7 +534,7 @@ subroutine trbbal(ih, n, v, a, feq, f, ierr)
   real(dp), intent(in) :: v(*), a(*)
   real(dp), intent(inout) :: feq(*), f(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%balance(v(:n), a(:n), feq(:n), f(:n), ierr)
@@ -525,7 +547,7 @@ subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
   real(dp), intent(in) :: v(*), a(*)
   real(dp), intent(inout) :: feq(*), f(*), dfdv(ldj, *), dfda(ldj, *)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find_more(ih, c, ierr, n, 'LDJ', ldj, n)
   if (ierr == TRIBO_OK) call c%balance_tangent(v(:n), a(:n), feq(:n), f(:n), dfdv(:n, :n), dfda(:n, :n), ierr)
@@ -538,7 +560,7 @@ subroutine trbstf(ih, n, dt, vfree, f, ierr)
   real(dp), intent(in) :: dt, vfree(*)
   real(dp), intent(inout) :: f(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%step_force(dt, vfree(:n), f(:n), ierr)
@@ -551,7 +573,7 @@ subroutine trbbox(ih, n, a, flo, fup, f, ierr)
   real(dp), intent(in) :: a(*), flo(*), fup(*)
   real(dp), intent(inout) :: f(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%solve_box(a(:n), flo(:n), fup(:n), f(:n), ierr)
@@ -563,7 +585,7 @@ subroutine trbacc(ih, n, v, feq, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: v(*), feq(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%accept(v(:n), feq(:n), ierr)
@@ -577,7 +599,7 @@ subroutine trbmod(ih, n, mode, ierr)
   integer, intent(in) :: ih, n
   integer, intent(inout) :: mode(*)
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%get_modes(mode(:n), ierr)
@@ -589,7 +611,7 @@ subroutine trbcnt(ih, iwhich, ival, ierr)
   integer, intent(in) :: ih, iwhich
   integer, intent(inout) :: ival
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_count(iwhich, ival, ierr)
@@ -601,7 +623,7 @@ subroutine trbval(ih, iwhich, val, ierr)
   integer, intent(in) :: ih, iwhich
   real(dp), intent(inout) :: val
   integer, intent(out) :: ierr
-  type(tribo_context) :: c
+  type(tribo_context), pointer :: c
 
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_real(iwhich, val, ierr)

@@ -436,13 +436,9 @@ contains
     type(c_ptr) :: ctx
     type(work) :: w
 
-    if (ncontact < 0) then
-      write (w%text, '(a,i0,a)') 'ncontact = ', ncontact, ' is negative'
-      w%status = TRIBO_ERR_NEGATIVE
-      call finish(w, stat, errmsg)
-      return
-    end if
-    w%status = c_create(ctx, int(ncontact, c_size_t))
+    w%status = TRIBO_OK
+    call expect_count(w, 'ncontact', ncontact)
+    if (w%status == TRIBO_OK) w%status = c_create(ctx, int(ncontact, c_size_t))
     if (w%status == TRIBO_OK) w%status = adopted(this, ctx)
     call finish(w, stat, errmsg)
   end subroutine create
@@ -456,7 +452,7 @@ contains
     type(work) :: w
     type(c_ptr) :: ctx
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_clone(w%ctx, ctx)
     if (w%status == TRIBO_OK) then
       if (adopted(copy, ctx) /= TRIBO_OK) call fail(w, TRIBO_ERR_MEMORY, 'out of memory for a copy')
@@ -479,7 +475,9 @@ contains
   function message(this) result(text)
     class(tribo_context), intent(in) :: this
     character(len=:), allocatable :: text
-    call message_of(begin(this), text)
+    type(work) :: w
+    call begin(this, w)
+    call message_of(w, text)
   end function message
 
   ! ------------------------------------------------------------------------------------------------------------------- settings
@@ -492,7 +490,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) ncontact = w%n
     call finish(w, stat, errmsg)
   end subroutine get_ncontact
@@ -505,7 +503,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(law, c_int))
     call finish(w, stat, errmsg)
   end subroutine set_law_number
@@ -519,7 +517,7 @@ contains
     character(len=200) :: text
     integer :: number, found
 
-    w = begin(this)
+    call begin(this, w)
     call tribo_law_find(law, number, found, text)
     if (found /= TRIBO_OK) call fail(w, found, trim(text))
     if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(number, c_int))
@@ -534,7 +532,7 @@ contains
     type(work) :: w
     integer(c_int) :: number
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_law(w%ctx, number)
     if (w%status == TRIBO_OK) law = int(number)
     call finish(w, stat, errmsg)
@@ -548,7 +546,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'limit', limit, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_limit(w%ctx, limit)
     call finish(w, stat, errmsg)
@@ -561,7 +559,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_set_limit_all(w%ctx, limit)
     call finish(w, stat, errmsg)
   end subroutine set_limit_all
@@ -573,7 +571,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'limit', limit, w%n)
     if (w%status == TRIBO_OK) w%status = c_get_limit(w%ctx, limit)
     call finish(w, stat, errmsg)
@@ -587,7 +585,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'epsilon', epsilon, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_epsilon(w%ctx, epsilon)
     call finish(w, stat, errmsg)
@@ -604,7 +602,7 @@ contains
     type(work) :: w
     real(dp) :: rate
 
-    w = begin(this)
+    call begin(this, w)
     rate = 1
     if (present(lambda_dt)) rate = lambda_dt
     if (present(epsilon) .eqv. present(step)) then
@@ -626,7 +624,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'epsilon', epsilon, w%n)
     if (w%status == TRIBO_OK) w%status = c_get_epsilon(w%ctx, epsilon)
     call finish(w, stat, errmsg)
@@ -641,7 +639,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'r', r, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_operator_diagonal(w%ctx, r)
     call finish(w, stat, errmsg)
@@ -655,7 +653,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'r', r, w%n)
     ! Transposed for the sake of messages: r(i,j) is to be that of the caller.
     if (w%status == TRIBO_OK) w%status = c_set_operator_dense(w%ctx, transpose(r))
@@ -672,7 +670,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call check_rows(w, rowptr, col, val, w%n, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_operator_csr(w%ctx, from_zero(rowptr), from_zero(col), val)
     call finish(w, stat, errmsg)
@@ -689,7 +687,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call check_rows(w, rowptr, col, val, w%n, size(inverse_mass))
     if (w%status == TRIBO_OK) then
       w%status = c_set_operator_mass(w%ctx, size(inverse_mass, kind=c_size_t), inverse_mass, &
@@ -706,7 +704,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_set_coupling(w%ctx, int(coupling, c_int))
     call finish(w, stat, errmsg)
   end subroutine set_coupling
@@ -719,7 +717,7 @@ contains
     type(work) :: w
     integer(c_int) :: number
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_coupling(w%ctx, number)
     if (w%status == TRIBO_OK) coupling = int(number)
     call finish(w, stat, errmsg)
@@ -736,7 +734,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'feq', feq, w%n)
     call expect_size(w, 'f', f, w%n)
@@ -754,7 +752,7 @@ contains
     type(work) :: w
     type(c_ptr) :: at(4)
 
-    w = begin(this)
+    call begin(this, w)
     at = c_null_ptr
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'feq', feq, w%n)
@@ -778,7 +776,7 @@ contains
     type(work) :: w
     type(c_ptr) :: at(2)
 
-    w = begin(this)
+    call begin(this, w)
     at = c_null_ptr
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'a', a, w%n)
@@ -798,7 +796,7 @@ contains
     type(work) :: w
     type(c_ptr) :: at(4)
 
-    w = begin(this)
+    call begin(this, w)
     at = c_null_ptr
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'a', a, w%n)
@@ -825,7 +823,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'vfree', vfree, w%n)
     call expect_size(w, 'f', f, w%n)
     if (w%status == TRIBO_OK) w%status = c_step_force(w%ctx, dt, vfree, f)
@@ -842,7 +840,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'a', a, w%n)
     call expect_size(w, 'lower', lower, w%n)
     call expect_size(w, 'upper', upper, w%n)
@@ -860,7 +858,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'feq', feq, w%n)
     if (w%status == TRIBO_OK) w%status = c_accept(w%ctx, v, feq)
@@ -879,7 +877,7 @@ contains
     type(work) :: w
     integer(c_signed_char) :: small(size(mode))
 
-    w = begin(this)
+    call begin(this, w)
     call expect_shape(w, 'mode', shape(mode), [w%n])
     if (w%status == TRIBO_OK) w%status = c_get_modes(w%ctx, small)
     if (w%status == TRIBO_OK) mode = int(small)
@@ -896,7 +894,7 @@ contains
     type(work) :: w
     integer(c_size_t) :: count
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
     if (w%status == TRIBO_OK) then
       if (count > huge(value)) call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
@@ -914,7 +912,7 @@ contains
     type(work) :: w
     integer(c_size_t) :: count
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
     if (w%status == TRIBO_OK) value = int(count, int64)
     call finish(w, stat, errmsg)
@@ -929,7 +927,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_real(w%ctx, int(which, c_int), value)
     call finish(w, stat, errmsg)
   end subroutine get_real

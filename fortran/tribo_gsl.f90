@@ -605,8 +605,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine add_motion
 
-  !> Adds a load that follows a table, p(t) = ... + pattern*value(t), with value linear between its knots at time, which ascends, and
-  !> constant outside. pattern: as in add_load.
+  !> Adds a load that follows a table, p(t) = ... + pattern*value(t), with value linear between its knots at time, which ascends,
+  !> and constant outside. pattern: as in add_load.
   subroutine add_load_table(this, time, value, pattern, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: time(:), value(:), pattern(:)
@@ -916,6 +916,7 @@ contains
     type(work) :: w
     integer(int64) :: long
 
+    long = 0
     call get_count(this, which, int(huge(value), int64), long, w)
     if (w%status == TRIBO_OK) value = int(long, int32)
     call finish(w, stat, errmsg)
@@ -1093,15 +1094,6 @@ contains
     call finish(w)
   end subroutine refuse
 
-  subroutine expect_count(w, name, n)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: n
-    character(len=60) :: text
-    write (text, '(2a,i0,a)') name, ' = ', n, ' is negative'
-    if (n < 0) call fail(w, TRIBO_ERR_NEGATIVE, trim(text))
-  end subroutine expect_count
-
   integer(c_size_t) function modes(nmode)
     integer, intent(in), optional :: nmode
     modes = 0
@@ -1114,9 +1106,10 @@ contains
     character(kind=c_char), intent(in) :: message(:)
     integer :: i
     if (w%status == TRIBO_OK) return
-    do i = 1, min(size(message), len(w%text))
+    w%text = ''
+    do i = 1, size(message)
       if (message(i) == c_null_char) exit
-      w%text(i:i) = message(i)
+      w%text = w%text // message(i)
     end do
   end subroutine note
 

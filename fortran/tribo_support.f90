@@ -34,8 +34,9 @@ module tribo_support
     TRIBO_ERR_CALLBACK = 62, &    !< a procedure of the caller's failed
     TRIBO_ERR_CHATTER = 63        !< too many events in too short a time
 
-  public :: object_of, adopt, lend, shorten, register, forget
-  public :: begin, finish, fail, fail_at, expect_size, expect_shape, find, find_input, check_rows, from_zero, transpose_in_place
+  public :: object_of, adopt, lend, register, forget, c_handle_add_short, c_handle_find
+  public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, find, find_input, check_rows
+  public :: from_zero, transpose_in_place
   public :: to_text, message_of, c_version_string, c_strerror, c_law_name, c_law_reference
 
   !> What every type of tribo is: the number of an object of the library, see handle.c. A lent one is destroyed by its owner only.
@@ -55,7 +56,7 @@ module tribo_support
     integer :: n = 0
     integer(c_int) :: status = TRIBO_ERR_NULL
     character(len=8) :: kind = 'context'
-    character(len=240) :: text = ''
+    character(len=:), allocatable :: text
   end type work
 
   interface expect_size
@@ -80,11 +81,12 @@ module tribo_support
       integer(c_int64_t) :: handle
     end function c_handle_add
 
-    function c_handle_shorten(handle) result(short) bind(c, name='tribo_handle_shorten')
-      import :: c_int64_t
-      integer(c_int64_t), value :: handle
-      integer(c_int64_t) :: short
-    end function c_handle_shorten
+    function c_handle_add_short(object, destroy) result(handle) bind(c, name='tribo_handle_add_short')
+      import :: c_funptr, c_int64_t, c_ptr
+      type(c_ptr), value :: object
+      type(c_funptr), value :: destroy
+      integer(c_int64_t) :: handle
+    end function c_handle_add_short
 
     pure function c_handle_find(handle) result(object) bind(c, name='tribo_handle_find')
       import :: c_int64_t, c_ptr
@@ -149,7 +151,7 @@ contains
   !> Releases the object; one that has not been created is fine.
   subroutine destroy(this)
     class(tribo_object), intent(inout) :: this
-    if (.not. this%lent) call c_handle_drop(this%handle)
+    if (this%handle /= 0 .and. .not. this%lent) call c_handle_drop(this%handle)
     this%handle = 0
     this%lent = .false.
   end subroutine destroy
@@ -189,12 +191,6 @@ contains
     this%lent = .true.
   end subroutine lend
 
-  !> Takes its object from this, for a number whose opposite fits an integer of four bytes; 0 if there is none.
-  integer(c_int64_t) function shorten(this)
-    class(tribo_object), intent(inout) :: this
-    shorten = c_handle_shorten(this%handle)
-  end function shorten
-
   !> A number for what someone else destroys, and its end.
   integer(c_int64_t) function register(object)
     type(c_ptr), intent(in) :: object
@@ -209,15 +205,16 @@ contains
   ! ---------------------------------------------------------------------------------------------------------------------- calls
 
   !> Begins a call on a context.
-  type(work) function begin(this)
+  subroutine begin(this, w)
     class(tribo_object), intent(in) :: this
+    type(work), intent(out) :: w
     integer(c_size_t) :: n
 
-    begin%ctx = object_of(this)
-    begin%object = begin%ctx
-    begin%status = c_get_ncontact(begin%ctx, n)
-    if (begin%status == TRIBO_OK) begin%n = int(n)
-  end function begin
+    w%ctx = object_of(this)
+    w%object = w%ctx
+    w%status = c_get_ncontact(w%ctx, n)
+    if (w%status == TRIBO_OK) w%n = int(n)
+  end subroutine begin
 
   !> Ends every call: hands over its status, and the text of an error; where there is no stat to take it, an error ends the program.
   subroutine finish(w, stat, errmsg)
@@ -261,7 +258,7 @@ contains
     character(len=*), intent(in) :: name
     real(dp), intent(in) :: x(:)
     integer, intent(in) :: n
-    call expect_shape(w, name, shape(x), [n])
+    if (size(x) /= n) call expect_shape(w, name, shape(x), [n])
   end subroutine expect_vector
 
   subroutine expect_matrix(w, name, x, n, rows)
@@ -316,6 +313,17 @@ contains
     write (text, '(2a,*(i0,:," x "))') trim(text), ', not ', wanted
     call fail(w, TRIBO_ERR_SIZE, trim(text))
   end subroutine expect_shape
+
+  !> Expects a number that is not negative.
+  subroutine expect_count(w, name, n)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    character(len=60) :: text
+    if (n >= 0) return
+    write (text, '(2a,i0,a)') name, ' = ', n, ' is negative'
+    call fail(w, TRIBO_ERR_NEGATIVE, trim(text))
+  end subroutine expect_count
 
   !> Compressed rows as far as sizes and indices go. As in the library's messages indices count from 0 here, see from_one.
   subroutine check_rows(w, rowptr, col, val, rows, columns)
@@ -387,8 +395,8 @@ contains
     character(len=:), allocatable, intent(out) :: text
     character(len=:), allocatable :: zero
 
-    if (w%text /= '') then
-      call from_one(trim(w%text), text)
+    if (allocated(w%text)) then
+      call from_one(w%text, text)
     else if (c_associated(w%ctx)) then
       call to_text(c_message(w%ctx), zero)
       call from_one(zero, text)
