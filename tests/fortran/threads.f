@@ -22,9 +22,40 @@ C$OMP END PARALLEL DO
          CALL EXPECT('same bits', X(1,I) .EQ. Y(1,I) .AND.
      1      X(2,I) .EQ. Y(2,I) .AND. X(3,I) .EQ. Y(3,I))
    30 CONTINUE
+C$OMP PARALLEL DO SCHEDULE(STATIC,1) DEFAULT(SHARED) PRIVATE(I)
+      DO 40 I = 1, NJOB
+         CALL BURST(I, MBAD(I))
+   40 CONTINUE
+C$OMP END PARALLEL DO
+      DO 50 I = 1, NJOB
+         CALL EXPECT('handles kept apart', MBAD(I) .EQ. 0)
+   50 CONTINUE
       CALL EXPECT('jobs differ', X(1,1) .NE. X(1,2))
       CALL EXPECT('all deleted', NALIVE() .EQ. 0)
       CALL REPORT_ALL
+      END
+C
+C     Handles given and taken back as fast as can be; each is asked for
+C     the number of contacts that it was made with.
+      SUBROUTINE BURST(ID, NBAD)
+      INTEGER ID, NBAD, MANY, I, K, N, IERR
+      PARAMETER (MANY = 40)
+      INTEGER IH(MANY)
+      NBAD = 0
+      DO 40 K = 1, 100
+         DO 10 I = 1, MANY
+            CALL TRBNEW(MOD(ID + I, 7), IH(I), IERR)
+            NBAD = NBAD + IERR
+   10    CONTINUE
+         DO 20 I = 1, MANY
+            CALL TRBNUM(IH(I), N, IERR)
+            IF (IERR .NE. 0 .OR. N .NE. MOD(ID + I, 7)) NBAD = NBAD + 1
+   20    CONTINUE
+         DO 30 I = 1, MANY
+            CALL TRBDEL(IH(I), IERR)
+            NBAD = NBAD + IERR
+   30    CONTINUE
+   40 CONTINUE
       END
 C
 C     Three masses in a row, on each other, started with speeds that
