@@ -4,8 +4,9 @@
 !> CHARACTER*(*). Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger array may be passed,
 !> and the array then begins there. Contacts, rows and columns are counted from 1.
 !>
-!> IH     handle of a set of contacts. It fits a default INTEGER and is never given twice; handles that were never given, or
-!>        whose contacts have been deleted, are recognized. One handle belongs to one thread at a time.
+!> IH     handle of a set of contacts. It fits a default INTEGER and is never given twice (there are two thousand million of them,
+!>        then TRBNEW answers TRIBO_ERR_MEMORY); handles that were never given, or whose contacts have been deleted, are
+!>        recognized. One handle belongs to one thread at a time.
 !> N      number of contacts; must be that of TRBNEW
 !> IERR   0, or one of the codes of module tribo (TRIBO_ERR_...). Outputs are untouched then, and TRBMSG tells what is wrong.
 !>
