@@ -1,32 +1,48 @@
-/* Contexts by number, for Fortran.
+/* Objects by number, for Fortran.
  *
  * A Fortran object cannot own a pointer. Compilers copy its bits without asking (allocate(source=), allocatable components,
  * temporaries), and finalize a component twice where its type has an assignment of its own (GCC bug 110626; flang and ifx do so
- * too). So it holds a number that is never given twice: when the context has gone, all that is left of the number finds nothing.
+ * too). So it holds a number that is never given twice: when the object has gone, all that is left of the number finds nothing.
  *
- * A number is a place in a table, which grows by chunks that never move, and how often that place has been in use. Finding takes
- * no lock; a context belongs to one thread at a time anyway. */
+ * A number is a place in a table, which grows by chunks that never move, and how often that place has been in use. A place that
+ * has been in use as often as its numbers can tell is not used again. Finding takes no lock: an object belongs to one thread at a
+ * time, and a number of the past finds nothing at any time, since a place counts its use before it takes the object. */
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "handle.h"
 
-#define PLACE_BITS 24
+#define PLACE_BITS 20
 #define CHUNK_BITS 10
 #define CHUNK ((uint32_t)1 << CHUNK_BITS)
 #define PLACES ((uint32_t)1 << PLACE_BITS)
 
 struct place {
-    tribo_context *ctx;
+    void *object;
+    void (*destroy)(void *);
     int64_t uses;
     uint32_t next; /* free place after this one; 0: none */
 };
 
-/* Place 0 is not used, so that 0 can be the end of the free places and never a context's number. */
-static struct place *chunks[PLACES / CHUNK];
-static uint32_t used = 1, free_place = 0, alive = 0;
+/* Place 0 is not used, so that 0 can be the end of the free places and never an object's number. */
+struct table {
+    int64_t most_uses;
+    uint32_t used, free_place, alive;
+    struct place *chunks[PLACES / CHUNK];
+};
 
-/* Without these two, contexts are to be created, copied and destroyed by one thread at a time. */
+/* The first gives positive numbers, the second negative ones. */
+static struct table longs = {INT64_MAX >> PLACE_BITS, 1, 0, 0, {NULL}}, shorts = {INT32_MAX >> PLACE_BITS, 1, 0, 0, {NULL}};
+
+/* Without these, objects are to be created, copied, found and destroyed by one thread at a time. */
+#if defined(__GNUC__)
+#define LOAD(object) __atomic_load_n(&(object), __ATOMIC_ACQUIRE)
+#define STORE(object, value) __atomic_store_n(&(object), value, __ATOMIC_RELEASE)
+#else
+#define LOAD(object) (object)
+#define STORE(object, value) ((object) = (value))
+#endif
+
 static char busy = 0;
 
 static void lock(void)
@@ -44,78 +60,112 @@ static void unlock(void)
 #endif
 }
 
-static struct place *at(uint32_t i)
+static struct place *at(const struct table *t, uint32_t i)
 {
-    struct place *chunk = chunks[i >> CHUNK_BITS];
+    struct place *chunk = LOAD(t->chunks[i >> CHUNK_BITS]);
     return chunk ? chunk + (i & (CHUNK - 1)) : NULL;
+}
+
+static struct table *table_of(int64_t number)
+{
+    return number > 0 ? &longs : &shorts;
+}
+
+static uint32_t place_of(int64_t number)
+{
+    return (uint32_t)((number > 0 ? number : -number) & (PLACES - 1));
 }
 
 /* The place that a number stands for, if it still does. */
 static struct place *find(int64_t number)
 {
-    struct place *p = number > 0 ? at((uint32_t)(number & (PLACES - 1))) : NULL;
-    return p && p->ctx && p->uses == number >> PLACE_BITS ? p : NULL;
+    if (number == 0 || number < -INT32_MAX) {
+        return NULL;
+    }
+    struct place *p = at(table_of(number), place_of(number));
+    return p && LOAD(p->object) && LOAD(p->uses) == (number > 0 ? number : -number) >> PLACE_BITS ? p : NULL;
 }
 
 /* A free place, or 0. */
-static uint32_t take_place(void)
+static uint32_t take_place(struct table *t)
 {
-    if (free_place) {
-        const uint32_t i = free_place;
-        free_place = at(i)->next;
+    if (t->free_place) {
+        const uint32_t i = t->free_place;
+        t->free_place = at(t, i)->next;
         return i;
     }
-    if (used == PLACES) {
+    if (t->used == PLACES) {
         return 0;
     }
-    if (!at(used)) {
-        chunks[used >> CHUNK_BITS] = calloc(CHUNK, sizeof(struct place));
+    if (!at(t, t->used)) {
+        STORE(t->chunks[t->used >> CHUNK_BITS], (struct place *)calloc(CHUNK, sizeof(struct place)));
     }
-    return at(used) ? used++ : 0;
+    return at(t, t->used) ? t->used++ : 0;
 }
 
-int64_t tribo_handle_add(tribo_context *ctx)
+static int64_t add(struct table *t, void *object, void (*destroy)(void *))
 {
     int64_t number = 0;
     lock();
-    const uint32_t i = take_place();
+    const uint32_t i = take_place(t);
     if (i) {
-        struct place *p = at(i);
-        p->ctx = ctx;
-        p->uses++;
-        alive++;
+        struct place *p = at(t, i);
+        STORE(p->uses, p->uses + 1);
+        p->destroy = destroy;
+        STORE(p->object, object);
+        t->alive++;
         number = p->uses << PLACE_BITS | i;
     }
     unlock();
     return number;
 }
 
-tribo_context *tribo_handle_get(int64_t number)
+static struct place take(int64_t number)
 {
-    const struct place *p = find(number);
-    return p ? p->ctx : NULL;
+    struct place *p = find(number), taken = {NULL, NULL, 0, 0};
+    if (p) {
+        struct table *t = table_of(number);
+        taken = *p;
+        STORE(p->object, NULL);
+        t->alive--;
+        if (p->uses < t->most_uses) {
+            p->next = t->free_place;
+            t->free_place = place_of(number);
+        }
+    }
+    return taken;
 }
 
-tribo_context *tribo_handle_remove(int64_t number)
+int64_t tribo_handle_add(void *object, void (*destroy)(void *))
 {
-    tribo_context *ctx = NULL;
-    lock();
+    return add(&longs, object, destroy);
+}
+
+int64_t tribo_handle_add_short(void *object, void (*destroy)(void *))
+{
+    return -add(&shorts, object, destroy);
+}
+
+void *tribo_handle_find(int64_t number)
+{
     struct place *p = find(number);
-    if (p) {
-        ctx = p->ctx;
-        p->ctx = NULL;
-        alive--;
-        p->next = free_place;
-        free_place = (uint32_t)(number & (PLACES - 1));
-    }
+    return p ? LOAD(p->object) : NULL;
+}
+
+void tribo_handle_drop(int64_t number)
+{
+    lock();
+    const struct place taken = take(number);
     unlock();
-    return ctx;
+    if (taken.object && taken.destroy) {
+        taken.destroy(taken.object);
+    }
 }
 
 uint32_t tribo_handle_count(void)
 {
     lock();
-    const uint32_t count = alive;
+    const uint32_t count = longs.alive + shorts.alive;
     unlock();
     return count;
 }

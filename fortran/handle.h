@@ -1,4 +1,4 @@
-/* Contexts by number, for Fortran: see handle.c. */
+/* Objects by number, for Fortran: see handle.c. */
 #ifndef TRIBO_HANDLE_H
 #define TRIBO_HANDLE_H
 
@@ -6,16 +6,20 @@
 
 #include "tribo/tribo.h"
 
-/* A number for ctx, > 0; 0 if memory runs out. */
-TRIBO_API int64_t tribo_handle_add(tribo_context *ctx);
+/* A number > 0 for object; 0 if memory or numbers run out. destroy releases the object when its number is dropped, and may be
+ * NULL. */
+TRIBO_API int64_t tribo_handle_add(void *object, void (*destroy)(void *));
 
-/* The context of a number, NULL if it has none; any number may be asked for. */
-TRIBO_API tribo_context *tribo_handle_get(int64_t number);
+/* The same with a number from -INT32_MAX to -1, whose opposite fits an integer of four bytes. */
+TRIBO_API int64_t tribo_handle_add_short(void *object, void (*destroy)(void *));
 
-/* The same, and from now on the number has none. Destroys nothing. */
-TRIBO_API tribo_context *tribo_handle_remove(int64_t number);
+/* The object of a number, NULL if it has none; any number may be asked for. */
+TRIBO_API void *tribo_handle_find(int64_t number);
 
-/* How many contexts have a number now. */
+/* Destroys the object of a number, if it has one; from now on it has none. */
+TRIBO_API void tribo_handle_drop(int64_t number);
+
+/* How many numbers have an object now. */
 TRIBO_API uint32_t tribo_handle_count(void);
 
 #endif

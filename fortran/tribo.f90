@@ -32,38 +32,19 @@
 !>
 !> Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397, doi:10.1115/1.1760564.
 module tribo
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_int, c_int64_t, c_loc, c_null_char, &
-    c_null_ptr, c_ptr, c_signed_char, c_size_t
-  use, intrinsic :: iso_fortran_env, only: error_unit, int32, int64
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_funloc, c_int, c_loc, c_null_char, c_null_ptr, c_ptr, &
+    c_signed_char, c_size_t
+  use, intrinsic :: iso_fortran_env, only: int32, int64
+  use tribo_support
   implicit none
   private
 
-  !> Kind of all reals here: double precision.
-  integer, parameter, public :: dp = c_double
-
-  !> Status codes.
-  integer, parameter, public :: &
-    TRIBO_OK = 0, &
-    TRIBO_ERR_NULL = 1, &         !< a context that has not been created
-    TRIBO_ERR_NOT_FINITE = 2, &   !< NaN or infinity
-    TRIBO_ERR_NEGATIVE = 3, &     !< a value must be >= 0
-    TRIBO_ERR_NOT_POSITIVE = 4, & !< a value must be > 0
-    TRIBO_ERR_RANGE = 5, &        !< an index or a choice is out of range
-    TRIBO_ERR_SIZE = 6, &         !< sizes do not fit each other, or are too large
-    TRIBO_ERR_NAME = 7, &         !< no law or method has this name
-    TRIBO_ERR_STATE = 8, &        !< another call must come first
-    TRIBO_ERR_UNSUPPORTED = 9, &  !< not available for this system, law or build
-    TRIBO_ERR_MEMORY = 10, &
-    TRIBO_ERR_FILE = 11, &        !< a file cannot be read or does not hold what it should
-    TRIBO_ERR_NOT_SYMMETRIC = 20, &
-    TRIBO_ERR_INDEFINITE = 21, &  !< not positive semidefinite
-    TRIBO_ERR_DUPLICATE = 22, &   !< an entry is given twice
-    TRIBO_ERR_INCONSISTENT = 40, & !< partition coupling: no f_eq balances this a; the outputs hold the least-squares one
-    TRIBO_ERR_NO_CONVERGENCE = 41, &
-    TRIBO_ERR_STOPPED = 60, &     !< the observer ended the run
-    TRIBO_ERR_STEP = 61, &        !< the step size fell below what time resolves
-    TRIBO_ERR_CALLBACK = 62, &   !< a procedure of the caller's failed
-    TRIBO_ERR_CHATTER = 63        !< too many events in too short a time
+  !> Kind of all reals here: double precision; and the status codes, see tribo_support.f90.
+  public :: dp
+  public :: TRIBO_OK, TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE, &
+    TRIBO_ERR_SIZE, TRIBO_ERR_NAME, TRIBO_ERR_STATE, TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_MEMORY, TRIBO_ERR_FILE, &
+    TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_DUPLICATE, TRIBO_ERR_INCONSISTENT, TRIBO_ERR_NO_CONVERGENCE, &
+    TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, TRIBO_ERR_CALLBACK, TRIBO_ERR_CHATTER
 
   !> Friction laws; set_law takes their names too: "coulomb", "velocity-limited", "smooth", "karnopp", "quinn",
   !> "quinn-reversal".
@@ -102,11 +83,9 @@ module tribo
   public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval
 
   !> A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace.
-  type, public :: tribo_context
-    private
-    integer(c_int64_t) :: handle = 0
+  type, extends(tribo_object), public :: tribo_context
   contains
-    procedure :: create, clone, destroy
+    procedure :: create, clone
     procedure :: message
     procedure :: get_ncontact
     procedure, private :: set_law_number, set_law_name
@@ -125,6 +104,7 @@ module tribo
     procedure :: force, force_tangent
     procedure :: balance, balance_tangent
     procedure :: step_force
+    procedure :: solve_box
     procedure :: accept
     procedure :: get_modes
     procedure, private :: get_count_short, get_count_long
@@ -132,82 +112,19 @@ module tribo
     procedure :: get_real
     procedure, private :: assign
     generic :: assignment(=) => assign
-    final :: finalize
   end type tribo_context
-
-  !> What a call works on: the library's context, its number of contacts, and how the call has gone so far.
-  type :: work
-    type(c_ptr) :: ctx = c_null_ptr
-    integer :: n = 0
-    integer(c_int) :: status = TRIBO_OK
-  end type work
-
-  interface expect
-    procedure :: expect_vector, expect_matrix
-  end interface expect
-
-  interface find
-    procedure :: find_vector, find_matrix
-  end interface find
 
   ! The C library. Outputs are intent(inout) here as well, lest a compiler copies back a section that the call has not written.
   interface
-    function c_strlen(s) result(n) bind(c, name='strlen')
-      import :: c_ptr, c_size_t
-      type(c_ptr), value :: s
-      integer(c_size_t) :: n
-    end function c_strlen
-
-    function c_handle_add(ctx) result(handle) bind(c, name='tribo_handle_add')
-      import :: c_ptr, c_int64_t
-      type(c_ptr), value :: ctx
-      integer(c_int64_t) :: handle
-    end function c_handle_add
-
-    function c_handle_get(handle) result(ctx) bind(c, name='tribo_handle_get')
-      import :: c_ptr, c_int64_t
-      integer(c_int64_t), value :: handle
-      type(c_ptr) :: ctx
-    end function c_handle_get
-
-    function c_handle_remove(handle) result(ctx) bind(c, name='tribo_handle_remove')
-      import :: c_ptr, c_int64_t
-      integer(c_int64_t), value :: handle
-      type(c_ptr) :: ctx
-    end function c_handle_remove
-
     function c_version() result(version) bind(c, name='tribo_version')
       import :: c_int
       integer(c_int) :: version
     end function c_version
 
-    function c_version_string() result(s) bind(c, name='tribo_version_string')
-      import :: c_ptr
-      type(c_ptr) :: s
-    end function c_version_string
-
-    function c_strerror(status) result(s) bind(c, name='tribo_strerror')
-      import :: c_ptr, c_int
-      integer(c_int), value :: status
-      type(c_ptr) :: s
-    end function c_strerror
-
     function c_law_count() result(count) bind(c, name='tribo_law_count')
       import :: c_int
       integer(c_int) :: count
     end function c_law_count
-
-    function c_law_name(law) result(s) bind(c, name='tribo_law_name')
-      import :: c_ptr, c_int
-      integer(c_int), value :: law
-      type(c_ptr) :: s
-    end function c_law_name
-
-    function c_law_reference(law) result(s) bind(c, name='tribo_law_reference')
-      import :: c_ptr, c_int
-      integer(c_int), value :: law
-      type(c_ptr) :: s
-    end function c_law_reference
 
     function c_law_find(name, law) result(status) bind(c, name='tribo_law_find')
       import :: c_char, c_int
@@ -242,27 +159,6 @@ module tribo
       import :: c_ptr
       type(c_ptr), value :: ctx
     end subroutine c_destroy
-
-    function c_message(ctx) result(s) bind(c, name='tribo_message')
-      import :: c_ptr
-      type(c_ptr), value :: ctx
-      type(c_ptr) :: s
-    end function c_message
-
-    function c_set_message(ctx, status, text) result(same_status) bind(c, name='tribo_set_message')
-      import :: c_ptr, c_char, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), value :: status
-      character(kind=c_char), intent(in) :: text(*)
-      integer(c_int) :: same_status
-    end function c_set_message
-
-    function c_get_ncontact(ctx, ncontact) result(status) bind(c, name='tribo_get_ncontact')
-      import :: c_ptr, c_size_t, c_int
-      type(c_ptr), value :: ctx
-      integer(c_size_t), intent(inout) :: ncontact
-      integer(c_int) :: status
-    end function c_get_ncontact
 
     function c_set_law(ctx, law) result(status) bind(c, name='tribo_set_law')
       import :: c_ptr, c_int
@@ -414,6 +310,14 @@ module tribo
       integer(c_int) :: status
     end function c_step_force
 
+    function c_solve_box(ctx, a, lower, upper, f) result(status) bind(c, name='tribo_solve_box')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: a(*), lower(*), upper(*)
+      real(c_double), intent(inout) :: f(*)
+      integer(c_int) :: status
+    end function c_solve_box
+
     function c_accept(ctx, v, feq) result(status) bind(c, name='tribo_accept')
       import :: c_ptr, c_double, c_int
       type(c_ptr), value :: ctx
@@ -491,11 +395,13 @@ contains
     integer, intent(inout) :: law
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, number
+    type(work) :: w
+    integer(c_int) :: number
 
-    status = c_law_find(trim(name) // c_null_char, number)
-    if (status == TRIBO_OK) law = int(number)
-    call finish(status, stat, errmsg, text='no law is called "' // trim(name) // '"')
+    w%status = c_law_find(trim(name) // c_null_char, number)
+    if (w%status == TRIBO_OK) law = int(number)
+    if (w%status /= TRIBO_OK) w%text = 'no law is called "' // trim(name) // '"'
+    call finish(w, stat, errmsg)
   end subroutine tribo_law_find
 
   !> One contact, no context: the force and its derivatives, one-sided at a kink, df_dv = 0 at a jump. Elemental: with arrays,
@@ -508,15 +414,15 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     real(dp) :: dv, dfeq, dlimit
-    integer(c_int) :: status
+    type(work) :: w
 
-    status = c_law_eval(int(law, c_int), v, feq, limit, epsilon, f, dv, dfeq, dlimit)
-    if (status == TRIBO_OK) then
+    w%status = c_law_eval(int(law, c_int), v, feq, limit, epsilon, f, dv, dfeq, dlimit)
+    if (w%status == TRIBO_OK) then
       if (present(df_dv)) df_dv = dv
       if (present(df_dfeq)) df_dfeq = dfeq
       if (present(df_dlimit)) df_dlimit = dlimit
     end if
-    call finish(status, stat, errmsg)
+    call finish(w, stat, errmsg)
   end subroutine tribo_law_eval
 
   ! ---------------------------------------------------------------------------------------------------------- life of a context
@@ -528,18 +434,14 @@ contains
     integer, intent(in) :: ncontact
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    character(len=60) :: text
     type(c_ptr) :: ctx
-    integer(c_int) :: status
+    type(work) :: w
 
-    if (ncontact < 0) then
-      write (text, '(a,i0,a)') 'ncontact = ', ncontact, ' is negative'
-      call finish(int(TRIBO_ERR_NEGATIVE, c_int), stat, errmsg, text=trim(text))
-      return
-    end if
-    status = c_create(ctx, int(ncontact, c_size_t))
-    if (status == TRIBO_OK) status = adopted(this, ctx)
-    call finish(status, stat, errmsg)
+    w%status = TRIBO_OK
+    call expect_count(w, 'ncontact', ncontact)
+    if (w%status == TRIBO_OK) w%status = c_create(ctx, int(ncontact, c_size_t))
+    if (w%status == TRIBO_OK) w%status = adopted(this, ctx)
+    call finish(w, stat, errmsg)
   end subroutine create
 
   !> Makes copy a context with the same settings and memory as this one, and nothing shared.
@@ -551,31 +453,19 @@ contains
     type(work) :: w
     type(c_ptr) :: ctx
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) w%status = c_clone(w%ctx, ctx)
     if (w%status == TRIBO_OK) then
       if (adopted(copy, ctx) /= TRIBO_OK) call fail(w, TRIBO_ERR_MEMORY, 'out of memory for a copy')
     end if
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine clone
-
-  !> Releases the context; one that has not been created is fine.
-  subroutine destroy(this)
-    class(tribo_context), intent(inout) :: this
-    call c_destroy(c_handle_remove(this%handle))
-    this%handle = 0
-  end subroutine destroy
-
-  impure elemental subroutine finalize(this)
-    type(tribo_context), intent(inout) :: this
-    call this%destroy()
-  end subroutine finalize
 
   ! from is not polymorphic, so that types that extend this one assign their own components.
   impure elemental subroutine assign(to, from)
     class(tribo_context), intent(inout) :: to
     type(tribo_context), intent(in) :: from
-    if (c_associated(c_handle_get(from%handle))) then
+    if (c_associated(object_of(from))) then
       call from%clone(to)
     else
       call to%destroy()
@@ -586,7 +476,9 @@ contains
   function message(this) result(text)
     class(tribo_context), intent(in) :: this
     character(len=:), allocatable :: text
-    call get_message(this, text)
+    type(work) :: w
+    call begin(this, w)
+    call message_of(w, text)
   end function message
 
   ! ------------------------------------------------------------------------------------------------------------------- settings
@@ -599,9 +491,9 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
+    call begin(this, w)
     if (w%status == TRIBO_OK) ncontact = w%n
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine get_ncontact
 
   !> Law of all contacts, by number or by name; clears the reversal memory.
@@ -610,7 +502,11 @@ contains
     integer, intent(in) :: law
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    call finish(c_set_law(c_handle_get(this%handle), int(law, c_int)), stat, errmsg, this)
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(law, c_int))
+    call finish(w, stat, errmsg)
   end subroutine set_law_number
 
   subroutine set_law_name(this, law, stat, errmsg)
@@ -622,11 +518,11 @@ contains
     character(len=200) :: text
     integer :: number, found
 
-    w = begin(this)
+    call begin(this, w)
     call tribo_law_find(law, number, found, text)
     if (found /= TRIBO_OK) call fail(w, found, trim(text))
     if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(number, c_int))
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_law_name
 
   subroutine get_law(this, law, stat, errmsg)
@@ -634,11 +530,13 @@ contains
     integer, intent(inout) :: law
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, number
+    type(work) :: w
+    integer(c_int) :: number
 
-    status = c_get_law(c_handle_get(this%handle), number)
-    if (status == TRIBO_OK) law = int(number)
-    call finish(status, stat, errmsg, this)
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_get_law(w%ctx, number)
+    if (w%status == TRIBO_OK) law = int(number)
+    call finish(w, stat, errmsg)
   end subroutine get_law
 
   !> Limits mu*N >= 0, one a contact or one for all; 0 means an open contact, which carries no force and costs nothing.
@@ -649,10 +547,10 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'limit', limit)
+    call begin(this, w)
+    call expect_size(w, 'limit', limit, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_limit(w%ctx, limit)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_limit_each
 
   subroutine set_limit_all(this, limit, stat, errmsg)
@@ -660,7 +558,11 @@ contains
     real(dp), intent(in) :: limit
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    call finish(c_set_limit_all(c_handle_get(this%handle), limit), stat, errmsg, this)
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_set_limit_all(w%ctx, limit)
+    call finish(w, stat, errmsg)
   end subroutine set_limit_all
 
   subroutine get_limit(this, limit, stat, errmsg)
@@ -670,10 +572,10 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'limit', limit)
+    call begin(this, w)
+    call expect_size(w, 'limit', limit, w%n)
     if (w%status == TRIBO_OK) w%status = c_get_limit(w%ctx, limit)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine get_limit
 
   !> Velocity scale > 0 of the regularized laws, one a contact.
@@ -684,10 +586,10 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'epsilon', epsilon)
+    call begin(this, w)
+    call expect_size(w, 'epsilon', epsilon, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_epsilon(w%ctx, epsilon)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_epsilon_each
 
   !> Velocity scale for all contacts: epsilon itself, or else the time step of the caller's integrator. Then the rate at which
@@ -701,7 +603,7 @@ contains
     type(work) :: w
     real(dp) :: rate
 
-    w = begin(this)
+    call begin(this, w)
     rate = 1
     if (present(lambda_dt)) rate = lambda_dt
     if (present(epsilon) .eqv. present(step)) then
@@ -713,7 +615,7 @@ contains
     else
       w%status = c_set_epsilon_step(w%ctx, step, rate)
     end if
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_epsilon_all
 
   subroutine get_epsilon(this, epsilon, stat, errmsg)
@@ -723,10 +625,10 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'epsilon', epsilon)
+    call begin(this, w)
+    call expect_size(w, 'epsilon', epsilon, w%n)
     if (w%status == TRIBO_OK) w%status = c_get_epsilon(w%ctx, epsilon)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine get_epsilon
 
   !> The operator R of z'' = R f + a; on error the old one stays. With a vector R is diagonal, for contacts that share no body;
@@ -738,10 +640,10 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'r', r)
+    call begin(this, w)
+    call expect_size(w, 'r', r, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_operator_diagonal(w%ctx, r)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_operator_diagonal
 
   !> With a matrix: symmetric to rounding, positive semidefinite, redundant contacts welcome.
@@ -752,11 +654,11 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'r', r)
+    call begin(this, w)
+    call expect_size(w, 'r', r, w%n)
     ! Transposed for the sake of messages: r(i,j) is to be that of the caller.
     if (w%status == TRIBO_OK) w%status = c_set_operator_dense(w%ctx, transpose(r))
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_operator_dense
 
   !> The same in compressed rows, both triangles: the entries of row i are val(k) at column col(k), k = rowptr(i) to rowptr(i+1)
@@ -769,10 +671,10 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call check_rows(w, rowptr, col, val, w%n)
+    call begin(this, w)
+    call check_rows(w, rowptr, col, val, w%n, w%n)
     if (w%status == TRIBO_OK) w%status = c_set_operator_csr(w%ctx, from_zero(rowptr), from_zero(col), val)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_operator_csr
 
   !> R = J diag(inverse_mass) J', J in compressed rows: row i is how the velocities of the size(inverse_mass) degrees of freedom
@@ -786,13 +688,13 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call check_rows(w, rowptr, col, val, size(inverse_mass))
+    call begin(this, w)
+    call check_rows(w, rowptr, col, val, w%n, size(inverse_mass))
     if (w%status == TRIBO_OK) then
       w%status = c_set_operator_mass(w%ctx, size(inverse_mass, kind=c_size_t), inverse_mass, &
         from_zero(rowptr), from_zero(col), val)
     end if
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine set_operator_mass
 
   !> TRIBO_CONSISTENT or TRIBO_PARTITION.
@@ -801,7 +703,11 @@ contains
     integer, intent(in) :: coupling
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    call finish(c_set_coupling(c_handle_get(this%handle), int(coupling, c_int)), stat, errmsg, this)
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_set_coupling(w%ctx, int(coupling, c_int))
+    call finish(w, stat, errmsg)
   end subroutine set_coupling
 
   subroutine get_coupling(this, coupling, stat, errmsg)
@@ -809,11 +715,13 @@ contains
     integer, intent(inout) :: coupling
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    integer(c_int) :: status, number
+    type(work) :: w
+    integer(c_int) :: number
 
-    status = c_get_coupling(c_handle_get(this%handle), number)
-    if (status == TRIBO_OK) coupling = int(number)
-    call finish(status, stat, errmsg, this)
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_get_coupling(w%ctx, number)
+    if (w%status == TRIBO_OK) coupling = int(number)
+    call finish(w, stat, errmsg)
   end subroutine get_coupling
 
   ! --------------------------------------------------------------------------------------------------------------------- forces
@@ -827,12 +735,12 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'v', v)
-    call expect(w, 'feq', feq)
-    call expect(w, 'f', f)
+    call begin(this, w)
+    call expect_size(w, 'v', v, w%n)
+    call expect_size(w, 'feq', feq, w%n)
+    call expect_size(w, 'f', f, w%n)
     if (w%status == TRIBO_OK) w%status = c_force(w%ctx, v, feq, f)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine force
 
   !> The same with derivatives. Where epsilon follows the limit (set_epsilon with step), df_dlimit takes that into account.
@@ -845,16 +753,16 @@ contains
     type(work) :: w
     type(c_ptr) :: at(4)
 
-    w = begin(this)
+    call begin(this, w)
     at = c_null_ptr
-    call expect(w, 'v', v)
-    call expect(w, 'feq', feq)
+    call expect_size(w, 'v', v, w%n)
+    call expect_size(w, 'feq', feq, w%n)
     if (present(f)) call find(w, 'f', f, at(1))
     if (present(df_dv)) call find(w, 'df_dv', df_dv, at(2))
     if (present(df_dfeq)) call find(w, 'df_dfeq', df_dfeq, at(3))
     if (present(df_dlimit)) call find(w, 'df_dlimit', df_dlimit, at(4))
     if (w%status == TRIBO_OK) w%status = c_force_tangent(w%ctx, v, feq, at(1), at(2), at(3), at(4))
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine force_tangent
 
   !> f_eq and f of coupled contacts, z'' = R f + a. a is the relative acceleration without friction, minus the contact's driven
@@ -869,14 +777,14 @@ contains
     type(work) :: w
     type(c_ptr) :: at(2)
 
-    w = begin(this)
+    call begin(this, w)
     at = c_null_ptr
-    call expect(w, 'v', v)
-    call expect(w, 'a', a)
+    call expect_size(w, 'v', v, w%n)
+    call expect_size(w, 'a', a, w%n)
     if (present(feq)) call find(w, 'feq', feq, at(1))
     if (present(f)) call find(w, 'f', f, at(2))
     if (w%status == TRIBO_OK) w%status = c_balance(w%ctx, v, a, at(1), at(2))
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine balance
 
   !> The same, and how f follows v and a, for Newton's method of an implicit integrator: df_dv(i,j) = df(i)/dv(j), df_da alike.
@@ -889,10 +797,10 @@ contains
     type(work) :: w
     type(c_ptr) :: at(4)
 
-    w = begin(this)
+    call begin(this, w)
     at = c_null_ptr
-    call expect(w, 'v', v)
-    call expect(w, 'a', a)
+    call expect_size(w, 'v', v, w%n)
+    call expect_size(w, 'a', a, w%n)
     if (present(feq)) call find(w, 'feq', feq, at(1))
     if (present(f)) call find(w, 'f', f, at(2))
     if (present(df_dv)) call find(w, 'df_dv', df_dv, at(3))
@@ -902,7 +810,7 @@ contains
       if (w%status == TRIBO_OK .and. present(df_dv)) call transpose_in_place(df_dv)
       if (w%status == TRIBO_OK .and. present(df_da)) call transpose_in_place(df_da)
     end if
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine balance_tangent
 
   !> Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step dt,
@@ -916,12 +824,31 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'vfree', vfree)
-    call expect(w, 'f', f)
+    call begin(this, w)
+    call expect_size(w, 'vfree', vfree, w%n)
+    call expect_size(w, 'f', f, w%n)
     if (w%status == TRIBO_OK) w%status = c_step_force(w%ctx, dt, vfree, f)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine step_force
+
+  !> The box-constrained problem behind it all, the minimum of f'Rf/2 + a'f with lower <= f <= upper, for laws of the caller's own.
+  !> Neither limits nor law nor epsilon matter.
+  subroutine solve_box(this, a, lower, upper, f, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: a(:), lower(:), upper(:)
+    real(dp), intent(inout) :: f(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    call expect_size(w, 'a', a, w%n)
+    call expect_size(w, 'lower', lower, w%n)
+    call expect_size(w, 'upper', upper, w%n)
+    call expect_size(w, 'f', f, w%n)
+    if (w%status == TRIBO_OK) w%status = c_solve_box(w%ctx, a, lower, upper, f)
+    call finish(w, stat, errmsg)
+  end subroutine solve_box
 
   !> Tells that the integrator accepted a step that ended at v, feq. Advances the memory of TRIBO_QUINN_REVERSAL: a contact is
   !> marked when abs(v) > epsilon, and unmarked when abs(v) <= epsilon and abs(feq) <= limit. Does nothing for other laws.
@@ -932,11 +859,11 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    w = begin(this)
-    call expect(w, 'v', v)
-    call expect(w, 'feq', feq)
+    call begin(this, w)
+    call expect_size(w, 'v', v, w%n)
+    call expect_size(w, 'feq', feq, w%n)
     if (w%status == TRIBO_OK) w%status = c_accept(w%ctx, v, feq)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine accept
 
   ! -------------------------------------------------------------------------------------------------------------------- queries
@@ -951,11 +878,11 @@ contains
     type(work) :: w
     integer(c_signed_char) :: small(size(mode))
 
-    w = begin(this)
-    call expect_shape(w, 'mode', shape(mode), w%n)
+    call begin(this, w)
+    call expect_shape(w, 'mode', shape(mode), [w%n])
     if (w%status == TRIBO_OK) w%status = c_get_modes(w%ctx, small)
     if (w%status == TRIBO_OK) mode = int(small)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine get_modes
 
   !> One of TRIBO_COUNT_...; those that add up may outgrow a default integer, and value may be a longer one.
@@ -968,13 +895,13 @@ contains
     type(work) :: w
     integer(c_size_t) :: count
 
-    w = begin(this)
-    w%status = c_get_count(w%ctx, int(which, c_int), count)
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
     if (w%status == TRIBO_OK) then
       if (count > huge(value)) call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
     end if
     if (w%status == TRIBO_OK) value = int(count, int32)
-    call finish(w%status, stat, errmsg, this)
+    call finish(w, stat, errmsg)
   end subroutine get_count_short
 
   subroutine get_count_long(this, which, value, stat, errmsg)
@@ -983,12 +910,13 @@ contains
     integer(int64), intent(inout) :: value
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
     integer(c_size_t) :: count
-    integer(c_int) :: status
 
-    status = c_get_count(c_handle_get(this%handle), int(which, c_int), count)
-    if (status == TRIBO_OK) value = int(count, int64)
-    call finish(status, stat, errmsg, this)
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
+    if (w%status == TRIBO_OK) value = int(count, int64)
+    call finish(w, stat, errmsg)
   end subroutine get_count_long
 
   !> One of TRIBO_REAL_...
@@ -998,240 +926,20 @@ contains
     real(dp), intent(inout) :: value
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    call finish(c_get_real(c_handle_get(this%handle), int(which, c_int), value), stat, errmsg, this)
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_get_real(w%ctx, int(which, c_int), value)
+    call finish(w, stat, errmsg)
   end subroutine get_real
 
   ! ------------------------------------------------------------------------------------------------------- what the calls share
-
-  type(work) function begin(this)
-    class(tribo_context), intent(in) :: this
-    integer(c_size_t) :: n
-
-    begin%ctx = c_handle_get(this%handle)
-    begin%status = c_get_ncontact(begin%ctx, n)
-    if (begin%status == TRIBO_OK) begin%n = int(n)
-  end function begin
-
-  !> Ends every call: hands over its status, and the text of an error, which is that of the context unless given; where there is
-  !> no stat to take it, an error ends the program.
-  subroutine finish(status, stat, errmsg, this, text)
-    integer(c_int), intent(in) :: status
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-    class(tribo_context), intent(in), optional :: this
-    character(len=*), intent(in), optional :: text
-    character(len=:), allocatable :: found
-
-    if (present(stat)) stat = int(status)
-    if (status == TRIBO_OK) return
-    if (present(text)) then
-      found = text
-    else if (present(this)) then
-      call get_message(this, found)
-    else
-      call to_text(c_strerror(status), found)
-    end if
-    if (present(errmsg)) errmsg = found
-    if (present(stat)) return
-    write (error_unit, '(2a)') 'tribo: ', found
-    error stop 1
-  end subroutine finish
-
-  !> The first error of a call: keeps its text on the context.
-  subroutine fail(w, status, text)
-    type(work), intent(inout) :: w
-    integer, intent(in) :: status
-    character(len=*), intent(in) :: text
-    if (w%status == TRIBO_OK) w%status = c_set_message(w%ctx, int(status, c_int), text // c_null_char)
-  end subroutine fail
-
-  !> The same for one of many values.
-  subroutine fail_at(w, status, name, i, value, text)
-    type(work), intent(inout) :: w
-    integer, intent(in) :: status, i, value
-    character(len=*), intent(in) :: name, text
-    character(len=200) :: full
-    write (full, '(2a,i0,a,i0,2a)') name, '[', i - 1, '] = ', value, ' ', text
-    call fail(w, status, trim(full))
-  end subroutine fail_at
 
   !> Gives a context of the library to this, in the place of the one before.
   integer(c_int) function adopted(this, ctx) result(status)
     class(tribo_context), intent(inout) :: this
     type(c_ptr), intent(in) :: ctx
-    integer(c_int64_t) :: handle
-
-    handle = c_handle_add(ctx)
-    if (handle == 0) then
-      call c_destroy(ctx)
-      status = TRIBO_ERR_MEMORY
-    else
-      call this%destroy()
-      this%handle = handle
-      status = TRIBO_OK
-    end if
+    status = adopt(this, ctx, c_funloc(c_destroy))
+    if (status /= TRIBO_OK) call c_destroy(ctx)
   end function adopted
-
-  !> Expects one value a contact, or a matrix of them.
-  subroutine expect_vector(w, name, x)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(in) :: x(:)
-    call expect_shape(w, name, shape(x), w%n)
-  end subroutine expect_vector
-
-  subroutine expect_matrix(w, name, x)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(in) :: x(:,:)
-    call expect_shape(w, name, shape(x), w%n)
-  end subroutine expect_matrix
-
-  !> The same for an output that may be absent, and so goes to the library by its address.
-  subroutine find_vector(w, name, x, address)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(inout), contiguous, target :: x(:)
-    type(c_ptr), intent(inout) :: address
-    call expect(w, name, x)
-    if (size(x) > 0) address = c_loc(x)
-  end subroutine find_vector
-
-  subroutine find_matrix(w, name, x, address)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(inout), contiguous, target :: x(:,:)
-    type(c_ptr), intent(inout) :: address
-    call expect(w, name, x)
-    if (size(x) > 0) address = c_loc(x)
-  end subroutine find_matrix
-
-  subroutine expect_shape(w, name, found, n)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    integer, intent(in) :: found(:), n
-    character(len=120) :: text
-
-    if (all(found == n)) return
-    write (text, '(2a,*(i0,:," x "))') name, ' has size ', found
-    write (text, '(2a,*(i0,:," x "))') trim(text), ', not ', spread(n, 1, size(found))
-    call fail(w, TRIBO_ERR_SIZE, trim(text))
-  end subroutine expect_shape
-
-  !> Compressed rows as far as sizes and indices go. As in the library's messages indices count from 0 here, see get_message.
-  subroutine check_rows(w, rowptr, col, val, columns)
-    type(work), intent(inout) :: w
-    integer, intent(in) :: rowptr(:), col(:), columns
-    real(dp), intent(in) :: val(:)
-    integer :: i, k
-
-    call expect_shape(w, 'rowptr', shape(rowptr), w%n + 1)
-    call expect_shape(w, 'val', shape(val), size(col))
-    if (w%status /= TRIBO_OK) return
-    if (rowptr(1) /= 1) call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', 1, rowptr(1), 'is not 1')
-    do i = 2, w%n + 1
-      if (rowptr(i) < rowptr(i - 1)) call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', i, rowptr(i), 'is less than the one before')
-    end do
-    if (rowptr(w%n + 1) /= size(col) + 1) then
-      call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', w%n + 1, rowptr(w%n + 1), 'does not end where col does')
-    end if
-    do k = 1, size(col)
-      if (col(k) < 1 .or. col(k) > columns) call fail_at(w, TRIBO_ERR_RANGE, 'col', k, col(k), 'is out of range')
-    end do
-  end subroutine check_rows
-
-  elemental integer(c_size_t) function from_zero(i)
-    integer, intent(in) :: i
-    from_zero = int(i, c_size_t) - 1
-  end function from_zero
-
-  !> x = transpose(x), which would allocate.
-  pure subroutine transpose_in_place(x)
-    real(dp), intent(inout) :: x(:,:)
-    real(dp) :: upper
-    integer :: i, j
-
-    do j = 2, size(x, 2)
-      do i = 1, j - 1
-        upper = x(i, j)
-        x(i, j) = x(j, i)
-        x(j, i) = upper
-      end do
-    end do
-  end subroutine transpose_in_place
-
-  ! No function that returns a text of deferred length is called in here: gfortran keeps the length in static memory, which
-  ! threads would share.
-
-  !> The text of a C string; empty for none.
-  subroutine to_text(s, text)
-    type(c_ptr), intent(in) :: s
-    character(len=:), allocatable, intent(out) :: text
-    character(kind=c_char), pointer :: chars(:)
-    integer :: i
-
-    if (c_associated(s)) then
-      call c_f_pointer(s, chars, [c_strlen(s)])
-      allocate (character(len=size(chars)) :: text)
-      do i = 1, size(chars)
-        text(i:i) = chars(i)
-      end do
-    else
-      text = ''
-    end if
-  end subroutine to_text
-
-  !> The message of a context. The library's counts contacts and columns from 0 and writes x[i][j]; this one counts from 1, and
-  !> writes x(i,j).
-  subroutine get_message(this, text)
-    class(tribo_context), intent(in) :: this
-    character(len=:), allocatable, intent(out) :: text
-    character(len=:), allocatable :: from_zero
-    type(c_ptr) :: ctx
-    character(len=12) :: index
-    logical :: is_index
-    integer :: i, length, number
-
-    ctx = c_handle_get(this%handle)
-    if (.not. c_associated(ctx)) then
-      text = 'the context has not been created, or has been destroyed'
-      return
-    end if
-    call to_text(c_message(ctx), from_zero)
-    text = ''
-    is_index = .false.
-    i = 1
-    do while (i <= len(from_zero))
-      length = max(1, verify(from_zero(i:) // '.', '0123456789') - 1)
-      select case (from_zero(i:i))
-      case ('0':'9')
-        is_index = ends(from_zero(:i - 1), '[') .or. ends(text, 'contact ') .or. ends(text, 'column ') .or. &
-          ends(text, 'contacts ') .or. (is_index .and. ends(text, ', '))
-        if (is_index) then
-          read (from_zero(i:i + length - 1), *) number
-          write (index, '(i0)') number + 1
-          text = text // trim(index)
-        else
-          text = text // from_zero(i:i + length - 1)
-        end if
-      case ('[')
-        if (ends(text, ')')) then
-          text(len(text):) = ','
-        else
-          text = text // '('
-        end if
-      case (']')
-        text = text // ')'
-      case default
-        text = text // from_zero(i:i)
-      end select
-      i = i + length
-    end do
-  end subroutine get_message
-
-  pure logical function ends(text, word)
-    character(len=*), intent(in) :: text, word
-    ends = len(text) >= len(word)
-    if (ends) ends = text(len(text) - len(word) + 1:) == word
-  end function ends
 end module tribo

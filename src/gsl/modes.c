@@ -27,7 +27,7 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     int status = tribo_clone(sys->contacts, &m->judge);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
     double *work = malloc((13 * c + (2 + 2 * ORDERS) * n + m->patience) * sizeof *work);
-    m->mode = malloc(5 * c);
+    m->mode = calloc(5, c);
     m->at = malloc(c * sizeof *m->at);
     m->limit = work;
     if (status || !work || !m->mode || !m->at) {

@@ -119,6 +119,8 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%balance_tangent(x, x, y, z, q, p, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%solve_box(x, x, x, y, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%step_force(1.0_dp, x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%accept(x, x, stat, msg)
@@ -399,6 +401,18 @@ contains
     call c%balance([0.0_dp, 0.0_dp, 0.0_dp], [0.3_dp, 0.3_dp, 0.9_dp], x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_INCONSISTENT, &
       'no f_eq balances the 3 contacts near stick around contact 1: rank 1, and a is outside its range')
+    call c%solve_box(v(:2), v, v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'a has size 2, not 3')
+    call c%solve_box(v, v(:2), v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'lower has size 2, not 3')
+    call c%solve_box(v, v, v(2:), x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'upper has size 2, not 3')
+    call c%solve_box(v, v, v, x(:2), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'f has size 2, not 3')
+    call c%solve_box(v, bad, v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'lower(2) = nan is not finite')
+    call c%solve_box(v, v + 1, v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'lower(1) = 1.1 is above upper(1) = 0.1')
     call require(.not. any(untouched([x, y])), 'balance: outputs of TRIBO_ERR_INCONSISTENT')
   end subroutine forces
 

@@ -69,6 +69,41 @@ pkgconfig) # <source> <language> <component>
     "$program"
     ;;
 
+pages) # The programs in README.md and fortran/README.md, compiled by the lines beside them as they stand there. Only the
+    # folder is found by the environment, as if it were one that compilers know.
+    export LIBRARY_PATH="$WORK/elsewhere/lib" LD_LIBRARY_PATH="$WORK/elsewhere/lib"
+    export PKG_CONFIG_PATH="$WORK/elsewhere/lib/pkgconfig"
+    rm -rf "$WORK/pages"
+    mkdir -p "$WORK/pages"
+    cd "$WORK/pages"
+    modules=$(basename "$WORK"/elsewhere/include/tribo/gfortran-*[0-9])
+    for page in fortran/README.md README.md; do
+        # A block in C is user.c; one in Fortran is user.f if it begins in column 7, else user.f90.
+        awk '/^```/ { kind = on ? "" : substr($0, 4); on = !on; first = 1; next }
+             first { file = kind == "c" ? "user.c" : kind != "fortran" ? "" : /^      / ? "user.f" : "user.f90"; first = 0
+                     if (file) printf "" > file }
+             on && file { print > file }' "$ROOT/$page"
+        awk '/^```/ { on = $0 == "```sh"; next } on && /^(cc|gfortran) /' "$ROOT/$page" |
+            sed -e "s,/opt/tribo,$WORK/elsewhere,g" -e "s,tribo/gfortran-12,tribo/$modules,g" >lines
+        count=0
+        while read -r line; do
+            rm -f a.out
+            eval "$line"
+            ./a.out | tr -s ' ' >out
+            grep -q '^rests at -0\.0200 m, held by -2\.00[0-9] N$' out || {
+                cat out
+                say "$page: $line: the result is another one"
+                exit 1
+            }
+            count=$((count + 1))
+        done <lines
+        [ $count -ge 3 ] || {
+            say "$page: only $count compile lines were found"
+            exit 1
+        }
+    done
+    ;;
+
 subdirectory) # <cmake option>... <consumer>...
     consumers=
     for argument; do
@@ -99,7 +134,7 @@ refused) # <name> <message> -S <folder> <cmake option>...
 
 archives) # A static library's names land in the program of its user.
     if nm -g --defined-only "$WORK"/elsewhere/lib/*.a |
-        awk 'NF == 3 && $3 !~ /^(tribo_|trb[a-z]*_$|__tribo[a-z_]*_MOD_)/ { print; bad = 1 } END { exit !bad }'; then
+        awk 'NF == 3 && $3 !~ /^(tribo_|trb[a-z0-9]*_$|__tribo[a-z_]*_MOD_)/ { print; bad = 1 } END { exit !bad }'; then
         say "names that may be the user's own"
         exit 1
     fi

@@ -1,0 +1,33 @@
+/* tribo_gsl.h for Fortran: see gsl.c. */
+#ifndef TRIBO_FORTRAN_GSL_H
+#define TRIBO_FORTRAN_GSL_H
+
+#include <stdint.h>
+
+#include "tribo/tribo_gsl.h"
+
+/* A sparse matrix in compressed rows: row i has val[k] at column col[k], k = first[i] to first[i + 1] - 1, from 0. */
+struct tribo_rows {
+    size_t rows, columns;
+    const int *first, *col;
+    const double *val;
+};
+
+/* A system as Fortran holds it, and its sizes; 0 for NULL. */
+struct tribo_held {
+    tribo_system *sys;
+    int64_t context, given, users;
+};
+TRIBO_API size_t tribo_fortran_ndof(const struct tribo_held *held);
+TRIBO_API size_t tribo_fortran_ncontact(const struct tribo_held *held);
+
+/* tribo_system_linear_sparse; damping may be NULL. */
+TRIBO_API int tribo_fortran_linear(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *damping,
+                                   const struct tribo_rows *stiffness, const struct tribo_rows *direction, size_t nmode,
+                                   char *message, size_t size);
+
+/* The right-hand side of tribo_system_odeiv2 and its Jacobian, with a status of tribo's. */
+TRIBO_API int tribo_fortran_derivative(tribo_system *sys, double t, const double *y, double *dydt);
+TRIBO_API int tribo_fortran_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt);
+
+#endif

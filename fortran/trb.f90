@@ -1,0 +1,631 @@
+!> tribo for fixed-form Fortran: external routines that need no module and no interface block.
+!>
+!> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and MODE; all other numbers are DOUBLE PRECISION; NAME and TEXT are
+!> CHARACTER*(*). Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger array may be passed,
+!> and the array then begins there. Contacts, rows and columns are counted from 1.
+!>
+!> IH     handle of a set of contacts. It fits a default INTEGER and is never given twice (there are two thousand million of them,
+!>        then TRBNEW answers TRIBO_ERR_MEMORY); handles that were never given, or whose contacts have been deleted, are
+!>        recognized. One handle belongs to one thread at a time.
+!> N      number of contacts; must be that of TRBNEW
+!> IERR   0, or one of the codes of module tribo (TRIBO_ERR_...). Outputs are untouched then, and TRBMSG tells what is wrong.
+!>
+!> Registry                                          in                                out
+!>   TRBVER(IVER, IERR)                                                                IVER 10000*major + 100*minor + patch
+!>   TRBVST(TEXT, IERR)                                                                TEXT version
+!>   TRBTXT(ICODE, TEXT, IERR)                       ICODE any status                  TEXT what it means
+!>   TRBNLW(NLAW, IERR)                                                                NLAW number of laws: 0 to NLAW - 1
+!>   TRBLNM(LAW, TEXT, IERR)                         LAW                               TEXT its name
+!>   TRBREF(LAW, TEXT, IERR)                         LAW                               TEXT where it comes from
+!>   TRBFND(NAME, LAW, IERR)                         NAME e.g. 'quinn'                 LAW its number
+!>   TRBEVL(LAW, V, FEQ, FMUN, EPS,                  one contact, no handle            F and its derivatives by V, FEQ, FMUN
+!>          F, DFDV, DFDQ, DFDN, IERR)
+!> Life
+!>   TRBNEW(N, IH, IERR)                             N >= 0                            IH new: quinn, limit 0, epsilon 1E-6, R = 1
+!>   TRBCPY(IH, IHNEW, IERR)                         IH                                IHNEW a copy that shares nothing
+!>   TRBDEL(IH, IERR)                                IH
+!>   TRBNUM(IH, N, IERR)                             IH                                N number of contacts
+!>   TRBMSG(IH, TEXT, IERR)                          IH                                TEXT what its last failing call found;
+!>                                                                                     always defined, even if IH is no handle
+!> Settings
+!>   TRBLAW(IH, LAW, IERR)                           LAW
+!>   TRBNAM(IH, NAME, IERR)                          NAME of the law
+!>   TRBGLW(IH, LAW, IERR)                                                             LAW
+!>   TRBLIM(IH, N, FMUN, IERR)                       FMUN(N) limits mu*N >= 0
+!>   TRBLM1(IH, FMUN, IERR)                          FMUN one for all
+!>   TRBGLM(IH, N, FMUN, IERR)                                                         FMUN(N)
+!>   TRBEPS(IH, N, EPS, IERR)                        EPS(N) > 0
+!>   TRBEP1(IH, EPS, IERR)                           EPS one for all
+!>   TRBSTP(IH, DT, RLDT, IERR)                      DT step, RLDT lambda*dt: epsilon follows
+!>   TRBGEP(IH, N, EPS, IERR)                                                          EPS(N)
+!>   TRBOPD(IH, N, RDIAG, IERR)                      RDIAG(N) >= 0: R diagonal
+!>   TRBOPF(IH, N, R, LDR, IERR)                     R(LDR,N) full, symmetric; LDR >= N
+!>   TRBOPS(IH, N, IROW, ICOL, VAL, IERR)            R sparse: row I is VAL(K) at column ICOL(K),
+!>                                                   K = IROW(I) to IROW(I+1) - 1; IROW(N+1), IROW(1) = 1
+!>   TRBOPM(IH, N, NDOF, RMINV, IROW, ICOL, VAL,     R = J diag(RMINV(NDOF)) J', J (N x NDOF) sparse as above
+!>          IERR)
+!>   TRBCPL(IH, ICPL, IERR)                          ICPL 0 consistent, 1 partition
+!>   TRBGCP(IH, ICPL, IERR)                                                            ICPL
+!> Forces
+!>   TRBFRC(IH, N, V, FEQ, F, IERR)                  V(N), FEQ(N)                      F(N)
+!>   TRBFTN(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      F(N), its derivatives by V, FEQ, limit
+!>          IERR)
+!>   TRBBAL(IH, N, V, A, FEQ, F, IERR)               V(N), A(N)                        FEQ(N), F(N)
+!>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
+!>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
+!>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
+!>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
+!>   TRBACC(IH, N, V, FEQ, IERR)                     V(N), FEQ(N) of an accepted step
+!> Queries
+!>   TRBMOD(IH, N, MODE, IERR)                                                         MODE(N): 0 stuck, +1 -1 sliding, 2 open
+!>   TRBCNT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_...            IVAL
+!>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
+
+!> What they share. A handle stands for a tribo_context, the object of minus its number, see handle.h.
+module tribo_fixed
+  use, intrinsic :: iso_c_binding, only: c_associated, c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_ptr
+  use tribo
+  use tribo_support, only: begin, c_handle_add_short, c_handle_find, c_law_name, c_law_reference, c_strerror, c_version_string, &
+    fail, forget, message_of, to_text, work
+  implicit none
+  public
+
+contains
+
+  !> The contacts of a handle; ierr says whether there are such, and n of them.
+  subroutine find(ih, c, ierr, n)
+    integer, intent(in) :: ih
+    type(tribo_context), pointer, intent(out) :: c
+    integer, intent(out) :: ierr
+    integer, intent(in), optional :: n
+    type(work) :: w
+    type(c_ptr) :: object
+
+    nullify (c)
+    ierr = TRIBO_ERR_NULL
+    if (ih <= 0) return
+    object = c_handle_find(-int(ih, c_int64_t))
+    if (.not. c_associated(object)) return
+    call c_f_pointer(object, c)
+    call begin(c, w)
+    if (present(n)) call expect_value(w, n == w%n, 'N', n, ', but the number of contacts is ', w%n)
+    ierr = int(w%status)
+  end subroutine find
+
+  !> The same, with one more size.
+  subroutine find_more(ih, c, ierr, n, name, value, least)
+    integer, intent(in) :: ih, n, value, least
+    type(tribo_context), pointer, intent(out) :: c
+    integer, intent(out) :: ierr
+    character(len=*), intent(in) :: name
+    type(work) :: w
+
+    call find(ih, c, ierr, n)
+    if (ierr /= TRIBO_OK) return
+    call begin(c, w)
+    call expect_value(w, value >= least, name, value, ' is less than ', least)
+    ierr = int(w%status)
+  end subroutine find_more
+
+  !> Fails unless holds; the text is made of the last four.
+  subroutine expect_value(w, holds, name, value, but, other)
+    type(work), intent(inout) :: w
+    logical, intent(in) :: holds
+    character(len=*), intent(in) :: name, but
+    integer, intent(in) :: value, other
+    character(len=80) :: text
+
+    if (holds .or. w%status /= TRIBO_OK) return
+    write (text, '(2a,i0,a,i0)') name, ' = ', value, but, other
+    call fail(w, TRIBO_ERR_SIZE, trim(text))
+  end subroutine expect_value
+
+  !> A handle for c, if there is no error yet; else c goes.
+  subroutine give(c, ih, ierr)
+    type(tribo_context), pointer, intent(inout) :: c
+    integer, intent(inout) :: ih, ierr
+    integer(c_int64_t) :: number
+
+    number = 0
+    if (ierr == TRIBO_OK) then
+      number = c_handle_add_short(c_loc(c), c_funloc(release))
+      if (number == 0) ierr = TRIBO_ERR_MEMORY
+    end if
+    if (number == 0) then
+      deallocate (c)
+    else
+      ih = -int(number)
+    end if
+  end subroutine give
+
+  subroutine release(object) bind(c, name='')
+    type(c_ptr), value :: object
+    type(tribo_context), pointer :: c
+    call c_f_pointer(object, c)
+    deallocate (c)
+  end subroutine release
+
+  !> Hands out a text of the library, if there is one.
+  subroutine hand_out(s, text, ierr)
+    type(c_ptr), intent(in) :: s
+    character(len=*), intent(inout) :: text
+    integer, intent(out) :: ierr
+    character(len=:), allocatable :: found
+
+    call to_text(s, found)
+    ierr = TRIBO_ERR_RANGE
+    if (len(found) == 0) return
+    text = found
+    ierr = TRIBO_OK
+  end subroutine hand_out
+end module tribo_fixed
+
+! ------------------------------------------------------------------------------------------------------------------------ registry
+
+subroutine trbver(iver, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(out) :: iver, ierr
+  iver = tribo_version()
+  ierr = TRIBO_OK
+end subroutine trbver
+
+subroutine trbvst(text, ierr)
+  use tribo_fixed
+  implicit none
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_version_string(), text, ierr)
+end subroutine trbvst
+
+subroutine trbtxt(icode, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: icode
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_strerror(int(icode, c_int)), text, ierr)
+end subroutine trbtxt
+
+subroutine trbnlw(nlaw, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(out) :: nlaw, ierr
+  nlaw = tribo_law_count()
+  ierr = TRIBO_OK
+end subroutine trbnlw
+
+subroutine trblnm(law, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: law
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_law_name(int(law, c_int)), text, ierr)
+end subroutine trblnm
+
+subroutine trbref(law, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: law
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_law_reference(int(law, c_int)), text, ierr)
+end subroutine trbref
+
+subroutine trbfnd(name, law, ierr)
+  use tribo_fixed
+  implicit none
+  character(len=*), intent(in) :: name
+  integer, intent(inout) :: law
+  integer, intent(out) :: ierr
+  call tribo_law_find(name, law, ierr)
+end subroutine trbfnd
+
+subroutine trbevl(law, v, feq, fmun, eps, f, dfdv, dfdq, dfdn, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: law
+  real(dp), intent(in) :: v, feq, fmun, eps
+  real(dp), intent(inout) :: f, dfdv, dfdq, dfdn
+  integer, intent(out) :: ierr
+  call tribo_law_eval(law, v, feq, fmun, eps, f, dfdv, dfdq, dfdn, ierr)
+end subroutine trbevl
+
+! ---------------------------------------------------------------------------------------------------------------------------- life
+
+subroutine trbnew(n, ih, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  integer, intent(inout) :: ih
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  allocate (c)
+  call c%create(n, ierr)
+  call give(c, ih, ierr)
+end subroutine trbnew
+
+subroutine trbcpy(ih, ihnew, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: ihnew
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c, copy
+
+  call find(ih, c, ierr)
+  if (ierr /= TRIBO_OK) return
+  allocate (copy)
+  call c%clone(copy, ierr)
+  call give(copy, ihnew, ierr)
+end subroutine trbcpy
+
+subroutine trbdel(ih, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call forget(-int(ih, c_int64_t))
+end subroutine trbdel
+
+subroutine trbnum(ih, n, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: n
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_ncontact(n, ierr)
+end subroutine trbnum
+
+subroutine trbmsg(ih, text, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+  type(work) :: w
+  character(len=:), allocatable :: found
+  character(len=80) :: none
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) then
+    call begin(c, w)
+    call message_of(w, found)
+    text = found
+  else
+    write (none, '(a,i0,a)') 'IH = ', ih, ' is no handle: it was never given, or has been deleted'
+    text = none
+  end if
+end subroutine trbmsg
+
+! ------------------------------------------------------------------------------------------------------------------------ settings
+
+subroutine trblaw(ih, law, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, law
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_law(law, ierr)
+end subroutine trblaw
+
+subroutine trbnam(ih, name, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  character(len=*), intent(in) :: name
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_law(name, ierr)
+end subroutine trbnam
+
+subroutine trbglw(ih, law, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: law
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_law(law, ierr)
+end subroutine trbglw
+
+subroutine trblim(ih, n, fmun, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: fmun(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_limit(fmun(:n), ierr)
+end subroutine trblim
+
+subroutine trblm1(ih, fmun, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: fmun
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_limit(fmun, ierr)
+end subroutine trblm1
+
+subroutine trbglm(ih, n, fmun, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(inout) :: fmun(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%get_limit(fmun(:n), ierr)
+end subroutine trbglm
+
+subroutine trbeps(ih, n, eps, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: eps(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_epsilon(eps(:n), ierr)
+end subroutine trbeps
+
+subroutine trbep1(ih, eps, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: eps
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_epsilon(eps, stat=ierr)
+end subroutine trbep1
+
+subroutine trbstp(ih, dt, rldt, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: dt, rldt
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_epsilon(step=dt, lambda_dt=rldt, stat=ierr)
+end subroutine trbstp
+
+subroutine trbgep(ih, n, eps, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(inout) :: eps(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%get_epsilon(eps(:n), ierr)
+end subroutine trbgep
+
+subroutine trbopd(ih, n, rdiag, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: rdiag(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_operator(rdiag(:n), ierr)
+end subroutine trbopd
+
+subroutine trbopf(ih, n, r, ldr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, ldr
+  real(dp), intent(in) :: r(ldr, *)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find_more(ih, c, ierr, n, 'LDR', ldr, n)
+  if (ierr == TRIBO_OK) call c%set_operator(r(:n, :n), ierr)
+end subroutine trbopf
+
+subroutine trbops(ih, n, irow, icol, val, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, irow(*), icol(*)
+  real(dp), intent(in) :: val(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_operator_csr(irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
+end subroutine trbops
+
+subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, ndof, irow(*), icol(*)
+  real(dp), intent(in) :: rminv(*), val(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find_more(ih, c, ierr, n, 'NDOF', ndof, 0)
+  if (ierr /= TRIBO_OK) return
+  call c%set_operator_mass(rminv(:ndof), irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
+end subroutine trbopm
+
+subroutine trbcpl(ih, icpl, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, icpl
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_coupling(icpl, ierr)
+end subroutine trbcpl
+
+subroutine trbgcp(ih, icpl, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: icpl
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_coupling(icpl, ierr)
+end subroutine trbgcp
+
+! -------------------------------------------------------------------------------------------------------------------------- forces
+
+subroutine trbfrc(ih, n, v, feq, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), feq(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%force(v(:n), feq(:n), f(:n), ierr)
+end subroutine trbfrc
+
+subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), feq(*)
+  real(dp), intent(inout) :: f(*), dfdv(*), dfdq(*), dfdn(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%force_tangent(v(:n), feq(:n), f(:n), dfdv(:n), dfdq(:n), dfdn(:n), ierr)
+end subroutine trbftn
+
+subroutine trbbal(ih, n, v, a, feq, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), a(*)
+  real(dp), intent(inout) :: feq(*), f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%balance(v(:n), a(:n), feq(:n), f(:n), ierr)
+end subroutine trbbal
+
+subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, ldj
+  real(dp), intent(in) :: v(*), a(*)
+  real(dp), intent(inout) :: feq(*), f(*), dfdv(ldj, *), dfda(ldj, *)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find_more(ih, c, ierr, n, 'LDJ', ldj, n)
+  if (ierr == TRIBO_OK) call c%balance_tangent(v(:n), a(:n), feq(:n), f(:n), dfdv(:n, :n), dfda(:n, :n), ierr)
+end subroutine trbbtn
+
+subroutine trbstf(ih, n, dt, vfree, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: dt, vfree(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%step_force(dt, vfree(:n), f(:n), ierr)
+end subroutine trbstf
+
+subroutine trbbox(ih, n, a, flo, fup, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: a(*), flo(*), fup(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%solve_box(a(:n), flo(:n), fup(:n), f(:n), ierr)
+end subroutine trbbox
+
+subroutine trbacc(ih, n, v, feq, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), feq(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%accept(v(:n), feq(:n), ierr)
+end subroutine trbacc
+
+! ------------------------------------------------------------------------------------------------------------------------- queries
+
+subroutine trbmod(ih, n, mode, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  integer, intent(inout) :: mode(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%get_modes(mode(:n), ierr)
+end subroutine trbmod
+
+subroutine trbcnt(ih, iwhich, ival, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, iwhich
+  integer, intent(inout) :: ival
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_count(iwhich, ival, ierr)
+end subroutine trbcnt
+
+subroutine trbval(ih, iwhich, val, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, iwhich
+  real(dp), intent(inout) :: val
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_real(iwhich, val, ierr)
+end subroutine trbval

@@ -1,0 +1,459 @@
+!> What the modules tribo and tribo_gsl and the fixed-form routines share: status codes, objects by number, texts, and how calls
+!> begin and end. Not for programs.
+module tribo_support
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funptr, c_int, c_int64_t, c_loc, &
+    c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
+  use, intrinsic :: iso_fortran_env, only: error_unit
+  implicit none
+  private
+
+  !> Kind of all reals here: double precision.
+  integer, parameter, public :: dp = c_double
+
+  !> Status codes.
+  integer, parameter, public :: &
+    TRIBO_OK = 0, &
+    TRIBO_ERR_NULL = 1, &         !< an object that has not been created
+    TRIBO_ERR_NOT_FINITE = 2, &   !< NaN or infinity
+    TRIBO_ERR_NEGATIVE = 3, &     !< a value must be >= 0
+    TRIBO_ERR_NOT_POSITIVE = 4, & !< a value must be > 0
+    TRIBO_ERR_RANGE = 5, &        !< an index or a choice is out of range
+    TRIBO_ERR_SIZE = 6, &         !< sizes do not fit each other, or are too large
+    TRIBO_ERR_NAME = 7, &         !< no law or method has this name
+    TRIBO_ERR_STATE = 8, &        !< another call must come first
+    TRIBO_ERR_UNSUPPORTED = 9, &  !< not available for this system, law or build
+    TRIBO_ERR_MEMORY = 10, &
+    TRIBO_ERR_FILE = 11, &        !< a file cannot be read or does not hold what it should
+    TRIBO_ERR_NOT_SYMMETRIC = 20, &
+    TRIBO_ERR_INDEFINITE = 21, &  !< not positive semidefinite, or a mass matrix that is not positive definite
+    TRIBO_ERR_DUPLICATE = 22, &   !< an entry is given twice
+    TRIBO_ERR_INCONSISTENT = 40, & !< partition coupling: no f_eq balances this a; the outputs hold the least-squares one
+    TRIBO_ERR_NO_CONVERGENCE = 41, &
+    TRIBO_ERR_STOPPED = 60, &     !< the observer ended the run
+    TRIBO_ERR_STEP = 61, &        !< the step size fell below what time resolves
+    TRIBO_ERR_CALLBACK = 62, &    !< a procedure of the caller's failed
+    TRIBO_ERR_CHATTER = 63        !< too many events in too short a time
+
+  public :: object_of, adopt, lend, register, forget, c_handle_add_short, c_handle_find
+  public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, find, find_input, check_rows
+  public :: from_zero, transpose_in_place
+  public :: to_text, message_of, c_version_string, c_strerror, c_law_name, c_law_reference
+
+  !> What every type of tribo is: the number of an object of the library, see handle.c. A lent one is destroyed by its owner only.
+  type, public :: tribo_object
+    private
+    integer(c_int64_t) :: handle = 0
+    logical :: lent = .false.
+  contains
+    procedure :: destroy
+    final :: finalize
+  end type tribo_object
+
+  !> What a call works on: the object, the context that keeps its messages, the number of contacts; how the call has gone so far,
+  !> and the text of an error found here, with indices from 0 as in the library's messages.
+  type, public :: work
+    type(c_ptr) :: object = c_null_ptr, ctx = c_null_ptr
+    integer :: n = 0
+    integer(c_int) :: status = TRIBO_ERR_NULL
+    character(len=8) :: kind = 'context'
+    character(len=:), allocatable :: text
+  end type work
+
+  interface expect_size
+    procedure :: expect_vector, expect_matrix
+  end interface expect_size
+
+  interface find
+    procedure :: find_vector, find_matrix
+  end interface find
+
+  interface
+    function c_strlen(s) result(n) bind(c, name='strlen')
+      import :: c_ptr, c_size_t
+      type(c_ptr), value :: s
+      integer(c_size_t) :: n
+    end function c_strlen
+
+    function c_handle_add(object, destroy) result(handle) bind(c, name='tribo_handle_add')
+      import :: c_funptr, c_int64_t, c_ptr
+      type(c_ptr), value :: object
+      type(c_funptr), value :: destroy
+      integer(c_int64_t) :: handle
+    end function c_handle_add
+
+    function c_handle_add_short(object, destroy) result(handle) bind(c, name='tribo_handle_add_short')
+      import :: c_funptr, c_int64_t, c_ptr
+      type(c_ptr), value :: object
+      type(c_funptr), value :: destroy
+      integer(c_int64_t) :: handle
+    end function c_handle_add_short
+
+    pure function c_handle_find(handle) result(object) bind(c, name='tribo_handle_find')
+      import :: c_int64_t, c_ptr
+      integer(c_int64_t), intent(in), value :: handle
+      type(c_ptr) :: object
+    end function c_handle_find
+
+    subroutine c_handle_drop(handle) bind(c, name='tribo_handle_drop')
+      import :: c_int64_t
+      integer(c_int64_t), value :: handle
+    end subroutine c_handle_drop
+
+    function c_version_string() result(s) bind(c, name='tribo_version_string')
+      import :: c_ptr
+      type(c_ptr) :: s
+    end function c_version_string
+
+    function c_law_name(law) result(s) bind(c, name='tribo_law_name')
+      import :: c_ptr, c_int
+      integer(c_int), value :: law
+      type(c_ptr) :: s
+    end function c_law_name
+
+    function c_law_reference(law) result(s) bind(c, name='tribo_law_reference')
+      import :: c_ptr, c_int
+      integer(c_int), value :: law
+      type(c_ptr) :: s
+    end function c_law_reference
+
+    function c_strerror(status) result(s) bind(c, name='tribo_strerror')
+      import :: c_int, c_ptr
+      integer(c_int), value :: status
+      type(c_ptr) :: s
+    end function c_strerror
+
+    function c_message(ctx) result(s) bind(c, name='tribo_message')
+      import :: c_ptr
+      type(c_ptr), value :: ctx
+      type(c_ptr) :: s
+    end function c_message
+
+    function c_set_message(ctx, status, text) result(same_status) bind(c, name='tribo_set_message')
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: ctx
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in) :: text(*)
+      integer(c_int) :: same_status
+    end function c_set_message
+
+    function c_get_ncontact(ctx, ncontact) result(status) bind(c, name='tribo_get_ncontact')
+      import :: c_int, c_ptr, c_size_t
+      type(c_ptr), value :: ctx
+      integer(c_size_t), intent(inout) :: ncontact
+      integer(c_int) :: status
+    end function c_get_ncontact
+  end interface
+
+contains
+
+  ! -------------------------------------------------------------------------------------------------------------------- objects
+
+  !> Releases the object; one that has not been created is fine.
+  subroutine destroy(this)
+    class(tribo_object), intent(inout) :: this
+    if (this%handle /= 0 .and. .not. this%lent) call c_handle_drop(this%handle)
+    this%handle = 0
+    this%lent = .false.
+  end subroutine destroy
+
+  impure elemental subroutine finalize(this)
+    type(tribo_object), intent(inout) :: this
+    call this%destroy()
+  end subroutine finalize
+
+  !> Null if it has not been created, or has been destroyed.
+  pure type(c_ptr) function object_of(this)
+    class(tribo_object), intent(in) :: this
+    object_of = c_handle_find(this%handle)
+  end function object_of
+
+  !> Gives an object of the library to this, in the place of the one before. remove is what destroys it.
+  integer(c_int) function adopt(this, object, remove) result(status)
+    class(tribo_object), intent(inout) :: this
+    type(c_ptr), intent(in) :: object
+    type(c_funptr), value :: remove ! by reference gfortran would keep the address in read-only memory
+    integer(c_int64_t) :: handle
+
+    handle = c_handle_add(object, remove)
+    status = TRIBO_ERR_MEMORY
+    if (handle == 0) return
+    call this%destroy()
+    this%handle = handle
+    status = TRIBO_OK
+  end function adopt
+
+  !> Lets this name an object of another owner's, by its number.
+  subroutine lend(this, handle)
+    class(tribo_object), intent(inout) :: this
+    integer(c_int64_t), intent(in) :: handle
+    call this%destroy()
+    this%handle = handle
+    this%lent = .true.
+  end subroutine lend
+
+  !> A number for what someone else destroys, and its end.
+  integer(c_int64_t) function register(object)
+    type(c_ptr), intent(in) :: object
+    register = c_handle_add(object, c_null_funptr)
+  end function register
+
+  subroutine forget(handle)
+    integer(c_int64_t), intent(in) :: handle
+    call c_handle_drop(handle)
+  end subroutine forget
+
+  ! ---------------------------------------------------------------------------------------------------------------------- calls
+
+  !> Begins a call on a context.
+  subroutine begin(this, w)
+    class(tribo_object), intent(in) :: this
+    type(work), intent(out) :: w
+    integer(c_size_t) :: n
+
+    w%ctx = object_of(this)
+    w%object = w%ctx
+    w%status = c_get_ncontact(w%ctx, n)
+    if (w%status == TRIBO_OK) w%n = int(n)
+  end subroutine begin
+
+  !> Ends every call: hands over its status, and the text of an error; where there is no stat to take it, an error ends the program.
+  subroutine finish(w, stat, errmsg)
+    type(work), intent(in) :: w
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    character(len=:), allocatable :: found
+
+    if (present(stat)) stat = int(w%status)
+    if (w%status == TRIBO_OK) return
+    call message_of(w, found)
+    if (present(errmsg)) errmsg = found
+    if (present(stat)) return
+    write (error_unit, '(2a)') 'tribo: ', found
+    error stop 1
+  end subroutine finish
+
+  !> The first error of a call: keeps its text on the context.
+  subroutine fail(w, status, text)
+    type(work), intent(inout) :: w
+    integer, intent(in) :: status
+    character(len=*), intent(in) :: text
+    if (w%status /= TRIBO_OK) return
+    w%status = c_set_message(w%ctx, int(status, c_int), text // c_null_char)
+    w%text = text
+  end subroutine fail
+
+  !> The same for one of many values.
+  subroutine fail_at(w, status, name, i, value, text)
+    type(work), intent(inout) :: w
+    integer, intent(in) :: status, i, value
+    character(len=*), intent(in) :: name, text
+    character(len=200) :: full
+    write (full, '(2a,i0,a,i0,2a)') name, '[', i - 1, '] = ', value, ' ', text
+    call fail(w, status, trim(full))
+  end subroutine fail_at
+
+  !> Expects a vector of n values, or a matrix of n by n or rows by n.
+  subroutine expect_vector(w, name, x, n)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(:)
+    integer, intent(in) :: n
+    if (size(x) /= n) call expect_shape(w, name, shape(x), [n])
+  end subroutine expect_vector
+
+  subroutine expect_matrix(w, name, x, n, rows)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(:,:)
+    integer, intent(in) :: n
+    integer, intent(in), optional :: rows
+    integer :: wanted(2)
+    wanted = n
+    if (present(rows)) wanted(1) = rows
+    call expect_shape(w, name, shape(x), wanted)
+  end subroutine expect_matrix
+
+  !> Expects one value a contact, or a matrix of them, in an output that may be absent, and so goes to the library by its address.
+  subroutine find_vector(w, name, x, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(inout), contiguous, target :: x(:)
+    type(c_ptr), intent(inout) :: address
+    call expect_size(w, name, x, w%n)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_vector
+
+  subroutine find_matrix(w, name, x, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(inout), contiguous, target :: x(:,:)
+    type(c_ptr), intent(inout) :: address
+    call expect_size(w, name, x, w%n)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_matrix
+
+  subroutine find_input(w, name, x, n, address)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in), contiguous, target :: x(:)
+    integer, intent(in) :: n
+    type(c_ptr), intent(inout) :: address
+    call expect_size(w, name, x, n)
+    if (size(x) > 0) address = c_loc(x)
+  end subroutine find_input
+
+  subroutine expect_shape(w, name, found, wanted)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: found(:), wanted(:)
+    character(len=120) :: text
+
+    if (all(found == wanted)) return
+    write (text, '(2a,*(i0,:," x "))') name, ' has size ', found
+    write (text, '(2a,*(i0,:," x "))') trim(text), ', not ', wanted
+    call fail(w, TRIBO_ERR_SIZE, trim(text))
+  end subroutine expect_shape
+
+  !> Expects a number that is not negative.
+  subroutine expect_count(w, name, n)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: n
+    character(len=60) :: text
+    if (n >= 0) return
+    write (text, '(2a,i0,a)') name, ' = ', n, ' is negative'
+    call fail(w, TRIBO_ERR_NEGATIVE, trim(text))
+  end subroutine expect_count
+
+  !> Compressed rows as far as sizes and indices go. As in the library's messages indices count from 0 here, see from_one.
+  subroutine check_rows(w, rowptr, col, val, rows, columns)
+    type(work), intent(inout) :: w
+    integer, intent(in) :: rowptr(:), col(:), rows, columns
+    real(dp), intent(in) :: val(:)
+    integer :: i, k
+
+    call expect_shape(w, 'rowptr', shape(rowptr), [rows + 1])
+    call expect_shape(w, 'val', shape(val), [size(col)])
+    if (w%status /= TRIBO_OK) return
+    if (rowptr(1) /= 1) call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', 1, rowptr(1), 'is not 1')
+    do i = 2, rows + 1
+      if (rowptr(i) < rowptr(i - 1)) call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', i, rowptr(i), 'is less than the one before')
+    end do
+    if (rowptr(rows + 1) /= size(col) + 1) then
+      call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', rows + 1, rowptr(rows + 1), 'does not end where col does')
+    end if
+    do k = 1, size(col)
+      if (col(k) < 1 .or. col(k) > columns) call fail_at(w, TRIBO_ERR_RANGE, 'col', k, col(k), 'is out of range')
+    end do
+  end subroutine check_rows
+
+  elemental integer(c_size_t) function from_zero(i)
+    integer, intent(in) :: i
+    from_zero = int(i, c_size_t) - 1
+  end function from_zero
+
+  !> x = transpose(x), which would allocate.
+  pure subroutine transpose_in_place(x)
+    real(dp), intent(inout) :: x(:,:)
+    real(dp) :: upper
+    integer :: i, j
+
+    do j = 2, size(x, 2)
+      do i = 1, j - 1
+        upper = x(i, j)
+        x(i, j) = x(j, i)
+        x(j, i) = upper
+      end do
+    end do
+  end subroutine transpose_in_place
+
+  ! ---------------------------------------------------------------------------------------------------------------------- texts
+  ! No function that returns a text of deferred length is called in here: gfortran keeps the length in static memory, which
+  ! threads would share.
+
+  !> The text of a C string; empty for none.
+  subroutine to_text(s, text)
+    type(c_ptr), intent(in) :: s
+    character(len=:), allocatable, intent(out) :: text
+    character(kind=c_char), pointer :: chars(:)
+    integer :: i
+
+    if (c_associated(s)) then
+      call c_f_pointer(s, chars, [c_strlen(s)])
+      allocate (character(len=size(chars)) :: text)
+      do i = 1, size(chars)
+        text(i:i) = chars(i)
+      end do
+    else
+      text = ''
+    end if
+  end subroutine to_text
+
+  !> What the last call that failed found.
+  subroutine message_of(w, text)
+    type(work), intent(in) :: w
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable :: zero
+
+    if (allocated(w%text)) then
+      call from_one(w%text, text)
+    else if (c_associated(w%ctx)) then
+      call to_text(c_message(w%ctx), zero)
+      call from_one(zero, text)
+    else if (w%status /= TRIBO_ERR_NULL) then
+      call to_text(c_strerror(w%status), text)
+    else
+      text = 'the ' // trim(w%kind) // ' has not been created, or has been destroyed'
+    end if
+  end subroutine message_of
+
+  !> A message for Fortran. The library counts from 0 and writes x[i][j]; here it counts from 1, and is x(i,j). In the library's
+  !> messages an index stands in brackets or after one of the words below, and nothing else does (a test sees to that).
+  subroutine from_one(zero, text)
+    character(len=*), intent(in) :: zero
+    character(len=:), allocatable, intent(out) :: text
+    character(len=*), parameter :: words(5) = &
+      [character(len=18) :: 'contact', 'contacts', 'column', 'degree of freedom', 'mode']
+    character(len=20) :: index
+    logical :: is_index
+    integer :: i, k, length, number
+
+    text = ''
+    is_index = .false.
+    i = 1
+    do while (i <= len(zero))
+      length = max(1, verify(zero(i:) // '.', '0123456789') - 1)
+      select case (zero(i:i))
+      case ('0':'9')
+        is_index = ends(zero(:i - 1), '[') .or. (is_index .and. ends(text, ', '))
+        do k = 1, size(words)
+          is_index = is_index .or. ends(' ' // text, ' ' // trim(words(k)) // ' ')
+        end do
+        if (is_index) then
+          read (zero(i:i + length - 1), *) number
+          write (index, '(i0)') number + 1
+          text = text // trim(index)
+        else
+          text = text // zero(i:i + length - 1)
+        end if
+      case ('[')
+        if (ends(text, ')')) then
+          text(len(text):) = ','
+        else
+          text = text // '('
+        end if
+      case (']')
+        text = text // ')'
+      case default
+        text = text // zero(i:i)
+      end select
+      i = i + length
+    end do
+  end subroutine from_one
+
+  pure logical function ends(text, word)
+    character(len=*), intent(in) :: text, word
+    ends = len(text) >= len(word)
+    if (ends) ends = text(len(text) - len(word) + 1:) == word
+  end function ends
+end module tribo_support

@@ -1,0 +1,554 @@
+C     The fixed-form routines, called as a code of 1978 would: no module,
+C     no interface block, every array a piece of a bigger one.
+C     First everything that can succeed, with each of its results
+C     compared to that of the C call (see scene.c); then every error.
+      PROGRAM LEGACY
+      INTEGER NALIVE
+      EXTERNAL NALIVE
+      CALL SCPLAY
+      CALL LAWS
+      CALL PLAY
+      CALL SCEND
+      CALL NOHAND
+      CALL ERRORS
+      CALL HANDLE
+      CALL EXPECT('all deleted', NALIVE() .EQ. 0)
+      CALL REPORT_ALL
+      END
+C
+      SUBROUTINE LAWS
+      INTEGER N
+      PARAMETER (N = 4)
+      INTEGER IVER, NLAW, LAW, IERR, I, J, IROW(5), ICOL(8), JROW(5)
+      INTEGER JCOL(5)
+      DOUBLE PRECISION FMUN(N), EPS(N), D(N), R(N,N), VAL(8), RM(6)
+      DOUBLE PRECISION RJ(5), FLO(N), FUP(N), V(N), A(N), FEQ(N), W(4)
+      CHARACTER*200 TEXT
+      CALL SCDATA(FMUN, EPS, D, R, N, IROW, ICOL, VAL, RM, JROW, JCOL,
+     1            RJ, FLO, FUP)
+      CALL SCSTAT(4, V, A, FEQ)
+      CALL TRBVER(IVER, IERR)
+      CALL CMPI('TRBVER', IVER)
+      CALL TRBVST(TEXT, IERR)
+      CALL CMPT('TRBVST', TEXT)
+      DO 10 I = -1, 63
+         CALL TRBTXT(I, TEXT, IERR)
+         CALL CMPT('TRBTXT', TEXT)
+   10 CONTINUE
+      CALL TRBNLW(NLAW, IERR)
+      CALL CMPI('TRBNLW', NLAW)
+      DO 40 LAW = -1, NLAW
+         TEXT = ' '
+         CALL TRBLNM(LAW, TEXT, IERR)
+         CALL CMPT('TRBLNM', TEXT)
+         IF (IERR .EQ. 0) THEN
+            CALL TRBFND(TEXT, J, IERR)
+            CALL EXPECT('TRBFND', J .EQ. LAW .AND. IERR .EQ. 0)
+         ELSE
+            CALL EXPECT('TRBLNM of no law', IERR .EQ. 5)
+         END IF
+         TEXT = ' '
+         CALL TRBREF(LAW, TEXT, IERR)
+         CALL CMPT('TRBREF', TEXT)
+         DO 30 I = 1, N
+            DO 20 J = 1, 4
+               W(J) = 0D0
+   20       CONTINUE
+            CALL TRBEVL(LAW, V(I), FEQ(I), FMUN(I), EPS(I), W(1), W(2),
+     1                  W(3), W(4), IERR)
+            CALL CMPI('TRBEVL', IERR)
+            CALL CMPR('TRBEVL', 4, W)
+   30    CONTINUE
+   40 CONTINUE
+      J = -7
+      CALL TRBFND('quin', J, IERR)
+      CALL EXPECT('TRBFND of no law', J .EQ. -7 .AND. IERR .EQ. 7)
+      END
+C
+      SUBROUTINE PLAY
+      INTEGER N, LDR
+      PARAMETER (N = 4, LDR = 7)
+      INTEGER IH, IH2, IERR, IFORM, ICPL, LAW, NLAW
+      INTEGER IWORK(40)
+      DOUBLE PRECISION W(200), R(LDR,LDR)
+      CHARACTER*40 TEXT
+C     Where things begin in W and IWORK
+      INTEGER LF, LE, LD, LV, LM, LJ, LLO, LUP
+      PARAMETER (LF = 3, LE = 9, LD = 15, LV = 21, LM = 31, LJ = 41,
+     1           LLO = 51, LUP = 61)
+      CALL SCDATA(W(LF), W(LE), W(LD), R(2,1), LDR, IWORK(2), IWORK(9),
+     1            W(LV), W(LM), IWORK(19), IWORK(29), W(LJ), W(LLO),
+     2            W(LUP))
+      CALL TRBNEW(N, IH, IERR)
+      CALL CMPI('TRBNEW', IERR)
+      TEXT = 'as is'
+      CALL TRBMSG(IH, TEXT, IERR)
+      CALL CMPT('TRBMSG', TEXT)
+      CALL SETTIN(IH)
+      CALL QUERY(IH)
+      CALL TRBLIM(IH, N, W(LF), IERR)
+      CALL CMPI('TRBLIM', IERR)
+      CALL TRBEPS(IH, N, W(LE), IERR)
+      CALL CMPI('TRBEPS', IERR)
+      CALL SETTIN(IH)
+      CALL TRBNLW(NLAW, IERR)
+      DO 30 IFORM = 1, 4
+         IF (IFORM .EQ. 1) CALL TRBOPD(IH, N, W(LD), IERR)
+         IF (IFORM .EQ. 2) CALL TRBOPF(IH, N, R(2,1), LDR, IERR)
+         IF (IFORM .EQ. 3) CALL TRBOPS(IH, N, IWORK(2), IWORK(9), W(LV),
+     1                                 IERR)
+         IF (IFORM .EQ. 4) CALL TRBOPM(IH, N, 6, W(LM), IWORK(19),
+     1                                 IWORK(29), W(LJ), IERR)
+         CALL CMPI('TRBOP', IERR)
+         DO 20 ICPL = 0, 1
+            CALL TRBCPL(IH, ICPL, IERR)
+            CALL CMPI('TRBCPL', IERR)
+            DO 10 LAW = 0, NLAW - 1
+               CALL TRBLNM(LAW, TEXT, IERR)
+               IF (MOD(LAW, 2) .EQ. 0) CALL TRBLAW(IH, LAW, IERR)
+               IF (MOD(LAW, 2) .EQ. 1) CALL TRBNAM(IH, TEXT, IERR)
+               CALL CMPI('TRBLAW', IERR)
+               CALL SETTIN(IH)
+               CALL FORCES(IH, W(LLO), W(LUP))
+   10       CONTINUE
+   20    CONTINUE
+   30 CONTINUE
+      CALL TRBCPL(IH, 0, IERR)
+      CALL CMPI('TRBCPL', IERR)
+      CALL TRBSTP(IH, 0.01D0, 0.4D0, IERR)
+      CALL CMPI('TRBSTP', IERR)
+      CALL SETTIN(IH)
+      CALL TRBSTP(IH, 0.01D0, 1D0, IERR)
+      CALL CMPI('TRBSTP', IERR)
+      CALL SETTIN(IH)
+      CALL FORCES(IH, W(LLO), W(LUP))
+      CALL TRBEP1(IH, 0.03125D0, IERR)
+      CALL CMPI('TRBEP1', IERR)
+      CALL TRBLM1(IH, 0.75D0, IERR)
+      CALL CMPI('TRBLM1', IERR)
+      CALL SETTIN(IH)
+      CALL TRBCPY(IH, IH2, IERR)
+      CALL CMPI('TRBCPY', IERR)
+      CALL TRBLAW(IH, 2, IERR)
+      CALL CMPI('TRBLAW', IERR)
+      CALL FORCES(IH, W(LLO), W(LUP))
+      CALL SETTIN(IH2)
+      CALL QUERY(IH2)
+      CALL FORCES(IH2, W(LLO), W(LUP))
+      CALL TRBDEL(IH, IERR)
+      CALL EXPECT('TRBDEL', IERR .EQ. 0)
+      CALL TRBDEL(IH2, IERR)
+      CALL EXPECT('TRBDEL of the copy', IERR .EQ. 0)
+      END
+C
+      SUBROUTINE SETTIN(IH)
+      INTEGER IH, N, LAW, ICPL, IERR
+      DOUBLE PRECISION X(6)
+      CALL TRBNUM(IH, N, IERR)
+      CALL CMPI('TRBNUM', IERR)
+      CALL CMPI('TRBNUM', N)
+      CALL TRBGLW(IH, LAW, IERR)
+      CALL CMPI('TRBGLW', IERR)
+      CALL CMPI('TRBGLW', LAW)
+      CALL TRBGCP(IH, ICPL, IERR)
+      CALL CMPI('TRBGCP', IERR)
+      CALL CMPI('TRBGCP', ICPL)
+      X(1) = 5D0
+      X(6) = 5D0
+      CALL TRBGLM(IH, N, X(2), IERR)
+      CALL CMPI('TRBGLM', IERR)
+      CALL CMPR('TRBGLM', N, X(2))
+      CALL TRBGEP(IH, N, X(2), IERR)
+      CALL CMPI('TRBGEP', IERR)
+      CALL CMPR('TRBGEP', N, X(2))
+      CALL EXPECT('around it', X(1) .EQ. 5D0 .AND. X(6) .EQ. 5D0)
+      END
+C
+      SUBROUTINE QUERY(IH)
+      INTEGER IH, IERR, MODE(6), I, IVAL
+      DOUBLE PRECISION VAL(1), X(4)
+      DO 10 I = 1, 6
+         MODE(I) = 9
+   10 CONTINUE
+      CALL TRBMOD(IH, 4, MODE(2), IERR)
+      CALL CMPI('TRBMOD', IERR)
+      DO 20 I = 1, 4
+         X(I) = MODE(I + 1)
+   20 CONTINUE
+      CALL CMPR('TRBMOD', 4, X)
+      CALL EXPECT('around', MODE(1) .EQ. 9 .AND. MODE(6) .EQ. 9)
+      DO 30 I = 0, 7
+         CALL TRBCNT(IH, I, IVAL, IERR)
+         CALL CMPI('TRBCNT', IERR)
+         CALL CMPI('TRBCNT', IVAL)
+   30 CONTINUE
+      DO 40 I = 0, 2
+         CALL TRBVAL(IH, I, VAL(1), IERR)
+         CALL CMPI('TRBVAL', IERR)
+         CALL CMPR('TRBVAL', 1, VAL)
+   40 CONTINUE
+      END
+C
+      SUBROUTINE FORCES(IH, FLO, FUP)
+      INTEGER N, LDJ
+      PARAMETER (N = 4, LDJ = 6)
+      INTEGER IH, IERR, K, I, J
+      DOUBLE PRECISION FLO(*), FUP(*), V(N), A(N), FEQ(N)
+      DOUBLE PRECISION F(N+2), G(N+2), X(N,3), DV(LDJ,N), DA(LDJ,N)
+      DOUBLE PRECISION QV(N,N), QA(N,N), ROW(N)
+      LOGICAL SAME
+      F(N+1) = 5D0
+      DO 100 K = 1, 5
+         CALL SCSTAT(K, V, A, FEQ)
+         CALL TRBFRC(IH, N, V, FEQ, F, IERR)
+         CALL CMPI('TRBFRC', IERR)
+         CALL CMPR('TRBFRC', N, F)
+         CALL TRBFTN(IH, N, V, FEQ, F, X(1,1), X(1,2), X(1,3), IERR)
+         CALL CMPI('TRBFTN', IERR)
+         CALL CMPR('TRBFTN', N, F)
+         CALL CMPR('TRBFTN', 3*N, X)
+C        On failure C's outputs were zero here, or the forces before
+         CALL CLEAR(N, G)
+         CALL TRBBAL(IH, N, V, A, X, F, IERR)
+         CALL CMPI('TRBBAL', IERR)
+         CALL CMPR('TRBBAL, FEQ', N, X)
+         CALL CMPR('TRBBAL, F', N, F)
+         CALL QUERY(IH)
+         CALL CLEAR(LDJ*N, DV)
+         CALL CLEAR(LDJ*N, DA)
+         CALL CLEAR(N*N, QV)
+         CALL CLEAR(N*N, QA)
+         CALL TRBBTN(IH, N, V, A, X, F, DV, DA, LDJ, IERR)
+         CALL CMPI('TRBBTN', IERR)
+         CALL CMPR('TRBBTN, FEQ', N, X)
+         CALL CMPR('TRBBTN, F', N, F)
+         DO 20 I = 1, N
+            DO 10 J = 1, N
+               ROW(J) = DV(I,J)
+   10       CONTINUE
+            CALL CMPR('TRBBTN, DFDV', N, ROW)
+   20    CONTINUE
+         DO 40 I = 1, N
+            DO 30 J = 1, N
+               ROW(J) = DA(I,J)
+   30       CONTINUE
+            CALL CMPR('TRBBTN, DFDA', N, ROW)
+   40    CONTINUE
+         CALL TRBSTF(IH, N, 0.125D0, V, F, IERR)
+         CALL CMPI('TRBSTF', IERR)
+         CALL CMPR('TRBSTF', N, F)
+         CALL QUERY(IH)
+         CALL TRBBOX(IH, N, A, FLO, FUP, F, IERR)
+         CALL CMPI('TRBBOX', IERR)
+         CALL CMPR('TRBBOX', N, F)
+         CALL TRBACC(IH, N, V, FEQ, IERR)
+         CALL CMPI('TRBACC', IERR)
+C        Below the matrix, and past the vector, nothing has changed.
+         SAME = F(N+1) .EQ. 5D0
+         DO 50 J = 1, N
+            SAME = SAME .AND. DV(5,J) .EQ. 0D0 .AND. DA(6,J) .EQ. 0D0
+   50    CONTINUE
+         CALL EXPECT('around the forces', SAME)
+  100 CONTINUE
+      END
+C
+      SUBROUTINE CLEAR(N, X)
+      INTEGER N, I
+      DOUBLE PRECISION X(N)
+      DO 10 I = 1, N
+         X(I) = 0D0
+   10 CONTINUE
+      END
+C
+C     Every routine that takes a handle, with one that is none.
+      SUBROUTINE NOHAND
+      INTEGER N
+      PARAMETER (N = 2)
+      INTEGER IHS(5), IH, I, K, IERR, IH2, J, IROW(3), ICOL(2), NONE
+      DOUBLE PRECISION X(N), Y(N), Z(N), D(N), E(N), Q(N,N), P(N,N)
+      CHARACTER*80 TEXT
+      CHARACTER*80 SAYS
+      CALL TRBNEW(N, IHS(1), IERR)
+      CALL TRBDEL(IHS(1), IERR)
+      CALL EXPECT('deleted', IERR .EQ. 0)
+      IHS(2) = 0
+      IHS(3) = -IHS(1)
+      IHS(4) = 2147483647
+      IHS(5) = 12345
+      NONE = -777
+      DO 10 I = 1, N
+         X(I) = 1D0
+         Y(I) = -777D0
+         Z(I) = -777D0
+         D(I) = -777D0
+         E(I) = -777D0
+         IROW(I) = I
+         ICOL(I) = I
+   10 CONTINUE
+      IROW(3) = 3
+      CALL CLEAR(N*N, Q)
+      CALL CLEAR(N*N, P)
+      DO 100 K = 1, 5
+         IH = IHS(K)
+         J = NONE
+         IH2 = NONE
+         WRITE (SAYS, 20) IH
+   20    FORMAT ('IH = ', I11,
+     1           ' is no handle: it was never given, or has been delet',
+     2           'ed')
+         CALL TRBMSG(IH, TEXT, IERR)
+         CALL EXPECT('TRBMSG', IERR .EQ. 1)
+         CALL SQUEEZ(SAYS)
+         CALL EXPECT('text of no handle', TEXT .EQ. SAYS)
+         CALL TRBCPY(IH, IH2, IERR)
+         CALL WANTED('TRBCPY', IH, IERR, 1, SAYS)
+         CALL TRBDEL(IH, IERR)
+         CALL WANTED('TRBDEL', IH, IERR, 1, SAYS)
+         CALL TRBNUM(IH, J, IERR)
+         CALL WANTED('TRBNUM', IH, IERR, 1, SAYS)
+         CALL TRBLAW(IH, 0, IERR)
+         CALL WANTED('TRBLAW', IH, IERR, 1, SAYS)
+         CALL TRBNAM(IH, 'coulomb', IERR)
+         CALL WANTED('TRBNAM', IH, IERR, 1, SAYS)
+         CALL TRBGLW(IH, J, IERR)
+         CALL WANTED('TRBGLW', IH, IERR, 1, SAYS)
+         CALL TRBLIM(IH, N, X, IERR)
+         CALL WANTED('TRBLIM', IH, IERR, 1, SAYS)
+         CALL TRBLM1(IH, 1D0, IERR)
+         CALL WANTED('TRBLM1', IH, IERR, 1, SAYS)
+         CALL TRBGLM(IH, N, Y, IERR)
+         CALL WANTED('TRBGLM', IH, IERR, 1, SAYS)
+         CALL TRBEPS(IH, N, X, IERR)
+         CALL WANTED('TRBEPS', IH, IERR, 1, SAYS)
+         CALL TRBEP1(IH, 1D0, IERR)
+         CALL WANTED('TRBEP1', IH, IERR, 1, SAYS)
+         CALL TRBSTP(IH, 1D0, 1D0, IERR)
+         CALL WANTED('TRBSTP', IH, IERR, 1, SAYS)
+         CALL TRBGEP(IH, N, Y, IERR)
+         CALL WANTED('TRBGEP', IH, IERR, 1, SAYS)
+         CALL TRBOPD(IH, N, X, IERR)
+         CALL WANTED('TRBOPD', IH, IERR, 1, SAYS)
+         CALL TRBOPF(IH, N, Q, N, IERR)
+         CALL WANTED('TRBOPF', IH, IERR, 1, SAYS)
+         CALL TRBOPS(IH, N, IROW, ICOL, X, IERR)
+         CALL WANTED('TRBOPS', IH, IERR, 1, SAYS)
+         CALL TRBOPM(IH, N, N, X, IROW, ICOL, X, IERR)
+         CALL WANTED('TRBOPM', IH, IERR, 1, SAYS)
+         CALL TRBCPL(IH, 0, IERR)
+         CALL WANTED('TRBCPL', IH, IERR, 1, SAYS)
+         CALL TRBGCP(IH, J, IERR)
+         CALL WANTED('TRBGCP', IH, IERR, 1, SAYS)
+         CALL TRBFRC(IH, N, X, X, Y, IERR)
+         CALL WANTED('TRBFRC', IH, IERR, 1, SAYS)
+         CALL TRBFTN(IH, N, X, X, Y, Z, D, E, IERR)
+         CALL WANTED('TRBFTN', IH, IERR, 1, SAYS)
+         CALL TRBBAL(IH, N, X, X, Y, Z, IERR)
+         CALL WANTED('TRBBAL', IH, IERR, 1, SAYS)
+         CALL TRBBTN(IH, N, X, X, Y, Z, Q, P, N, IERR)
+         CALL WANTED('TRBBTN', IH, IERR, 1, SAYS)
+         CALL TRBSTF(IH, N, 1D0, X, Y, IERR)
+         CALL WANTED('TRBSTF', IH, IERR, 1, SAYS)
+         CALL TRBBOX(IH, N, X, X, X, Y, IERR)
+         CALL WANTED('TRBBOX', IH, IERR, 1, SAYS)
+         CALL TRBACC(IH, N, X, X, IERR)
+         CALL WANTED('TRBACC', IH, IERR, 1, SAYS)
+         CALL TRBMOD(IH, N, ICOL, IERR)
+         CALL WANTED('TRBMOD', IH, IERR, 1, SAYS)
+         CALL TRBCNT(IH, 0, J, IERR)
+         CALL WANTED('TRBCNT', IH, IERR, 1, SAYS)
+         CALL TRBVAL(IH, 0, Y(1), IERR)
+         CALL WANTED('TRBVAL', IH, IERR, 1, SAYS)
+         CALL EXPECT('integers stay', J .EQ. NONE .AND. IH2 .EQ. NONE
+     1      .AND. ICOL(1) .EQ. 1 .AND. ICOL(2) .EQ. 2)
+         CALL EXPECT('reals stay', Y(1) .EQ. -777D0 .AND. Y(2) .EQ.
+     1      -777D0 .AND. Z(1) .EQ. -777D0 .AND. D(2) .EQ. -777D0 .AND.
+     2      E(1) .EQ. -777D0 .AND. Q(1,2) .EQ. 0D0 .AND. P(2,1) .EQ.
+     3      0D0)
+  100 CONTINUE
+      END
+C
+C     Takes the blanks after an equals sign but for one.
+      SUBROUTINE SQUEEZ(TEXT)
+      CHARACTER*(*) TEXT
+   10 IF (INDEX(TEXT, '=  ') .EQ. 0) RETURN
+      TEXT = TEXT(1:INDEX(TEXT, '=  ')) // TEXT(INDEX(TEXT, '=  ')+2:)
+      GO TO 10
+      END
+C
+C     The errors of calls with a handle that is one.
+      SUBROUTINE ERRORS
+      INTEGER N
+      PARAMETER (N = 3)
+      INTEGER IH, IERR, J, NM, K, IROW(4), ICOL(4), MODE(3), NOS(3)
+      DOUBLE PRECISION X(4), Y(4), Z(4), D(4), E(4), Q(4,4), P(4,4)
+      DOUBLE PRECISION NEG(3), VAL(4)
+      CHARACTER*60 SAYS
+      LOGICAL SAME
+      DATA NEG /1D0, 2D0, -1D0/, VAL /1D0, 1D0, 1D0, 1D0/
+      DATA NOS /2, 4, -3/
+      IH = -777
+      CALL TRBNEW(-1, IH, IERR)
+      CALL EXPECT('TRBNEW', IERR .EQ. 3 .AND. IH .EQ. -777)
+      CALL TRBNEW(N, IH, IERR)
+      CALL EXPECT('TRBNEW', IERR .EQ. 0 .AND. IH .GT. 0)
+      J = -777
+      CALL TRBEVL(99, 0D0, 0D0, 1D0, 1D0, X(1), X(2), X(3), X(4), IERR)
+      CALL EXPECT('TRBEVL', IERR .EQ. 5)
+      DO 10 K = 1, 4
+         X(K) = 0D0
+         Y(K) = -777D0
+         Z(K) = -777D0
+         D(K) = -777D0
+         E(K) = -777D0
+   10 CONTINUE
+      CALL CLEAR(16, Q)
+      CALL CLEAR(16, P)
+C     A number of contacts that is not that of the handle
+      DO 30 K = 1, 3
+         NM = NOS(K)
+         WRITE (SAYS, 20) NM
+   20    FORMAT ('N = ', I2, ', but the number of contacts is 3')
+         CALL SQUEEZ(SAYS)
+         CALL TRBLIM(IH, NM, X, IERR)
+         CALL WANTED('TRBLIM', IH, IERR, 6, SAYS)
+         CALL TRBGLM(IH, NM, Y, IERR)
+         CALL WANTED('TRBGLM', IH, IERR, 6, SAYS)
+         CALL TRBEPS(IH, NM, X, IERR)
+         CALL WANTED('TRBEPS', IH, IERR, 6, SAYS)
+         CALL TRBGEP(IH, NM, Y, IERR)
+         CALL WANTED('TRBGEP', IH, IERR, 6, SAYS)
+         CALL TRBOPD(IH, NM, X, IERR)
+         CALL WANTED('TRBOPD', IH, IERR, 6, SAYS)
+         CALL TRBOPF(IH, NM, Q, 4, IERR)
+         CALL WANTED('TRBOPF', IH, IERR, 6, SAYS)
+         CALL TRBOPS(IH, NM, IROW, ICOL, VAL, IERR)
+         CALL WANTED('TRBOPS', IH, IERR, 6, SAYS)
+         CALL TRBOPM(IH, NM, 2, X, IROW, ICOL, VAL, IERR)
+         CALL WANTED('TRBOPM', IH, IERR, 6, SAYS)
+         CALL TRBFRC(IH, NM, X, X, Y, IERR)
+         CALL WANTED('TRBFRC', IH, IERR, 6, SAYS)
+         CALL TRBFTN(IH, NM, X, X, Y, Z, D, E, IERR)
+         CALL WANTED('TRBFTN', IH, IERR, 6, SAYS)
+         CALL TRBBAL(IH, NM, X, X, Y, Z, IERR)
+         CALL WANTED('TRBBAL', IH, IERR, 6, SAYS)
+         CALL TRBBTN(IH, NM, X, X, Y, Z, Q, P, 4, IERR)
+         CALL WANTED('TRBBTN', IH, IERR, 6, SAYS)
+         CALL TRBSTF(IH, NM, 1D0, X, Y, IERR)
+         CALL WANTED('TRBSTF', IH, IERR, 6, SAYS)
+         CALL TRBBOX(IH, NM, X, X, X, Y, IERR)
+         CALL WANTED('TRBBOX', IH, IERR, 6, SAYS)
+         CALL TRBACC(IH, NM, X, X, IERR)
+         CALL WANTED('TRBACC', IH, IERR, 6, SAYS)
+         MODE(1) = -777
+         CALL TRBMOD(IH, NM, MODE, IERR)
+         CALL WANTED('TRBMOD', IH, IERR, 6, SAYS)
+   30 CONTINUE
+      SAME = MODE(1) .EQ. -777
+      DO 40 K = 1, 4
+         SAME = SAME .AND. Y(K) .EQ. -777D0 .AND. Z(K) .EQ. -777D0 .AND.
+     1      D(K) .EQ. -777D0 .AND. E(K) .EQ. -777D0
+   40 CONTINUE
+      CALL EXPECT('outputs stay', SAME)
+C     Values
+      CALL TRBLIM(IH, N, NEG, IERR)
+      CALL WANTED('TRBLIM', IH, IERR, 3, 'limit(3) = -1 is negative')
+      CALL TRBLM1(IH, -2D0, IERR)
+      CALL WANTED('TRBLM1', IH, IERR, 3, 'limit = -2 is negative')
+      CALL TRBEPS(IH, N, NEG, IERR)
+      CALL WANTED('TRBEPS', IH, IERR, 4,
+     1            'epsilon(3) = -1 is not positive')
+      CALL TRBEP1(IH, 0D0, IERR)
+      CALL WANTED('TRBEP1', IH, IERR, 4, 'epsilon = 0 is not positive')
+      CALL TRBSTP(IH, -1D0, 1D0, IERR)
+      CALL WANTED('TRBSTP', IH, IERR, 4, 'dt = -1 is not positive')
+      CALL TRBSTP(IH, 1D0, 0D0, IERR)
+      CALL WANTED('TRBSTP', IH, IERR, 4,
+     1            'lambda_dt = 0 is not positive')
+      CALL TRBLAW(IH, 6, IERR)
+      CALL WANTED('TRBLAW', IH, IERR, 5, 'law = 6 is none of the 6 laws'
+     1            )
+      CALL TRBNAM(IH, 'quin', IERR)
+      CALL WANTED('TRBNAM', IH, IERR, 7, 'no law is called "quin"')
+      CALL TRBCPL(IH, 2, IERR)
+      CALL WANTED('TRBCPL', IH, IERR, 5,
+     1'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
+      CALL TRBOPD(IH, N, NEG, IERR)
+      CALL WANTED('TRBOPD', IH, IERR, 3, 'r(3) = -1 is negative')
+      CALL TRBOPF(IH, N, Q, 2, IERR)
+      CALL WANTED('TRBOPF', IH, IERR, 6, 'LDR = 2 is less than 3')
+      CALL TRBBTN(IH, N, X, X, Y, Z, Q, P, 2, IERR)
+      CALL WANTED('TRBBTN', IH, IERR, 6, 'LDJ = 2 is less than 3')
+      Q(1,1) = 1D0
+      Q(2,2) = 1D0
+      Q(3,3) = 1D0
+      Q(1,3) = 0.5D0
+      CALL TRBOPF(IH, N, Q, 4, IERR)
+      CALL WANTED('TRBOPF', IH, IERR, 20,
+     1            'r of contacts 1, 3 is 0.5 one way and 0 the other')
+      IROW(1) = 1
+      IROW(2) = 2
+      IROW(3) = 3
+      IROW(4) = 4
+      ICOL(1) = 1
+      ICOL(2) = 4
+      ICOL(3) = 3
+      CALL TRBOPS(IH, N, IROW, ICOL, VAL, IERR)
+      CALL WANTED('TRBOPS', IH, IERR, 5, 'col(2) = 4 is out of range')
+      ICOL(2) = 2
+      CALL TRBOPM(IH, N, 2, VAL, IROW, ICOL, VAL, IERR)
+      CALL WANTED('TRBOPM', IH, IERR, 5, 'col(3) = 3 is out of range')
+      IROW(4) = 0
+      CALL TRBOPS(IH, N, IROW, ICOL, VAL, IERR)
+      CALL WANTED('TRBOPS', IH, IERR, 6,
+     1            'rowptr(4) = 0 is less than the one before')
+      CALL TRBOPM(IH, N, 3, VAL, IROW, ICOL, VAL, IERR)
+      CALL WANTED('TRBOPM', IH, IERR, 6,
+     1            'rowptr(4) = 0 is less than the one before')
+      CALL TRBOPM(IH, N, -1, VAL, IROW, ICOL, VAL, IERR)
+      CALL WANTED('TRBOPM', IH, IERR, 6, 'NDOF = -1 is less than 0')
+      CALL TRBMOD(IH, N, MODE, IERR)
+      CALL WANTED('TRBMOD', IH, IERR, 8,
+     1            'no tribo_balance or tribo_step_force yet')
+      CALL TRBCNT(IH, 99, J, IERR)
+      CALL WANTED('TRBCNT', IH, IERR, 5, 'which = 99 is no count')
+      CALL TRBVAL(IH, -1, Y(1), IERR)
+      CALL WANTED('TRBVAL', IH, IERR, 5,
+     1            'which = -1 is no real quantity')
+      CALL TRBSTF(IH, N, 0D0, X, Y, IERR)
+      CALL WANTED('TRBSTF', IH, IERR, 4, 'dt = 0 is not positive')
+      CALL TRBBOX(IH, N, X, VAL, X, Y, IERR)
+      CALL WANTED('TRBBOX', IH, IERR, 5,
+     1            'lower(1) = 1 is above upper(1) = 0')
+      CALL EXPECT('outputs', Y(1) .EQ. -777D0 .AND. J .EQ. -777)
+      CALL TRBDEL(IH, IERR)
+      CALL EXPECT('TRBDEL', IERR .EQ. 0)
+      END
+C
+C     No contacts are fine; handles are never given twice.
+      SUBROUTINE HANDLE
+      INTEGER IH, IERR, I, IOLD, IROW(1), ICOL(1), N
+      DOUBLE PRECISION X(1)
+      LOGICAL NEW
+      IROW(1) = 1
+      CALL TRBNEW(0, IH, IERR)
+      CALL TRBLIM(IH, 0, X, IERR)
+      CALL EXPECT('no contacts', IERR .EQ. 0)
+      CALL TRBOPS(IH, 0, IROW, ICOL, X, IERR)
+      CALL EXPECT('no contacts', IERR .EQ. 0)
+      CALL TRBOPF(IH, 0, X, 1, IERR)
+      CALL EXPECT('no contacts', IERR .EQ. 0)
+      CALL TRBBAL(IH, 0, X, X, X, X, IERR)
+      CALL EXPECT('no contacts', IERR .EQ. 0)
+      CALL TRBDEL(IH, IERR)
+C     A place in the table lasts for 2047 handles.
+      IOLD = IH
+      NEW = .TRUE.
+      DO 10 I = 1, 5000
+         CALL TRBNEW(1, IH, IERR)
+         NEW = NEW .AND. IERR .EQ. 0 .AND. IH .NE. IOLD .AND. IH .GT. 0
+         CALL TRBNUM(IOLD, N, IERR)
+         NEW = NEW .AND. IERR .EQ. 1
+         CALL TRBDEL(IH, IERR)
+   10 CONTINUE
+      CALL EXPECT('every handle is new', NEW)
+      END

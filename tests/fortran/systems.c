@@ -1,0 +1,175 @@
+/* What systems.f90 does from Fortran, through the C interface: see tape.h. */
+#include "tape.h"
+#include "tribo/tribo_gsl.h"
+
+#define DOF 4
+#define CONTACTS 3
+#define KNOTS 3
+
+static const double mass[DOF][DOF] = {{2.0, 0.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}, {0.0, 0.0, 1.5, 0.0}, {0.0, 0.0, 0.0, 0.5}};
+static const double stiffness[DOF][DOF] = {
+    {3.0, -1.0, 0.0, 0.0}, {-1.0, 2.0, -1.0, 0.0}, {0.0, -1.0, 2.0, -1.0}, {0.0, 0.0, -1.0, 1.0}};
+static const double damping[DOF][DOF] = {
+    {0.3, -0.05, 0.0, 0.0}, {-0.1, 0.2, -0.1, 0.0}, {0.0, -0.1, 0.2, -0.1}, {0.0, 0.0, -0.1, 0.1}};
+static const double direction[CONTACTS][DOF] = {{1.0, 0.0, 0.0, 0.0}, {0.0, 1.0, -1.0, 0.0}, {0.0, 0.0, 0.0, 2.0}};
+static const double cosine[DOF] = {1.0, 0.0, -0.5, 0.25}, sine[DOF] = {0.0, 0.75, 0.0, 0.5};
+static const double limits[CONTACTS] = {0.2, 0.1, 0.05};
+static const double motion[CONTACTS] = {0.1, 0.0, -0.2};
+static const double times[KNOTS] = {0.0, 1.0, 3.0}, values[KNOTS] = {0.0, 1.0, 0.5};
+static const double limit_table[KNOTS][CONTACTS] = {{0.2, 0.1, 0.05}, {0.3, 0.2, 0.1}, {0.1, 0.0, 0.15}};
+
+static void put_size(size_t n)
+{
+    put_one((double)n);
+}
+
+static int seen(double t, const double *y, int event, void *data)
+{
+    double *sums = data;
+    sums[0] += 1.0;
+    sums[1] += t;
+    sums[2] += y[0] * (1 + event);
+    return sums[0] >= sums[3] ? 3 : 0;
+}
+
+static void state(tribo_system *sys)
+{
+    const size_t n = tribo_system_dimension(sys), m = tribo_system_ncontact(sys);
+    double y[32], dydt[32], dfdy[32 * 32], dfdt[32], v[8], feq[8], f[8];
+    for (size_t i = 0; i < n; i++) {
+        y[i] = 0.1 * (double)(i + 1) - 0.35;
+    }
+    const gsl_odeiv2_system *s = tribo_system_odeiv2(sys);
+    put_one(s->function(0.5, y, dydt, s->params));
+    put(n, dydt);
+    put_one(s->jacobian(0.5, y, dfdy, dfdt, s->params));
+    put(n * n, dfdy);
+    put(n, dfdt);
+    put_one(tribo_system_contacts(sys, 0.5, y, v, feq, f));
+    put(m, v);
+    put(m, feq);
+    put(m, f);
+    put_one(tribo_system_accept(sys, 0.5, y));
+}
+
+static void run(tribo_system *sys, const char *method, double most)
+{
+    const size_t n = tribo_system_dimension(sys);
+    double y[32] = {0.0}, sums[4] = {0.0, 0.0, 0.0, most}, t = 0.0;
+    tribo_driver *drv = NULL;
+    put_one(tribo_driver_create(&drv, sys, method, 0.05, 1e-5, 1e-5));
+    put_text(tribo_driver_method(drv));
+    put_one(tribo_driver_advance(drv, &t, 0.5, y));
+    put_one(tribo_driver_set_observer(drv, seen, sums));
+    put_one(tribo_driver_advance(drv, &t, 2.5, y));
+    put_one(t);
+    put(n, y);
+    put(3, sums);
+    put_one(tribo_driver_set_observer(drv, NULL, NULL));
+    put_one(tribo_driver_advance(drv, &t, 3.0, y));
+    put(3, sums);
+    put(n, y);
+    for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_EVENTS; which++) {
+        size_t count = 0;
+        put_one(tribo_driver_count(drv, which, &count));
+        put_size(count);
+    }
+    tribo_driver_destroy(drv);
+}
+
+static void sizes(const tribo_system *sys)
+{
+    put_size(tribo_system_ndof(sys));
+    put_size(tribo_system_ncontact(sys));
+    put_size(tribo_system_dimension(sys));
+}
+
+static void reference(tribo_system *sys)
+{
+    sizes(sys);
+    put_one(tribo_set_epsilon_all(tribo_system_context(sys), 0.05));
+    state(sys);
+    for (int i = 0; i < tribo_method_count(); i++) {
+        run(sys, tribo_method_name(i), 1e9);
+    }
+    tribo_system_destroy(sys);
+}
+
+static void linear(tribo_system *sys, int reduced)
+{
+    sizes(sys);
+    double omega[DOF], full[DOF];
+    const double amplitudes[2] = {0.25, -0.5};
+    put_one(tribo_set_limit(tribo_system_context(sys), limits));
+    put_one(tribo_set_epsilon_step(tribo_system_context(sys), 0.05, 1.0));
+    put_one(tribo_system_add_load(sys, 1.25, cosine, sine));
+    put_one(tribo_system_add_load(sys, 2.0, NULL, cosine));
+    put_one(tribo_system_add_load(sys, 0.0, sine, NULL));
+    put_one(tribo_system_add_motion(sys, 0.75, motion, NULL));
+    put_one(tribo_system_add_motion(sys, 0.5, NULL, limits));
+    if (reduced) {
+        put_one(tribo_system_set_damping_ratio(sys, 0.02));
+        put_one(tribo_system_get_frequencies(sys, omega));
+        put(2, omega);
+        put_one(tribo_system_expand(sys, amplitudes, full));
+        put(DOF, full);
+    }
+    state(sys);
+    run(sys, "exact", 1e9);
+    run(sys, "auto", 4.0);
+    run(sys, "rk4/fixed", 7.0);
+    put_one(tribo_system_add_load_table(sys, KNOTS, times, values, sine));
+    put_one(tribo_system_set_limit_table(sys, KNOTS, times, limit_table[0]));
+    state(sys);
+    run(sys, "event", 1e9);
+    run(sys, "central/fixed", 1e9);
+    put_one(tribo_system_set_limit_table(sys, 0, NULL, NULL));
+    run(sys, "moreau/fixed", 1e9);
+    tribo_system_destroy(sys);
+}
+
+static gsl_spmatrix *sparse(const double *a, size_t rows)
+{
+    gsl_spmatrix *s = gsl_spmatrix_alloc(rows, DOF);
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < DOF; j++) {
+            if (a[i * DOF + j] != 0.0) {
+                gsl_spmatrix_set(s, i, j, a[i * DOF + j]);
+            }
+        }
+    }
+    return s;
+}
+
+void systems_play(void)
+{
+    tribo_system *sys = NULL;
+    put_one(tribo_method_count());
+    for (int i = -1; i <= tribo_method_count(); i++) {
+        put_text(tribo_method_name(i));
+    }
+    put_one(tribo_system_oscillator(&sys, 0.4, 1.0, 0.75));
+    reference(sys);
+    put_one(tribo_system_chain(&sys, 5, 0.1, 1.0, 0.5));
+    reference(sys);
+    put_one(tribo_system_belt(&sys, 1.5, 0.3, 0.2, 1.0, 0.8));
+    reference(sys);
+    put_one(tribo_system_linear(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 0, NULL, 0));
+    linear(sys, 0);
+    put_one(tribo_system_linear(&sys, DOF, CONTACTS, mass[0], damping[0], stiffness[0], direction[0], 0, NULL, 0));
+    linear(sys, 0);
+    put_one(tribo_system_linear(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 2, NULL, 0));
+    linear(sys, 1);
+    gsl_spmatrix *m = sparse(mass[0], DOF), *c = sparse(damping[0], DOF), *k = sparse(stiffness[0], DOF),
+                 *j = sparse(direction[0], CONTACTS);
+    put_one(tribo_system_linear_sparse(&sys, m, NULL, k, j, 0, NULL, 0));
+    linear(sys, 0);
+    put_one(tribo_system_linear_sparse(&sys, m, c, k, j, 0, NULL, 0));
+    linear(sys, 0);
+    put_one(tribo_system_linear_sparse(&sys, m, NULL, k, j, 2, NULL, 0));
+    linear(sys, 1);
+    gsl_spmatrix_free(m);
+    gsl_spmatrix_free(c);
+    gsl_spmatrix_free(k);
+    gsl_spmatrix_free(j);
+}

@@ -1,0 +1,315 @@
+!> Every procedure of module tribo_gsl that can succeed, with each of its results compared to that of the C call: systems.c plays
+!> the same on its tape.
+module counting
+  use tribo, only: dp
+  use tribo_gsl, only: tribo_observer
+  implicit none
+  private
+
+  !> Adds up what it sees, and has enough after most times.
+  type, extends(tribo_observer), public :: counter
+    real(dp) :: sums(3) = 0, most = 0
+  contains
+    procedure :: seen => count_up
+  end type counter
+
+contains
+
+  integer function count_up(this, t, y, event)
+    class(counter), intent(inout) :: this
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(in) :: event
+    this%sums = this%sums + [1.0_dp, t, y(1)*(1 + event)]
+    count_up = merge(3, 0, this%sums(1) >= this%most)
+  end function count_up
+end module counting
+
+program systems
+  use, intrinsic :: iso_fortran_env, only: int64
+  use check, only: alive, report, require, same_bits
+  use counting, only: counter
+  use tape, only: compare, end_of_tape, record
+  use tribo
+  use tribo_gsl
+  implicit none
+
+  interface
+    subroutine systems_play() bind(c)
+    end subroutine systems_play
+  end interface
+
+  integer, parameter :: dof = 4, ncontact = 3, knots = 3
+  real(dp), parameter :: mass(dof, dof) = reshape([real(dp) :: 2, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1.5, 0, 0, 0, 0, 0.5], [dof, dof]), &
+    stiffness(dof, dof) = reshape([real(dp) :: 3, -1, 0, 0, -1, 2, -1, 0, 0, -1, 2, -1, 0, 0, -1, 1], [dof, dof]), &
+    damping(dof, dof) = reshape([0.3_dp, -0.1_dp, 0.0_dp, 0.0_dp, -0.05_dp, 0.2_dp, -0.1_dp, 0.0_dp, &
+    0.0_dp, -0.1_dp, 0.2_dp, -0.1_dp, 0.0_dp, 0.0_dp, -0.1_dp, 0.1_dp], [dof, dof]), &
+    direction(ncontact, dof) = reshape([real(dp) :: 1, 0, 0, 0, 1, 0, 0, -1, 0, 0, 0, 2], [ncontact, dof]), &
+    cosine(dof) = [1.0_dp, 0.0_dp, -0.5_dp, 0.25_dp], sine(dof) = [0.0_dp, 0.75_dp, 0.0_dp, 0.5_dp], &
+    limits(ncontact) = [0.2_dp, 0.1_dp, 0.05_dp], motion(ncontact) = [0.1_dp, 0.0_dp, -0.2_dp], &
+    times(knots) = [0.0_dp, 1.0_dp, 3.0_dp], values(knots) = [0.0_dp, 1.0_dp, 0.5_dp], &
+    limit_table(ncontact, knots) = reshape([0.2_dp, 0.1_dp, 0.05_dp, 0.3_dp, 0.2_dp, 0.1_dp, 0.1_dp, 0.0_dp, 0.15_dp], &
+    [ncontact, knots])
+
+  call record(systems_play)
+  call methods()
+  call all_systems()
+  call end_of_tape()
+  call sections()
+  call require(alive() == 0, 'everything is destroyed')
+  call report()
+
+contains
+
+  subroutine methods()
+    integer :: i
+    call compare('tribo_method_count', tribo_method_count())
+    do i = -1, tribo_method_count()
+      call compare('tribo_method_name', tribo_method_name(i))
+    end do
+  end subroutine methods
+
+  subroutine all_systems()
+    type(tribo_system) :: sys
+    type(tribo_sparse) :: m, c, k, j
+    integer :: stat
+
+    call sys%oscillator(0.4_dp, 1.0_dp, 0.75_dp, stat)
+    call compare('oscillator', stat)
+    call reference(sys)
+    call sys%chain(5, 0.1_dp, 1.0_dp, 0.5_dp, stat)
+    call compare('chain', stat)
+    call reference(sys)
+    call sys%belt(1.5_dp, 0.3_dp, 0.2_dp, 1.0_dp, 0.8_dp, stat)
+    call compare('belt', stat)
+    call reference(sys)
+    call sys%linear(mass, stiffness, direction, stat=stat)
+    call compare('linear', stat)
+    call linear(sys, .false.)
+    call sys%linear(mass, stiffness, direction, damping, stat=stat)
+    call compare('linear', stat)
+    call linear(sys, .false.)
+    call sys%linear(mass, stiffness, direction, nmode=2, stat=stat)
+    call compare('linear', stat)
+    call linear(sys, .true.)
+    ! Mass and direction by triplets, backwards; the others by rows.
+    call m%set_coo(dof, dof, [4, 3, 2, 1], [4, 3, 2, 1], [0.5_dp, 1.5_dp, 1.0_dp, 2.0_dp])
+    call j%set_coo(ncontact, dof, [3, 2, 2, 1], [4, 3, 2, 1], [real(dp) :: 2, -1, 1, 1])
+    call k%set_csr(dof, [1, 3, 6, 9, 11], [1, 2, 2, 1, 3, 2, 3, 4, 3, 4], [real(dp) :: 3, -1, 2, -1, -1, -1, 2, -1, -1, 1])
+    call c%set_csr(dof, [1, 3, 6, 9, 11], [1, 2, 2, 1, 3, 2, 3, 4, 3, 4], &
+      [0.3_dp, -0.05_dp, 0.2_dp, -0.1_dp, -0.1_dp, -0.1_dp, 0.2_dp, -0.1_dp, -0.1_dp, 0.1_dp])
+    call sys%linear(m, k, j, stat=stat)
+    call compare('linear, sparse', stat)
+    call linear(sys, .false.)
+    call sys%linear(m, k, j, c, stat=stat)
+    call compare('linear, sparse', stat)
+    call linear(sys, .false.)
+    call sys%linear(m, k, j, nmode=2, stat=stat)
+    call compare('linear, sparse', stat)
+    call linear(sys, .true.)
+  end subroutine all_systems
+
+  subroutine sizes(sys)
+    type(tribo_system), intent(in) :: sys
+    call compare('ndof', sys%ndof())
+    call compare('ncontact', sys%ncontact())
+    call compare('dimension', sys%dimension())
+  end subroutine sizes
+
+  subroutine reference(sys)
+    type(tribo_system), intent(inout) :: sys
+    type(tribo_context) :: c
+    integer :: stat, i
+
+    call sizes(sys)
+    call sys%context(c)
+    call c%set_epsilon(0.05_dp, stat=stat)
+    call compare('set_epsilon of the context', stat)
+    call state(sys)
+    do i = 0, tribo_method_count() - 1
+      call run(sys, tribo_method_name(i) // '  ', 1e9_dp)
+    end do
+  end subroutine reference
+
+  subroutine linear(sys, reduced)
+    type(tribo_system), intent(inout) :: sys
+    logical, intent(in) :: reduced
+    type(tribo_context) :: c
+    real(dp) :: omega(2), full(dof), none(ncontact, 0)
+    integer :: stat
+
+    call sizes(sys)
+    call sys%context(c)
+    call c%set_limit(limits, stat)
+    call compare('set_limit of the context', stat)
+    call c%set_epsilon(step=0.05_dp, stat=stat)
+    call compare('set_epsilon of the context', stat)
+    call sys%add_load(1.25_dp, cosine, sine, stat)
+    call compare('add_load', stat)
+    call sys%add_load(2.0_dp, sine=cosine, stat=stat)
+    call compare('add_load', stat)
+    call sys%add_load(0.0_dp, sine, stat=stat)
+    call compare('add_load', stat)
+    call sys%add_motion(0.75_dp, motion, stat=stat)
+    call compare('add_motion', stat)
+    call sys%add_motion(0.5_dp, sine=limits, stat=stat)
+    call compare('add_motion', stat)
+    if (reduced) then
+      call sys%set_damping_ratio(0.02_dp, stat)
+      call compare('set_damping_ratio', stat)
+      call sys%get_frequencies(omega, stat)
+      call compare('get_frequencies', stat)
+      call compare('get_frequencies', omega)
+      call sys%expand([0.25_dp, -0.5_dp], full, stat)
+      call compare('expand', stat)
+      call compare('expand', full)
+    end if
+    call state(sys)
+    call run(sys, 'exact', 1e9_dp)
+    call run(sys, 'auto', 4.0_dp)
+    call run(sys, 'rk4/fixed', 7.0_dp)
+    call sys%add_load_table(times, values, sine, stat)
+    call compare('add_load_table', stat)
+    call sys%set_limit_table(times, limit_table, stat)
+    call compare('set_limit_table', stat)
+    call state(sys)
+    call run(sys, 'event', 1e9_dp)
+    call run(sys, 'central/fixed', 1e9_dp)
+    call sys%set_limit_table(times(:0), none, stat)
+    call compare('set_limit_table, its end', stat)
+    call run(sys, 'moreau/fixed', 1e9_dp)
+  end subroutine linear
+
+  subroutine state(sys)
+    type(tribo_system), intent(inout) :: sys
+    real(dp), dimension(sys%dimension()) :: y, dydt, dfdt
+    real(dp), dimension(sys%ncontact()) :: v, feq, f
+    real(dp) :: dfdy(sys%dimension(), sys%dimension())
+    integer :: i, stat
+
+    y = [(0.1_dp*i - 0.35_dp, i=1, size(y))]
+    call sys%derivative(0.5_dp, y, dydt, stat)
+    call compare('derivative', stat)
+    call compare('derivative', dydt)
+    call sys%jacobian(0.5_dp, y, dfdy, dfdt, stat)
+    call compare('jacobian', stat)
+    call compare('jacobian: dfdy', [transpose(dfdy)])
+    call compare('jacobian: dfdt', dfdt)
+    call sys%contacts(0.5_dp, y, v, feq, f, stat)
+    call compare('contacts', stat)
+    call compare('contacts: v', v)
+    call compare('contacts: feq', feq)
+    call compare('contacts: f', f)
+    call sys%accept(0.5_dp, y, stat)
+    call compare('accept', stat)
+  end subroutine state
+
+  subroutine run(sys, method, most)
+    type(tribo_system), intent(inout) :: sys
+    character(len=*), intent(in) :: method
+    real(dp), intent(in) :: most
+    type(tribo_driver) :: drv
+    type(counter), target :: sees
+    real(dp) :: y(sys%dimension()), t
+    integer :: stat, which, count
+    integer(int64) :: long
+
+    y = 0
+    t = 0
+    call drv%create(sys, method, 0.05_dp, 1e-5_dp, 1e-5_dp, stat)
+    call compare('create', stat)
+    call compare('method', drv%method())
+    call drv%advance(t, 0.5_dp, y, stat)
+    call compare('advance', stat)
+    sees%most = most
+    call drv%set_observer(sees, stat)
+    call compare('set_observer', stat)
+    call drv%advance(t, 2.5_dp, y, stat)
+    call compare('advance', stat)
+    call compare('advance: t', t)
+    call compare('advance: y', y)
+    call compare('what an observer sees', sees%sums)
+    call drv%set_observer(stat=stat)
+    call compare('set_observer', stat)
+    call drv%advance(t, 3.0_dp, y, stat)
+    call compare('advance', stat)
+    call compare('what an observer no longer sees', sees%sums)
+    call compare('advance: y', y)
+    do which = TRIBO_COUNT_STEPS, TRIBO_COUNT_EVENTS
+      count = 0
+      call drv%count(which, count, stat)
+      call compare('count', stat)
+      call compare('count', count)
+      if (stat == TRIBO_OK) call drv%count(which, long)
+      call require(stat /= TRIBO_OK .or. long == count, 'count of a long integer')
+    end do
+  end subroutine run
+
+  !> Arrays as sections against whole arrays, and outputs each by itself.
+  subroutine sections()
+    type(tribo_system) :: a, b
+    type(tribo_driver) :: drv
+    type(tribo_context) :: c
+    real(dp), parameter :: gap = 5
+    real(dp) :: wide(2*dof, 2*dof, 3), rows(2, 3*dof), x(9, 4), y(2, 9, 4), q(9, 9), r(18, 9), t
+    integer :: i
+
+    wide = gap
+    wide(::2, ::2, 1) = mass
+    wide(2:2*ncontact:2, :dof, 3) = direction
+    call a%linear(mass, stiffness, direction)
+    call b%linear(wide(::2, ::2, 1), stiffness, wide(2:2*ncontact:2, :dof, 3))
+    rows = gap
+    rows(1, :dof) = cosine
+    rows(2, 3*dof:2*dof + 1:-1) = sine
+    call a%add_load(1.0_dp, cosine, sine)
+    call b%add_load(1.0_dp, rows(1, :dof), rows(2, 3*dof:2*dof + 1:-1))
+    rows(1, :ncontact) = motion
+    call a%add_motion(1.0_dp, motion, motion)
+    call b%add_motion(1.0_dp, rows(1, :ncontact), rows(1, :ncontact))
+    call a%add_load_table(times, values, sine)
+    rows(1, 1::4) = times
+    rows(1, 2::4) = values
+    call b%add_load_table(rows(1, 1::4), rows(1, 2::4), rows(2, 3*dof:2*dof + 1:-1))
+    wide(:2*ncontact:2, ::3, 1) = limit_table
+    call a%set_limit_table(times, limit_table)
+    call b%set_limit_table(rows(1, 1::4), wide(:2*ncontact:2, ::3, 1))
+    call a%context(c)
+    call c%set_epsilon(0.1_dp)
+    call b%context(c)
+    call c%set_epsilon(0.1_dp)
+    y = gap
+    y(1, :, 1) = [(0.1_dp*i - 0.35_dp, i=1, 9)]
+    x(:, 1) = y(1, :, 1)
+    call a%derivative(0.5_dp, x(:, 1), x(:, 2))
+    call b%derivative(0.5_dp, y(1, :, 1), y(1, 9:1:-1, 2))
+    call require(all(same_bits(x(:, 2), y(1, 9:1:-1, 2))), 'sections: derivative')
+    call a%jacobian(0.5_dp, x(:, 1), q, x(:, 3))
+    call b%jacobian(0.5_dp, y(1, :, 1), r(::2, :), y(1, :, 3))
+    call require(all(same_bits(q, r(::2, :))) .and. all(same_bits(x(:, 3), y(1, :, 3))), 'sections: jacobian')
+    call a%contacts(0.5_dp, x(:, 1), x(:3, 2), x(:3, 3), x(:3, 4))
+    call b%contacts(0.5_dp, y(1, :, 1), v=y(1, :5:2, 2))
+    call b%contacts(0.5_dp, y(1, :, 1), feq=y(1, 3:1:-1, 3))
+    call b%contacts(0.5_dp, y(1, :, 1), f=y(1, :3, 4))
+    call b%contacts(0.5_dp, y(1, :, 1))
+    y(1, :3, 2) = y(1, :5:2, 2)
+    y(1, :3, 3) = y(1, 3:1:-1, 3)
+    call require(all(same_bits(x(:3, 2:), y(1, :3, 2:))), 'sections: contacts')
+    call a%accept(0.5_dp, x(:, 1))
+    call b%accept(0.5_dp, y(1, :, 1))
+    t = 0.5_dp
+    call drv%create(a, 'rkf45', 0.01_dp, 1e-6_dp)
+    call drv%advance(t, 1.0_dp, x(:, 1))
+    t = 0.5_dp
+    call drv%create(b, 'rkf45', 0.01_dp, 1e-6_dp, 0.0_dp)
+    call drv%advance(t, 1.0_dp, y(1, :, 1))
+    call require(all(same_bits(x(:, 1), y(1, :, 1))) .and. all(same_bits(y(2, :, :), gap)), 'sections: advance')
+    call a%linear(mass, stiffness, direction, nmode=2)
+    call a%get_frequencies(x(:2, 1))
+    call a%get_frequencies(y(1, :9:8, 1))
+    call require(all(same_bits(x(:2, 1), y(1, ::8, 1))), 'sections: get_frequencies')
+    call a%expand(x(:2, 1), x(:dof, 2))
+    call a%expand(y(1, ::8, 1), y(1, 2*dof:1:-2, 2))
+    call require(all(same_bits(x(:dof, 2), y(1, 2*dof:1:-2, 2))), 'sections: expand')
+    call drv%destroy()
+  end subroutine sections
+end program systems
