@@ -202,6 +202,14 @@ enum { TRIBO_CONSISTENT = 0, TRIBO_PARTITION = 1 };
 TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
 TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
 
+/* How redundant contacts share: R f is unique, but where R is singular f is not. (In the partition f_eq is always the one of
+ * least norm.) LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls LAST
+ * one that begins with the forces of the last call and changes no more of them than it must: continuous in time. For event-driven
+ *          codes, where a contact that has reached its limit should stay there while others take over. */
+enum { TRIBO_SHARE_LEAST = 0, TRIBO_SHARE_LAST = 1 };
+TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
+TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
+
 /* ---------------------------------------------------------------------------------------------------------- forces */
 
 /* Friction force of every contact from its law, f_eq being known.
@@ -222,8 +230,8 @@ TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, con
  * feq  [n] out  or NULL; 0 for open contacts
  * f    [n] out  or NULL; |f| <= limit
  * Consistent coupling: f = law(v, feq) and R_ii feq_i = -(a_i + sum of R_ij f_j over j != i), to rounding. Where
- * contacts are redundant R f is unique and f one of the solutions. QUINN_REVERSAL: f_eq balances Quinn's forces.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
+ * contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing. QUINN_REVERSAL: f_eq balances Quinn's
+ * forces. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.

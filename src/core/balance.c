@@ -100,6 +100,9 @@ static int solve(tribo_context *ctx, struct program *p)
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contacts near stick around contact %zu",
                           p->count, member[p->near[0]]);
     }
+    if (is->nullity && ctx->sharing == TRIBO_SHARE_LEAST) {
+        tribo_box_share(p);
+    }
     ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
@@ -184,13 +187,13 @@ static void feq_of_others(tribo_context *ctx, const double *a)
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!ctx->near[i]) {
+            if (!ctx->near[i] && ctx->limit[i] > 0.0) {
                 const double own = p->step[k];
                 double ignored;
                 p->step[k] = 0.0;
                 const double sum = a[i] + tribo_row_dot(p, k, p->step, &ignored);
                 p->step[k] = own;
-                ctx->feq[i] = ctx->limit[i] > 0.0 ? clamp(-sum / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX) : 0.0;
+                ctx->feq[i] = clamp(-sum / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX);
             }
         }
     }

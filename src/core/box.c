@@ -110,11 +110,12 @@ static int settled(const struct program *p, double noises)
     return 1;
 }
 
-/* Takes the gradient of the independent x to zero. */
+/* Takes the gradient of the independent x to zero. A start from the last x would be within the bound on rounding of many steps,
+ * and lag behind in one direction: it takes a step unless it is as good as after one. */
 static void refine(struct program *p)
 {
     tribo_box_gradient(p);
-    for (int pass = 0; pass < 4 && !settled(p, 1.0); pass++) {
+    for (int pass = 0; pass < 4 && !settled(p, pass ? 1.0 : 1.0 / 16.0); pass++) {
         newton(p, p->step);
         for (size_t k = 0; k < p->island->rank; k++) {
             const size_t i = p->order[k];
@@ -350,9 +351,15 @@ static int inside(const struct program *p)
     return all;
 }
 
-/* The shares of redundant contacts. Their rounding may be much to a contact that carries little: then it is taken away again,
- * where the boxes have room for that, and otherwise the contacts share as they did before. */
-static void share(struct program *p)
+int tribo_box_solve(struct program *p)
+{
+    enter(p, 1);
+    return primal_dual(p) || primal(p);
+}
+
+/* The rounding of shares may be much to a contact that carries little: then it is taken away again, where the boxes have room for
+ * that, and otherwise the contacts share as they did before. */
+void tribo_box_share(struct program *p)
 {
     double *before = p->spare[0], *split = p->spare[1];
     memcpy(before, p->x, p->island->size * sizeof *before);
@@ -372,18 +379,6 @@ static void share(struct program *p)
             restore(p, split);
         }
     }
-}
-
-int tribo_box_solve(struct program *p)
-{
-    enter(p, 1);
-    if (!primal_dual(p) && !primal(p)) {
-        return 0;
-    }
-    if (p->island->nullity) {
-        share(p);
-    }
-    return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------ the linear system */
@@ -409,7 +404,7 @@ int tribo_box_linear(struct program *p)
                 const size_t i = p->near[e];
                 consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + DISAGREEMENT * p->unit[i];
             }
-        } else if (settled(p, 1.0)) {
+        } else if (pass > 0 && settled(p, 1.0)) {
             break;
         }
         newton(p, p->step);

@@ -78,6 +78,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
     }
     c->law = tribo_law(TRIBO_QUINN);
     c->coupling = TRIBO_CONSISTENT;
+    c->sharing = TRIBO_SHARE_LEAST;
     for (size_t i = 0; i < ncontact; i++) {
         c->given[i] = DEFAULT_EPSILON;
     }
@@ -309,6 +310,31 @@ int tribo_get_coupling(const tribo_context *ctx, int *coupling)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "coupling is NULL");
     }
     *coupling = ctx->coupling;
+    return TRIBO_OK;
+}
+
+int tribo_set_sharing(tribo_context *ctx, int sharing)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (sharing != TRIBO_SHARE_LEAST && sharing != TRIBO_SHARE_LAST) {
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST", sharing);
+    }
+    ctx->sharing = sharing;
+    ctx->linearized = 0;
+    return TRIBO_OK;
+}
+
+int tribo_get_sharing(const tribo_context *ctx, int *sharing)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!sharing) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "sharing is NULL");
+    }
+    *sharing = ctx->sharing;
     return TRIBO_OK;
 }
 

@@ -41,7 +41,7 @@ struct message;
 struct tribo_context {
     size_t n;
     const struct law *law;
-    int coupling;
+    int coupling, sharing;
     double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
     double *given;          /* [n] epsilon as given */
     double *limit, *epsilon, *slope;

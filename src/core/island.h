@@ -124,6 +124,9 @@ void tribo_box_gradient(struct program *p);
 /* Solves the program from what is kept. 1, or 0 without convergence. */
 int tribo_box_solve(struct program *p);
 
+/* Of all solutions of the program, x becomes the one of least norm. */
+void tribo_box_share(struct program *p);
+
 /* x = the minimum-norm solution of R x + q = 0 over the near contacts, all of them free. 1, or 0 if there is none: then x is the
  * least-squares one. */
 int tribo_box_linear(struct program *p);
@@ -151,7 +154,7 @@ size_t tribo_null_basis(struct program *p);
 /* Takes the part of y [size] in the span of the first k vectors of basis out of it. */
 void tribo_project(const struct program *p, size_t k, double *y);
 
-/* Of all solutions of the program, x becomes the one of least norm. Returns 0 if there is only one. */
+/* The same without a look at the gradient. Returns 0 if there is only one solution. */
 int tribo_split(struct program *p);
 
 #endif

@@ -26,6 +26,8 @@ int tribo_modes_create(struct modes *m, tribo_system *sys)
     m->patience = 64 + 16 * sys->ncontact;
     int status = tribo_clone(sys->contacts, &m->judge);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
+    /* a contact that has reached its limit stays there while others take over */
+    status = status ? status : tribo_set_sharing(m->judge, TRIBO_SHARE_LAST);
     double *work = malloc((13 * c + (2 + 2 * ORDERS) * n + m->patience) * sizeof *work);
     m->mode = calloc(5, c);
     m->at = malloc(c * sizeof *m->at);

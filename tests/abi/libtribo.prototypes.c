@@ -35,6 +35,8 @@ TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                           void *data, const size_t *rowptr, const size_t *col, const double *val);
 TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
 TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
+TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
+TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
 TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
                                   double *df_dfeq, double *df_dlimit);
