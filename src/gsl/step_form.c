@@ -4,8 +4,8 @@
  *
  * central/fixed  central differences: velocities half a step apart from positions. Explicit; stable for dt < 2/omega_max. Damping
  * acts on the velocity of half a step before. moreau/fixed   the implicit midpoint rule for the structure, Coulomb's law at the
- * end of the step (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for any
- * dt. */
+ * end of the step, the mean of the loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized
+ * once for a step length. Stable for any dt. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,11 +15,13 @@
 #include "driver.h"
 
 struct step_form {
-    double *u, *a;        /* [ndof] velocity (central: half a step back), acceleration or what a step adds to u */
-    double *v, *free, *f; /* [ncontact] velocity before, velocity at the end without friction, force */
-    signed char *mode;    /* [ncontact] */
-    double energy;        /* central: dissipated up to u */
-    double last;          /* central: the step before; 0: u is the velocity at t */
+    double *u, *a;       /* [ndof] velocity (central: half a step back), acceleration or what a step adds to u */
+    double *v, *end, *f; /* [ncontact] velocity before and at the end, force */
+    double *base;        /* [ncontact] b at the end */
+    int goes_on;         /* end is the velocity that the next step begins with, and load the load */
+    signed char *mode;   /* [ncontact] */
+    double energy;       /* central: dissipated up to u */
+    double last;         /* central: the step before; 0: u is the velocity at t */
 
     /* moreau, for steps of length h: A = I + h/2 AC + h^2/4 AK in GSL's band format, factorized; A^-1 B; and the contacts that
      * see it */
@@ -29,6 +31,7 @@ struct step_form {
     unsigned int *pivot;
     double *response; /* [ncontact][ndof] */
     double *limit;    /* [ncontact] */
+    double *load;     /* [ndof] at the end */
     tribo_context *contacts;
 };
 
@@ -52,7 +55,7 @@ static int create(tribo_driver *drv)
 {
     const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
     struct step_form *s = calloc(1, sizeof *s);
-    double *work = malloc((2 * n + 4 * c + 1) * sizeof *work);
+    double *work = calloc(3 * n + 5 * c + 1, sizeof *work);
     drv->own = s;
     if (s) {
         s->u = work;
@@ -63,20 +66,47 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     s->a = work + n;
-    s->v = work + 2 * n;
-    s->free = s->v + c;
-    s->f = s->free + c;
+    s->load = work + 2 * n;
+    s->v = work + 3 * n;
+    s->end = s->v + c;
+    s->f = s->end + c;
     s->limit = s->f + c;
+    s->base = s->limit + c;
     return TRIBO_OK;
 }
 
-/* v = J u - b(t). */
-static void relative(tribo_system *sys, double t, const double *u, double *v)
+/* base = b(t), if the base moves at all. */
+static void find_base(struct step_form *s, tribo_system *sys, double t)
 {
-    tribo_system_set_time(sys, t);
-    memset(v, 0, sys->ncontact * sizeof *v);
-    tribo_system_loads(sys, 1, 0, -1.0, v);
+    int moves = 0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        moves |= sys->harmonic[k].moves_base;
+    }
+    if (moves) {
+        tribo_system_set_time(sys, t);
+        memset(s->base, 0, sys->ncontact * sizeof *s->base);
+        tribo_system_loads(sys, 1, 0, 1.0, s->base);
+    }
+}
+
+/* v = J u - base. */
+static void relative(const struct step_form *s, const tribo_system *sys, const double *u, double *v)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        v[i] = -s->base[i];
+    }
     tribo_matrix_multiply_add(&sys->direction, 1.0, u, v);
+}
+
+/* v = the velocity that a step begins with, at t. */
+static void begin(struct step_form *s, tribo_system *sys, double t, const double *u)
+{
+    if (s->goes_on) {
+        memcpy(s->v, s->end, sys->ncontact * sizeof *s->v);
+    } else {
+        find_base(s, sys, t);
+        relative(s, sys, u, s->v);
+    }
 }
 
 static double power(const tribo_system *sys, const double *f, const double *before, const double *after)
@@ -114,14 +144,15 @@ static int check_motion(tribo_driver *drv, double t, const double *y)
 
 /* --------------------------------------------------------------------------------------------------------- central */
 
-/* Takes u, the velocity at begin, to the one at end: forces at t and q, over the time between. Adds to the energy. */
-static int kick(tribo_driver *drv, double begin, double t, double end, const double *y, double *u, double *energy)
+/* Takes u, the velocity at the time from, to the one at the time to: forces at t and q, over the time between. Adds to the
+ * energy. */
+static int kick(tribo_driver *drv, double from, double t, double to, const double *y, double *u, double *energy)
 {
     struct step_form *s = drv->own;
     tribo_system *sys = drv->sys;
     const size_t n = sys->ndof;
-    const double time = end - begin;
-    relative(sys, begin, u, s->v);
+    const double time = to - from;
+    begin(s, sys, from, u);
     tribo_system_set_time(sys, t);
     memset(s->a, 0, n * sizeof *s->a);
     tribo_system_loads(sys, 0, 0, 1.0, s->a);
@@ -133,9 +164,10 @@ static int kick(tribo_driver *drv, double begin, double t, double end, const dou
     for (size_t i = 0; i < n; i++) {
         u[i] += time * s->a[i];
     }
-    relative(sys, end, u, s->free);
+    find_base(s, sys, to);
+    relative(s, sys, u, s->end);
     set_limits(sys, t);
-    const int status = tribo_step_force(sys->contacts, time, s->free, s->f);
+    const int status = tribo_step_force(sys->contacts, time, s->end, s->f);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return grew(drv, t);
     }
@@ -144,9 +176,10 @@ static int kick(tribo_driver *drv, double begin, double t, double end, const dou
     }
     tribo_matrix_multiply_add(&sys->response, time, s->f, u);
     tribo_get_modes(sys->contacts, s->mode);
-    tribo_system_project(sys, s->mode, end, u);
-    relative(sys, end, u, s->free);
-    *energy += time * power(sys, s->f, s->v, s->free);
+    tribo_system_snap(sys, s->mode, s->base, u);
+    relative(s, sys, u, s->end);
+    *energy += time * power(sys, s->f, s->v, s->end);
+    s->goes_on = 1;
     return TRIBO_OK;
 }
 
@@ -176,6 +209,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         memcpy(s->u, y + n, n * sizeof *y);
         s->energy = y[2 * n];
         s->last = 0.0;
+        s->goes_on = 0;
     }
     int status = tribo_driver_fixed_steps(drv, t, t1, y, central_step);
     if (!status) {
@@ -183,6 +217,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         memcpy(y + n, s->u, n * sizeof *y);
         y[2 * n] = s->energy;
         status = s->last > 0.0 ? kick(drv, t1 - 0.5 * s->last, t1, t1, y, y + n, y + 2 * n) : TRIBO_OK;
+        s->goes_on = 0;
     }
     return status;
 }
@@ -286,6 +321,13 @@ static int prepare(struct step_form *s, const tribo_system *sys, double h)
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(s->contacts)) : TRIBO_OK;
 }
 
+static void find_load(struct step_form *s, tribo_system *sys, double t)
+{
+    tribo_system_set_time(sys, t);
+    memset(s->load, 0, sys->ndof * sizeof *s->load);
+    tribo_system_loads(sys, 0, 0, 1.0, s->load);
+}
+
 static int moreau_step(tribo_driver *drv, double t, double next, double *y)
 {
     struct step_form *s = drv->own;
@@ -300,13 +342,18 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
         }
     }
-    relative(sys, t, u, s->v);
-    tribo_system_set_time(sys, t + 0.5 * h);
-    memset(du, 0, n * sizeof *du);
+    begin(s, sys, t, u);
+    if (!s->goes_on) {
+        find_load(s, sys, t);
+    }
     for (size_t i = 0; i < n; i++) {
         s->u[i] = y[i] + 0.5 * h * u[i];
+        du[i] = 0.5 * h * s->load[i];
     }
-    tribo_system_loads(sys, 0, 0, h, du);
+    find_load(s, sys, next);
+    for (size_t i = 0; i < n; i++) {
+        du[i] += 0.5 * h * s->load[i];
+    }
     tribo_matrix_multiply_add(&sys->stiffness, -h, s->u, du);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -h, u, du);
@@ -316,14 +363,15 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     for (size_t i = 0; i < n; i++) {
         s->u[i] = u[i] + du[i];
     }
-    relative(sys, next, s->u, s->free);
+    find_base(s, sys, next);
+    relative(s, sys, s->u, s->end);
     set_limits(sys, t + 0.5 * h);
     tribo_get_limit(sys->contacts, s->limit);
     for (size_t i = 0; i < c; i++) {
         s->limit[i] *= tribo_system_weight(sys, i);
     }
     tribo_set_limit(s->contacts, s->limit);
-    const int status = tribo_step_force(s->contacts, h, s->free, s->f);
+    const int status = tribo_step_force(s->contacts, h, s->end, s->f);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return grew(drv, t);
     }
@@ -337,19 +385,21 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
         }
     }
     tribo_get_modes(s->contacts, s->mode);
-    tribo_system_project(sys, s->mode, next, s->u);
-    relative(sys, next, s->u, s->free);
+    tribo_system_snap(sys, s->mode, s->base, s->u);
+    relative(s, sys, s->u, s->end);
+    s->goes_on = 1;
     for (size_t i = 0; i < n; i++) {
         y[i] += 0.5 * h * (u[i] + s->u[i]);
         u[i] = s->u[i];
     }
-    y[2 * n] += h * power(sys, s->f, s->v, s->free);
+    y[2 * n] += h * power(sys, s->f, s->v, s->end);
     return check_motion(drv, next, y);
 }
 
 static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    (void)continues;
+    struct step_form *s = drv->own;
+    s->goes_on = continues && s->goes_on;
     return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step);
 }
 

@@ -246,15 +246,6 @@ void tribo_system_snap(const tribo_system *sys, const signed char *mode, const d
     }
 }
 
-void tribo_system_project(tribo_system *sys, const signed char *mode, double t, double *u)
-{
-    double *base = sys->dv_dt;
-    tribo_system_set_time(sys, t);
-    memset(base, 0, sys->ncontact * sizeof *base);
-    tribo_system_loads(sys, 1, 0, 1.0, base);
-    tribo_system_snap(sys, mode, base, u);
-}
-
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
 {
     const size_t n = sys->ndof;

@@ -84,9 +84,8 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 double tribo_system_weight(const tribo_system *sys, size_t i);
 
 /* Takes the last bits of rounding out of J_i x = base_i for contacts at rest (mode 0) that have one degree of freedom, or the
- * difference of two; the other one does so for the velocities at time t. */
+ * difference of two. */
 void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x);
-void tribo_system_project(tribo_system *sys, const signed char *mode, double t, double *u);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);

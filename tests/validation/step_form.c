@@ -69,8 +69,8 @@ static double wave(double cosine, double sine, double phase)
     return cosine * cos(phase) + sine * sin(phase);
 }
 
-/* The force that M (u' - u)/time = p - K q - C u + r leaves to friction: central takes q and u before, moreau the means. What it
- * does to the contacts' mean velocity is what the step must have dissipated. */
+/* The force that M (u' - u)/time = p - K q - C u + r leaves to friction: central takes p at the start, q and u before, moreau the
+ * means. What it does to the contacts' mean velocity is what the step must have dissipated. */
 static int add_up(double t, const double *y, int event, void *data)
 {
     struct account *a = data;
@@ -78,10 +78,13 @@ static int add_up(double t, const double *y, int event, void *data)
     const double h = t - a->t, time = !a->implicit && a->steps == 0 ? 0.5 * h : h;
     /* central's velocities are those of half a step before */
     const double from = a->implicit || a->steps == 0 ? a->t : a->t - 0.5 * h, to = from + time;
-    const double at = a->implicit ? a->t + 0.5 * h : a->t;
+    const double ends[2] = {a->t, a->implicit ? t : a->t};
     (void)event;
     for (size_t i = 0; i < DOFS; i++) {
-        double r = -wave(m->load[0][i], m->load[1][i], m->load_omega * at);
+        double r = 0.0;
+        for (int end = 0; end < 2; end++) {
+            r -= 0.5 * wave(m->load[0][i], m->load[1][i], m->load_omega * ends[end]);
+        }
         for (size_t j = 0; j < DOFS; j++) {
             const double u = a->y[DOFS + j], q = a->y[j], implicit = a->implicit ? 0.5 : 0.0;
             r += m->mass[i * DOFS + j] * (y[DOFS + j] - u) / time;
