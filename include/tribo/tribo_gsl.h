@@ -119,14 +119,19 @@ typedef struct tribo_driver tribo_driver;
  *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads
  *               "event": high-order steps between events, with the tolerances; any system
  *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit, dt below
- *               2/omega_max) and by the implicit midpoint rule (Moreau and Jean); second order
+ *               2/omega_max) and by the implicit midpoint rule (Moreau and Jean). Second order, but for contacts that reverse
+ *               without sticking, and central with damping: there first order
  *               "auto": exact if the system is linear, harmonic and small, else event; see tribo_driver_method
+ *               exact and event do not cover contacts whose bases move differently while they hold one and the same body together,
+ *               all at rest for a moment: in rare cases the wrong one then slides.
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step;
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL
  *               stepper of that name, adaptive from dt on: error of a step below abstol + reltol |y|
- * dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks for it. exact:
- * how often an observer sees the motion between events abstol   in   >= 0; > 0 for adaptive methods and event reltol   in   >= 0
+ * dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks for it.
+ *               exact: how often an observer sees the motion between events
+ * abstol   in   >= 0; > 0 for adaptive methods and event
+ * reltol   in   >= 0
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY; the
  * message is on the system's context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,

@@ -8,6 +8,7 @@ void tribo_rows_free(struct rows *a)
     free(a->first);
     free(a->col);
     free(a->val);
+    memset(a, 0, sizeof *a);
 }
 
 int tribo_rows_create(struct rows *a, size_t n, size_t entries)

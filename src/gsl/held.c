@@ -13,6 +13,9 @@
 /* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor; and a mode this
  * close to critical damping has no two exponents that could be told apart to 12 digits. */
 #define RESONANCE 1e-3
+
+/* A response larger than one over this would leave too few digits. */
+#define UNDAMPED 1e-9
 #define CRITICAL 1e-8
 
 /* What is needed only while a held structure is built. Vectors of the whole structure: [ndof], modes of it [modes][ndof]. */
@@ -28,6 +31,7 @@ struct build {
     double *yr, *yi;    /* [harmonics][ndof] */
     double *y0;         /* [ndof] velocities from belts of constant speed */
     void *scratch;      /* list of what is freed at the end */
+    int status;         /* of a failure other than of memory */
 };
 
 /* ------------------------------------------------------------------------------------------------------------ memory */
@@ -610,8 +614,13 @@ static int find_response(struct build *b)
         int sign;
         gsl_linalg_complex_LU_decomp(&av.matrix, &p, &sign);
         for (size_t k = 0; k < m; k++) {
-            if (a[2 * (k * m + k)] == 0.0 && a[2 * (k * m + k) + 1] == 0.0) {
-                return 1;
+            if (hypot(a[2 * (k * m + k)], a[2 * (k * m + k) + 1]) <= UNDAMPED * omega * omega) {
+                b->status =
+                    tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED,
+                                      "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
+                                      "others: take method event",
+                                      omega);
+                return 0;
             }
         }
         gsl_linalg_complex_LU_svx(&av.matrix, &p, &xv.vector);
@@ -857,7 +866,8 @@ static int build(struct build *b, const signed char *mode, const unsigned char *
         h->size[p] = hypot(h->lr[p], h->li[p]);
         h->fastest = greater(h->fastest, h->size[p]);
     }
-    return h->size && find_forcing(b) && find_response(b) && find_watches(b) && compress(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    const int done = h->size && find_forcing(b) && find_response(b) && find_watches(b) && compress(b);
+    return done ? TRIBO_OK : b->status ? b->status : TRIBO_ERR_MEMORY;
 }
 
 int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode, const unsigned char *holds)

@@ -19,7 +19,9 @@ static void work(tribo_context *c, const struct problem *p)
     tribo_force(c, p->v, feq, f);
     tribo_force_tangent(c, p->v, feq, f, square[0], square[1], NULL);
     tribo_balance_tangent(c, p->v, p->a, feq, f, square[0], square[1]);
+    tribo_tangent_product(c, p->v, p->a, f);
     tribo_step_force(c, 0.1, p->v, f);
+    tribo_solve_box(c, p->a, p->v, p->v, f);
     tribo_accept(c, p->v, feq);
     tribo_get_modes(c, mode);
     tribo_get_count(c, TRIBO_COUNT_STUCK, &count);
@@ -49,6 +51,48 @@ TEST(hot_paths)
         }
     }
     require(memory_calls() == before, "%zu allocations", memory_calls() - before);
+    tribo_destroy(c);
+}
+
+/* A row of so many contacts, which is kept sparse. */
+static int set_row(tribo_context *c, size_t n)
+{
+    size_t row[LARGEST + 1] = {0}, at[3 * LARGEST], k = 0;
+    double r[3 * LARGEST];
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = i > 0 ? i - 1 : 0; j < n && j <= i + 1; j++) {
+            at[k] = j;
+            r[k++] = i == j ? 2.0 : -1.0;
+        }
+        row[i + 1] = k;
+    }
+    return tribo_set_operator_csr(c, row, at, r);
+}
+
+TEST(hot_paths_of_a_sparse_group)
+{
+    struct random g = random_of(_i);
+    const size_t n = LARGEST;
+    struct problem p = {.n = n};
+    double f[LARGEST];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, n));
+    assert_ok(set_row(c, n));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    const size_t before = memory_calls();
+    for (int k = 0; k < 20; k++) {
+        for (size_t i = 0; i < n; i++) {
+            p.v[i] = below(&g, 4) ? p.v[i] : uniform(&g, -1.5, 1.5);
+            p.a[i] = uniform(&g, -2.0, 2.0);
+        }
+        assert_ok(tribo_set_coupling(c, k % 2));
+        assert_ok(tribo_balance_tangent(c, p.v, p.a, f, f, NULL, NULL));
+        assert_ok(tribo_tangent_product(c, p.v, p.a, f));
+        assert_ok(tribo_step_force(c, 0.1, p.v, f));
+    }
+    require(memory_calls() == before, "%zu allocations", memory_calls() - before);
+    require(count_of(c, TRIBO_COUNT_UPDATES) > 100, "few changes");
     tribo_destroy(c);
 }
 
@@ -96,6 +140,18 @@ static int set_mass(tribo_context *c)
     return tribo_set_operator_mass(c, 3, weight, first, col, val);
 }
 
+static int solve_mass(size_t ndof, const double *force, double *acceleration, void *data)
+{
+    (void)data;
+    memcpy(acceleration, force, ndof * sizeof *force);
+    return 0;
+}
+
+static int set_callback(tribo_context *c)
+{
+    return tribo_set_operator_callback(c, 3, solve_mass, NULL, first, col, val);
+}
+
 /* A diagonal operator that does not look like one takes a way of its own. */
 static int set_dense_diagonal(tribo_context *c)
 {
@@ -108,13 +164,8 @@ static const struct {
     int (*call)(tribo_context *c);
     int has_message;
 } calls[] = {
-    {"create", create, 0},
-    {"clone", clone, 1},
-    {"diagonal", set_diagonal, 1},
-    {"dense", set_dense, 1},
-    {"csr", set_csr, 1},
-    {"mass", set_mass, 1},
-    {"diagonal as dense", set_dense_diagonal, 1},
+    {"create", create, 0}, {"clone", clone, 1},   {"diagonal", set_diagonal, 1}, {"dense", set_dense, 1},
+    {"csr", set_csr, 1},   {"mass", set_mass, 1}, {"callback", set_callback, 1}, {"diagonal as dense", set_dense_diagonal, 1},
 };
 
 /* A context with islands {0, 1} and {2}. */
@@ -161,6 +212,31 @@ TEST(failures)
     ck_assert_uint_gt(fails, 2);
 }
 
+/* The same for an operator that is kept sparse, and its clone. */
+TEST(failures_of_a_sparse_group)
+{
+    int status = TRIBO_ERR_MEMORY;
+    for (size_t fails = 1; status; fails++) {
+        const long none = memory_live();
+        tribo_context *c, *copy = NULL;
+        assert_ok(tribo_create(&c, LARGEST));
+        assert_ok(_i ? set_row(c, LARGEST) : TRIBO_OK);
+        const long live = memory_live();
+        memory_fail(fails);
+        status = _i ? tribo_clone(c, &copy) : set_row(c, LARGEST);
+        memory_fail(0);
+        if (status) {
+            assert_status(status, TRIBO_ERR_MEMORY);
+            require(memory_live() == live, "leak when allocation %zu fails", fails);
+        } else {
+            require(fails > 15, "only %zu allocations", fails);
+        }
+        tribo_destroy(copy);
+        tribo_destroy(c);
+        require(memory_live() == none, "%ld blocks left behind", memory_live() - none);
+    }
+}
+
 /* Refused operators leave nothing behind either. */
 TEST(refusals)
 {
@@ -179,4 +255,5 @@ TEST(refusals)
     require(memory_live() == none, "%ld blocks leak", memory_live() - none);
 }
 
-TEST_MAIN("allocation", {hot_paths, 24}, {failures, COUNT(calls)}, {refusals, 1})
+TEST_MAIN("allocation", {hot_paths, 24}, {hot_paths_of_a_sparse_group, 2}, {failures, COUNT(calls)},
+          {failures_of_a_sparse_group, 2}, {refusals, 1})

@@ -168,6 +168,52 @@ TEST(share_without_order)
     tribo_destroy(d);
 }
 
+/* With shares that go on from the last ones forces follow a slow pull without jumps, and who has reached the limit stays there; R
+ * f is the same as with least shares. */
+TEST(shares_that_last)
+{
+    struct random g = random_of(_i);
+    const size_t n = 3 + below(&g, 10);
+    struct problem p = {.n = n};
+    double f[LARGEST], least[LARGEST], before[LARGEST] = {0}, lever[LARGEST], total = 0.0;
+    int at_limit[LARGEST] = {0}, sharing;
+    for (size_t i = 0; i < n; i++) {
+        lever[i] = uniform(&g, 0.5, 2.0) * (below(&g, 2) ? 1.0 : -1.0);
+        p.limit[i] = uniform(&g, 0.5, 2.0);
+        p.epsilon[i] = 1.0;
+        total += fabs(lever[i]) * p.limit[i];
+        for (size_t j = 0; j <= i; j++) {
+            p.r[i * n + j] = p.r[j * n + i] = lever[i] * lever[j];
+        }
+    }
+    tribo_context *c = problem_context(&p, TRIBO_COULOMB, TRIBO_CONSISTENT),
+                  *d = problem_context(&p, TRIBO_COULOMB, TRIBO_CONSISTENT);
+    assert_ok(tribo_set_sharing(c, TRIBO_SHARE_LAST));
+    assert_ok(tribo_get_sharing(c, &sharing));
+    ck_assert_int_eq(sharing, TRIBO_SHARE_LAST);
+    const double step = 0.999 * total / 400.0;
+    for (int k = 0; k <= 400; k++) {
+        double torque = 0.0, same = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            p.a[i] = lever[i] * k * step;
+        }
+        assert_ok(tribo_balance(c, p.v, p.a, NULL, f));
+        assert_ok(tribo_balance(d, p.v, p.a, NULL, least));
+        for (size_t i = 0; i < n; i++) {
+            require(fabs(f[i] - before[i]) <= 2.0 * step + 1e-12, "jump of %g at contact %zu", f[i] - before[i], i);
+            require(!at_limit[i] || fabs(f[i]) > (1.0 - 1e-12) * p.limit[i], "contact %zu leaves its limit", i);
+            at_limit[i] = fabs(f[i]) > (1.0 - 1e-12) * p.limit[i];
+            before[i] = f[i];
+            torque += lever[i] * f[i];
+            same += lever[i] * least[i];
+        }
+        assert_close(torque, -k * step, 1e-12 * total);
+        assert_close(same, -k * step, 1e-12 * total);
+    }
+    tribo_destroy(c);
+    tribo_destroy(d);
+}
+
 /* ------------------------------------------------------------------------------------------------------------- scaling */
 
 /* A row of bodies with masses from 1e-6 to 1e6 and limits from 1e-300 to 1e300, in one scene. */
@@ -579,6 +625,6 @@ TEST(product_of_tangents)
 }
 
 TEST_MAIN("coupled", {gauss_seidel_agrees, 80}, {fixed_point_after_many_changes, 40}, {identical_contacts_share, 100},
-          {share_without_order, 200}, {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4},
-          {sleeping_islands, 2}, {long_chain, 2}, {sparse_clone, 3}, {consistent_mass, 40}, {callback_fails, 1},
-          {product_of_tangents, 120})
+          {share_without_order, 200}, {shares_that_last, 40}, {extreme_limits_and_masses, 200}, {ill_conditioned, 60},
+          {one_change_is_one_update, 4}, {sleeping_islands, 2}, {long_chain, 2}, {sparse_clone, 3}, {consistent_mass, 40},
+          {callback_fails, 1}, {product_of_tangents, 120})

@@ -147,6 +147,9 @@ TEST(getters)
     REFUSED(TRIBO_ERR_STATE, "tribo_balance", tribo_get_modes(c, out.mode));
     REFUSED(TRIBO_ERR_NULL, "mode is NULL", tribo_get_modes(c, NULL));
     REFUSED(TRIBO_ERR_NULL, "value is NULL", tribo_get_count(c, TRIBO_COUNT_STUCK, NULL));
+    REFUSED(TRIBO_ERR_RANGE, "sharing = 2", tribo_set_sharing(c, 2));
+    REFUSED(TRIBO_ERR_NULL, "sharing is NULL", tribo_get_sharing(c, NULL));
+    REFUSED(TRIBO_ERR_NULL, "df is NULL", tribo_tangent_product(c, NULL, NULL, NULL));
     REFUSED(TRIBO_ERR_RANGE, "which = -1", tribo_get_count(c, -1, &out.count));
     REFUSED(TRIBO_ERR_RANGE, "which = 9", tribo_get_count(c, TRIBO_COUNT_REUSED + 1, &out.count));
     REFUSED(TRIBO_ERR_NULL, "value is NULL", tribo_get_real(c, TRIBO_REAL_RESIDUAL, NULL));

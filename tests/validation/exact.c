@@ -165,6 +165,34 @@ TEST(resonance_elsewhere)
     tribo_system_destroy(sys);
 }
 
+/* Masses 0 and 1 damp each other, mass 2 is undamped and loaded at its own frequency: no response in closed form. Exact says so;
+ * event takes it. */
+TEST(resonance_beside_damping)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0},
+                 stiffness[] = {3.0, -1.0, 0.0, -1.0, 2.0, 0.0, 0.0, 0.0, 4.0};
+    const double damping[] = {0.2, -0.1, 0.0, -0.1, 0.1, 0.0, 0.0, 0.0, 0.0}, direction[] = {1.0, 0.0, 0.0},
+                 load[] = {0.0, 0.0, 1.0};
+    double t = 0.0, y[7] = {0};
+    tribo_system *sys;
+    tribo_driver *exact;
+    assert_ok(tribo_system_linear(&sys, 3, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(sys, 2.0, load, NULL));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
+    y[0] = 1.0;
+    int status = tribo_driver_create(&exact, sys, "exact", 1.0, 0.0, 0.0);
+    if (!status) {
+        status = tribo_driver_advance(exact, &t, 5.0, y);
+        assert_says(tribo_driver_message(exact), "resonance");
+        tribo_driver_destroy(exact);
+    }
+    assert_status(status, TRIBO_ERR_UNSUPPORTED);
+    t = 0.0;
+    run(sys, "event", 1.0, 1e-12, 5.0, y);
+    assert_close(y[2], 0.25 * 5.0 * sin(10.0), 1e-10); /* q'' + 4 q = cos 2t, from rest */
+    tribo_system_destroy(sys);
+}
+
 /* Two masses that a held contact makes one, on no ground: what is left of their stiffness is rounding, and must not be taken for
  * a spring. A third force slides along. */
 TEST(held_together)
@@ -441,6 +469,6 @@ TEST(creation)
 }
 
 TEST_MAIN("exact", {reference_values, REFERENCES}, {events_of_the_chain, 1}, {chains, 6}, {beam_against_event, 3},
-          {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1}, {held_together, 2}, {balance_of_energy, 8},
-          {observer_sees_the_motion, 1}, {observer_stops, 1}, {in_pieces, 1}, {automatic, 1}, {automatic_runs, 1},
-          {unsupported, 1}, {creation, 1})
+          {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1}, {resonance_beside_damping, 1}, {held_together, 2},
+          {balance_of_energy, 8}, {observer_sees_the_motion, 1}, {observer_stops, 1}, {in_pieces, 1}, {automatic, 1},
+          {automatic_runs, 1}, {unsupported, 1}, {creation, 1})
