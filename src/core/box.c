@@ -59,9 +59,9 @@ static size_t change_all(struct program *p)
         changes += (p->at[i] == FREE) != (p->to[i] == FREE);
         free += p->to[i] == FREE;
     }
-    /* a change costs about rank^2, and a factorization a third of that for every free contact; one that loses contacts while
-     * others depend on them may end in a factorization of its own, over a set that is no longer that of at */
-    if (changes > 0 && (3 * changes > free || (p->island->dependents && changes > 1))) {
+    /* a change that loses contacts while others depend on them may end in a factorization of its own, over a set that is no
+     * longer that of at */
+    if (changes > 0 && (tribo_factor_many(p, changes, free) || (p->island->dependents && changes > 1))) {
         p->work.updates += changes;
         memcpy(p->at, p->to, n);
         tribo_factor_rebuild(p, NULL);
@@ -89,14 +89,14 @@ static void enter(struct program *p, int keep_bounds)
     change_all(p);
 }
 
-/* x += the move of the independent x that takes their gradient to zero; dependent ones stay. */
-static void newton(struct program *p, double *step)
+/* step = the move of the independent x that takes their gradient to zero; dependent ones stay. */
+static void newton(struct program *p)
 {
     const size_t rank = p->island->rank;
     for (size_t k = 0; k < rank; k++) {
-        step[p->order[k]] = -p->gradient[p->order[k]];
+        p->step[p->order[k]] = -p->gradient[p->order[k]];
     }
-    tribo_factor_solve(p, step);
+    tribo_factor_solve(p, p->step);
 }
 
 static int settled(const struct program *p, double noises)
@@ -116,7 +116,7 @@ static void refine(struct program *p)
 {
     tribo_box_gradient(p);
     for (int pass = 0; pass < 4 && !settled(p, pass ? 1.0 : 1.0 / 16.0); pass++) {
-        newton(p, p->step);
+        newton(p);
         for (size_t k = 0; k < p->island->rank; k++) {
             const size_t i = p->order[k];
             p->x[i] = lesser(greater(p->x[i] + p->step[i], -FAR), FAR);
@@ -277,7 +277,7 @@ static int slide(struct program *p, size_t d)
 static int descend(struct program *p)
 {
     tribo_box_gradient(p);
-    newton(p, p->step);
+    newton(p);
     for (size_t d = 0; d < p->island->dependents; d++) {
         p->step[p->order[p->island->rank + d]] = 0.0;
     }
@@ -407,7 +407,7 @@ int tribo_box_linear(struct program *p)
         } else if (pass > 0 && settled(p, 1.0)) {
             break;
         }
-        newton(p, p->step);
+        newton(p);
         for (size_t d = 0; d < p->island->dependents; d++) {
             p->step[p->order[p->island->rank + d]] = 0.0;
         }
