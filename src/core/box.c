@@ -110,12 +110,11 @@ static int settled(const struct program *p, double noises)
     return 1;
 }
 
-/* Takes the gradient of the independent x to zero. A start from the last x would be within the bound on rounding of many steps,
- * and lag behind in one direction: it takes a step unless it is as good as after one. */
+/* Takes the gradient of the independent x to zero. */
 static void refine(struct program *p)
 {
     tribo_box_gradient(p);
-    for (int pass = 0; pass < 4 && !settled(p, pass ? 1.0 : 1.0 / 16.0); pass++) {
+    for (int pass = 0; pass < 4 && !settled(p, 1.0); pass++) {
         newton(p);
         for (size_t k = 0; k < p->island->rank; k++) {
             const size_t i = p->order[k];
@@ -383,9 +382,9 @@ void tribo_box_share(struct program *p)
 
 /* ------------------------------------------------------------------------------------------------ the linear system */
 
-int tribo_box_linear(struct program *p)
+/* With the factor as it is. */
+static int minimum_norm(struct program *p)
 {
-    enter(p, 0);
     for (size_t e = 0; e < p->count; e++) {
         p->x[p->near[e]] = 0.0;
     }
@@ -417,5 +416,17 @@ int tribo_box_linear(struct program *p)
         }
     }
     tribo_box_gradient(p);
+    return consistent;
+}
+
+int tribo_box_linear(struct program *p)
+{
+    enter(p, 0);
+    int consistent = minimum_norm(p);
+    /* a factor that grew row by row may see another rank than one that has chosen among all pivots */
+    if (!consistent || !settled(p, SETTLED)) {
+        tribo_factor_rebuild(p, NULL);
+        consistent = minimum_norm(p);
+    }
     return consistent;
 }
