@@ -33,7 +33,7 @@ void tribo_box_gradient(struct program *p)
         const size_t i = p->near[e];
         double size;
         p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
-        p->noise[i] = tribo_resolution(tribo_row_terms(p, i)) * (size + fabs(p->q[i])) + NOTHING * p->unit[i];
+        p->noise[i] = tribo_resolution(p->terms[i]) * (size + fabs(p->q[i])) + NOTHING * p->unit[i];
     }
 }
 

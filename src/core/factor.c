@@ -78,11 +78,6 @@ TRIBO_SIMD static double dense_dot(const double *restrict row, const double *res
     return sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
-size_t tribo_row_terms(const struct program *p, size_t i)
-{
-    return p->island->sparse ? tribo_sparse_terms(p, i) : p->island->size;
-}
-
 double tribo_row_dot(const struct program *p, size_t i, const double *x, double *size)
 {
     if (p->island->sparse) {

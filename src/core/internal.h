@@ -32,7 +32,7 @@ struct op {
     double *reach;                   /* [n] sum of |R_ij| N_j: what friction can do to a contact at most */
     int reaches;                     /* reach is that of the limits */
     signed char *at;                 /* [members] */
-    size_t *order;                   /* [members] */
+    size_t *order, *terms;           /* [members] */
     struct program program;          /* workspace of the largest group, with views of one */
 };
 

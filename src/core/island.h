@@ -45,6 +45,7 @@ struct work {
 struct program {
     struct island *island;
     const double *r;     /* [size][size], if dense */
+    const size_t *terms; /* [size] entries of R in a row */
     const double *scale; /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
     signed char *at;     /* [size] kept */
     size_t *order;       /* [size] kept: rank independent free contacts, in the order of the factor, then the dependents */
@@ -95,7 +96,6 @@ void tribo_sparse_remove(struct program *p, size_t i);
 double tribo_sparse_rebuild(struct program *p, size_t *where);
 void tribo_sparse_solve(const struct program *p, double *step);
 int tribo_sparse_many(const struct program *p, size_t changes);
-size_t tribo_sparse_terms(const struct program *p, size_t i);
 double tribo_sparse_dot(const struct program *p, size_t i, const double *x, double *size);
 void tribo_sparse_spread(const struct program *p, size_t i, double factor, double *y);
 
@@ -111,7 +111,6 @@ void tribo_sparse_free(struct sparse *s);
 
 /* Row i times x [size]; *size is the sum of the terms' absolute values. */
 double tribo_row_dot(const struct program *p, size_t i, const double *x, double *size);
-size_t tribo_row_terms(const struct program *p, size_t i);
 
 /* y [size] = factor * row i, at the free contacts. Other entries are left alone. */
 void tribo_row_spread(const struct program *p, size_t i, double factor, double *y);

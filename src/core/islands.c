@@ -29,6 +29,7 @@ void tribo_op_free(struct op *op)
     free(op->reach);
     free(op->at);
     free(op->order);
+    free(op->terms);
     free(p->near);
     free(p->held);
     free(p->to);
@@ -58,9 +59,10 @@ static int allocate_pools(struct op *op, size_t n)
     op->reach = calloc(n + 1, sizeof *op->reach);
     op->at = malloc(m);
     op->order = malloc(m * sizeof *op->order);
+    op->terms = calloc(m, sizeof *op->terms);
     op->r = calloc(b, sizeof *op->r);
     op->l = malloc(b * sizeof *op->l);
-    if (!op->scale || !op->x || !op->reach || !op->at || !op->order || !op->r || !op->l) {
+    if (!op->scale || !op->x || !op->reach || !op->at || !op->order || !op->terms || !op->r || !op->l) {
         return 0;
     }
     memset(op->at, AWAY, m);
@@ -143,6 +145,7 @@ int tribo_op_copy(struct op *to, const struct op *from, size_t n)
     tribo_copy(to->x, from->x, from->members);
     memcpy(to->at, from->at, from->members);
     memcpy(to->order, from->order, from->members * sizeof *to->order);
+    memcpy(to->terms, from->terms, from->members * sizeof *to->terms);
     return 1;
 }
 
@@ -260,6 +263,7 @@ static void fill(struct op *op, const struct rows *a, const size_t *place)
         struct island *is = &op->group[op->group_of[i]];
         is->row_sum = greater(is->row_sum, sum);
         op->scale[is->first + place[i]] = tribo_scale(op->diagonal[i]);
+        op->terms[is->first + place[i]] = a->first[i + 1] - a->first[i];
         double *row = op->r + is->block + place[i] * is->size;
         for (size_t e = a->first[i]; !is->sparse && e < a->first[i + 1]; e++) {
             if (a->val[e] != 0.0) {
@@ -346,6 +350,7 @@ struct program *tribo_op_program(struct op *op, size_t k)
     p->island = is;
     p->r = op->r + is->block;
     p->l = op->l + is->block;
+    p->terms = op->terms + is->first;
     p->scale = op->scale + is->first;
     p->at = op->at + is->first;
     p->order = op->order + is->first;

@@ -217,12 +217,6 @@ void tribo_sparse_spread(const struct program *p, size_t i, double factor, doubl
     }
 }
 
-size_t tribo_sparse_terms(const struct program *p, size_t i)
-{
-    const struct rows *r = &p->island->sparse->r;
-    return r->first[i + 1] - r->first[i];
-}
-
 /* ------------------------------------------------------------------------------------------------------- the factor */
 
 /* Row k of L, by elimination with the rows before it that are in the factor. Returns its pivot. Of the contacts that are free but
