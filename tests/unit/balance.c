@@ -439,6 +439,15 @@ TEST(modes)
             stuck += want == 0;
         }
         ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), stuck);
+        /* forces in a box of the caller's own have no modes, nor have those of another operator; a call that is refused takes
+         * none */
+        assert_status(tribo_balance(c, NULL, p.a, NULL, x.f), p.n ? TRIBO_ERR_NULL : TRIBO_OK);
+        assert_ok(tribo_get_modes(c, mode));
+        assert_ok(step ? tribo_set_operator_dense(c, p.r) : tribo_solve_box(c, p.a, p.limit, p.limit, x.f));
+        stain(mode, sizeof mode);
+        assert_status(tribo_get_modes(c, mode), TRIBO_ERR_STATE);
+        ck_assert(stained(mode, sizeof mode));
+        ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 0);
     }
     tribo_destroy(c);
 }
