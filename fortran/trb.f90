@@ -1,8 +1,8 @@
 !> tribo for fixed-form Fortran: external routines that need no module and no interface block.
 !>
 !> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and MODE; all other numbers are DOUBLE PRECISION; NAME and TEXT are
-!> CHARACTER*(*). Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger array may be passed,
-!> and the array then begins there. Contacts, rows and columns are counted from 1.
+!> CHARACTER*(*); MINV is a subroutine. Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger
+!> array may be passed, and the array then begins there. Contacts, rows and columns are counted from 1.
 !>
 !> IH     handle of a set of contacts. It fits a default INTEGER and is never given twice (there are two thousand million of them,
 !>        then TRBNEW answers TRIBO_ERR_MEMORY); handles that were never given, or whose contacts have been deleted, are

@@ -586,8 +586,8 @@ C     Values
      1    'no tribo_balance_tangent since the last balance or change')
       CALL TRBMOD(IH, N, MODE, IERR)
       CALL WANTED('TRBMOD', IH, IERR, 8,
-     1            'no tribo_balance or tribo_step_force since the last'//
-     2            ' tribo_solve_box or operator')
+     1    'no tribo_balance or tribo_step_force since the last tribo_'//
+     2            'solve_box or operator')
       CALL TRBCNT(IH, 99, J, IERR)
       CALL WANTED('TRBCNT', IH, IERR, 5, 'which = 99 is no count')
       CALL TRBVAL(IH, -1, Y(1), IERR)
