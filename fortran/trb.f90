@@ -1,8 +1,8 @@
 !> tribo for fixed-form Fortran: external routines that need no module and no interface block.
 !>
 !> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and MODE; all other numbers are DOUBLE PRECISION; NAME and TEXT are
-!> CHARACTER*(*). Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger array may be passed,
-!> and the array then begins there. Contacts, rows and columns are counted from 1.
+!> CHARACTER*(*); MINV is a subroutine. Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger
+!> array may be passed, and the array then begins there. Contacts, rows and columns are counted from 1.
 !>
 !> IH     handle of a set of contacts. It fits a default INTEGER and is never given twice (there are two thousand million of them,
 !>        then TRBNEW answers TRIBO_ERR_MEMORY); handles that were never given, or whose contacts have been deleted, are
@@ -44,8 +44,14 @@
 !>                                                   K = IROW(I) to IROW(I+1) - 1; IROW(N+1), IROW(1) = 1
 !>   TRBOPM(IH, N, NDOF, RMINV, IROW, ICOL, VAL,     R = J diag(RMINV(NDOF)) J', J (N x NDOF) sparse as above
 !>          IERR)
+!>   TRBOPC(IH, N, NDOF, MINV, IROW, ICOL, VAL,      R = J M**-1 J', J as above, by CALL MINV(NDOF, FORCE, ACC, RPAR, IPAR, IER),
+!>          RPAR, IPAR, IERR)                        once a contact: MINV, which is EXTERNAL in your program, sets ACC(NDOF) to
+!>                                                   M**-1 FORCE(NDOF), to 1E-11, or else IER, which is 0 before, to what is not
+!>                                                   0: then IERR is TRIBO_ERR_CALLBACK. RPAR(*) and IPAR(*) are MINV's alone
 !>   TRBCPL(IH, ICPL, IERR)                          ICPL 0 consistent, 1 partition
 !>   TRBGCP(IH, ICPL, IERR)                                                            ICPL
+!>   TRBSHR(IH, ISHR, IERR)                          ISHR: redundant contacts share    0 by least norm, 1 as in the last call
+!>   TRBGSH(IH, ISHR, IERR)                                                            ISHR
 !> Forces
 !>   TRBFRC(IH, N, V, FEQ, F, IERR)                  V(N), FEQ(N)                      F(N)
 !>   TRBFTN(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      F(N), its derivatives by V, FEQ, limit
@@ -53,6 +59,7 @@
 !>   TRBBAL(IH, N, V, A, FEQ, F, IERR)               V(N), A(N)                        FEQ(N), F(N)
 !>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
 !>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
+!>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of the last TRBBTN
 !>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
 !>   TRBACC(IH, N, V, FEQ, IERR)                     V(N), FEQ(N) of an accepted step
@@ -70,7 +77,35 @@ module tribo_fixed
   implicit none
   public
 
+  abstract interface
+    !> MINV of TRBOPC.
+    subroutine inverse_of_mass(ndof, force, acc, rpar, ipar, ier)
+      import :: dp
+      integer, intent(in) :: ndof
+      real(dp), intent(in) :: force(*)
+      real(dp), intent(inout) :: acc(*), rpar(*)
+      integer, intent(inout) :: ipar(*), ier
+    end subroutine inverse_of_mass
+  end interface
+
+  !> rpar and ipar begin where the caller's do; how long these are only the caller knows.
+  type, extends(tribo_mass) :: external_mass
+    procedure(inverse_of_mass), pointer, nopass :: minv => null()
+    real(dp), pointer, contiguous :: rpar(:) => null()
+    integer, pointer, contiguous :: ipar(:) => null()
+  contains
+    procedure :: apply => call_minv
+  end type external_mass
+
 contains
+
+  integer function call_minv(this, force, acceleration) result(ier)
+    class(external_mass), intent(inout) :: this
+    real(dp), intent(in) :: force(:)
+    real(dp), intent(inout) :: acceleration(:)
+    ier = 0
+    call this%minv(size(force), force, acceleration, this%rpar, this%ipar, ier)
+  end function call_minv
 
   !> The contacts of a handle; ierr says whether there are such, and n of them.
   subroutine find(ih, c, ierr, n)
@@ -477,6 +512,26 @@ subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
   call c%set_operator_mass(rminv(:ndof), irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbopm
 
+subroutine trbopc(ih, n, ndof, minv, irow, icol, val, rpar, ipar, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n, ndof, irow(*), icol(*)
+  procedure(inverse_of_mass) :: minv
+  real(dp), intent(in) :: val(*)
+  real(dp), intent(inout), target :: rpar(*)
+  integer, intent(inout), target :: ipar(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+  type(external_mass) :: mass
+
+  call find_more(ih, c, ierr, n, 'NDOF', ndof, 0)
+  if (ierr /= TRIBO_OK) return
+  mass%minv => minv
+  mass%rpar => rpar(:1)
+  mass%ipar => ipar(:1)
+  call c%set_operator_callback(ndof, mass, irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
+end subroutine trbopc
+
 subroutine trbcpl(ih, icpl, ierr)
   use tribo_fixed
   implicit none
@@ -499,6 +554,29 @@ subroutine trbgcp(ih, icpl, ierr)
   call find(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_coupling(icpl, ierr)
 end subroutine trbgcp
+
+subroutine trbshr(ih, ishr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, ishr
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_sharing(ishr, ierr)
+end subroutine trbshr
+
+subroutine trbgsh(ih, ishr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: ishr
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%get_sharing(ishr, ierr)
+end subroutine trbgsh
 
 ! -------------------------------------------------------------------------------------------------------------------------- forces
 
@@ -553,6 +631,19 @@ subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
   call find_more(ih, c, ierr, n, 'LDJ', ldj, n)
   if (ierr == TRIBO_OK) call c%balance_tangent(v(:n), a(:n), feq(:n), f(:n), dfdv(:n, :n), dfda(:n, :n), ierr)
 end subroutine trbbtn
+
+subroutine trbtpr(ih, n, dv, da, df, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: dv(*), da(*)
+  real(dp), intent(inout) :: df(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%tangent_product(dv(:n), da(:n), df(:n), ierr)
+end subroutine trbtpr
 
 subroutine trbstf(ih, n, dt, vfree, f, ierr)
   use tribo_fixed

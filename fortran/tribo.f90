@@ -32,8 +32,8 @@
 !>
 !> Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397, doi:10.1115/1.1760564.
 module tribo
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_funloc, c_int, c_loc, c_null_char, c_null_ptr, c_ptr, &
-    c_signed_char, c_size_t
+  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, &
+    c_null_char, c_null_ptr, c_ptr, c_signed_char, c_size_t
   use, intrinsic :: iso_fortran_env, only: int32, int64
   use tribo_support
   implicit none
@@ -61,9 +61,14 @@ module tribo
     TRIBO_CONSISTENT = 0, &       !< it balances the forces that the others really carry
     TRIBO_PARTITION = 1           !< it balances those of the contacts with abs(v) > epsilon: the paper, Eq. 8 to 10
 
-  !> For get_count. STUCK and RANK are those of the last balance or step_force, the others add up since create.
+  !> How redundant contacts share, where R f is unique but f is not.
   integer, parameter, public :: &
-    TRIBO_COUNT_STUCK = 0, &      !< contacts with mode 0
+    TRIBO_SHARE_LEAST = 0, &      !< f of least norm: depends neither on the order of the contacts nor on earlier calls
+    TRIBO_SHARE_LAST = 1          !< the forces of the last call, changed no more than they must be: continuous in time
+
+  !> For get_count. STUCK and RANK are those of the last balance, step_force or solve_box, the others add up since create.
+  integer, parameter, public :: &
+    TRIBO_COUNT_STUCK = 0, &      !< contacts with mode 0; 0 where there are no modes
     TRIBO_COUNT_RANK = 1, &       !< sum of the ranks of the matrices that the last call solved with
     TRIBO_COUNT_ISLANDS = 2, &    !< groups of coupled contacts in the operator
     TRIBO_COUNT_SOLVES = 3, &     !< islands that had to be solved
@@ -99,10 +104,11 @@ module tribo
     procedure :: get_epsilon
     procedure, private :: set_operator_diagonal, set_operator_dense
     generic :: set_operator => set_operator_diagonal, set_operator_dense
-    procedure :: set_operator_csr, set_operator_mass
+    procedure :: set_operator_csr, set_operator_mass, set_operator_callback
     procedure :: set_coupling, get_coupling
+    procedure :: set_sharing, get_sharing
     procedure :: force, force_tangent
-    procedure :: balance, balance_tangent
+    procedure :: balance, balance_tangent, tangent_product
     procedure :: step_force
     procedure :: solve_box
     procedure :: accept
@@ -113,6 +119,27 @@ module tribo
     procedure, private :: assign
     generic :: assignment(=) => assign
   end type tribo_context
+
+  !> A mass matrix that only the caller can solve with: a type of the caller's that extends this one, and so has factors and the
+  !> like at hand. For set_operator_callback.
+  type, abstract, public :: tribo_mass
+  contains
+    procedure(apply), deferred :: apply
+  end type tribo_mass
+
+  abstract interface
+    !> acceleration = M**-1 force, to 1e-11. What it answers ends the call unless 0. It must not change the context.
+    integer function apply(this, force, acceleration)
+      import :: dp, tribo_mass
+      class(tribo_mass), intent(inout) :: this
+      real(dp), intent(in) :: force(:)
+      real(dp), intent(inout) :: acceleration(:)
+    end function apply
+  end interface
+
+  type :: held_mass
+    class(tribo_mass), pointer :: mass
+  end type held_mass
 
   ! The C library. Outputs are intent(inout) here as well, lest a compiler copies back a section that the call has not written.
   interface
@@ -255,6 +282,18 @@ module tribo
       integer(c_int) :: status
     end function c_set_operator_mass
 
+    function c_set_operator_callback(ctx, ndof, apply, data, rowptr, col, val) result(status) &
+      bind(c, name='tribo_set_operator_callback')
+      import :: c_ptr, c_funptr, c_size_t, c_double, c_int
+      type(c_ptr), value :: ctx
+      integer(c_size_t), value :: ndof
+      type(c_funptr), value :: apply
+      type(c_ptr), value :: data
+      integer(c_size_t), intent(in) :: rowptr(*), col(*)
+      real(c_double), intent(in) :: val(*)
+      integer(c_int) :: status
+    end function c_set_operator_callback
+
     function c_set_coupling(ctx, coupling) result(status) bind(c, name='tribo_set_coupling')
       import :: c_ptr, c_int
       type(c_ptr), value :: ctx
@@ -268,6 +307,20 @@ module tribo
       integer(c_int), intent(inout) :: coupling
       integer(c_int) :: status
     end function c_get_coupling
+
+    function c_set_sharing(ctx, sharing) result(status) bind(c, name='tribo_set_sharing')
+      import :: c_ptr, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), value :: sharing
+      integer(c_int) :: status
+    end function c_set_sharing
+
+    function c_get_sharing(ctx, sharing) result(status) bind(c, name='tribo_get_sharing')
+      import :: c_ptr, c_int
+      type(c_ptr), value :: ctx
+      integer(c_int), intent(inout) :: sharing
+      integer(c_int) :: status
+    end function c_get_sharing
 
     function c_force(ctx, v, feq, f) result(status) bind(c, name='tribo_force')
       import :: c_ptr, c_double, c_int
@@ -300,6 +353,13 @@ module tribo
       type(c_ptr), value :: feq, f, df_dv, df_da
       integer(c_int) :: status
     end function c_balance_tangent
+
+    function c_tangent_product(ctx, dv, da, df) result(status) bind(c, name='tribo_tangent_product')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx, dv, da
+      real(c_double), intent(inout) :: df(*)
+      integer(c_int) :: status
+    end function c_tangent_product
 
     function c_step_force(ctx, dt, vfree, f) result(status) bind(c, name='tribo_step_force')
       import :: c_ptr, c_double, c_int
@@ -697,6 +757,42 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_operator_mass
 
+  !> R = J M**-1 J' with J [n][ndof] as above, for a mass matrix that only mass can solve with: mass%apply is called once a
+  !> contact, before this returns. Where contacts do not feel each other R has no entry.
+  subroutine set_operator_callback(this, ndof, mass, rowptr, col, val, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(in) :: ndof
+    class(tribo_mass), intent(inout), target :: mass
+    integer, intent(in) :: rowptr(:), col(:)
+    real(dp), intent(in) :: val(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(held_mass), target :: held
+    type(work) :: w
+
+    call begin(this, w)
+    call expect_count(w, 'ndof', ndof)
+    call check_rows(w, rowptr, col, val, w%n, ndof)
+    if (w%status == TRIBO_OK) then
+      held%mass => mass
+      w%status = c_set_operator_callback(w%ctx, int(ndof, c_size_t), c_funloc(ask_mass), c_loc(held), &
+        from_zero(rowptr), from_zero(col), val)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine set_operator_callback
+
+  !> Passes on what the library asks.
+  integer(c_int) function ask_mass(ndof, force, acceleration, data) bind(c, name='')
+    integer(c_size_t), value :: ndof
+    real(c_double), intent(in) :: force(ndof)
+    real(c_double), intent(inout) :: acceleration(ndof)
+    type(c_ptr), value :: data
+    type(held_mass), pointer :: held
+
+    call c_f_pointer(data, held)
+    ask_mass = int(held%mass%apply(force, acceleration), c_int)
+  end function ask_mass
+
   !> TRIBO_CONSISTENT or TRIBO_PARTITION.
   subroutine set_coupling(this, coupling, stat, errmsg)
     class(tribo_context), intent(inout) :: this
@@ -723,6 +819,33 @@ contains
     if (w%status == TRIBO_OK) coupling = int(number)
     call finish(w, stat, errmsg)
   end subroutine get_coupling
+
+  !> TRIBO_SHARE_LEAST or TRIBO_SHARE_LAST.
+  subroutine set_sharing(this, sharing, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(in) :: sharing
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_set_sharing(w%ctx, int(sharing, c_int))
+    call finish(w, stat, errmsg)
+  end subroutine set_sharing
+
+  subroutine get_sharing(this, sharing, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    integer, intent(inout) :: sharing
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    integer(c_int) :: number
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_get_sharing(w%ctx, number)
+    if (w%status == TRIBO_OK) sharing = int(number)
+    call finish(w, stat, errmsg)
+  end subroutine get_sharing
 
   ! --------------------------------------------------------------------------------------------------------------------- forces
 
@@ -767,7 +890,7 @@ contains
 
   !> f_eq and f of coupled contacts, z'' = R f + a. a is the relative acceleration without friction, minus the contact's driven
   !> acceleration; feq is 0 for open contacts; abs(f) <= limit. Where contacts are redundant R f is unique and f one of the
-  !> solutions.
+  !> solutions, see set_sharing.
   subroutine balance(this, v, a, feq, f, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: v(:), a(:)
@@ -812,6 +935,27 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine balance_tangent
+
+  !> Product of these derivatives with a change of v and a, for solvers that need no matrix: df = df_dv dv + df_da da at the point
+  !> of the last balance_tangent, with or without its matrices. An error (TRIBO_ERR_STATE) where there has been none, or another
+  !> balance or setting since.
+  subroutine tangent_product(this, dv, da, df, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in), optional, contiguous, target :: dv(:), da(:)
+    real(dp), intent(inout) :: df(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: at(2)
+
+    call begin(this, w)
+    at = c_null_ptr
+    if (present(dv)) call find_input(w, 'dv', dv, w%n, at(1))
+    if (present(da)) call find_input(w, 'da', da, w%n, at(2))
+    call expect_size(w, 'df', df, w%n)
+    if (w%status == TRIBO_OK) w%status = c_tangent_product(w%ctx, at(1), at(2), df)
+    call finish(w, stat, errmsg)
+  end subroutine tangent_product
 
   !> Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step dt,
   !> that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end(i) = 0 or f(i) =
@@ -869,7 +1013,7 @@ contains
   ! -------------------------------------------------------------------------------------------------------------------- queries
 
   !> What each contact did in the last balance or step_force: 0 stuck, +1 and -1 sliding in that direction (the force is
-  !> -limit*mode), 2 open.
+  !> -limit*mode), 2 open. An error (TRIBO_ERR_STATE) where there has been none, or a solve_box since.
   subroutine get_modes(this, mode, stat, errmsg)
     class(tribo_context), intent(in) :: this
     integer, intent(inout) :: mode(:)

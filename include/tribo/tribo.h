@@ -187,9 +187,9 @@ TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const dou
                                       const size_t *col, const double *val);
 
 /* R = J M^-1 J' for a mass matrix that only the caller can solve with; J as above. R is found column by column, and where
- * contacts do not feel each other its entries (those below 1e-17 of the diagonal too) are not kept. apply  in  called once a
- * contact: acceleration [ndof] out = M^-1 force [ndof] in, to 1e-11; 0, or anything else to end it: then this returns
- *            TRIBO_ERR_CALLBACK. data is handed to it. */
+ * contacts do not feel each other its entries (those below 1e-17 of the diagonal too) are not kept.
+ * apply  in  called once a contact: acceleration [ndof] out = M^-1 force [ndof] in, to 1e-11; it must not change ctx. Answers
+ *            0, or anything else to end it: then this returns TRIBO_ERR_CALLBACK. data is handed to it. */
 TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                           int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
                                           void *data, const size_t *rowptr, const size_t *col, const double *val);
@@ -203,9 +203,10 @@ TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
 TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
 
 /* How redundant contacts share: R f is unique, but where R is singular f is not. (In the partition f_eq is always the one of
- * least norm.) LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls LAST
- * one that begins with the forces of the last call and changes no more of them than it must: continuous in time. For event-driven
- *          codes, where a contact that has reached its limit should stay there while others take over. */
+ * least norm.)
+ *   LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls.
+ *   LAST   one that begins with the forces of the last call and changes no more of them than it must: continuous in time. For
+ *          event-driven codes, where a contact that has reached its limit should stay there while others take over. */
 enum { TRIBO_SHARE_LEAST = 0, TRIBO_SHARE_LAST = 1 };
 TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
 TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
@@ -231,7 +232,8 @@ TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, con
  * f    [n] out  or NULL; |f| <= limit
  * Consistent coupling: f = law(v, feq) and R_ii feq_i = -(a_i + sum of R_ij f_j over j != i), to rounding. Where
  * contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing. QUINN_REVERSAL: f_eq balances Quinn's
- * forces. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
+ * forces.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
@@ -240,9 +242,10 @@ TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const d
                                     double *df_da);
 
 /* Product of these derivatives with a change of v and a, for solvers that need no matrix: df = df_dv dv + df_da da at the point
- * of the last tribo_balance_tangent, whose matrices may be NULL. In O(s^2) for s coupled contacts near stick. dv, da  [n] in each
- * or NULL for none df      [n] out Returns TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another balance or
- * setting since. */
+ * of the last tribo_balance_tangent, whose matrices may be NULL. In O(s^2) for s coupled contacts near stick.
+ * dv, da  [n] in   each or NULL for none
+ * df      [n] out
+ * Returns TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another balance or setting since. */
 TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 
 /* Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step,
@@ -267,12 +270,14 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 /* ----------------------------------------------------------------------------------------------------------- queries */
 
 /* What each contact did in the last tribo_balance or tribo_step_force. mode [n] out: 0 stuck, +1 and -1 sliding in that
- * direction (the force is -limit * mode), 2 open. Returns TRIBO_ERR_STATE before the first such call. */
+ * direction (the force is -limit * mode), 2 open.
+ * Returns TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or tribo_set_operator_... since. */
 TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
 
-/* Counts. STUCK and RANK are those of the last tribo_balance or tribo_step_force, the others add up since tribo_create. */
+/* Counts. STUCK and RANK are those of the last tribo_balance, tribo_step_force or tribo_solve_box; ISLANDS is that of the
+ * operator; the others add up since tribo_create. */
 enum {
-    TRIBO_COUNT_STUCK = 0,          /* contacts with mode 0 */
+    TRIBO_COUNT_STUCK = 0,          /* contacts with mode 0; 0 where tribo_get_modes has none */
     TRIBO_COUNT_RANK = 1,           /* sum of the ranks of the matrices that the last call solved with */
     TRIBO_COUNT_ISLANDS = 2,        /* groups of coupled contacts in the operator */
     TRIBO_COUNT_SOLVES = 3,         /* islands that had to be solved */

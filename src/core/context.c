@@ -355,7 +355,8 @@ int tribo_get_modes(const tribo_context *ctx, signed char *mode)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "mode is NULL");
     }
     if (!ctx->balanced) {
-        return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance or tribo_step_force yet");
+        return tribo_fail(ctx, TRIBO_ERR_STATE,
+                          "no tribo_balance or tribo_step_force since the last tribo_solve_box or operator");
     }
     for (size_t i = 0; i < ctx->n; i++) {
         mode[i] = mode_of(ctx, i);

@@ -1,7 +1,35 @@
 !> Every error that a procedure of module tribo can answer: status, text, outputs left alone, context as it was.
+module errors_mass
+  use tribo
+  implicit none
+
+  !> A mass matrix that fails: at the given call it answers so, or accelerates what it should not by so much.
+  type, extends(tribo_mass) :: broken_mass
+    integer :: calls = 0, at = 0, answer = 0
+    real(dp) :: more = 0
+  contains
+    procedure :: apply
+  end type broken_mass
+
+contains
+
+  integer function apply(this, force, acceleration)
+    class(broken_mass), intent(inout) :: this
+    real(dp), intent(in) :: force(:)
+    real(dp), intent(inout) :: acceleration(:)
+    this%calls = this%calls + 1
+    acceleration = force
+    apply = 0
+    if (this%calls /= this%at) return
+    acceleration(1) = acceleration(1) + this%more
+    apply = this%answer
+  end function apply
+end module errors_mass
+
 program errors
   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
   use check, only: blank, blank_integer, expect_error, report, require, untouched
+  use errors_mass, only: broken_mass
   use tribo
   implicit none
 
@@ -19,6 +47,7 @@ program errors
   call settings()
   call operators()
   call compressed_rows()
+  call callbacks()
   call forces()
   call queries()
   call messages()
@@ -40,24 +69,27 @@ contains
     type(tribo_context), intent(inout) :: c
     type(tribo_context) :: fresh
     real(dp) :: limit(n), epsilon(n), f(n), wanted(n), rate, wanted_rate
-    integer :: law, coupling
+    integer :: law, coupling, sharing
 
     call make(fresh)
     call c%get_limit(limit)
     call c%get_epsilon(epsilon)
     call c%get_law(law)
     call c%get_coupling(coupling)
+    call c%get_sharing(sharing)
     call c%get_real(TRIBO_REAL_MAX_RATE, rate)
     call fresh%get_real(TRIBO_REAL_MAX_RATE, wanted_rate)
     call c%step_force(1.0_dp, [0.3_dp, 0.2_dp, 9.0_dp], f)
     call fresh%step_force(1.0_dp, [0.3_dp, 0.2_dp, 9.0_dp], wanted)
     as_made = all(abs(limit - [1, 2, 3]) <= 0) .and. all(abs(epsilon - [0.25_dp, 0.5_dp, 0.75_dp]) <= 0) .and. &
-      law == TRIBO_QUINN .and. coupling == TRIBO_CONSISTENT .and. all(abs(f - wanted) <= 0) .and. abs(rate - wanted_rate) <= 0
+      law == TRIBO_QUINN .and. coupling == TRIBO_CONSISTENT .and. sharing == TRIBO_SHARE_LEAST .and. &
+      all(abs(f - wanted) <= 0) .and. abs(rate - wanted_rate) <= 0
   end function as_made
 
   !> Every procedure on a context that has not been created.
   subroutine no_context()
     type(tribo_context) :: c, other
+    type(broken_mass) :: mass
     real(dp) :: x(n), y(n), z(n), w(n), q(n, n), p(n, n)
     integer :: i, mode(n)
 
@@ -107,9 +139,15 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%set_operator_mass(x, [1], [1], x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%set_operator_callback(0, mass, [1], [1], x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%set_coupling(TRIBO_PARTITION, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_coupling(i, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%set_sharing(TRIBO_SHARE_LAST, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%get_sharing(i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%force(x, x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
@@ -118,6 +156,8 @@ contains
     call c%balance(x, x, y, z, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%balance_tangent(x, x, y, z, q, p, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%tangent_product(x, x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%solve_box(x, x, x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
@@ -191,6 +231,8 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "Quinn"')
     call c%set_coupling(2, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
+    call c%set_sharing(-1, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'sharing = -1 is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST')
     call c%set_limit([1.0_dp, 2.0_dp], stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'limit has size 2, not 3')
     call c%set_limit([1.0_dp, nan, 2.0_dp], stat, msg)
@@ -293,6 +335,45 @@ contains
     call require(as_made(c), 'the operator in compressed rows stays')
   end subroutine compressed_rows
 
+  subroutine callbacks()
+    type(tribo_context) :: c
+    type(broken_mass) :: mass
+    integer, parameter :: rowptr(n + 1) = [1, 2, 3, 4], col(n) = [1, 2, 3]
+    real(dp), parameter :: val(n) = 1
+
+    call make(c)
+    call callback(c, mass, -1, rowptr, col, TRIBO_ERR_NEGATIVE, 'ndof = -1 is negative')
+    call callback(c, mass, 3, rowptr(:n), col, TRIBO_ERR_SIZE, 'rowptr has size 3, not 4')
+    call callback(c, mass, 3, rowptr, [col, 1], TRIBO_ERR_SIZE, 'val has size 3, not 4')
+    call callback(c, mass, 2, rowptr, col, TRIBO_ERR_RANGE, 'col(3) = 3 is out of range')
+    call callback(c, mass, 3, [1, 3, 3, 4], [1, 1, 2], TRIBO_ERR_DUPLICATE, 'contact 1 has column 1 twice')
+    call require(mass%calls == 0, 'apply is called for nothing that is wrong')
+    mass%at = 2
+    mass%answer = -7
+    call callback(c, mass, 3, rowptr, col, TRIBO_ERR_CALLBACK, 'apply answered -7 for contact 2')
+    call require(mass%calls == 2, 'apply is called no more')
+    mass = broken_mass(at=3, more=nan)
+    call callback(c, mass, 3, rowptr, col, TRIBO_ERR_NOT_FINITE, 'apply makes r of contacts 1, 3 nan')
+    mass = broken_mass(at=3, more=0.5_dp)
+    call callback(c, mass, 3, rowptr, col, TRIBO_ERR_NOT_SYMMETRIC, 'r of contacts 3, 1 is 0.5 one way and 0 the other')
+    mass = broken_mass(at=1, more=-2.0_dp)
+    call callback(c, mass, 3, rowptr, col, TRIBO_ERR_INDEFINITE, 'r: the diagonal entry of contact 1 is -1')
+    call require(as_made(c), 'the operator by a callback stays')
+    mass = broken_mass()
+    call c%set_operator_callback(3, mass, rowptr, col, val, stat)
+    call require(stat == TRIBO_OK .and. mass%calls == n, 'the same without a fault')
+  end subroutine callbacks
+
+  subroutine callback(c, mass, ndof, rowptr, col, wanted, text)
+    type(tribo_context), intent(inout) :: c
+    type(broken_mass), intent(inout) :: mass
+    integer, intent(in) :: ndof, rowptr(:), col(:), wanted
+    character(len=*), intent(in) :: text
+    real(dp), parameter :: val(n) = 1
+    call c%set_operator_callback(ndof, mass, rowptr, col, val, stat, msg)
+    call expect_error(stat, msg, wanted, text)
+  end subroutine callback
+
   subroutine csr(c, rowptr, col, val, wanted, text)
     type(tribo_context), intent(inout) :: c
     integer, intent(in) :: rowptr(:), col(:), wanted
@@ -369,6 +450,23 @@ contains
     call c%balance_tangent(v, bad, x, y, q(n:1:-1, :), p, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'a(2) = nan is not finite')
 
+    call c%tangent_product(v, v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, 'no tribo_balance_tangent since the last balance or change')
+    call c%balance_tangent(v, v)
+    call c%tangent_product(v(:2), v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'dv has size 2, not 3')
+    call c%tangent_product(v, v(::2), x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'da has size 2, not 3')
+    call c%tangent_product(v, v, x(:2), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'df has size 2, not 3')
+    call c%tangent_product(bad, v, q(3, :), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'dv(2) = nan is not finite')
+    call c%tangent_product(da=bad, df=x(n:1:-1), stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'da(2) = nan is not finite')
+    call c%balance(v, v)
+    call c%tangent_product(v, v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, 'no tribo_balance_tangent since the last balance or change')
+
     call c%step_force(0.0_dp, v, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'dt = 0 is not positive')
     call c%step_force(inf, v, x, stat, msg)
@@ -426,7 +524,8 @@ contains
     i = blank_integer
     x = blank
     call c%get_modes(mode, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_STATE, 'no tribo_balance or tribo_step_force yet')
+    call expect_error(stat, msg, TRIBO_ERR_STATE, &
+      'no tribo_balance or tribo_step_force since the last tribo_solve_box or operator')
     call c%balance([0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp])
     call c%get_modes(mode(:2), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'mode has size 2, not 3')

@@ -23,9 +23,10 @@ C
       INTEGER JCOL(5)
       DOUBLE PRECISION FMUN(N), EPS(N), D(N), R(N,N), VAL(8), RM(6)
       DOUBLE PRECISION RJ(5), FLO(N), FUP(N), V(N), A(N), FEQ(N), W(4)
+      DOUBLE PRECISION SHARED
       CHARACTER*200 TEXT
       CALL SCDATA(FMUN, EPS, D, R, N, IROW, ICOL, VAL, RM, JROW, JCOL,
-     1            RJ, FLO, FUP)
+     1            RJ, FLO, FUP, SHARED)
       CALL SCSTAT(4, V, A, FEQ)
       CALL TRBVER(IVER, IERR)
       CALL CMPI('TRBVER', IVER)
@@ -68,17 +69,18 @@ C
       SUBROUTINE PLAY
       INTEGER N, LDR
       PARAMETER (N = 4, LDR = 7)
-      INTEGER IH, IH2, IERR, IFORM, ICPL, LAW, NLAW
+      INTEGER IH, IH2, IERR, IFORM, ISET, LAW, NLAW, IPAR(3)
       INTEGER IWORK(40)
       DOUBLE PRECISION W(200), R(LDR,LDR)
       CHARACTER*40 TEXT
+      EXTERNAL MINV
 C     Where things begin in W and IWORK
       INTEGER LF, LE, LD, LV, LM, LJ, LLO, LUP
       PARAMETER (LF = 3, LE = 9, LD = 15, LV = 21, LM = 31, LJ = 41,
      1           LLO = 51, LUP = 61)
       CALL SCDATA(W(LF), W(LE), W(LD), R(2,1), LDR, IWORK(2), IWORK(9),
      1            W(LV), W(LM), IWORK(19), IWORK(29), W(LJ), W(LLO),
-     2            W(LUP))
+     2            W(LUP), W(LM-1))
       CALL TRBNEW(N, IH, IERR)
       CALL CMPI('TRBNEW', IERR)
       TEXT = 'as is'
@@ -92,17 +94,25 @@ C     Where things begin in W and IWORK
       CALL CMPI('TRBEPS', IERR)
       CALL SETTIN(IH)
       CALL TRBNLW(NLAW, IERR)
-      DO 30 IFORM = 1, 4
+      DO 30 IFORM = 1, 5
          IF (IFORM .EQ. 1) CALL TRBOPD(IH, N, W(LD), IERR)
          IF (IFORM .EQ. 2) CALL TRBOPF(IH, N, R(2,1), LDR, IERR)
          IF (IFORM .EQ. 3) CALL TRBOPS(IH, N, IWORK(2), IWORK(9), W(LV),
      1                                 IERR)
          IF (IFORM .EQ. 4) CALL TRBOPM(IH, N, 6, W(LM), IWORK(19),
      1                                 IWORK(29), W(LJ), IERR)
+         IPAR(2) = 0
+         IPAR(3) = 0
+         IF (IFORM .EQ. 5) CALL TRBOPC(IH, N, 6, MINV, IWORK(19),
+     1                                 IWORK(29), W(LJ), W(LM-1),
+     2                                 IPAR(2), IERR)
          CALL CMPI('TRBOP', IERR)
-         DO 20 ICPL = 0, 1
-            CALL TRBCPL(IH, ICPL, IERR)
+         IF (IFORM .EQ. 5) CALL EXPECT('MINV', IPAR(2) .EQ. N)
+         DO 20 ISET = 0, 2
+            CALL TRBCPL(IH, MOD(ISET, 2), IERR)
             CALL CMPI('TRBCPL', IERR)
+            CALL TRBSHR(IH, ISET/2, IERR)
+            CALL CMPI('TRBSHR', IERR)
             DO 10 LAW = 0, NLAW - 1
                CALL TRBLNM(LAW, TEXT, IERR)
                IF (MOD(LAW, 2) .EQ. 0) CALL TRBLAW(IH, LAW, IERR)
@@ -141,8 +151,24 @@ C     Where things begin in W and IWORK
       CALL EXPECT('TRBDEL of the copy', IERR .EQ. 0)
       END
 C
+C     M**-1 of scene.c: RPAR holds what is shared, then the inverse
+C     masses. IPAR counts the calls; at call IPAR(2) it fails.
+      SUBROUTINE MINV(NDOF, FORCE, ACC, RPAR, IPAR, IER)
+      INTEGER NDOF, IPAR(*), IER, I
+      DOUBLE PRECISION FORCE(NDOF), ACC(NDOF), RPAR(*), S
+      S = 0D0
+      DO 10 I = 1, NDOF
+         S = S + RPAR(1)*FORCE(I)
+   10 CONTINUE
+      DO 20 I = 1, NDOF
+         ACC(I) = RPAR(1+I)*FORCE(I) + S
+   20 CONTINUE
+      IPAR(1) = IPAR(1) + 1
+      IF (IPAR(1) .EQ. IPAR(2)) IER = 17
+      END
+C
       SUBROUTINE SETTIN(IH)
-      INTEGER IH, N, LAW, ICPL, IERR
+      INTEGER IH, N, LAW, ICPL, ISHR, IERR
       DOUBLE PRECISION X(6)
       CALL TRBNUM(IH, N, IERR)
       CALL CMPI('TRBNUM', IERR)
@@ -153,6 +179,9 @@ C
       CALL TRBGCP(IH, ICPL, IERR)
       CALL CMPI('TRBGCP', IERR)
       CALL CMPI('TRBGCP', ICPL)
+      CALL TRBGSH(IH, ISHR, IERR)
+      CALL CMPI('TRBGSH', IERR)
+      CALL CMPI('TRBGSH', ISHR)
       X(1) = 5D0
       X(6) = 5D0
       CALL TRBGLM(IH, N, X(2), IERR)
@@ -177,7 +206,7 @@ C
    20 CONTINUE
       CALL CMPR('TRBMOD', 4, X)
       CALL EXPECT('around', MODE(1) .EQ. 9 .AND. MODE(6) .EQ. 9)
-      DO 30 I = 0, 7
+      DO 30 I = 0, 8
          CALL TRBCNT(IH, I, IVAL, IERR)
          CALL CMPI('TRBCNT', IERR)
          CALL CMPI('TRBCNT', IVAL)
@@ -195,8 +224,11 @@ C
       INTEGER IH, IERR, K, I, J
       DOUBLE PRECISION FLO(*), FUP(*), V(N), A(N), FEQ(N)
       DOUBLE PRECISION F(N+2), G(N+2), X(N,3), DV(LDJ,N), DA(LDJ,N)
-      DOUBLE PRECISION QV(N,N), QA(N,N), ROW(N)
+      DOUBLE PRECISION QV(N,N), QA(N,N), ROW(N), ZERO(N), DF(N+2)
       LOGICAL SAME
+      DATA ZERO /N*0D0/
+      DF(1) = 5D0
+      DF(N+2) = 5D0
       F(N+1) = 5D0
       DO 100 K = 1, 5
          CALL SCSTAT(K, V, A, FEQ)
@@ -234,6 +266,15 @@ C        On failure C's outputs were zero here, or the forces before
    30       CONTINUE
             CALL CMPR('TRBBTN, DFDA', N, ROW)
    40    CONTINUE
+C        On failure C's outputs were f_eq and derivatives
+         CALL TRBTPR(IH, N, FEQ, A, X(1,1), IERR)
+         CALL CMPI('TRBTPR', IERR)
+         CALL TRBTPR(IH, N, FEQ, ZERO, X(1,2), IERR)
+         CALL CMPI('TRBTPR', IERR)
+         CALL TRBTPR(IH, N, ZERO, A, X(1,3), IERR)
+         CALL CMPI('TRBTPR', IERR)
+         CALL CMPR('TRBTPR', 3*N, X)
+         CALL TRBTPR(IH, N, FEQ, A, DF(2), IERR)
          CALL TRBSTF(IH, N, 0.125D0, V, F, IERR)
          CALL CMPI('TRBSTF', IERR)
          CALL CMPR('TRBSTF', N, F)
@@ -244,7 +285,8 @@ C        On failure C's outputs were zero here, or the forces before
          CALL TRBACC(IH, N, V, FEQ, IERR)
          CALL CMPI('TRBACC', IERR)
 C        Below the matrix, and past the vector, nothing has changed.
-         SAME = F(N+1) .EQ. 5D0
+         SAME = F(N+1) .EQ. 5D0 .AND. DF(1) .EQ. 5D0 .AND.
+     1      DF(N+2) .EQ. 5D0
          DO 50 J = 1, N
             SAME = SAME .AND. DV(5,J) .EQ. 0D0 .AND. DA(6,J) .EQ. 0D0
    50    CONTINUE
@@ -265,9 +307,12 @@ C     Every routine that takes a handle, with one that is none.
       INTEGER N
       PARAMETER (N = 2)
       INTEGER IHS(5), IH, I, K, IERR, IH2, J, IROW(3), ICOL(2), NONE
+      INTEGER IPAR(2)
       DOUBLE PRECISION X(N), Y(N), Z(N), D(N), E(N), Q(N,N), P(N,N)
       CHARACTER*80 TEXT
       CHARACTER*80 SAYS
+      EXTERNAL MINV
+      DATA IPAR /0, 0/
       CALL TRBNEW(N, IHS(1), IERR)
       CALL TRBDEL(IHS(1), IERR)
       CALL EXPECT('deleted', IERR .EQ. 0)
@@ -334,10 +379,16 @@ C     Every routine that takes a handle, with one that is none.
          CALL WANTED('TRBOPS', IH, IERR, 1, SAYS)
          CALL TRBOPM(IH, N, N, X, IROW, ICOL, X, IERR)
          CALL WANTED('TRBOPM', IH, IERR, 1, SAYS)
+         CALL TRBOPC(IH, N, N, MINV, IROW, ICOL, X, X, IPAR, IERR)
+         CALL WANTED('TRBOPC', IH, IERR, 1, SAYS)
          CALL TRBCPL(IH, 0, IERR)
          CALL WANTED('TRBCPL', IH, IERR, 1, SAYS)
          CALL TRBGCP(IH, J, IERR)
          CALL WANTED('TRBGCP', IH, IERR, 1, SAYS)
+         CALL TRBSHR(IH, 0, IERR)
+         CALL WANTED('TRBSHR', IH, IERR, 1, SAYS)
+         CALL TRBGSH(IH, J, IERR)
+         CALL WANTED('TRBGSH', IH, IERR, 1, SAYS)
          CALL TRBFRC(IH, N, X, X, Y, IERR)
          CALL WANTED('TRBFRC', IH, IERR, 1, SAYS)
          CALL TRBFTN(IH, N, X, X, Y, Z, D, E, IERR)
@@ -346,6 +397,8 @@ C     Every routine that takes a handle, with one that is none.
          CALL WANTED('TRBBAL', IH, IERR, 1, SAYS)
          CALL TRBBTN(IH, N, X, X, Y, Z, Q, P, N, IERR)
          CALL WANTED('TRBBTN', IH, IERR, 1, SAYS)
+         CALL TRBTPR(IH, N, X, X, Y, IERR)
+         CALL WANTED('TRBTPR', IH, IERR, 1, SAYS)
          CALL TRBSTF(IH, N, 1D0, X, Y, IERR)
          CALL WANTED('TRBSTF', IH, IERR, 1, SAYS)
          CALL TRBBOX(IH, N, X, X, X, Y, IERR)
@@ -359,7 +412,8 @@ C     Every routine that takes a handle, with one that is none.
          CALL TRBVAL(IH, 0, Y(1), IERR)
          CALL WANTED('TRBVAL', IH, IERR, 1, SAYS)
          CALL EXPECT('integers stay', J .EQ. NONE .AND. IH2 .EQ. NONE
-     1      .AND. ICOL(1) .EQ. 1 .AND. ICOL(2) .EQ. 2)
+     1      .AND. ICOL(1) .EQ. 1 .AND. ICOL(2) .EQ. 2 .AND.
+     2      IPAR(1) .EQ. 0)
          CALL EXPECT('reals stay', Y(1) .EQ. -777D0 .AND. Y(2) .EQ.
      1      -777D0 .AND. Z(1) .EQ. -777D0 .AND. D(2) .EQ. -777D0 .AND.
      2      E(1) .EQ. -777D0 .AND. Q(1,2) .EQ. 0D0 .AND. P(2,1) .EQ.
@@ -380,12 +434,14 @@ C     The errors of calls with a handle that is one.
       INTEGER N
       PARAMETER (N = 3)
       INTEGER IH, IERR, J, NM, K, IROW(4), ICOL(4), MODE(3), NOS(3)
+      INTEGER IPAR(2)
       DOUBLE PRECISION X(4), Y(4), Z(4), D(4), E(4), Q(4,4), P(4,4)
       DOUBLE PRECISION NEG(3), VAL(4)
       CHARACTER*60 SAYS
       LOGICAL SAME
+      EXTERNAL MINV
       DATA NEG /1D0, 2D0, -1D0/, VAL /1D0, 1D0, 1D0, 1D0/
-      DATA NOS /2, 4, -3/
+      DATA NOS /2, 4, -3/, IPAR /0, 2/
       IH = -777
       CALL TRBNEW(-1, IH, IERR)
       CALL EXPECT('TRBNEW', IERR .EQ. 3 .AND. IH .EQ. -777)
@@ -425,6 +481,8 @@ C     A number of contacts that is not that of the handle
          CALL WANTED('TRBOPS', IH, IERR, 6, SAYS)
          CALL TRBOPM(IH, NM, 2, X, IROW, ICOL, VAL, IERR)
          CALL WANTED('TRBOPM', IH, IERR, 6, SAYS)
+         CALL TRBOPC(IH, NM, 2, MINV, IROW, ICOL, VAL, X, IPAR, IERR)
+         CALL WANTED('TRBOPC', IH, IERR, 6, SAYS)
          CALL TRBFRC(IH, NM, X, X, Y, IERR)
          CALL WANTED('TRBFRC', IH, IERR, 6, SAYS)
          CALL TRBFTN(IH, NM, X, X, Y, Z, D, E, IERR)
@@ -433,6 +491,8 @@ C     A number of contacts that is not that of the handle
          CALL WANTED('TRBBAL', IH, IERR, 6, SAYS)
          CALL TRBBTN(IH, NM, X, X, Y, Z, Q, P, 4, IERR)
          CALL WANTED('TRBBTN', IH, IERR, 6, SAYS)
+         CALL TRBTPR(IH, NM, X, X, Y, IERR)
+         CALL WANTED('TRBTPR', IH, IERR, 6, SAYS)
          CALL TRBSTF(IH, NM, 1D0, X, Y, IERR)
          CALL WANTED('TRBSTF', IH, IERR, 6, SAYS)
          CALL TRBBOX(IH, NM, X, X, X, Y, IERR)
@@ -472,6 +532,9 @@ C     Values
       CALL TRBCPL(IH, 2, IERR)
       CALL WANTED('TRBCPL', IH, IERR, 5,
      1'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
+      CALL TRBSHR(IH, 2, IERR)
+      CALL WANTED('TRBSHR', IH, IERR, 5,
+     1'sharing = 2 is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST')
       CALL TRBOPD(IH, N, NEG, IERR)
       CALL WANTED('TRBOPD', IH, IERR, 3, 'r(3) = -1 is negative')
       CALL TRBOPF(IH, N, Q, 2, IERR)
@@ -497,6 +560,13 @@ C     Values
       ICOL(2) = 2
       CALL TRBOPM(IH, N, 2, VAL, IROW, ICOL, VAL, IERR)
       CALL WANTED('TRBOPM', IH, IERR, 5, 'col(3) = 3 is out of range')
+      CALL TRBOPC(IH, N, 2, MINV, IROW, ICOL, VAL, VAL, IPAR, IERR)
+      CALL WANTED('TRBOPC', IH, IERR, 5, 'col(3) = 3 is out of range')
+      CALL EXPECT('MINV not called', IPAR(1) .EQ. 0)
+      CALL TRBOPC(IH, N, 3, MINV, IROW, ICOL, VAL, VAL, IPAR, IERR)
+      CALL WANTED('TRBOPC', IH, IERR, 62,
+     1            'apply answered 17 for contact 2')
+      CALL EXPECT('MINV called no more', IPAR(1) .EQ. 2)
       IROW(4) = 0
       CALL TRBOPS(IH, N, IROW, ICOL, VAL, IERR)
       CALL WANTED('TRBOPS', IH, IERR, 6,
@@ -506,9 +576,18 @@ C     Values
      1            'rowptr(4) = 0 is less than the one before')
       CALL TRBOPM(IH, N, -1, VAL, IROW, ICOL, VAL, IERR)
       CALL WANTED('TRBOPM', IH, IERR, 6, 'NDOF = -1 is less than 0')
+      CALL TRBOPC(IH, N, 3, MINV, IROW, ICOL, VAL, VAL, IPAR, IERR)
+      CALL WANTED('TRBOPC', IH, IERR, 6,
+     1            'rowptr(4) = 0 is less than the one before')
+      CALL TRBOPC(IH, N, -1, MINV, IROW, ICOL, VAL, VAL, IPAR, IERR)
+      CALL WANTED('TRBOPC', IH, IERR, 6, 'NDOF = -1 is less than 0')
+      CALL TRBTPR(IH, N, X, X, Y, IERR)
+      CALL WANTED('TRBTPR', IH, IERR, 8,
+     1    'no tribo_balance_tangent since the last balance or change')
       CALL TRBMOD(IH, N, MODE, IERR)
       CALL WANTED('TRBMOD', IH, IERR, 8,
-     1            'no tribo_balance or tribo_step_force yet')
+     1    'no tribo_balance or tribo_step_force since the last tribo_'//
+     2            'solve_box or operator')
       CALL TRBCNT(IH, 99, J, IERR)
       CALL WANTED('TRBCNT', IH, IERR, 5, 'which = 99 is no count')
       CALL TRBVAL(IH, -1, Y(1), IERR)

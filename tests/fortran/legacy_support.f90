@@ -1,12 +1,12 @@
 !> For legacy.f: the scene and its tape, see scene.f90, as a program without modules can use them.
 
 !> The scene's data, at the given places of an array that is larger, and matrices with a leading dimension ldr.
-subroutine scdata(fmun, eps, rdiag, r, ldr, irow, icol, val, rminv, jrow, jcol, rj, flo, fup)
+subroutine scdata(fmun, eps, rdiag, r, ldr, irow, icol, val, rminv, jrow, jcol, rj, flo, fup, shared)
   use scene
   use tribo, only: dp
   implicit none
   integer, intent(in) :: ldr
-  real(dp), intent(inout) :: fmun(*), eps(*), rdiag(*), r(ldr, *), val(*), rminv(*), rj(*), flo(*), fup(*)
+  real(dp), intent(inout) :: fmun(*), eps(*), rdiag(*), r(ldr, *), val(*), rminv(*), rj(*), flo(*), fup(*), shared
   integer, intent(inout) :: irow(*), icol(*), jrow(*), jcol(*)
   fmun(:n) = scene_limit
   eps(:n) = scene_epsilon
@@ -21,6 +21,7 @@ subroutine scdata(fmun, eps, rdiag, r, ldr, irow, icol, val, rminv, jrow, jcol, 
   rj(:5) = scene_j_val
   flo(:n) = scene_lower
   fup(:n) = scene_upper
+  shared = scene_shared
 end subroutine scdata
 
 subroutine scstat(k, v, a, feq)

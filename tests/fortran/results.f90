@@ -1,8 +1,34 @@
 !> Every procedure of module tribo that can succeed, with each of its results compared to that of the C call: scene.c plays the
 !> same scene on its tape.
+module results_mass
+  use scene, only: scene_inverse_mass
+  use tribo
+  implicit none
+
+  !> M**-1 of scene.c, and how often it has been asked for.
+  type, extends(tribo_mass) :: mass_of_scene
+    real(dp) :: shared
+    integer :: calls = 0
+  contains
+    procedure :: apply
+  end type mass_of_scene
+
+contains
+
+  integer function apply(this, force, acceleration)
+    class(mass_of_scene), intent(inout) :: this
+    real(dp), intent(in) :: force(:)
+    real(dp), intent(inout) :: acceleration(:)
+    this%calls = this%calls + 1
+    acceleration = scene_inverse_mass*force + this%shared*sum(force)
+    apply = 0
+  end function apply
+end module results_mass
+
 program results
   use, intrinsic :: iso_fortran_env, only: int64
   use check, only: report, require, same_bits
+  use results_mass, only: mass_of_scene
   use scene
   use tape, only: compare, end_of_tape, record
   use tribo
@@ -53,7 +79,7 @@ contains
 
   subroutine contexts()
     type(tribo_context) :: c, copy
-    integer :: stat, form, coupling, law
+    integer :: stat, form, setting, law
 
     call c%create(n, stat)
     call compare('create', stat)
@@ -65,11 +91,13 @@ contains
     call c%set_epsilon(scene_epsilon, stat)
     call compare('set_epsilon', stat)
     call settings(c)
-    do form = 1, 4
+    do form = 1, 5
       call set_operator(c, form)
-      do coupling = 0, 1
-        call c%set_coupling(coupling, stat)
+      do setting = 0, 2
+        call c%set_coupling(mod(setting, 2), stat)
         call compare('set_coupling', stat)
+        call c%set_sharing(setting/2, stat)
+        call compare('set_sharing', stat)
         do law = 0, tribo_law_count() - 1
           if (mod(law, 2) == 0) then
             call c%set_law(law, stat)
@@ -111,6 +139,7 @@ contains
   subroutine set_operator(c, form)
     type(tribo_context), intent(inout) :: c
     integer, intent(in) :: form
+    type(mass_of_scene) :: mass
     integer :: stat
 
     select case (form)
@@ -120,8 +149,12 @@ contains
       call c%set_operator(transpose(scene_dense), stat)
     case (3)
       call c%set_operator_csr(int(scene_rowptr) + 1, int(scene_col) + 1, scene_val, stat)
-    case default
+    case (4)
       call c%set_operator_mass(scene_inverse_mass, int(scene_j_rowptr) + 1, int(scene_j_col) + 1, scene_j_val, stat)
+    case default
+      mass%shared = scene_shared
+      call c%set_operator_callback(ndof, mass, int(scene_j_rowptr) + 1, int(scene_j_col) + 1, scene_j_val, stat)
+      call require(mass%calls == n, 'set_operator_callback: one call a contact')
     end select
     call compare('set_operator', stat)
   end subroutine set_operator
@@ -140,6 +173,9 @@ contains
     call c%get_coupling(i, stat)
     call compare('get_coupling', stat)
     call compare('get_coupling', i)
+    call c%get_sharing(i, stat)
+    call compare('get_sharing', stat)
+    call compare('get_sharing', i)
     call c%get_limit(x, stat)
     call compare('get_limit', stat)
     call compare('get_limit', x)
@@ -177,7 +213,7 @@ contains
   subroutine forces(c)
     type(tribo_context), intent(inout) :: c
     real(dp), parameter :: wiped = huge(wiped)
-    real(dp) :: f(n), feq(n), df_dv(n), df_dfeq(n), df_dlimit(n), jacobian_v(n, n), jacobian_a(n, n)
+    real(dp) :: f(n), feq(n), df_dv(n), df_dfeq(n), df_dlimit(n), jacobian_v(n, n), jacobian_a(n, n), df(n, 3)
     integer :: stat, k
 
     do k = 1, states
@@ -208,6 +244,15 @@ contains
         call compare('balance_tangent: f', f)
         call compare('balance_tangent: df_dv', [transpose(jacobian_v)])
         call compare('balance_tangent: df_da', [transpose(jacobian_a)])
+        df(:, 1) = feq ! where C's are on failure
+        df(:, 2:) = reshape([df_dfeq, df_dlimit], [n, 2])
+        call c%tangent_product(given, a, df(:, 1), stat)
+        call compare('tangent_product', stat)
+        call c%tangent_product(given, df=df(:, 2), stat=stat)
+        call compare('tangent_product, dv', stat)
+        call c%tangent_product(da=a, df=df(:, 3), stat=stat)
+        call compare('tangent_product, da', stat)
+        call compare('tangent_product: df', [df])
         f = wiped
         call c%step_force(0.125_dp, v, f, stat)
         call compare('step_force', stat)
@@ -230,6 +275,7 @@ contains
     real(dp), parameter :: gap = 5
     real(dp) :: x(n, 4), y(2*n, 4), wide(3, 2*n, 3), feq(n, 2), f(n, 2), q(n, n, 2), jacobian(2*n, n, 2)
     integer :: rowptr(2*(n + 1)), col(16), mode(2*n), straight(n), coupling
+    type(mass_of_scene) :: mass
 
     call c%create(n)
     call d%create(n)
@@ -273,6 +319,10 @@ contains
     call c%set_operator_mass(scene_inverse_mass, int(scene_j_rowptr) + 1, int(scene_j_col) + 1, scene_j_val)
     call d%set_operator_mass(wide(3, ndof:1:-1, 3), rowptr(::2), col(:10:2), y(5:1:-1, 1))
     call compare_forces(c, d, 'mass')
+    mass%shared = scene_shared
+    call c%set_operator_callback(ndof, mass, int(scene_j_rowptr) + 1, int(scene_j_col) + 1, scene_j_val)
+    call d%set_operator_callback(ndof, mass, rowptr(::2), col(:10:2), y(5:1:-1, 1))
+    call compare_forces(c, d, 'callback')
 
     call c%set_operator(scene_dense)
     do coupling = 0, 1
@@ -329,6 +379,9 @@ contains
       call d%balance_tangent(v(2, :), other(n:1:-1, 3), y(2, :, 1), y(2, :, 2), r(2::2, ::2, 1), r(2*n:1:-2, 2::2, 2))
       r(2::2, ::2, 2) = r(2*n:1:-2, 2::2, 2)
       call require(all(same_bits(x(:, :2), y(2, :, :2))), 'sections: balance_tangent, ' // label)
+      call c%tangent_product(scene_v(:, k), scene_a(:, k), x(:, 3))
+      call d%tangent_product(v(2, :), other(n:1:-1, 3), y(2, n:1:-1, 3))
+      call require(all(same_bits(x(:, 3), y(2, n:1:-1, 3))), 'sections: tangent_product, ' // label)
       call require(all(same_bits(q, r(2::2, ::2, :))), 'sections: balance_tangent, matrices, ' // label)
       call require(all(same_bits(y([1, 3], :, :), gap)), 'sections: between vectors, ' // label)
       call require(all(same_bits(r(1::2, 1::2, :), gap)), 'sections: between matrices, ' // label)
@@ -340,6 +393,7 @@ contains
   !> No contacts at all are fine everywhere.
   subroutine no_contacts()
     type(tribo_context) :: c
+    type(mass_of_scene) :: mass
     real(dp) :: x(0), q(0, 0)
     integer :: mode(0), i
 
@@ -350,15 +404,17 @@ contains
     call c%set_operator(q)
     call c%set_operator_csr([1], mode, x)
     call c%set_operator_mass(x, [1], mode, x)
+    call c%set_operator_callback(0, mass, [1], mode, x)
     call c%force(x, x, x)
     call c%force_tangent(x, x, x, x, x, x)
     call c%balance(x, x, x, x)
     call c%balance_tangent(x, x, x, x, q, q)
+    call c%tangent_product(x, x, x)
     call c%solve_box(x, x, x, x)
     call c%step_force(1.0_dp, x, x)
     call c%accept(x, x)
     call c%get_modes(mode)
     call c%get_count(TRIBO_COUNT_STUCK, i)
-    call require(i == 0, 'no contacts')
+    call require(i == 0 .and. mass%calls == 0, 'no contacts')
   end subroutine no_contacts
 end program results

@@ -6,7 +6,7 @@
 #define N 4
 #define NDOF 6
 #define STATES 5
-#define COUNTS 8
+#define COUNTS 9
 #define REALS 3
 
 /* gfortran takes it for granted that they are aligned as its own arrays would be. */
@@ -19,8 +19,8 @@
 ALIGNED double scene_limit[N] = {0.5, 0.25, 0.0, 1.5};
 ALIGNED double scene_epsilon[N] = {1e-2, 2e-2, 3e-2, 4e-2};
 
-/* R in four forms that differ. The last is J diag(1/m) J', of rank 3: the partition coupling fails where contacts 0, 1 and 3 may
- * all stick. */
+/* R in five forms that differ. The last are J diag(1/m) J' and J M^-1 J' with M^-1 as in accelerate, of rank 3: the partition
+ * coupling fails where contacts 0, 1 and 3 may all stick. */
 ALIGNED double scene_diagonal[N] = {1.0, 2.0, 0.5, 0.0};
 ALIGNED double scene_dense[N][N] = {{2.0, -0.5, 0.1, 0.3}, {-0.5, 1.5, 0.2, 0.0}, {0.1, 0.2, 1.0, -0.4}, {0.3, 0.0, -0.4, 3.0}};
 ALIGNED size_t scene_rowptr[N + 1] = {0, 2, 4, 5, 8};
@@ -30,6 +30,7 @@ ALIGNED double scene_inverse_mass[NDOF] = {1.0, 0.5, 0.0, 2.0, 4.0, 0.25};
 ALIGNED size_t scene_j_rowptr[N + 1] = {0, 1, 3, 4, 5};
 ALIGNED size_t scene_j_col[5] = {0, 0, 1, 5, 1};
 ALIGNED double scene_j_val[5] = {1.0, -1.0, 1.0, 2.0, 1.0};
+ALIGNED double scene_shared = 0.125;
 
 ALIGNED double scene_v[STATES][N] = {{0.0, 0.0, 0.0, 0.0},
                                      {1e-3, -2e-3, 0.3, 1e-2},
@@ -67,7 +68,7 @@ static void registry(void)
 static void settings(const tribo_context *c)
 {
     size_t n = 0;
-    int law = -1, coupling = -1;
+    int law = -1, coupling = -1, sharing = -1;
     double x[N] = {0.0};
     put_one(tribo_get_ncontact(c, &n));
     put_one((double)n);
@@ -75,6 +76,8 @@ static void settings(const tribo_context *c)
     put_one(law);
     put_one(tribo_get_coupling(c, &coupling));
     put_one(coupling);
+    put_one(tribo_get_sharing(c, &sharing));
+    put_one(sharing);
     put_one(tribo_get_limit(c, x));
     put(N, x);
     put_one(tribo_get_epsilon(c, x));
@@ -119,6 +122,10 @@ static void forces(tribo_context *c)
         put(N, f);
         put(N * N, df_dv);
         put(N * N, df_da);
+        put_one(tribo_tangent_product(c, feq, a, x[0]));
+        put_one(tribo_tangent_product(c, feq, NULL, x[1]));
+        put_one(tribo_tangent_product(c, NULL, a, x[2]));
+        put(3 * N, x[0]);
         put_one(tribo_step_force(c, 0.125, v, f));
         put(N, f);
         queries(c);
@@ -126,6 +133,20 @@ static void forces(tribo_context *c)
         put(N, f);
         put_one(tribo_accept(c, v, feq));
     }
+}
+
+/* M^-1 = diag(1/m) and the same entry everywhere. With the data above all sums are exact, in whatever order. */
+static int accelerate(size_t ndof, const double *force, double *acceleration, void *data)
+{
+    const double *shared = data;
+    double sum = 0.0;
+    for (size_t i = 0; i < ndof; i++) {
+        sum += *shared * force[i];
+    }
+    for (size_t i = 0; i < ndof; i++) {
+        acceleration[i] = scene_inverse_mass[i] * force[i] + sum;
+    }
+    return 0;
 }
 
 static void set_operator(tribo_context *c, int form)
@@ -140,8 +161,11 @@ static void set_operator(tribo_context *c, int form)
     case 2:
         put_one(tribo_set_operator_csr(c, scene_rowptr, scene_col, scene_val));
         break;
-    default:
+    case 3:
         put_one(tribo_set_operator_mass(c, NDOF, scene_inverse_mass, scene_j_rowptr, scene_j_col, scene_j_val));
+        break;
+    default:
+        put_one(tribo_set_operator_callback(c, NDOF, accelerate, &scene_shared, scene_j_rowptr, scene_j_col, scene_j_val));
     }
 }
 
@@ -157,10 +181,11 @@ void scene_play(void)
     put_one(tribo_set_limit(c, scene_limit));
     put_one(tribo_set_epsilon(c, scene_epsilon));
     settings(c);
-    for (int form = 0; form < 4; form++) {
+    for (int form = 0; form < 5; form++) {
         set_operator(c, form);
-        for (int coupling = 0; coupling < 2; coupling++) {
-            put_one(tribo_set_coupling(c, coupling));
+        for (int setting = 0; setting < 3; setting++) {
+            put_one(tribo_set_coupling(c, setting % 2));
+            put_one(tribo_set_sharing(c, setting / 2));
             for (int law = 0; law < tribo_law_count(); law++) {
                 put_one(tribo_set_law(c, law));
                 settings(c);

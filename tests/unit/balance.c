@@ -422,6 +422,7 @@ TEST(modes)
     const struct recipe recipe = recipe_random(&g, USUAL, 0.5);
     const struct problem p = problem_create(&g, &recipe);
     struct answer x;
+    const double none[LARGEST] = {0.0};
     signed char mode[LARGEST];
     size_t stuck = 0;
     tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
@@ -439,6 +440,14 @@ TEST(modes)
             stuck += want == 0;
         }
         ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), stuck);
+        /* a call that is refused changes nothing; another operator or forces in a box of the caller's own leave no modes */
+        assert_status(tribo_balance(c, NULL, p.a, NULL, x.f), TRIBO_ERR_NULL);
+        assert_ok(tribo_get_modes(c, mode));
+        assert_ok(step ? tribo_set_operator_dense(c, p.r) : tribo_solve_box(c, p.a, none, none, x.f));
+        stain(mode, sizeof mode);
+        assert_status(tribo_get_modes(c, mode), TRIBO_ERR_STATE);
+        ck_assert(stained(mode, sizeof mode));
+        ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 0);
     }
     tribo_destroy(c);
 }
