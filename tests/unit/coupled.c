@@ -168,6 +168,99 @@ TEST(share_without_order)
     tribo_destroy(d);
 }
 
+/* Solves the m x m system a x = b by elimination; 0 if it is nearly singular. */
+static int eliminate(size_t m, double *a, double *b)
+{
+    for (size_t k = 0; k < m; k++) {
+        size_t best = k;
+        for (size_t i = k; i < m; i++) {
+            best = fabs(a[i * m + k]) > fabs(a[best * m + k]) ? i : best;
+        }
+        for (size_t j = 0; j < m; j++) {
+            const double x = a[k * m + j];
+            a[k * m + j] = a[best * m + j];
+            a[best * m + j] = x;
+        }
+        const double x = b[k];
+        b[k] = b[best];
+        b[best] = x;
+        if (fabs(a[k * m + k]) < 1e-4) {
+            return 0;
+        }
+        for (size_t i = k + 1; i < m; i++) {
+            const double factor = a[i * m + k] / a[k * m + k];
+            for (size_t j = k; j < m; j++) {
+                a[i * m + j] -= factor * a[k * m + j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for (size_t k = m; k-- > 0;) {
+        for (size_t j = k + 1; j < m; j++) {
+            b[k] -= a[k * m + j] * b[j];
+        }
+        b[k] /= a[k * m + k];
+    }
+    return 1;
+}
+
+/* Many contacts hold few bodies. Of all f with J'f as asked for, the least in norm is f = clamp(J lambda): lambda follows from
+ * those inside their limits, and must fit the others. */
+TEST(least_norm)
+{
+    struct random g = random_of(_i);
+    const size_t m = 1 + below(&g, 4), n = 3 * m + below(&g, 20);
+    struct problem p = {.n = n};
+    double j[LARGEST * 4], f[LARGEST], square[16] = {0}, lambda[4] = {0}, pull[4] = {0};
+    for (size_t i = 0; i < n; i++) {
+        p.epsilon[i] = 1.0;
+        p.limit[i] = uniform(&g, 0.2, 2.0);
+        const double inside = p.limit[i] * uniform(&g, 0.3, 1.0);
+        for (size_t k = 0; k < m; k++) {
+            j[i * m + k] = uniform(&g, -1.0, 1.0);
+            pull[k] += j[i * m + k] * inside;
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < m; k++) {
+            p.a[i] -= j[i * m + k] * pull[k];
+        }
+        for (size_t l = 0; l <= i; l++) {
+            for (size_t k = 0; k < m; k++) {
+                p.r[i * n + l] += j[i * m + k] * j[l * m + k];
+            }
+            p.r[l * n + i] = p.r[i * n + l];
+        }
+    }
+    tribo_context *c = problem_context(&p, TRIBO_COULOMB, TRIBO_CONSISTENT);
+    assert_ok(tribo_balance(c, p.v, p.a, NULL, f));
+    tribo_destroy(c);
+    for (size_t k = 0; k < m; k++) {
+        double sum = 0.0;
+        for (size_t i = 0; i < n; i++) {
+            sum += j[i * m + k] * f[i];
+        }
+        assert_close(sum, pull[k], 1e-11);
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < m && fabs(f[i]) < 0.999999 * p.limit[i]; k++) {
+            lambda[k] += j[i * m + k] * f[i];
+            for (size_t l = 0; l < m; l++) {
+                square[k * m + l] += j[i * m + k] * j[i * m + l];
+            }
+        }
+    }
+    if (eliminate(m, square, lambda)) {
+        for (size_t i = 0; i < n; i++) {
+            double want = 0.0;
+            for (size_t k = 0; k < m; k++) {
+                want += j[i * m + k] * lambda[k];
+            }
+            assert_close(f[i], clamped(want, p.limit[i]), 1e-7);
+        }
+    }
+}
+
 /* With shares that go on from the last ones forces follow a slow pull without jumps, and who has reached the limit stays there; R
  * f is the same as with least shares. */
 TEST(shares_that_last)
@@ -511,6 +604,60 @@ TEST(long_chain)
     free(f);
 }
 
+/* A row of bodies in which every contact is there twice: too many for a dense factor, and half of them redundant. Contacts come
+ * and go one by one, and by the hundred. */
+TEST(redundant_and_sparse)
+{
+    struct random g = random_of(_i);
+    const size_t bodies = 1100, n = 2 * bodies;
+    size_t *first = calloc(n + 1, sizeof *first), *col = malloc(2 * n * sizeof *col), k = 0;
+    double *val = malloc(2 * n * sizeof *val), *inverse = malloc(bodies * sizeof *inverse);
+    double *v = calloc(n, sizeof *v), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f), *u = calloc(bodies + 1, sizeof *u);
+    tribo_context *c;
+    for (size_t i = 0; i < n; i++) {
+        col[k] = i / 2;
+        val[k++] = 1.0;
+        if (i / 2 + 1 < bodies) {
+            col[k] = i / 2 + 1;
+            val[k++] = -1.0;
+        }
+        first[i + 1] = k;
+        inverse[i / 2] = 1.0;
+    }
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    assert_ok(tribo_set_operator_mass(c, bodies, inverse, first, col, val));
+    for (int step = 0; step < 40; step++) {
+        for (size_t i = 0; i < n; i += step % 4 ? below(&g, n) + 1 : 7) {
+            v[i] = below(&g, 2) ? 0.0 : uniform(&g, -1.5, 1.5);
+        }
+        for (size_t b = 0; b < bodies; b++) {
+            u[b] = uniform(&g, -0.5, 0.5);
+        }
+        for (size_t i = 0; i < n; i++) {
+            a[i] = u[i / 2] - u[i / 2 + 1];
+        }
+        assert_ok(tribo_balance(c, v, a, NULL, f));
+        for (size_t b = 0; b < bodies; b++) { /* accelerations of the bodies */
+            u[b] = f[2 * b] + f[2 * b + 1] - (b > 0 ? f[2 * b - 2] + f[2 * b - 1] : 0.0);
+        }
+        for (size_t i = 0; i < n; i++) {
+            const double r = i / 2 + 1 < bodies ? 2.0 : 1.0, rest = a[i] + u[i / 2] - u[i / 2 + 1] - r * f[i];
+            assert_close(f[i], law_force(TRIBO_QUINN, v[i], -rest / r, 1.0, 1.0), 1e-11);
+        }
+    }
+    tribo_destroy(c);
+    free(first);
+    free(col);
+    free(val);
+    free(inverse);
+    free(v);
+    free(a);
+    free(f);
+    free(u);
+}
+
 /* A clone goes on where its original is, the sparse factor included, and both give the same bits. */
 TEST(sparse_clone)
 {
@@ -662,6 +809,7 @@ TEST(product_of_tangents)
 }
 
 TEST_MAIN("coupled", {gauss_seidel_agrees, 80}, {fixed_point_after_many_changes, 120}, {identical_contacts_share, 100},
-          {share_without_order, 200}, {shares_that_last, 40}, {one_after_the_other, 300}, {extreme_limits_and_masses, 200},
-          {ill_conditioned, 60}, {one_change_is_one_update, 4}, {sleeping_islands, 2}, {long_chain, 2}, {sparse_clone, 3},
-          {consistent_mass, 40}, {callback_fails, 1}, {product_of_tangents, 120})
+          {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {one_after_the_other, 300},
+          {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4}, {sleeping_islands, 2},
+          {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {consistent_mass, 40}, {callback_fails, 1},
+          {product_of_tangents, 120})
