@@ -118,7 +118,7 @@ C     FORCE BEYOND THE LIMIT, SLIDING
          DO 10 L = 1, 5
             TAU(L) = T(K)
             X(1) = 0.1D0
-            X(2) = -0.2D0*K
+            X(2) = 0.2D0*K
             DG = 0D0
             DP = 0D0
             IF (L .EQ. 2) DG = H*DTIME
