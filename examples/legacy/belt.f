@@ -28,7 +28,7 @@ C     TWO CONTACTS: LOWER BLOCK ON BELT, UPPER ON LOWER BLOCK
    10       Y(I) = 0D0
          T = 0D0
          H = 1D-3
-         IWORK(1) = 10000000
+         IWORK(1) = 1000000
          CALL RK45(N, FCN, T, Y, 60D0, 1D-9, 1D-9, H, WORK, IWORK, RPAR,
      1             IPAR, IDID)
          IERR = IPAR(2)
