@@ -6,6 +6,7 @@ log=$results/log-$program${1:+-$1}${2:+-$2}.txt
 begin=$(date +%s)
 printf '   started   %s\n' "$program $*"
 case $program in
+legacy_*) log=$results/values-$program.txt ;; # prints its values
 friction_damper) set -- --out "$results" ;;
 *) set -- "$results" "$@" ;;
 esac

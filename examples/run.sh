@@ -6,17 +6,18 @@ set -eu
 CDPATH= cd -- "$(dirname -- "$0")/.."
 . tests/setup.sh
 
-setup gcc libc6-dev make cmake pkg-config libgsl-dev gnuplot-nox
+setup gcc gfortran libc6-dev make cmake pkg-config libgsl-dev gnuplot-nox
 
 build=build/release bin=build/release/examples results=$PWD/build/results
-programs='paper_oscillator paper_dissipation paper_belt friction_damper'
+legacy='legacy_newmark_before legacy_newmark_after legacy_newmark_implicit legacy_rk45 legacy_fric legacy_vfric'
+programs="paper_oscillator paper_dissipation paper_belt paper_chain friction_damper $legacy"
 cores=$(getconf _NPROCESSORS_ONLN)
 begin=$(date +%s)
 
 echo "== Building in $build"
 # A folder that tests/run.sh has configured stays as it is; else only what is needed here.
-[ -f $build/CMakeCache.txt ] || parts='-DTRIBO_FORTRAN=OFF -DTRIBO_BUILD_TESTS=OFF'
-cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_GSL=ON -DTRIBO_BUILD_EXAMPLES=ON ${parts-}
+[ -f $build/CMakeCache.txt ] || parts='-DTRIBO_BUILD_TESTS=OFF'
+cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_GSL=ON -DTRIBO_FORTRAN=ON -DTRIBO_BUILD_EXAMPLES=ON ${parts-}
 cmake --build $build --parallel "$cores" --target $programs
 
 echo "== Running, $cores at a time; tables, pictures and logs go to $results"
@@ -30,7 +31,7 @@ mkdir -p "$results"
             echo paper_dissipation $figure $law
         done
     done
-    printf '%s\n' paper_belt paper_oscillator 'paper_dissipation rod quinn'
+    printf '%s\n' paper_belt paper_oscillator 'paper_dissipation rod quinn' paper_chain $legacy
 } | xargs -P "$cores" -L 1 sh examples/job.sh "$bin" "$results"
 
 echo "== Drawing"
