@@ -30,7 +30,6 @@ struct island {
     size_t block;          /* of a dense island: into the pools of R and of factors, [size][size] each */
     struct sparse *sparse; /* of a sparse one: both */
     size_t nullity;        /* size - rank of R: redundant contacts */
-    double row_sum;        /* largest sum of |R_ij| in a row */
     size_t rank;           /* now: free contacts in the factor, independent of each other, */
     size_t dependents;     /* and those that depend on them */
     int touched;           /* the last call solved for it */

@@ -252,18 +252,19 @@ static void fill(struct op *op, const struct rows *a, const size_t *place)
 {
     for (size_t i = 0; i < a->n; i++) {
         double sum = 0.0;
+        size_t terms = 0;
         op->diagonal[i] = greater(diagonal_of(a, i), DBL_MIN);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             sum += fabs(a->val[e]);
+            terms += a->val[e] != 0.0;
         }
         op->row_sum = greater(op->row_sum, sum / op->diagonal[i]);
         if (op->group_of[i] == TRIBO_ALONE) {
             continue;
         }
         struct island *is = &op->group[op->group_of[i]];
-        is->row_sum = greater(is->row_sum, sum);
         op->scale[is->first + place[i]] = tribo_scale(op->diagonal[i]);
-        op->terms[is->first + place[i]] = a->first[i + 1] - a->first[i];
+        op->terms[is->first + place[i]] = terms;
         double *row = op->r + is->block + place[i] * is->size;
         for (size_t e = a->first[i]; !is->sparse && e < a->first[i + 1]; e++) {
             if (a->val[e] != 0.0) {
