@@ -241,8 +241,11 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
         memset(next, 0, n * sizeof *next);
         memset(m->a, 0, c * sizeof *m->a);
         tribo_system_loads(sys, 0, order, 1.0, next);
+        double scale;
+        find_sizes(sys, order, next, older, old, size);
+        double most = contact_scales(m, sys, order + 1, size, &scale);
         find_sizes(sys, order, next, older_size, old_size, size);
-        double scale, most = contact_scales(m, sys, order + 1, size, &scale);
+        contact_scales(m, sys, order + 1, size, &scale);
         tribo_matrix_multiply_add(&sys->stiffness, -1.0, older, next);
         if (sys->damping.rows) {
             tribo_matrix_multiply_add(&sys->damping, -1.0, old, next);
@@ -289,9 +292,10 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
     return TRIBO_OK;
 }
 
-/* How far beyond its limit a balancing force may be and still count as just at it: what rounding of all the forces on the
- * contact's bodies comes to, and a small part of the limit. Not of the limit alone, since of a light body between heavy ones even
- * that would be an acceleration that these never have. lo gets it. */
+/* How far beyond its limit (hi), or below it (lo), a balancing force may be and still count as just at it: a small part of the
+ * limit, or what rounding of all the forces on the contact's bodies comes to. Beyond the limit it accelerates the contact's own
+ * bodies: then of a light one between heavy ones even a small part of the limit would be an acceleration that these never have.
+ * Below it holds all bodies that rest on each other, and a lack of it shows in what the heavy ones do. */
 static void find_margins(struct modes *m, const tribo_system *sys)
 {
     double most = 0.0;
@@ -307,8 +311,9 @@ static void find_margins(struct modes *m, const tribo_system *sys)
     add_sizes(&sys->response, m->force, m->jerk);
     add_sizes(&sys->direction, m->jerk, m->lo);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double limit = m->limit[i], r = m->diagonal[i];
-        m->lo[i] = r > 0.0 ? greater(AT_LIMIT * lesser(limit, most / r), NOISE * m->lo[i] / r) : AT_LIMIT * limit;
+        const double limit = m->limit[i], r = m->diagonal[i], noise = NOISE * m->lo[i];
+        m->hi[i] = r > 0.0 ? greater(AT_LIMIT * lesser(limit, most / r), noise / r) : AT_LIMIT * limit;
+        m->lo[i] = greater(m->hi[i], limit * greater(AT_LIMIT, most > 0.0 ? lesser(noise / most, STATIONARY) : 0.0));
     }
 }
 
@@ -352,9 +357,9 @@ static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const 
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double feq = m->rate[i], limit = m->limit[i];
         m->weak[i] = 0;
-        if (m->mode[i] == 0 && fabs(feq) > limit + m->lo[i]) {
+        if (m->mode[i] == 0 && fabs(feq) > limit + m->hi[i]) {
             m->mode[i] = feq > 0.0 ? -1 : 1;
-        } else if (m->mode[i] == 0 && fabs(feq) >= limit - greater(AT_LIMIT * limit, m->lo[i])) {
+        } else if (m->mode[i] == 0 && fabs(feq) >= limit - m->lo[i]) {
             m->weak[i] = 1;
             weak = 1;
         }
