@@ -298,22 +298,24 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
  * Below it holds all bodies that rest on each other, and a lack of it shows in what the heavy ones do. */
 static void find_margins(struct modes *m, const tribo_system *sys)
 {
-    double most = 0.0;
+    double most = DBL_MIN, noise = 0.0, force = 0.0;
     for (size_t d = 0; d < sys->ndof; d++) {
         m->jerk[d] = fabs(m->acceleration[d]);
     }
     memset(m->lo, 0, sys->ncontact * sizeof *m->lo);
+    memset(m->hi, 0, sys->ncontact * sizeof *m->hi);
     add_sizes(&sys->direction, m->jerk, m->lo);
+    add_sizes(&sys->response, m->force, m->jerk);
+    add_sizes(&sys->direction, m->jerk, m->hi);
     for (size_t i = 0; i < sys->ncontact; i++) {
         most = greater(most, fabs(m->a[i]) + m->lo[i]);
-        m->lo[i] = 0.0;
+        noise = greater(noise, NOISE * m->hi[i]);
+        force = greater(force, fabs(m->force[i]));
     }
-    add_sizes(&sys->response, m->force, m->jerk);
-    add_sizes(&sys->direction, m->jerk, m->lo);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double limit = m->limit[i], r = m->diagonal[i], noise = NOISE * m->lo[i];
-        m->hi[i] = r > 0.0 ? greater(AT_LIMIT * lesser(limit, most / r), noise / r) : AT_LIMIT * limit;
-        m->lo[i] = greater(m->hi[i], limit * greater(AT_LIMIT, most > 0.0 ? lesser(noise / most, STATIONARY) : 0.0));
+        const double limit = m->limit[i], r = m->diagonal[i];
+        m->hi[i] = r > 0.0 ? greater(AT_LIMIT * lesser(limit, most / r), NOISE * m->hi[i] / r) : AT_LIMIT * limit;
+        m->lo[i] = greater(greater(m->hi[i], AT_LIMIT * limit), lesser(STATIONARY * limit, noise / most * force));
     }
 }
 
