@@ -87,9 +87,11 @@ static const struct curve {
     {SPARSE, "chain, set unchanged", CHAIN, 1, SAME, 200, 100000, 10000},
     {SPARSE, "chain, one change", CHAIN, 1, ONE, 200, 100000, 10000},
     {SPARSE, "chain, half of the set changes", CHAIN, 1, HALF, 200, 100000, 10000},
+    {SPARSE, "chain, 5% of the set changes", CHAIN, 1, SOME, 200, 100000, 10000},
     {SPARSE, "carpet, set unchanged", CARPET, 1, SAME, 200, 100000, 10000},
     {SPARSE, "carpet, one change", CARPET, 1, ONE, 200, 100000, 10000},
     {SPARSE, "carpet, half of the set changes", CARPET, 1, HALF, 200, 100000, 10000},
+    {SPARSE, "carpet, 5% of the set changes", CARPET, 1, SOME, 200, 100000, 10000},
 };
 enum { CURVES = sizeof curves / sizeof *curves, POINTS = 32 };
 
@@ -219,8 +221,8 @@ static struct timing measure_part(const struct options *o, enum change change)
     const struct effort effort = {5, 60, 2.0};
     const struct timing t = time_job(&job, &unit, &effort);
     printf("| %zu contacts, %s | %g of %g | %.3g us | %.3g us | %.2f%% (%.2f to %.2f) |\n", n,
-           change == ONE ? "one change a call" : "sets unchanged", a.solves, b.solves, 1e6 * t.seconds, 1e6 * t.seconds / t.ratio,
-           100.0 * t.ratio, 100.0 * t.low, 100.0 * t.high);
+           change == HALF ? "half of each active island changes" : "sets unchanged", a.solves, b.solves, 1e6 * t.seconds,
+           1e6 * t.seconds / t.ratio, 100.0 * t.ratio, 100.0 * t.low, 100.0 * t.high);
     contacts_destroy(&few);
     contacts_destroy(&all);
     return t;
@@ -248,7 +250,7 @@ static int check(const struct curve *c, size_t x)
                                                    : 1.0;
     const double updates = c->change == ONE ? 1.0 : c->change == HALF ? (double)(x / 2) : 0.0;
     int good = 1;
-    if (c->change != ANEW) {
+    if (c->change != ANEW && c->change != SOME) {
         const double factorizations = c->change == HALF ? groups : 0.0, reused = c->change == SAME ? groups : 0.0;
         good = k.solves == groups ? good : complain(c->name, x, "solves", k.solves, groups);
         good = k.reused == reused ? good : complain(c->name, x, "reused", k.reused, reused);
@@ -259,7 +261,7 @@ static int check(const struct curve *c, size_t x)
     for (int again = 0; again < 2; again++) {
         contacts_call(&s);
         const double error = contacts_error(&s);
-        good = error <= 1e-13 ? good : complain(c->name, x, "error", error, 1e-13);
+        good = error <= 1e-11 ? good : complain(c->name, x, "error", error, 1e-11);
     }
     contacts_destroy(&s);
     return good;
@@ -305,6 +307,7 @@ static void run(const struct options *o)
     print_curves(track);
     printf("\n| islands of 8, 1%% active | solved | time | all active | part |\n|---|---|---|---|---|\n");
     const double part = measure_part(o, SAME).ratio;
+    measure_part(o, HALF);
 #ifdef HAVE_CHOLMOD
     compare_cholmod(o->quick ? 2500 : 10000, &o->effort);
 #endif

@@ -32,8 +32,8 @@ void contacts_destroy(struct contacts *s);
 /* A call of tribo_balance; to struct contacts, for jobs. */
 void contacts_call(void *contacts);
 
-/* How far the forces of the last call are from a fixed point, by R itself: largest |z''| of contacts at rest inside their limits, in
- * terms of the sum that it is, and largest excess over the limit, 1. */
+/* How far the forces of the last call are from a fixed point, by R itself: largest |z''| of contacts at rest inside their limits,
+ * in terms of the sum that it is, and largest excess over the limit, 1. */
 double contacts_error(const struct contacts *s);
 
 /* Work of so many calls, of each. */
