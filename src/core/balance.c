@@ -11,8 +11,9 @@
 #include "internal.h"
 #include "../real.h"
 
-/* Contacts that stay in the first-level cache while all that is done for them alone is done. */
-#define CHUNK 512
+/* So many contacts are looked at together: few enough that in a large scene most of such chunks have none near stick, and all
+ * that is read of them stays in the first-level cache. */
+#define CHUNK 128
 
 /* Marks the contacts near stick, |v| <= band (0 for all if band is NULL). */
 TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
@@ -26,6 +27,26 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
         for (size_t i = 0; i < n; i++) {
             near[i] = (v[i] == 0.0) & (limit[i] > 0.0);
         }
+    }
+}
+
+/* Whether any contact is in its band (at v = 0 if band is NULL). Beyond, laws that ask for f_eq all say the same. */
+TRIBO_SIMD static int any_in_band(size_t n, const double *restrict v, const double *restrict band)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t i = 0; band && i < n; i++) {
+        any |= fabs(v[i]) <= band[i];
+    }
+    for (size_t i = 0; !band && i < n; i++) {
+        any |= v[i] == 0.0;
+    }
+    return any != 0;
+}
+
+TRIBO_SIMD static void slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
+{
+    for (size_t i = 0; i < n; i++) {
+        f[i] = v[i] > 0.0 ? -limit[i] : limit[i];
     }
 }
 
@@ -199,20 +220,37 @@ static void feq_of_others(tribo_context *ctx, const double *a)
     }
 }
 
-static int balance(tribo_context *ctx, const double *v, const double *a)
+/* f of all contacts as if they were alone, and who is near stick. Where contacts are coupled a chunk of sliding ones needs no
+ * more than that, and f_eq only if the caller wants it. */
+static void balance_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     const struct contacts all = tribo_contacts(ctx);
-    const int groups = ctx->op.groups > 0;
-    begin(ctx);
+    const int coupled = ctx->op.groups > 0 && ctx->law->uses_feq;
     for (size_t i = 0; i < ctx->n; i += CHUNK) {
         const struct contacts c = tribo_contacts_from(&all, i);
         const size_t n = ctx->n - i < CHUNK ? ctx->n - i : CHUNK;
-        if (groups && ctx->law->uses_feq) {
-            find_near(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, ctx->limit + i, ctx->near + i);
+        const double *band = ctx->law->sticks_in_band ? ctx->epsilon + i : NULL;
+        const int slides = coupled && !any_in_band(n, v + i, band);
+        if (slides) {
+            memset(ctx->near + i, 0, n);
+            slide(n, v + i, ctx->limit + i, ctx->f + i);
+        } else if (coupled) {
+            find_near(n, v + i, band, ctx->limit + i, ctx->near + i);
         }
-        feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
-        ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
+        if (wanted || !slides) {
+            feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
+        }
+        if (!slides) {
+            ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
+        }
     }
+}
+
+static int balance(tribo_context *ctx, const double *v, const double *a, int wanted)
+{
+    const int groups = ctx->op.groups > 0;
+    begin(ctx);
+    balance_alone(ctx, v, a, wanted);
     if (!groups || !ctx->law->uses_feq) {
         memset(ctx->near, 0, ctx->n);
         return TRIBO_OK;
@@ -241,7 +279,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status) {
         return status;
     }
-    status = balance(ctx, v, a);
+    status = balance(ctx, v, a, feq != NULL);
     if (status == TRIBO_ERR_NO_CONVERGENCE) {
         return status;
     }

@@ -209,17 +209,20 @@ static void find_sizes(const tribo_system *sys, int order, const double *load, c
     }
 }
 
-/* The largest force that takes: |J| size and the order-th derivative of b. lo is workspace. */
-static double force_scale(struct modes *m, const tribo_system *sys, int order, const double *size)
+/* |J| size and the order-th derivative of b: what accelerations of contacts take without friction, in lo. Returns the largest,
+ * and in force the largest force that would take. */
+static double contact_scales(struct modes *m, const tribo_system *sys, int order, const double *size, double *force)
 {
-    double scale = 0.0;
+    double most = 0.0;
+    *force = 0.0;
     memset(m->lo, 0, sys->ncontact * sizeof *m->lo);
     add_sizes(&sys->direction, size, m->lo);
     add_amplitudes(sys, 1, order, m->lo);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        scale = greater(scale, m->diagonal[i] > 0.0 ? m->lo[i] / m->diagonal[i] : 0.0);
+        most = greater(most, m->lo[i]);
+        *force = greater(*force, m->diagonal[i] > 0.0 ? m->lo[i] / m->diagonal[i] : 0.0);
     }
-    return scale;
+    return most;
 }
 
 /* Of the contacts at their limit, those slide off whose rate of f_eq would take it beyond the limit, and those keep hold that it
@@ -238,8 +241,11 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
         memset(next, 0, n * sizeof *next);
         memset(m->a, 0, c * sizeof *m->a);
         tribo_system_loads(sys, 0, order, 1.0, next);
+        double scale;
+        find_sizes(sys, order, next, older, old, size);
+        double most = contact_scales(m, sys, order + 1, size, &scale);
         find_sizes(sys, order, next, older_size, old_size, size);
-        double scale = force_scale(m, sys, order + 1, size);
+        contact_scales(m, sys, order + 1, size, &scale);
         tribo_matrix_multiply_add(&sys->stiffness, -1.0, older, next);
         if (sys->damping.rows) {
             tribo_matrix_multiply_add(&sys->damping, -1.0, old, next);
@@ -259,11 +265,17 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
         memset(m->a, 0, c * sizeof *m->a);
         tribo_system_loads(sys, 1, order + 1, -1.0, m->a);
         tribo_matrix_multiply_add(&sys->direction, 1.0, next, m->a);
+        memset(m->lo, 0, c * sizeof *m->lo);
+        add_sizes(&sys->direction, size, m->lo);
+        for (size_t i = 0; i < c; i++) {
+            most = greater(most, fabs(m->a[i]));
+        }
         undecided = 0;
         for (size_t i = 0; i < c; i++) {
+            const double slow = greater(STATIONARY * lesser(m->diagonal[i] * scale, most), NOISE * m->lo[i]);
             const double side = m->force[i] > 0.0 ? -1.0 : 1.0;
             const double along = order == 1 ? -side * m->limit_rate[i] : 0.0;
-            if (m->weak[i] == 1 && side * m->a[i] > STATIONARY * m->diagonal[i] * scale) {
+            if (m->weak[i] == 1 && side * m->a[i] > slow) {
                 m->mode[i] = (signed char)side;
                 m->force[i] = -side * m->limit[i];
                 m->weak[i] = 0;
@@ -280,18 +292,30 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
     return TRIBO_OK;
 }
 
-/* How close to its limit a balancing force counts as just at it: what rounding of all the forces on the contact's bodies comes
- * to. lo gets it. */
+/* How far beyond its limit (hi), or below it (lo), a balancing force may be and still count as just at it: a small part of the
+ * limit, or what rounding of all the forces on the contact's bodies comes to. Beyond the limit it accelerates the contact's own
+ * bodies: then of a light one between heavy ones even a small part of the limit would be an acceleration that these never have.
+ * Below it holds all bodies that rest on each other, and a lack of it shows in what the heavy ones do. */
 static void find_margins(struct modes *m, const tribo_system *sys)
 {
+    double most = DBL_MIN, noise = 0.0, force = 0.0;
     for (size_t d = 0; d < sys->ndof; d++) {
         m->jerk[d] = fabs(m->acceleration[d]);
     }
-    add_sizes(&sys->response, m->force, m->jerk);
     memset(m->lo, 0, sys->ncontact * sizeof *m->lo);
+    memset(m->hi, 0, sys->ncontact * sizeof *m->hi);
     add_sizes(&sys->direction, m->jerk, m->lo);
+    add_sizes(&sys->response, m->force, m->jerk);
+    add_sizes(&sys->direction, m->jerk, m->hi);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->lo[i] = greater(AT_LIMIT * m->limit[i], m->diagonal[i] > 0.0 ? NOISE * m->lo[i] / m->diagonal[i] : 0.0);
+        most = greater(most, fabs(m->a[i]) + m->lo[i]);
+        noise = greater(noise, NOISE * m->hi[i]);
+        force = greater(force, fabs(m->force[i]));
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double limit = m->limit[i], r = m->diagonal[i];
+        m->hi[i] = r > 0.0 ? greater(AT_LIMIT * lesser(limit, most / r), NOISE * m->hi[i] / r) : AT_LIMIT * limit;
+        m->lo[i] = greater(greater(m->hi[i], AT_LIMIT * limit), lesser(STATIONARY * limit, noise / most * force));
     }
 }
 
@@ -330,18 +354,18 @@ static int decide_by_forces(struct modes *m, tribo_system *sys, double t, const 
         return tribo_system_fail(sys, status, "at t = %.17g: %s", t, tribo_message(m->judge));
     }
     int weak = 0;
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
     find_margins(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double feq = m->rate[i], limit = m->limit[i];
         m->weak[i] = 0;
-        if (m->mode[i] == 0 && fabs(feq) > limit + m->lo[i]) {
+        if (m->mode[i] == 0 && fabs(feq) > limit + m->hi[i]) {
             m->mode[i] = feq > 0.0 ? -1 : 1;
         } else if (m->mode[i] == 0 && fabs(feq) >= limit - m->lo[i]) {
             m->weak[i] = 1;
             weak = 1;
         }
     }
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
     return weak ? decide_by_rates(m, sys, y) : TRIBO_OK;
 }
 
