@@ -75,23 +75,23 @@ static const struct curve {
     size_t from, to, quick; /* x */
 } curves[] = {
     {CONTACTS, "no two coupled", ALONE, 1, SAME, 10, 1000000, 100000},
-    {CONTACTS, "islands of 8, all sliding", ISLANDS, 0, SAME, 10, 1000000, 100000},
-    {CONTACTS, "islands of 8, all stuck", ISLANDS, 1, SAME, 10, 100000, 10000},
-    {CONTACTS, "one dense group, all stuck", DENSE, 1, SAME, 10, 1000, 300},
+    {CONTACTS, "sliding islands of 8", ISLANDS, 0, SAME, 10, 1000000, 100000},
+    {CONTACTS, "stuck islands of 8", ISLANDS, 1, SAME, 10, 100000, 10000},
+    {CONTACTS, "one stuck dense group", DENSE, 1, SAME, 10, 1000, 300},
     {NEAR, "set unchanged", DENSE, 1, SAME, 10, 1500, 300},
     {NEAR, "one change", DENSE, 1, ONE, 10, 1500, 300},
     {NEAR, "half of the set changes", DENSE, 1, HALF, 10, 1500, 300},
     {NEAR, "operator set anew", DENSE, 1, ANEW, 10, 1500, 300},
     {SLEEPING, "100 islands awake", ISLANDS, 1, SAME, 100, 100000, 10000},
     {SLEEPING, "none awake", ISLANDS, 0, SAME, 100, 100000, 10000},
-    {SPARSE, "chain, set unchanged", CHAIN, 1, SAME, 200, 100000, 10000},
-    {SPARSE, "chain, one change", CHAIN, 1, ONE, 200, 100000, 10000},
-    {SPARSE, "chain, half of the set changes", CHAIN, 1, HALF, 200, 100000, 10000},
-    {SPARSE, "chain, 5% of the set changes", CHAIN, 1, SOME, 200, 100000, 10000},
-    {SPARSE, "carpet, set unchanged", CARPET, 1, SAME, 200, 100000, 10000},
-    {SPARSE, "carpet, one change", CARPET, 1, ONE, 200, 100000, 10000},
-    {SPARSE, "carpet, half of the set changes", CARPET, 1, HALF, 200, 100000, 10000},
-    {SPARSE, "carpet, 5% of the set changes", CARPET, 1, SOME, 200, 100000, 10000},
+    {SPARSE, "chain: set unchanged", CHAIN, 1, SAME, 200, 100000, 10000},
+    {SPARSE, "chain: one change", CHAIN, 1, ONE, 200, 100000, 10000},
+    {SPARSE, "chain: half of the set changes", CHAIN, 1, HALF, 200, 100000, 10000},
+    {SPARSE, "chain: 5% of the set changes", CHAIN, 1, SOME, 200, 100000, 10000},
+    {SPARSE, "carpet: set unchanged", CARPET, 1, SAME, 200, 100000, 10000},
+    {SPARSE, "carpet: one change", CARPET, 1, ONE, 200, 100000, 10000},
+    {SPARSE, "carpet: half of the set changes", CARPET, 1, HALF, 200, 100000, 10000},
+    {SPARSE, "carpet: 5% of the set changes", CARPET, 1, SOME, 200, 100000, 10000},
 };
 enum { CURVES = sizeof curves / sizeof *curves, POINTS = 32 };
 
@@ -260,6 +260,7 @@ static int check(const struct curve *c, size_t x)
     }
     for (int again = 0; again < 2; again++) {
         contacts_call(&s);
+        /* f is the law at f_eq, which moves each force by its gradient's rounding, and a dense group of 900 adds that up */
         const double error = contacts_error(&s);
         good = error <= 1e-11 ? good : complain(c->name, x, "error", error, 1e-11);
     }
@@ -287,7 +288,7 @@ static void print_wanted(const struct track *track, double part)
     const struct track *awake = track_of(track, "100 islands awake"), *look = track_of(track, "none awake");
     const size_t last = awake->points - 1;
     printf("\n| wanted | here |\n|---|---|\n");
-    printf("| sliding scene O(n): slope 1 | %.2f |\n", slope_of(track_of(track, "islands of 8, all sliding")));
+    printf("| sliding scene O(n): slope 1 | %.2f |\n", slope_of(track_of(track, "sliding islands of 8")));
     printf("| diagonal scene O(n): slope 1 | %.2f |\n", slope_of(track_of(track, "no two coupled")));
     printf("| one change O(s^2): slope 2 | %.2f |\n", slope_of(track_of(track, "one change")));
     printf("| flat in sleeping islands: the same solves | %g solves and %g factorizations a call beside %g sleeping islands |\n",

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Builds the bench, with SUNDIALS and Siconos where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev, g++), runs
-# it, draws a picture a system, and prints tables: what issue 3 wanted against what is, and the fastest method for each error.
+# Builds the bench, with SUNDIALS, Siconos and CHOLMOD where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev, g++,
+# libsuitesparse-dev), runs it, draws a picture a system, and prints tables: what issue 3 wanted against what is, and the fastest method
+# for each error; then the same for what a call of tribo_balance costs, and issue 4.
 # Arguments go to the bench: `sh tests/bench/run.sh --quick`. Everything is left in build/bench/results.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
@@ -11,16 +12,22 @@ setup gcc libc6-dev make cmake pkg-config libgsl-dev check gnuplot-nox
 build=build/bench results=$PWD/build/bench/results
 echo "== Building in $build"
 cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_FORTRAN=OFF -DTRIBO_BUILD_EXAMPLES=OFF -DTRIBO_BENCH_PEERS=ON
-cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench
+cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance
 
 echo "== Running; tables and pictures go to $results"
-mkdir -p "$results"
+mkdir -p "$results/balance"
 # One thread: times are those of one processor.
 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench --out "$results" "$@"
+case " $* " in *" --quick "*) quick=--quick ;; *) quick= ;; esac
+OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out "$results/balance" $quick > "$results/balance/tables.txt"
 
 echo "== Drawing"
 for format in png svg; do
     (cd tests/bench && LC_ALL=C.UTF-8 gnuplot -e "results='$results'; format='$format'" work-precision.gp)
+    for name in contacts near islands sparse; do
+        (cd tests/bench && LC_ALL=C.UTF-8 gnuplot -e "results='$results/balance'; format='$format'; name='$name'" balance.gp)
+    done
 done
 
 awk -f tests/bench/tables.awk "$results"/*.csv | tee "$results/tables.txt"
+cat "$results/balance/tables.txt"
