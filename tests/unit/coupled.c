@@ -10,7 +10,7 @@
 static int gauss_seidel(const struct problem *p, int law, long double *f)
 {
     memset(f, 0, p->n * sizeof *f);
-    for (size_t sweep = 0; sweep < 40000000 / (p->n * p->n); sweep++) {
+    for (size_t sweep = 0; sweep < 10000000 / (p->n * p->n); sweep++) {
         long double change = 0.0L;
         for (size_t i = 0; i < p->n; i++) {
             const long double limit = p->limit[i], r = p->r[i * p->n + i];
@@ -542,40 +542,6 @@ TEST(sleeping_islands)
 
 /* ------------------------------------------------------------------------------------------------------ large sparse groups */
 
-/* A square of side x side bodies on a table, neighbours rubbing on each other too: contacts of every body with the table, and of
- * every body with its right and its upper neighbour. */
-static tribo_context *carpet(struct random *g, size_t side, size_t *contacts)
-{
-    const size_t ndof = side * side, n = ndof + 2 * side * (side - 1);
-    size_t *first = malloc((n + 1) * sizeof *first), *col = malloc(2 * n * sizeof *col), k = 0, i = 0;
-    double *val = malloc(2 * n * sizeof *val), *inverse = malloc(ndof * sizeof *inverse);
-    tribo_context *c;
-    first[0] = 0;
-    for (size_t b = 0; b < ndof; b++) {
-        inverse[b] = uniform(g, 0.5, 2.0);
-        col[k] = b;
-        val[k++] = 1.0;
-        first[++i] = k;
-        for (int up = 0; up < 2; up++) {
-            if (up ? b + side < ndof : (b + 1) % side > 0) {
-                col[k] = b;
-                val[k++] = -1.0;
-                col[k] = up ? b + side : b + 1;
-                val[k++] = 1.0;
-                first[++i] = k;
-            }
-        }
-    }
-    assert_ok(tribo_create(&c, n));
-    assert_ok(tribo_set_operator_mass(c, ndof, inverse, first, col, val));
-    *contacts = n;
-    free(first);
-    free(col);
-    free(val);
-    free(inverse);
-    return c;
-}
-
 /* 100,000 contacts in one row, most of them stuck; the sets change from call to call. */
 TEST(long_chain)
 {
@@ -664,10 +630,9 @@ TEST(redundant_and_sparse)
 TEST(sparse_clone)
 {
     struct random g = random_of(_i);
-    size_t n;
-    tribo_context *c = carpet(&g, 15, &n), *d;
+    const size_t n = 700;
+    tribo_context *c = chain(n, 1, TRIBO_CONSISTENT), *d;
     double *v = calloc(n, sizeof *v), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f), *h = calloc(n, sizeof *h);
-    assert_ok(tribo_set_limit_all(c, 1.0));
     assert_ok(tribo_balance(c, v, a, NULL, f));
     assert_ok(tribo_clone(c, &d));
     for (int k = 0; k < 5; k++) {
@@ -810,7 +775,7 @@ TEST(product_of_tangents)
     free(da);
 }
 
-TEST_MAIN("coupled", {gauss_seidel_agrees, 80}, {fixed_point_after_many_changes, 120}, {identical_contacts_share, 100},
+TEST_MAIN("coupled", {gauss_seidel_agrees, 60}, {fixed_point_after_many_changes, 60}, {identical_contacts_share, 100},
           {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {one_after_the_other, 300},
           {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4}, {sleeping_islands, 2},
           {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {consistent_mass, 40}, {callback_fails, 1},
