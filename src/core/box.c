@@ -59,8 +59,8 @@ static size_t change_all(struct program *p)
         changes += (p->at[i] == FREE) != (p->to[i] == FREE);
         free += p->to[i] == FREE;
     }
-    /* a change that loses contacts while others depend on them may end in a factorization of its own, over a set that is no longer
-     * that of at */
+    /* a change that loses contacts while others depend on them may end in a factorization of its own, over a set that is no
+     * longer that of at */
     if (changes > 0 && (tribo_factor_many(p, changes, free) || (p->island->dependents && changes > 1))) {
         p->work.updates += changes;
         memcpy(p->at, p->to, n);
