@@ -503,6 +503,42 @@ TEST(one_change_is_one_update)
     free(f);
 }
 
+/* Contacts that share no body have their f_eq also where everything slides, though f does not ask for it. */
+TEST(sliding_singles)
+{
+    enum { N = 300 };
+    size_t first[N + 1] = {0}, col[N + 2], k = 0;
+    double val[N + 2], v[N], a[N], feq[N], f[N];
+    tribo_context *c;
+    for (size_t i = 0; i < N; i++) {
+        if (i < 2) { /* 0 and 1 share one */
+            col[k] = 1 - i;
+            val[k++] = 0.5;
+        }
+        col[k] = i;
+        val[k++] = 2.0;
+        first[i + 1] = k;
+        v[i] = i % 2 ? 3.0 : -3.0;
+    }
+    assert_ok(tribo_create(&c, N));
+    assert_ok(tribo_set_law(c, _i));
+    assert_ok(tribo_set_operator_csr(c, first, col, val));
+    assert_ok(tribo_set_limit_all(c, 0.75));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    for (int call = 0; call < 3; call++) {
+        for (size_t i = 0; i < N; i++) {
+            a[i] = 0.25 * (double)i + call;
+        }
+        assert_ok(tribo_balance(c, v, a, call ? feq : NULL, f));
+        for (size_t i = 0; i < N; i++) {
+            const double other = i < 2 ? 0.5 * f[1 - i] : 0.0;
+            assert_exact(f[i], law_force(_i, v[i], 0.0, 0.75, 1.0));
+            assert_close(call ? feq[i] : 0.0, call ? -0.5 * (a[i] + other) : 0.0, 1e-14);
+        }
+    }
+    tribo_destroy(c);
+}
+
 /* Groups without a contact near stick are left alone, in the balance and in the step force. */
 TEST(sleeping_islands)
 {
@@ -778,5 +814,5 @@ TEST(product_of_tangents)
 TEST_MAIN("coupled", {gauss_seidel_agrees, 60}, {fixed_point_after_many_changes, 60}, {identical_contacts_share, 100},
           {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {one_after_the_other, 300},
           {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4}, {sleeping_islands, 2},
-          {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {consistent_mass, 40}, {callback_fails, 1},
-          {product_of_tangents, 120})
+          {sliding_singles, 6}, {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {consistent_mass, 40},
+          {callback_fails, 1}, {product_of_tangents, 120})
