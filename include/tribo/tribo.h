@@ -205,8 +205,8 @@ TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
 /* How redundant contacts share: R f is unique, but where R is singular f is not. (In the partition f_eq is always the one of
  * least norm.)
  *   LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls.
- *   LAST   one that begins with the forces of the last call and changes no more of them than it must: continuous in time. For
- *          event-driven codes, where a contact that has reached its limit should stay there while others take over. */
+ *   LAST   one that is found from the forces of the last call, and follows slow changes without jumps. For event-driven codes,
+ *          where a contact that has reached its limit should stay there while others take over. */
 enum { TRIBO_SHARE_LEAST = 0, TRIBO_SHARE_LAST = 1 };
 TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
 TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
@@ -270,7 +270,7 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 /* ----------------------------------------------------------------------------------------------------------- queries */
 
 /* What each contact did in the last tribo_balance or tribo_step_force. mode [n] out: 0 stuck, +1 and -1 sliding in that
- * direction (the force is -limit * mode), 2 open.
+ * direction (the force is -limit * mode), 2 open; by the limits that are set now.
  * Returns TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or tribo_set_operator_... since. */
 TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
 
