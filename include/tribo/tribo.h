@@ -7,7 +7,8 @@
  * velocities like epsilon, and R in velocity per time and force.
  *
  * Arrays hold one double a contact, contiguous, unless said otherwise; contacts are counted from 0. Outputs come
- * last, must not overlap inputs, and are untouched on error; an output marked "or NULL" is then not computed.
+ * last, must not overlap inputs, and are untouched on error (but for TRIBO_ERR_INCONSISTENT); an output marked "or NULL" is
+ * then not computed.
  *
  * Status. Every call that can fail returns one of TRIBO_OK (0) and TRIBO_ERR_...; tribo_message tells what, which contact
  * and which value. Nothing prints, exits, aborts or keeps global state.
@@ -204,7 +205,8 @@ TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
 
 /* How redundant contacts share: R f is unique, but where R is singular f is not. (In the partition f_eq is always the one of
  * least norm.)
- *   LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls.
+ *   LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls. (Groups of more
+ *          than 2048 contacts that are kept sparse: while not more than 64 are redundant; beyond that, one of the solutions.)
  *   LAST   one that is found from the forces of the last call, and follows slow changes without jumps. For event-driven codes,
  *          where a contact that has reached its limit should stay there while others take over. */
 enum { TRIBO_SHARE_LEAST = 0, TRIBO_SHARE_LAST = 1 };
@@ -231,13 +233,14 @@ TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, con
  * feq  [n] out  or NULL; 0 for open contacts
  * f    [n] out  or NULL; |f| <= limit
  * Consistent coupling: f = law(v, feq) and R_ii feq_i = -(a_i + sum of R_ij f_j over j != i), to rounding. Where
- * contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing. QUINN_REVERSAL: f_eq balances Quinn's
- * forces.
+ * contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing. QUINN_REVERSAL: f_eq of
+ * contacts near stick balances Quinn's forces.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
- * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink. */
+ * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink. Of redundant contacts only R times
+ * it is unique: it is then the least in norm. On TRIBO_ERR_INCONSISTENT they are not written. */
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
 

@@ -72,6 +72,18 @@ static void begin(tribo_context *ctx)
     ctx->linearized = 0;
 }
 
+/* For shares that go on from these forces, also in groups that no solver saw. */
+static void remember(tribo_context *ctx)
+{
+    for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op.groups; g++) {
+        struct program *p = tribo_op_program(&ctx->op, g);
+        for (size_t k = 0; !p->island->touched && k < p->island->size; k++) {
+            p->x[k] = ctx->f[ctx->op.member[p->island->first + k]];
+            p->at[k] = p->at[k] == FREE ? FREE : AWAY;
+        }
+    }
+}
+
 /* A group that has not been solved for in this call, but has a contact with near from *i on, or op.groups. */
 static size_t next_group(tribo_context *ctx, size_t *i)
 {
@@ -150,7 +162,9 @@ static int solve_consistent(tribo_context *ctx, struct program *p, const double 
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         const double kappa = ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
-        ctx->feq[i] = clamp(p->x[k] + kappa - p->gradient[k] / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX);
+        /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
+        const double beyond = p->at[k] == FREE ? 0.0 : p->gradient[k] / ctx->op.diagonal[i];
+        ctx->feq[i] = clamp(p->x[k] + kappa - beyond, -DBL_MAX, DBL_MAX);
     }
     return status;
 }
@@ -284,6 +298,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         return status;
     }
     ctx->skipped += ctx->op.islands - ctx->op.touches;
+    remember(ctx);
     ctx->balanced = 1;
     ctx->holds = ctx->law->id == TRIBO_SMOOTH ? tanh(1.0) : 1.0;
     if (feq) {
@@ -328,6 +343,7 @@ static int box(tribo_context *ctx, const double *a, double scale, const double *
         }
     }
     ctx->skipped += ctx->op.islands - ctx->op.touches;
+    remember(ctx);
     tribo_copy(f, ctx->f, ctx->n);
     return TRIBO_OK;
 }
@@ -371,7 +387,7 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->lower[i] = -ctx->limit[i];
     }
-    status = box(ctx, vfree, 1.0 / dt, ctx->lower, ctx->limit, ctx->op.groups ? reaches(ctx) : NULL, f);
+    status = box(ctx, vfree, lesser(1.0 / dt, DBL_MAX), ctx->lower, ctx->limit, ctx->op.groups ? reaches(ctx) : NULL, f);
     if (!status) {
         ctx->balanced = 1;
         ctx->holds = 1.0;

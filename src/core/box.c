@@ -21,7 +21,7 @@
 /* So much of its unit is no gradient at all, though it may be all that there is. */
 #define NOTHING 1e-30
 
-/* Beyond this an x on its way overflows; no bound is there. */
+/* Beyond this an x on its way overflows; limits beyond it are not reached. */
 #define FAR 1e300
 
 /* Refinement ends with gradients of so much rounding, or the factor is not what it should be. */
@@ -412,10 +412,16 @@ static int minimum_norm(struct program *p)
         }
         tribo_project(p, vectors, p->step);
         for (size_t e = 0; e < p->count; e++) {
-            p->x[p->near[e]] += p->step[p->near[e]];
+            const size_t i = p->near[e];
+            p->x[i] = lesser(greater(p->x[i] + p->step[i], -FAR), FAR);
         }
     }
     tribo_box_gradient(p);
+    /* without null vectors those that depend on others tell by themselves */
+    for (size_t d = 0; d < p->island->dependents && !vectors; d++) {
+        const size_t i = p->order[p->island->rank + d];
+        consistent &= fabs(p->gradient[i]) <= 16.0 * p->noise[i] + DISAGREEMENT * p->unit[i];
+    }
     return consistent;
 }
 

@@ -34,7 +34,7 @@ void tribo_refresh(tribo_context *ctx)
         if (ctx->step > 0.0) {
             const double time = ctx->step / ctx->lambda_dt;
             ctx->epsilon[i] = clamp(2.0 * ctx->limit[i] * (r * time), DBL_MIN, DBL_MAX);
-            ctx->slope[i] = lesser(1.0 / (r * time), DBL_MAX);
+            ctx->slope[i] = ctx->limit[i] > 0.0 ? lesser(1.0 / (r * time), DBL_MAX) : 0.0;
         } else {
             ctx->epsilon[i] = ctx->given[i];
             ctx->slope[i] = tribo_slope(ctx->limit[i], ctx->given[i]);

@@ -53,7 +53,7 @@ struct program {
     size_t *near, count; /* near[0 .. count): the contacts in the program, near[count .. size): the others; both ascending */
     double *q, *lo, *hi, *x;
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
-    double *unit;             /* R_ii times the limit: what gradients are compared with */
+    double *unit;             /* R_ii times the limit, or half the box: what gradients are compared with */
     signed char *to;          /* workspace */
     double *step, *spare[2];  /* workspace, [size] */
     double *row;              /* the same, zero between calls */
@@ -152,7 +152,8 @@ size_t tribo_null_basis(struct program *p);
 /* Takes the part of y [size] in the span of the first k vectors of basis out of it. */
 void tribo_project(const struct program *p, size_t k, double *y);
 
-/* The same without a look at the gradient. Returns 0 if there is only one solution. */
+/* x becomes the solution of least norm, up to rounding; contacts at a bound that have no gradient become free. Returns 0 if there
+ * is only one. */
 int tribo_split(struct program *p);
 
 #endif

@@ -90,17 +90,15 @@ static int allocate_program(struct op *op)
 /* Room for null vectors, once the ranks are known. */
 static int allocate_basis(struct op *op)
 {
-    size_t most = 0;
     for (size_t k = 0; k < op->groups; k++) {
         const struct island *is = &op->group[k];
         size_t redundant = is->nullity;
         if (is->sparse && redundant > TRIBO_SPARSE_REDUNDANT) {
             redundant = TRIBO_SPARSE_REDUNDANT;
         }
-        most = redundant > most ? redundant : most;
         op->basis = redundant * is->size > op->basis ? redundant * is->size : op->basis;
     }
-    op->program.held = malloc((most + 1) * sizeof *op->program.held);
+    op->program.held = malloc((op->largest + 1) * sizeof *op->program.held);
     op->program.basis = malloc((op->basis + 1) * sizeof *op->program.basis);
     return op->program.held && op->program.basis;
 }
@@ -292,8 +290,8 @@ static int check_definite(struct op *op, struct flaw *flaw)
             return TRIBO_ERR_INDEFINITE;
         }
         is->nullity = is->dependents;
-        is->rank = is->dependents = 0;
         memset(p->at, AWAY, is->size);
+        tribo_factor_rebuild(p, NULL);
     }
     op->program.work.factorizations = 0;
     return TRIBO_OK;

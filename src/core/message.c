@@ -39,7 +39,7 @@ int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)
 
 int tribo_set_message(const tribo_context *ctx, int status, const char *text)
 {
-    return ctx && text ? tribo_fail(ctx, status, "%s", text) : status;
+    return ctx && text && text != ctx->message->text ? tribo_fail(ctx, status, "%s", text) : status;
 }
 
 const char *tribo_message(const tribo_context *ctx)

@@ -350,6 +350,7 @@ TEST(messages)
     ck_assert_str_eq(tribo_message(c), "beam.mtx is missing");
     assert_ok(tribo_set_limit_all(c, 1.0)); /* success leaves the last failure's text */
     ck_assert_str_eq(tribo_message(c), "beam.mtx is missing");
+    assert_status(tribo_set_message(c, TRIBO_ERR_FILE, tribo_message(c)), TRIBO_ERR_FILE);
     assert_status(tribo_set_message(c, TRIBO_ERR_FILE, NULL), TRIBO_ERR_FILE);
     assert_status(tribo_set_message(NULL, TRIBO_ERR_FILE, "x"), TRIBO_ERR_FILE);
     ck_assert_str_eq(tribo_message(c), "beam.mtx is missing");

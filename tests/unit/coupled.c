@@ -687,6 +687,117 @@ TEST(sparse_clone)
     free(h);
 }
 
+/* More redundant contacts than shares are found for: an a outside the range of R is told all the same. */
+TEST(outside_the_range_and_sparse)
+{
+    const size_t bodies = 1100, n = 2 * bodies;
+    size_t *first = calloc(n + 1, sizeof *first), *both = malloc(2 * n * sizeof *both), k = 0;
+    double *val = malloc(2 * n * sizeof *val), *zero = calloc(n, sizeof *zero), *a = calloc(n, sizeof *a),
+           *f = calloc(n, sizeof *f);
+    tribo_context *c;
+    for (size_t i = 0; i < n; i++) {
+        both[k] = i / 2;
+        val[k++] = 1.0;
+        if (i / 2 + 1 < bodies) {
+            both[k] = i / 2 + 1;
+            val[k++] = -1.0;
+        }
+        first[i + 1] = k;
+    }
+    for (size_t b = 0; b < bodies; b++) {
+        f[b] = 1.0;
+    }
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_coupling(c, TRIBO_PARTITION));
+    assert_ok(tribo_set_operator_mass(c, bodies, f, first, both, val));
+    a[10] = a[11] = 0.3;
+    assert_ok(tribo_balance(c, zero, a, NULL, f));
+    a[11] = -0.3;
+    assert_status(tribo_balance(c, zero, a, NULL, f), TRIBO_ERR_INCONSISTENT);
+    tribo_destroy(c);
+    free(first);
+    free(val);
+    free(zero);
+    free(a);
+    free(f);
+    free(both);
+}
+
+/* Forces go on from those of sliding, for which nothing was solved. */
+TEST(shares_after_sliding)
+{
+    const double r[] = {1.0, 1.0, 1.0, 1.0}, rest[] = {0.0, 0.0}, slides[] = {3.0, -3.0}, pull[] = {-0.6, -0.6},
+                 none[] = {0.0, 0.0};
+    double f[2];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    assert_ok(tribo_set_sharing(c, TRIBO_SHARE_LAST));
+    assert_ok(tribo_balance(c, rest, pull, NULL, f));
+    assert_ok(tribo_balance(c, slides, none, NULL, f));
+    assert_ok(tribo_balance(c, rest, none, NULL, f));
+    assert_close(f[0], -1.0, 1e-15);
+    assert_close(f[1], 1.0, 1e-15);
+    tribo_destroy(c);
+}
+
+/* Balancing forces beyond all numbers have the right sign; so short a step that 1/dt is no number leaves a contact at rest alone.
+ */
+TEST(beyond_all_numbers)
+{
+    const double r[] = {2e-300, 1e-300, 0.0, 1e-300, 2e-300, 1e-300, 0.0, 1e-300, 2e-300}, a[] = {-1e10, -1e10, -0.8e10},
+                 rest[3] = {0};
+    double f[3];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 3));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_coupling(c, _i));
+    assert_ok(tribo_balance(c, rest, a, NULL, f));
+    for (size_t i = 0; i < 3; i++) {
+        assert_exact(f[i], 1.0);
+    }
+    assert_ok(tribo_step_force(c, 1e-310, rest, f));
+    for (size_t i = 0; i < 3; i++) {
+        assert_exact(f[i], 0.0);
+    }
+    tribo_destroy(c);
+}
+
+/* The first call on a sparse group begins with an empty factor. */
+TEST(first_call_of_a_sparse_group)
+{
+    double v[400], a[400] = {0}, f[400];
+    tribo_context *c = chain(400, 1, TRIBO_CONSISTENT);
+    for (size_t i = 0; i < 400; i++) {
+        v[i] = i == 100 || i == 101 ? 0.0 : 3.0;
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    ck_assert_uint_eq(count_of(c, TRIBO_COUNT_FACTORIZATIONS), 0);
+    ck_assert_uint_eq(count_of(c, TRIBO_COUNT_UPDATES), 2);
+    tribo_destroy(c);
+}
+
+/* An open contact has no derivatives, whatever epsilon is. */
+TEST(tangents_of_open_contacts)
+{
+    const double r[] = {2.0, 1.0, 1.0, 2.0}, limit[] = {1.0, 0.0}, v[] = {0.0, 0.0}, a[] = {0.1, 0.1};
+    const double want_dv[] = {-50.0, 0.0, 0.0, 0.0}, want_da[] = {-0.5, 0.0, 0.0, 0.0};
+    double f[2], dv[4], da[4];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_epsilon_step(c, 0.01, 1.0));
+    assert_ok(tribo_balance_tangent(c, v, a, NULL, f, dv, da));
+    assert_all_close(dv, want_dv, 4, 1e-12);
+    assert_all_close(da, want_da, 4, 1e-15);
+    tribo_destroy(c);
+}
+
 /* ------------------------------------------------------------------------------------------------------ operators by callback */
 
 /* M^-1 of a mass matrix that is tridiagonal, 4 and 1, by elimination. */
@@ -814,5 +925,6 @@ TEST(product_of_tangents)
 TEST_MAIN("coupled", {gauss_seidel_agrees, 60}, {fixed_point_after_many_changes, 60}, {identical_contacts_share, 100},
           {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {one_after_the_other, 300},
           {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4}, {sleeping_islands, 2},
-          {sliding_singles, 6}, {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {consistent_mass, 40},
-          {callback_fails, 1}, {product_of_tangents, 120})
+          {sliding_singles, 6}, {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {outside_the_range_and_sparse, 1},
+          {shares_after_sliding, 1}, {beyond_all_numbers, 2}, {first_call_of_a_sparse_group, 1}, {tangents_of_open_contacts, 1},
+          {consistent_mass, 40}, {callback_fails, 1}, {product_of_tangents, 120})
