@@ -295,7 +295,7 @@ static int decide_by_rates(struct modes *m, tribo_system *sys, const double *y)
 /* How far beyond its limit (hi), or below it (lo), a balancing force may be and still count as just at it: a small part of the
  * limit, or what rounding of all the forces on the contact's bodies comes to. Beyond the limit it accelerates the contact's own
  * bodies: then of a light one between heavy ones even a small part of the limit would be an acceleration that these never have.
- * Below it holds all bodies that rest on each other, and a lack of it shows in what the heavy ones do. */
+ * Below it holds all bodies that rest on each other, and a lack of it shows in what the heavy ones do. rate holds f_eq. */
 static void find_margins(struct modes *m, const tribo_system *sys)
 {
     double most = DBL_MIN, noise = 0.0, force = 0.0;
@@ -314,6 +314,10 @@ static void find_margins(struct modes *m, const tribo_system *sys)
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double limit = m->limit[i], r = m->diagonal[i];
+        if (m->mode[i] != 0 || (fabs(m->rate[i]) < 0.5 * limit && NOISE * m->hi[i] < 0.5 * limit * r)) {
+            m->hi[i] = m->lo[i] = 0.0; /* moves, or is so far inside that no margin matters */
+            continue;
+        }
         m->hi[i] = r > 0.0 ? greater(AT_LIMIT * lesser(limit, most / r), NOISE * m->hi[i] / r) : AT_LIMIT * limit;
         m->lo[i] = greater(greater(m->hi[i], AT_LIMIT * limit), lesser(STATIONARY * limit, noise / most * force));
     }
