@@ -12,4 +12,10 @@ static inline double greater(double x, double y)
     return x > y ? x : y;
 }
 
+/* A NaN becomes lo. */
+static inline double clamp(double x, double lo, double hi)
+{
+    return lesser(greater(x, lo), hi);
+}
+
 #endif

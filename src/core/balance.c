@@ -147,13 +147,19 @@ static int solve(tribo_context *ctx, struct program *p)
     return TRIBO_OK;
 }
 
+/* kappa, see above. */
+static double relaxation(const tribo_context *ctx, size_t i, const double *v)
+{
+    return ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
+}
+
 /* f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii, with f as the solver finds it. */
 static int solve_consistent(tribo_context *ctx, struct program *p, const double *v, const double *a)
 {
     const size_t *member = ctx->op.member + p->island->first;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double limit = ctx->limit[i], kappa = ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
+        const double limit = ctx->limit[i], kappa = relaxation(ctx, i, v);
         p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
         p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
         p->q[k] = a[i] + ctx->op.diagonal[i] * kappa;
@@ -161,10 +167,9 @@ static int solve_consistent(tribo_context *ctx, struct program *p, const double 
     const int status = solve(ctx, p);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double kappa = ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
         const double beyond = p->at[k] == FREE ? 0.0 : p->gradient[k] / ctx->op.diagonal[i];
-        ctx->feq[i] = clamp(p->x[k] + kappa - beyond, -DBL_MAX, DBL_MAX);
+        ctx->feq[i] = clamp(p->x[k] + relaxation(ctx, i, v) - beyond, -DBL_MAX, DBL_MAX);
     }
     return status;
 }
@@ -211,23 +216,25 @@ static void near_forces(tribo_context *ctx, const struct program *p, const doubl
     }
 }
 
+/* step = the values [n] of a group's contacts. */
+static void gather(const tribo_context *ctx, struct program *p, const double *values)
+{
+    for (size_t k = 0; k < p->island->size; k++) {
+        p->step[k] = values[ctx->op.member[p->island->first + k]];
+    }
+}
+
 /* f_eq of the contacts in groups that no solver saw. */
 static void feq_of_others(tribo_context *ctx, const double *a)
 {
     for (size_t g = 0; g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
         const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
-        for (size_t k = 0; k < size; k++) {
-            p->step[k] = ctx->f[member[k]];
-        }
+        gather(ctx, p, ctx->f);
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             if (!ctx->near[i] && ctx->limit[i] > 0.0) {
-                const double own = p->step[k];
-                double ignored;
-                p->step[k] = 0.0;
-                const double sum = a[i] + tribo_row_dot(p, k, p->step, &ignored);
-                p->step[k] = own;
+                const double sum = a[i] + tribo_row_others(p, k, p->step);
                 ctx->feq[i] = clamp(-sum / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX);
             }
         }
@@ -262,10 +269,12 @@ static void balance_alone(tribo_context *ctx, const double *v, const double *a, 
 
 static int balance(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
-    const int groups = ctx->op.groups > 0;
     begin(ctx);
     balance_alone(ctx, v, a, wanted);
-    if (!groups || !ctx->law->uses_feq) {
+    if (ctx->op.groups == 0) {
+        return TRIBO_OK; /* nobody asks for near */
+    }
+    if (!ctx->law->uses_feq) {
         memset(ctx->near, 0, ctx->n);
         return TRIBO_OK;
     }
@@ -321,6 +330,8 @@ static int box(tribo_context *ctx, const double *a, double scale, const double *
     begin(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->f[i] = clamp(-(scale * a[i]) / ctx->op.diagonal[i], lower[i], upper[i]);
+    }
+    for (size_t i = 0; ctx->op.groups > 0 && i < ctx->n; i++) {
         ctx->near[i] = lower[i] < upper[i] && !(reach && fabs(scale * a[i]) > reach[i]);
     }
     size_t i = ctx->op.groups ? 0 : ctx->n, g = next_group(ctx, &i);
@@ -355,9 +366,7 @@ static const double *reaches(tribo_context *ctx)
     for (size_t g = 0; !op->reaches && g < op->groups; g++) {
         struct program *p = tribo_op_program(op, g);
         const size_t *member = op->member + p->island->first, size = p->island->size;
-        for (size_t k = 0; k < size; k++) {
-            p->step[k] = ctx->limit[member[k]];
-        }
+        gather(ctx, p, ctx->limit);
         for (size_t k = 0; k < size; k++) {
             tribo_row_dot(p, k, p->step, &op->reach[member[k]]);
         }

@@ -97,6 +97,9 @@ static void newton(struct program *p)
         p->step[p->order[k]] = -p->gradient[p->order[k]];
     }
     tribo_factor_solve(p, p->step);
+    for (size_t k = rank; k < rank + p->island->dependents; k++) {
+        p->step[p->order[k]] = 0.0;
+    }
 }
 
 static int settled(const struct program *p, double noises)
@@ -118,7 +121,7 @@ static void refine(struct program *p)
         newton(p);
         for (size_t k = 0; k < p->island->rank; k++) {
             const size_t i = p->order[k];
-            p->x[i] = lesser(greater(p->x[i] + p->step[i], -FAR), FAR);
+            p->x[i] = clamp(p->x[i] + p->step[i], -FAR, FAR);
         }
         tribo_box_gradient(p);
     }
@@ -166,7 +169,7 @@ static void put_at_bounds(struct program *p)
     }
     for (size_t d = 0; d < p->island->dependents; d++) {
         const size_t i = p->order[p->island->rank + d];
-        p->x[i] = lesser(greater(p->x[i], p->lo[i]), p->hi[i]);
+        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
     }
 }
 
@@ -219,7 +222,7 @@ size_t tribo_box_advance(struct program *p, double longest)
     }
     for (size_t k = 0; k < all; k++) {
         const size_t i = p->order[k];
-        p->x[i] = lesser(greater(p->x[i] + length * p->step[i], p->lo[i]), p->hi[i]);
+        p->x[i] = clamp(p->x[i] + length * p->step[i], p->lo[i], p->hi[i]);
     }
     if (hit < p->island->size) {
         p->x[hit] = p->step[hit] > 0.0 ? p->hi[hit] : p->lo[hit];
@@ -257,8 +260,8 @@ static size_t worst(const struct program *p, int dependent)
     return found;
 }
 
-/* Down along the null vector in which the dependent d moves by 1: only what R is not singular by to rounding stops it before a
- * bound. */
+/* Down along the null vector in which the dependent d moves by 1, as far as a bound; or, where R is not quite singular, to the
+ * bottom. */
 static int slide(struct program *p, size_t d)
 {
     double size;
@@ -277,9 +280,6 @@ static int descend(struct program *p)
 {
     tribo_box_gradient(p);
     newton(p);
-    for (size_t d = 0; d < p->island->dependents; d++) {
-        p->step[p->order[p->island->rank + d]] = 0.0;
-    }
     return move(p, 1.0);
 }
 
@@ -289,7 +289,7 @@ static int primal(struct program *p)
     memcpy(p->to, p->at, p->island->size);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        p->x[i] = lesser(greater(p->x[i], p->lo[i]), p->hi[i]);
+        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
         p->to[i] = p->x[i] <= p->lo[i] ? AT_LOWER : p->x[i] >= p->hi[i] ? AT_UPPER : FREE;
     }
     change_all(p);
@@ -326,7 +326,7 @@ static double violation(const struct program *p)
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         const double half = 0.5 * p->hi[i] - 0.5 * p->lo[i], r = p->unit[i] / half;
-        const double to = lesser(greater(p->x[i] - p->gradient[i] / r, p->lo[i]), p->hi[i]);
+        const double to = clamp(p->x[i] - p->gradient[i] / r, p->lo[i], p->hi[i]);
         most = half > 0.0 ? greater(most, fabs(to - p->x[i]) * r / p->noise[i]) : most;
     }
     return most;
@@ -407,13 +407,10 @@ static int minimum_norm(struct program *p)
             break;
         }
         newton(p);
-        for (size_t d = 0; d < p->island->dependents; d++) {
-            p->step[p->order[p->island->rank + d]] = 0.0;
-        }
         tribo_project(p, vectors, p->step);
         for (size_t e = 0; e < p->count; e++) {
             const size_t i = p->near[e];
-            p->x[i] = lesser(greater(p->x[i] + p->step[i], -FAR), FAR);
+            p->x[i] = clamp(p->x[i] + p->step[i], -FAR, FAR);
         }
     }
     tribo_box_gradient(p);

@@ -86,6 +86,16 @@ double tribo_row_dot(const struct program *p, size_t i, const double *x, double 
     return dense_dot(p->r + i * p->island->size, x, p->island->size, size);
 }
 
+double tribo_row_others(const struct program *p, size_t i, double *x)
+{
+    const double own = x[i];
+    double ignored;
+    x[i] = 0.0;
+    const double sum = tribo_row_dot(p, i, x, &ignored);
+    x[i] = own;
+    return sum;
+}
+
 void tribo_row_spread(const struct program *p, size_t i, double factor, double *y)
 {
     if (p->island->sparse) {

@@ -50,7 +50,7 @@ struct program {
     size_t *order;       /* [size] kept: rank independent free contacts, in the order of the factor, then the dependents */
     double *l;           /* [size][size] kept: Cholesky factor of the scaled R over order[0 .. rank), if dense */
     /* the program: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
-    size_t *near, count; /* near[0 .. count): the contacts in the program, near[count .. size): the others; both ascending */
+    size_t *near, count; /* near[0 .. count): the contacts in the program, ascending; near[count .. size): the others */
     double *q, *lo, *hi, *x;
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
     double *unit;             /* R_ii times the limit, or half the box: what gradients are compared with */
@@ -75,8 +75,9 @@ double tribo_scale(double diagonal);
 void tribo_factor_add(struct program *p, size_t i);
 void tribo_factor_remove(struct program *p, size_t i);
 
-/* Factorizes anew, over all near contacts that are FREE. Unless where is NULL, returns the largest entry left over after the
- * independent ones are eliminated, which is rounding unless R is indefinite; negative if a pivot is. *where is whose it is. */
+/* Factorizes anew, over all contacts that are FREE, which are near. Unless where is NULL, returns the largest entry left over
+ * after the independent ones are eliminated, which is rounding unless R is indefinite; negative if a pivot is. *where is whose it
+ * is. */
 double tribo_factor_rebuild(struct program *p, size_t *where);
 
 /* step = R^-1 step over the independent ones. Entries of the others are left alone. */
@@ -110,6 +111,9 @@ void tribo_sparse_free(struct sparse *s);
 
 /* Row i times x [size]; *size is the sum of the terms' absolute values. */
 double tribo_row_dot(const struct program *p, size_t i, const double *x, double *size);
+
+/* The same without the diagonal's term; x is as before in the end. */
+double tribo_row_others(const struct program *p, size_t i, double *x);
 
 /* y [size] = factor * row i, at the free contacts. Other entries are left alone. */
 void tribo_row_spread(const struct program *p, size_t i, double factor, double *y);

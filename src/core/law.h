@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "../real.h"
 #include "../simd.h"
 
 /* Per contact: limit N; epsilon; slope = 2N/epsilon, kept apart so that nothing divides by N; moving, the reversal memory. */
@@ -35,13 +36,6 @@ extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law
     tribo_law_quinn_reversal;
 
 const struct law *tribo_law(int id); /* NULL if there is none */
-
-/* In this order a NaN becomes lo, so that f_eq of a sliding contact may hold anything. */
-static inline double clamp(double x, double lo, double hi)
-{
-    const double y = x > lo ? x : lo;
-    return y < hi ? y : hi;
-}
 
 static inline double sign(double x)
 {

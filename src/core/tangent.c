@@ -57,7 +57,7 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
 {
     const int partition = ctx->coupling == TRIBO_PARTITION;
     const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
-    double *rhs = p->noise, ignored;
+    double *rhs = p->noise;
     for (size_t k = 0; k < size; k++) {
         const size_t i = member[k];
         df[k] = p->at[k] == FREE ? 0.0 : dv[k] != 0.0 ? own_rate(ctx, p, k, i) * dv[k] : 0.0;
@@ -75,10 +75,7 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             const struct tangent *d = &ctx->tangent[i];
-            const double own = p->step[k];
-            p->step[k] = 0.0;
-            const double dfeq = ctx->near[i] ? -(da[k] + tribo_row_dot(p, k, p->step, &ignored)) / ctx->op.diagonal[i] : 0.0;
-            p->step[k] = own;
+            const double dfeq = ctx->near[i] ? -(da[k] + tribo_row_others(p, k, p->step)) / ctx->op.diagonal[i] : 0.0;
             df[k] = d->dfeq * dfeq + (dv[k] != 0.0 ? d->dv * dv[k] : 0.0);
         }
     }
