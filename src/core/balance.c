@@ -11,55 +11,6 @@
 #include "internal.h"
 #include "../real.h"
 
-/* So many contacts are looked at together: few enough that in a large scene most of such chunks have none near stick, and all
- * that is read of them stays in the first-level cache. */
-#define CHUNK 128
-
-/* Marks the contacts near stick, |v| <= band (0 for all if band is NULL). */
-TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
-                                 unsigned char *restrict near)
-{
-    if (band) {
-        for (size_t i = 0; i < n; i++) {
-            near[i] = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
-        }
-    } else {
-        for (size_t i = 0; i < n; i++) {
-            near[i] = (v[i] == 0.0) & (limit[i] > 0.0);
-        }
-    }
-}
-
-/* Whether any contact is in its band (at v = 0 if band is NULL). Beyond, laws that ask for f_eq all say the same. */
-TRIBO_SIMD static int any_in_band(size_t n, const double *restrict v, const double *restrict band)
-{
-    int64_t any = 0; /* as wide as what is compared */
-    for (size_t i = 0; band && i < n; i++) {
-        any |= fabs(v[i]) <= band[i];
-    }
-    for (size_t i = 0; !band && i < n; i++) {
-        any |= v[i] == 0.0;
-    }
-    return any != 0;
-}
-
-TRIBO_SIMD static void slide(size_t n, const double *restrict v, const double *restrict limit, double *restrict f)
-{
-    for (size_t i = 0; i < n; i++) {
-        f[i] = v[i] > 0.0 ? -limit[i] : limit[i];
-    }
-}
-
-/* f_eq of contacts that share no body. */
-TRIBO_SIMD static void feq_alone(size_t n, const double *restrict r, const double *restrict limit, const double *restrict a,
-                                 double *restrict feq)
-{
-    for (size_t i = 0; i < n; i++) {
-        const double x = clamp(-a[i] / r[i], -DBL_MAX, DBL_MAX);
-        feq[i] = limit[i] > 0.0 ? x : 0.0;
-    }
-}
-
 static void begin(tribo_context *ctx)
 {
     for (size_t k = 0; k < ctx->op.touches; k++) {
@@ -78,27 +29,28 @@ static void remember(tribo_context *ctx)
     for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
         for (size_t k = 0; !p->island->touched && k < p->island->size; k++) {
-            p->x[k] = ctx->f[ctx->op.member[p->island->first + k]];
+            p->x[k] = tribo_force_of(ctx, ctx->op.member[p->island->first + k]);
             p->at[k] = p->at[k] == FREE ? FREE : AWAY;
         }
     }
 }
 
-/* A group that has not been solved for in this call, but has a contact with near from *i on, or op.groups. */
-static size_t next_group(tribo_context *ctx, size_t *i)
+/* The groups with a contact near stick. */
+static void find_groups(tribo_context *ctx)
 {
     struct op *op = &ctx->op;
-    while (*i < ctx->n) {
-        const unsigned char *found = memchr(ctx->near + *i, 1, ctx->n - *i);
-        *i = found ? (size_t)(found - ctx->near) + 1 : ctx->n;
-        const size_t k = found ? op->group_of[*i - 1] : TRIBO_ALONE;
-        if (k != TRIBO_ALONE && !op->group[k].touched) {
-            op->group[k].touched = 1;
-            op->touched[op->touches++] = k;
-            return k;
+    const unsigned char *kind = ctx->last.kind, *state = ctx->last.state;
+    for (size_t i = 0; i < ctx->n; i++) {
+        if (kind[i / TRIBO_CHUNK] == SLIDES) {
+            i += TRIBO_CHUNK - 1;
+        } else if (state[i] == NEAR) {
+            const size_t k = op->group_of[i];
+            if (k != TRIBO_ALONE && !op->group[k].touched) {
+                op->group[k].touched = 1;
+                op->touched[op->touches++] = k;
+            }
         }
     }
-    return op->groups;
 }
 
 struct program *tribo_collect(tribo_context *ctx, size_t k)
@@ -108,11 +60,11 @@ struct program *tribo_collect(tribo_context *ctx, size_t k)
     size_t behind = p->island->size;
     p->count = 0;
     for (size_t i = 0; i < p->island->size; i++) {
-        if (ctx->near[member[i]]) {
+        if (ctx->last.state[member[i]] == NEAR) {
             p->near[p->count++] = i;
         } else {
             p->near[--behind] = i;
-            p->x[i] = ctx->f[member[i]];
+            p->x[i] = tribo_force_of(ctx, member[i]);
         }
     }
     return p;
@@ -230,10 +182,12 @@ static void feq_of_others(tribo_context *ctx, const double *a)
     for (size_t g = 0; g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
         const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
-        gather(ctx, p, ctx->f);
+        for (size_t k = 0; k < size; k++) {
+            p->step[k] = tribo_force_of(ctx, member[k]);
+        }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!ctx->near[i] && ctx->limit[i] > 0.0) {
+            if (ctx->last.state[i] != NEAR && ctx->limit[i] > 0.0) {
                 const double sum = a[i] + tribo_row_others(p, k, p->step);
                 ctx->feq[i] = clamp(-sum / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX);
             }
@@ -241,47 +195,16 @@ static void feq_of_others(tribo_context *ctx, const double *a)
     }
 }
 
-/* f of all contacts as if they were alone, and who is near stick. Where contacts are coupled a chunk of sliding ones needs no
- * more than that, and f_eq only if the caller wants it. */
-static void balance_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
-{
-    const struct contacts all = tribo_contacts(ctx);
-    const int coupled = ctx->op.groups > 0 && ctx->law->uses_feq;
-    for (size_t i = 0; i < ctx->n; i += CHUNK) {
-        const struct contacts c = tribo_contacts_from(&all, i);
-        const size_t n = ctx->n - i < CHUNK ? ctx->n - i : CHUNK;
-        const double *band = ctx->law->sticks_in_band ? ctx->epsilon + i : NULL;
-        const int slides = coupled && !any_in_band(n, v + i, band);
-        if (slides) {
-            memset(ctx->near + i, 0, n);
-            slide(n, v + i, ctx->limit + i, ctx->f + i);
-        } else if (coupled) {
-            find_near(n, v + i, band, ctx->limit + i, ctx->near + i);
-        }
-        if (wanted || !slides) {
-            feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
-        }
-        if (!slides) {
-            ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
-        }
-    }
-}
-
 static int balance(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     begin(ctx);
-    balance_alone(ctx, v, a, wanted);
-    if (ctx->op.groups == 0) {
-        return TRIBO_OK; /* nobody asks for near */
-    }
-    if (!ctx->law->uses_feq) {
-        memset(ctx->near, 0, ctx->n);
-        return TRIBO_OK;
+    tribo_forces_alone(ctx, v, a, wanted);
+    if (ctx->op.groups && ctx->law->uses_feq) {
+        find_groups(ctx);
     }
     int status = TRIBO_OK;
-    size_t i = 0, k = next_group(ctx, &i);
-    for (; k < ctx->op.groups; k = next_group(ctx, &i)) {
-        struct program *p = tribo_collect(ctx, k);
+    for (size_t k = 0; k < ctx->op.touches; k++) {
+        struct program *p = tribo_collect(ctx, ctx->op.touched[k]);
         const int one = ctx->coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
         if (one == TRIBO_ERR_NO_CONVERGENCE) {
             return one;
@@ -297,8 +220,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    int status = tribo_check_finite(ctx, "v", v, ctx->n);
-    status = status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
+    int status = tribo_look(ctx, v, a);
     if (status) {
         return status;
     }
@@ -315,7 +237,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         tribo_copy(feq, ctx->feq, ctx->n);
     }
     if (f) {
-        tribo_copy(f, ctx->f, ctx->n);
+        tribo_forces(ctx, f);
     }
     return status;
 }
@@ -328,15 +250,19 @@ static int box(tribo_context *ctx, const double *a, double scale, const double *
                double *f)
 {
     begin(ctx);
+    memset(ctx->last.kind, KEPT, tribo_chunks(ctx->n));
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->f[i] = clamp(-(scale * a[i]) / ctx->op.diagonal[i], lower[i], upper[i]);
+        ctx->last.state[i] = PLAIN;
     }
     for (size_t i = 0; ctx->op.groups > 0 && i < ctx->n; i++) {
-        ctx->near[i] = lower[i] < upper[i] && !(reach && fabs(scale * a[i]) > reach[i]);
+        ctx->last.state[i] = lower[i] < upper[i] && !(reach && fabs(scale * a[i]) > reach[i]) ? NEAR : PLAIN;
     }
-    size_t i = ctx->op.groups ? 0 : ctx->n, g = next_group(ctx, &i);
-    for (; g < ctx->op.groups; g = next_group(ctx, &i)) {
-        struct program *p = tribo_collect(ctx, g);
+    if (ctx->op.groups) {
+        find_groups(ctx);
+    }
+    for (size_t g = 0; g < ctx->op.touches; g++) {
+        struct program *p = tribo_collect(ctx, ctx->op.touched[g]);
         const size_t *member = ctx->op.member + p->island->first;
         for (size_t e = 0; e < p->count; e++) {
             const size_t k = p->near[e];

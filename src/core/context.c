@@ -40,6 +40,7 @@ void tribo_refresh(tribo_context *ctx)
             ctx->slope[i] = tribo_slope(ctx->limit[i], ctx->given[i]);
         }
     }
+    tribo_refresh_chunks(ctx);
 }
 
 /* Everything but the operator. One contact more than asked for, so that no array is empty. */
@@ -57,10 +58,16 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->f = calloc(m, sizeof *ctx->f);
     ctx->v = malloc(m * sizeof *ctx->v);
     ctx->lower = malloc(m * sizeof *ctx->lower);
-    ctx->near = calloc(m, sizeof *ctx->near);
+    ctx->chunk = malloc(tribo_chunks(m) * sizeof *ctx->chunk);
+    ctx->last.state = calloc(m + tribo_chunks(m), 1);
+    ctx->spare.state = calloc(m + tribo_chunks(m), 1);
     ctx->tangent = malloc(m * sizeof *ctx->tangent);
-    return ctx->message && ctx->given && ctx->limit && ctx->epsilon && ctx->slope && ctx->moving && ctx->feq && ctx->f &&
-           ctx->v && ctx->lower && ctx->near && ctx->tangent;
+    if (ctx->last.state && ctx->spare.state) {
+        ctx->last.kind = ctx->last.state + m;
+        ctx->spare.kind = ctx->spare.state + m;
+    }
+    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limit && ctx->epsilon && ctx->slope && ctx->moving && ctx->feq && ctx->f &&
+           ctx->v && ctx->lower && ctx->tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -111,7 +118,9 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     tribo_copy(c->feq, ctx->feq, n);
     tribo_copy(c->f, ctx->f, n);
     memcpy(c->moving, ctx->moving, n);
-    memcpy(c->near, ctx->near, n);
+    memcpy(c->chunk, ctx->chunk, tribo_chunks(n) * sizeof *c->chunk);
+    memcpy(c->last.state, ctx->last.state, n);
+    memcpy(c->last.kind, ctx->last.kind, tribo_chunks(n));
     *copy = c;
     return TRIBO_OK;
 }
@@ -132,7 +141,9 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx->f);
     free(ctx->v);
     free(ctx->lower);
-    free(ctx->near);
+    free(ctx->chunk);
+    free(ctx->last.state);
+    free(ctx->spare.state);
     free(ctx->tangent);
     free(ctx);
 }
@@ -342,7 +353,7 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
  * it counts as holding where |v| < epsilon.) */
 static signed char mode_of(const tribo_context *ctx, size_t i)
 {
-    const double limit = ctx->limit[i], f = ctx->f[i];
+    const double limit = ctx->limit[i], f = tribo_force_of(ctx, i);
     return (signed char)(limit > 0.0 ? fabs(f) < ctx->holds * limit ? 0 : f < 0.0 ? 1 : -1 : 2);
 }
 

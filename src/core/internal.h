@@ -38,6 +38,32 @@ struct op {
 
 struct message;
 
+/* Contacts that are looked at together: few enough that in a large scene most chunks have none near stick, and all that is read
+ * of them stays in the first-level cache. */
+#define TRIBO_CHUNK 128
+
+/* What of a chunk's contacts changes with settings only. */
+struct chunk {
+    double widest; /* epsilon; negative if all are open */
+    double limit;  /* of all, or NaN if they differ */
+    int alone;     /* one shares no body */
+};
+
+/* What the last call knows of a contact: near stick, or sliding towards v > 0 or v < 0, which is all that there is to know; or
+ * nothing. And where the forces of a chunk are: in ctx->f, or at the limits, or some here and some there. */
+enum { PLAIN, NEAR, FORTH, BACK };
+enum { KEPT, SLIDES, MIXED };
+
+static inline size_t tribo_chunks(size_t n)
+{
+    return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
+}
+
+struct look {
+    unsigned char *state; /* [n] */
+    unsigned char *kind;  /* [chunks], in the same piece of memory */
+};
+
 struct tribo_context {
     size_t n;
     const struct law *law;
@@ -47,12 +73,13 @@ struct tribo_context {
     double *limit, *epsilon, *slope;
     unsigned char *moving; /* [n] reversal memory */
     struct op op;
-    double *feq, *f;         /* [n] of the last balance */
-    unsigned char *near;     /* [n] contacts near stick in it */
+    struct chunk *chunk;     /* [chunks] */
+    struct look last, spare; /* of the last balance; room for the next */
+    double *feq, *f;         /* [n] of the last balance; f only of contacts that are PLAIN or NEAR */
     double *v;               /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
     struct tangent *tangent; /* [n] */
     double *lower;           /* [n] workspace of tribo_step_force */
-    int balanced;            /* f is that of a tribo_balance or tribo_step_force, and modes follow from it */
+    int balanced;            /* forces are those of a tribo_balance or tribo_step_force, and modes follow from it */
     int linearized;          /* tangent is that of the last balance */
     double holds;            /* a contact holds if |f| is less than this part of the limit */
     double residual;
@@ -91,7 +118,24 @@ void tribo_op_free(struct op *op);
 /* Views of group k in op's program. */
 struct program *tribo_op_program(struct op *op, size_t k);
 
-/* balance.c: the contacts of group k in the program's order, those with ctx->near first. */
+/* look.c: what depends on settings, brought up to date. */
+void tribo_refresh_chunks(tribo_context *ctx);
+
+/* Checks v and a, and finds the chunks that slide; a status, and on failure nothing is changed. Then finds the contacts near stick
+ * in the others, and, as if they were alone, f of contacts that need no solver, and f_eq of those, or of all if wanted. */
+int tribo_look(tribo_context *ctx, const double *v, const double *a);
+void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
+
+/* The forces of all contacts, f [n], or of one. */
+void tribo_forces(const tribo_context *ctx, double *f);
+
+static inline double tribo_force_of(const tribo_context *ctx, size_t i)
+{
+    const int state = ctx->last.state[i];
+    return state <= NEAR ? ctx->f[i] : state == FORTH ? -ctx->limit[i] : ctx->limit[i];
+}
+
+/* balance.c: the contacts of group k in the program's order, those near stick first. */
 struct program *tribo_collect(tribo_context *ctx, size_t k);
 
 /* memcpy, but fine with NULL for no elements. */

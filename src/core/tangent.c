@@ -15,7 +15,7 @@ static void linearize(tribo_context *ctx, const double *v)
 /* How the force of contact i, at place k, follows its own velocity where it is not balanced. */
 static double own_rate(const tribo_context *ctx, const struct program *p, size_t k, size_t i)
 {
-    if (!ctx->near[i]) {
+    if (ctx->last.state[i] != NEAR) {
         return ctx->tangent[i].dv;
     }
     /* the bound of a relaxing law moves with v while it is not at the other limit */
@@ -75,7 +75,7 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             const struct tangent *d = &ctx->tangent[i];
-            const double dfeq = ctx->near[i] ? -(da[k] + tribo_row_others(p, k, p->step)) / ctx->op.diagonal[i] : 0.0;
+            const double dfeq = ctx->last.state[i] == NEAR ? -(da[k] + tribo_row_others(p, k, p->step)) / ctx->op.diagonal[i] : 0.0;
             df[k] = d->dfeq * dfeq + (dv[k] != 0.0 ? d->dv * dv[k] : 0.0);
         }
     }
