@@ -29,7 +29,7 @@ static void remember(tribo_context *ctx)
     for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
         for (size_t k = 0; !p->island->touched && k < p->island->size; k++) {
-            p->x[k] = tribo_force_of(ctx, ctx->op.member[p->island->first + k]);
+            p->x[k] = tribo_force_of(ctx, p->member[k]);
             p->at[k] = p->at[k] == FREE ? FREE : AWAY;
         }
     }
@@ -39,15 +39,12 @@ static void remember(tribo_context *ctx)
 static void find_groups(tribo_context *ctx)
 {
     struct op *op = &ctx->op;
-    const unsigned char *kind = ctx->last.kind, *state = ctx->last.state;
-    for (size_t i = 0; i < ctx->n; i++) {
-        if (kind[i / TRIBO_CHUNK] == SLIDES) {
-            i += TRIBO_CHUNK - 1;
-        } else if (state[i] == NEAR) {
-            const size_t k = op->group_of[i];
-            if (k != TRIBO_ALONE && !op->group[k].touched) {
-                op->group[k].touched = 1;
-                op->touched[op->touches++] = k;
+    for (size_t i = 0, n; (n = tribo_next_near(ctx, &i, ctx->n)) > 0; i += n) {
+        for (size_t k = i; k < i + n; k++) {
+            const size_t g = op->group_of[k];
+            if (g != TRIBO_ALONE && !op->group[g].touched) {
+                op->group[g].touched = 1;
+                op->touched[op->touches++] = g;
             }
         }
     }
@@ -56,7 +53,7 @@ static void find_groups(tribo_context *ctx)
 struct program *tribo_collect(tribo_context *ctx, size_t k)
 {
     struct program *p = tribo_op_program(&ctx->op, k);
-    const size_t *member = ctx->op.member + p->island->first;
+    const size_t *member = p->member;
     size_t behind = p->island->size;
     p->count = 0;
     for (size_t i = 0; i < p->island->size; i++) {
@@ -74,7 +71,7 @@ struct program *tribo_collect(tribo_context *ctx, size_t k)
 static int solve(tribo_context *ctx, struct program *p)
 {
     const struct island *is = p->island;
-    const size_t *member = ctx->op.member + is->first;
+    const size_t *member = p->member;
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
@@ -108,7 +105,7 @@ static double relaxation(const tribo_context *ctx, size_t i, const double *v)
 /* f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii, with f as the solver finds it. */
 static int solve_consistent(tribo_context *ctx, struct program *p, const double *v, const double *a)
 {
-    const size_t *member = ctx->op.member + p->island->first;
+    const size_t *member = p->member;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         const double limit = ctx->limit[i], kappa = relaxation(ctx, i, v);
@@ -129,7 +126,7 @@ static int solve_consistent(tribo_context *ctx, struct program *p, const double 
 static int solve_partition(tribo_context *ctx, struct program *p, const double *a)
 {
     const struct island *is = p->island;
-    const size_t *member = ctx->op.member + is->first;
+    const size_t *member = p->member;
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
@@ -157,7 +154,7 @@ static int solve_partition(tribo_context *ctx, struct program *p, const double *
 static void near_forces(tribo_context *ctx, const struct program *p, const double *v)
 {
     const struct contacts all = tribo_contacts(ctx);
-    const size_t *member = ctx->op.member + p->island->first;
+    const size_t *member = p->member;
     for (size_t e = 0, run; e < p->count; e += run) {
         const size_t i = member[p->near[e]];
         const struct contacts c = tribo_contacts_from(&all, i);
@@ -168,26 +165,18 @@ static void near_forces(tribo_context *ctx, const struct program *p, const doubl
     }
 }
 
-/* step = the values [n] of a group's contacts. */
-static void gather(const tribo_context *ctx, struct program *p, const double *values)
-{
-    for (size_t k = 0; k < p->island->size; k++) {
-        p->step[k] = values[ctx->op.member[p->island->first + k]];
-    }
-}
-
 /* f_eq of the contacts in groups that no solver saw. */
 static void feq_of_others(tribo_context *ctx, const double *a)
 {
     for (size_t g = 0; g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
-        const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
+        const size_t *member = p->member, size = p->island->size;
         for (size_t k = 0; k < size; k++) {
             p->step[k] = tribo_force_of(ctx, member[k]);
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (ctx->last.state[i] != NEAR && ctx->limit[i] > 0.0) {
+            if (!(p->island->touched && ctx->last.state[i] == NEAR) && ctx->limit[i] > 0.0) {
                 const double sum = a[i] + tribo_row_others(p, k, p->step);
                 ctx->feq[i] = clamp(-sum / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX);
             }
@@ -250,20 +239,19 @@ static int box(tribo_context *ctx, const double *a, double scale, const double *
                double *f)
 {
     begin(ctx);
-    memset(ctx->last.kind, KEPT, tribo_chunks(ctx->n));
+    ctx->kept = 1;
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->f[i] = clamp(-(scale * a[i]) / ctx->op.diagonal[i], lower[i], upper[i]);
-        ctx->last.state[i] = PLAIN;
     }
     for (size_t i = 0; ctx->op.groups > 0 && i < ctx->n; i++) {
-        ctx->last.state[i] = lower[i] < upper[i] && !(reach && fabs(scale * a[i]) > reach[i]) ? NEAR : PLAIN;
+        ctx->last.state[i] = lower[i] < upper[i] && !(reach && fabs(scale * a[i]) > reach[i]) ? NEAR : BACK;
     }
     if (ctx->op.groups) {
         find_groups(ctx);
     }
     for (size_t g = 0; g < ctx->op.touches; g++) {
         struct program *p = tribo_collect(ctx, ctx->op.touched[g]);
-        const size_t *member = ctx->op.member + p->island->first;
+        const size_t *member = p->member;
         for (size_t e = 0; e < p->count; e++) {
             const size_t k = p->near[e];
             p->lo[k] = lower[member[k]];
@@ -291,8 +279,10 @@ static const double *reaches(tribo_context *ctx)
     struct op *op = &ctx->op;
     for (size_t g = 0; !op->reaches && g < op->groups; g++) {
         struct program *p = tribo_op_program(op, g);
-        const size_t *member = op->member + p->island->first, size = p->island->size;
-        gather(ctx, p, ctx->limit);
+        const size_t *member = p->member, size = p->island->size;
+        for (size_t k = 0; k < size; k++) {
+            p->step[k] = ctx->limit[member[k]];
+        }
         for (size_t k = 0; k < size; k++) {
             tribo_row_dot(p, k, p->step, &op->reach[member[k]]);
         }

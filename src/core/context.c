@@ -15,16 +15,6 @@ double tribo_slope(double limit, double epsilon)
     return lesser(2.0 * limit / epsilon, DBL_MAX);
 }
 
-struct contacts tribo_contacts(const tribo_context *ctx)
-{
-    return (struct contacts){ctx->limit, ctx->epsilon, ctx->slope, ctx->moving, ctx->step > 0.0 ? 1.0 : 0.0};
-}
-
-struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
-{
-    return (struct contacts){c->limit + i, c->epsilon + i, c->slope + i, c->moving + i, c->follows};
-}
-
 void tribo_refresh(tribo_context *ctx)
 {
     ctx->op.reaches = 0;
@@ -63,8 +53,8 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->spare.state = calloc(m + tribo_chunks(m), 1);
     ctx->tangent = malloc(m * sizeof *ctx->tangent);
     if (ctx->last.state && ctx->spare.state) {
-        ctx->last.kind = ctx->last.state + m;
-        ctx->spare.kind = ctx->spare.state + m;
+        ctx->last.mixed = ctx->last.state + m;
+        ctx->spare.mixed = ctx->spare.state + m;
     }
     return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limit && ctx->epsilon && ctx->slope && ctx->moving && ctx->feq && ctx->f &&
            ctx->v && ctx->lower && ctx->tangent;
@@ -84,6 +74,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         return TRIBO_ERR_MEMORY;
     }
     c->law = tribo_law(TRIBO_QUINN);
+    c->kept = 1;
     c->coupling = TRIBO_CONSISTENT;
     c->sharing = TRIBO_SHARE_LEAST;
     for (size_t i = 0; i < ncontact; i++) {
@@ -120,7 +111,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     memcpy(c->moving, ctx->moving, n);
     memcpy(c->chunk, ctx->chunk, tribo_chunks(n) * sizeof *c->chunk);
     memcpy(c->last.state, ctx->last.state, n);
-    memcpy(c->last.kind, ctx->last.kind, tribo_chunks(n));
+    memcpy(c->last.mixed, ctx->last.mixed, tribo_chunks(n));
     *copy = c;
     return TRIBO_OK;
 }

@@ -13,27 +13,23 @@
 
 #define TRIBO_ALONE SIZE_MAX
 
-/* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. What a
- * group keeps from call to call stands in pools, group by group; see struct program. */
+/* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. */
 struct op {
-    double *diagonal;                /* [n] R_ii, at least DBL_MIN, which is the limit R_ii -> +0 */
-    double row_sum;                  /* max over i of sum_j |R_ij|/R_ii */
-    size_t islands;                  /* groups and single contacts */
-    size_t groups;                   /* of two contacts and more */
-    struct island *group;            /* [groups] */
-    size_t *group_of;                /* [n] TRIBO_ALONE if contact i is */
-    size_t *touched;                 /* [groups] those solved for in the last call, */
-    size_t touches;                  /* so many */
-    size_t members, largest, blocks; /* contacts in groups; in the largest; size of the pools r and l */
-    size_t basis;                    /* room for null vectors */
-    size_t *member;                  /* [members] contacts, ascending within a group */
-    double *r, *l;                   /* [blocks] */
-    double *scale, *x;               /* [members] */
-    double *reach;                   /* [n] sum of |R_ij| N_j: what friction can do to a contact at most */
-    int reaches;                     /* reach is that of the limits */
-    signed char *at;                 /* [members] */
-    size_t *order, *terms;           /* [members] */
-    struct program program;          /* workspace of the largest group, with views of one */
+    double *diagonal;       /* [n] R_ii, at least DBL_MIN, which is the limit R_ii -> +0 */
+    double row_sum;         /* max over i of sum_j |R_ij|/R_ii */
+    size_t islands;         /* groups and single contacts */
+    size_t groups;          /* of two contacts and more */
+    struct island *group;   /* [groups] */
+    size_t *group_of;       /* [n] TRIBO_ALONE if contact i is */
+    size_t *touched;        /* [groups] those solved for in the last call, */
+    size_t touches;         /* so many */
+    size_t largest;         /* contacts in the largest group */
+    double *store;          /* [stored] what groups keep from call to call, group by group */
+    size_t stored;
+    size_t basis;           /* room for null vectors */
+    double *reach;          /* [n] sum of |R_ij| N_j: what friction can do to a contact at most */
+    int reaches;            /* reach is that of the limits */
+    struct program program; /* workspace of the largest group, with views of one */
 };
 
 struct message;
@@ -49,19 +45,17 @@ struct chunk {
     int alone;     /* one shares no body */
 };
 
-/* What the last call knows of a contact: near stick, or sliding towards v > 0 or v < 0, which is all that there is to know; or
- * nothing. And where the forces of a chunk are: in ctx->f, or at the limits, or some here and some there. */
-enum { PLAIN, NEAR, FORTH, BACK };
-enum { KEPT, SLIDES, MIXED };
-
 static inline size_t tribo_chunks(size_t n)
 {
     return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
 }
 
+/* What a call finds of contacts where some are coupled: they slide towards v < 0, are near stick, or slide towards v > 0. */
+enum { BACK, NEAR, FORTH };
+
 struct look {
     unsigned char *state; /* [n] */
-    unsigned char *kind;  /* [chunks], in the same piece of memory */
+    unsigned char *mixed; /* [chunks] not all slide; in the same piece of memory */
 };
 
 struct tribo_context {
@@ -75,7 +69,8 @@ struct tribo_context {
     struct op op;
     struct chunk *chunk;     /* [chunks] */
     struct look last, spare; /* of the last balance; room for the next */
-    double *feq, *f;         /* [n] of the last balance; f only of contacts that are PLAIN or NEAR */
+    int kept;                /* f holds all forces; otherwise those of contacts near stick, and others are at their limits */
+    double *feq, *f;         /* [n] of the last balance */
     double *v;               /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
     struct tangent *tangent; /* [n] */
     double *lower;           /* [n] workspace of tribo_step_force */
@@ -126,13 +121,16 @@ void tribo_refresh_chunks(tribo_context *ctx);
 int tribo_look(tribo_context *ctx, const double *v, const double *a);
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 
+/* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
+size_t tribo_next_near(const tribo_context *ctx, size_t *i, size_t end);
+
 /* The forces of all contacts, f [n], or of one. */
 void tribo_forces(const tribo_context *ctx, double *f);
 
 static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 {
-    const int state = ctx->last.state[i];
-    return state <= NEAR ? ctx->f[i] : state == FORTH ? -ctx->limit[i] : ctx->limit[i];
+    const int state = ctx->kept ? NEAR : ctx->last.state[i];
+    return state == NEAR ? ctx->f[i] : state == FORTH ? -ctx->limit[i] : ctx->limit[i];
 }
 
 /* balance.c: the contacts of group k in the program's order, those near stick first. */
@@ -146,12 +144,20 @@ static inline void tribo_copy(double *to, const double *from, size_t n)
     }
 }
 
-/* context.c: 2 limit/epsilon; epsilon and slope brought up to date with limits, operator and settings; the contacts' data as
- * laws see them. */
+/* context.c: 2 limit/epsilon; epsilon and slope brought up to date with limits, operator and settings. */
 double tribo_slope(double limit, double epsilon);
 void tribo_refresh(tribo_context *ctx);
-struct contacts tribo_contacts(const tribo_context *ctx);
-struct contacts tribo_contacts_from(const struct contacts *c, size_t i);
+
+/* The contacts as laws see them, and those from i on. */
+static inline struct contacts tribo_contacts(const tribo_context *ctx)
+{
+    return (struct contacts){ctx->limit, ctx->epsilon, ctx->slope, ctx->moving, ctx->step > 0.0 ? 1.0 : 0.0};
+}
+
+static inline struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
+{
+    return (struct contacts){c->limit + i, c->epsilon + i, c->slope + i, c->moving + i, c->follows};
+}
 
 /* Where |v| is at most this, the law reads f_eq. */
 static inline double tribo_band(const tribo_context *ctx, size_t i)

@@ -26,9 +26,9 @@ struct sparse;
 
 /* What lasts as long as the operator. */
 struct island {
-    size_t size, first;    /* its contacts are member[first .. first + size) */
-    size_t block;          /* of a dense island: into the pools of R and of factors, [size][size] each */
-    struct sparse *sparse; /* of a sparse one: both */
+    size_t size;
+    size_t kept;           /* into the store: what the program below says is kept */
+    struct sparse *sparse; /* R and its factor, if they are sparse */
     size_t nullity;        /* size - rank of R: redundant contacts */
     size_t rank;           /* now: free contacts in the factor, independent of each other, */
     size_t dependents;     /* and those that depend on them */
@@ -43,15 +43,18 @@ struct work {
 /* An island at work: views of what is kept, and workspace. */
 struct program {
     struct island *island;
-    const double *r;     /* [size][size], if dense */
-    const size_t *terms; /* [size] entries of R in a row */
-    const double *scale; /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
-    signed char *at;     /* [size] kept */
-    size_t *order;       /* [size] kept: rank independent free contacts, in the order of the factor, then the dependents */
-    double *l;           /* [size][size] kept: Cholesky factor of the scaled R over order[0 .. rank), if dense */
+    /* kept, side by side */
+    double *x;           /* [size] */
+    size_t *member;      /* [size] the contacts, ascending */
+    size_t *order;       /* [size] rank independent free contacts, in the order of the factor, then the dependents */
+    signed char *at;     /* [size] */
+    size_t *terms;       /* [size] entries of R in a row */
+    double *scale;       /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
+    double *r;           /* [size][size], if dense */
+    double *l;           /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
     /* the program: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
     size_t *near, count; /* near[0 .. count): the contacts in the program, ascending; near[count .. size): the others */
-    double *q, *lo, *hi, *x;
+    double *q, *lo, *hi;
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
     double *unit;             /* R_ii times the limit, or half the box: what gradients are compared with */
     signed char *to;          /* workspace */

@@ -21,15 +21,8 @@ void tribo_op_free(struct op *op)
     free(op->group);
     free(op->group_of);
     free(op->touched);
-    free(op->member);
-    free(op->r);
-    free(op->l);
-    free(op->scale);
-    free(op->x);
+    free(op->store);
     free(op->reach);
-    free(op->at);
-    free(op->order);
-    free(op->terms);
     free(p->near);
     free(p->held);
     free(p->to);
@@ -50,23 +43,37 @@ int tribo_op_diagonal(struct op *op, size_t n, const double *r)
     return op->diagonal != NULL;
 }
 
-/* Arrays of contacts in groups; sizes are known. */
-static int allocate_pools(struct op *op, size_t n)
+/* What a group keeps, in doubles, which are as large as everything else that it keeps. In whole lines of the cache. */
+static size_t kept_by(const struct island *is)
 {
-    const size_t m = op->members + 1, b = op->blocks + 1;
-    op->scale = malloc(m * sizeof *op->scale);
-    op->x = calloc(m, sizeof *op->x);
+    enum { VECTORS = 6, LINE = 8 };
+    const size_t all = VECTORS * is->size + (is->sparse ? 0 : 2 * is->size * is->size);
+    return (all + LINE - 1) / LINE * LINE;
+}
+
+struct program *tribo_op_program(struct op *op, size_t k)
+{
+    struct program *p = &op->program;
+    struct island *is = &op->group[k];
+    const size_t size = is->size;
+    p->island = is;
+    p->x = op->store + is->kept;
+    p->member = (void *)(p->x + size);
+    p->order = (void *)(p->x + 2 * size);
+    p->at = (void *)(p->x + 3 * size);
+    p->terms = (void *)(p->x + 4 * size);
+    p->scale = p->x + 5 * size;
+    p->r = p->x + 6 * size;
+    p->l = p->r + size * size;
+    p->redundant = op->basis / size;
+    return p;
+}
+
+static int allocate_store(struct op *op, size_t n)
+{
+    op->store = calloc(op->stored + 1, sizeof *op->store);
     op->reach = calloc(n + 1, sizeof *op->reach);
-    op->at = malloc(m);
-    op->order = malloc(m * sizeof *op->order);
-    op->terms = calloc(m, sizeof *op->terms);
-    op->r = calloc(b, sizeof *op->r);
-    op->l = malloc(b * sizeof *op->l);
-    if (!op->scale || !op->x || !op->reach || !op->at || !op->order || !op->terms || !op->r || !op->l) {
-        return 0;
-    }
-    memset(op->at, AWAY, m);
-    return 1;
+    return op->store && op->reach;
 }
 
 static int allocate_program(struct op *op)
@@ -114,36 +121,27 @@ int tribo_op_copy(struct op *to, const struct op *from, size_t n)
     if (!from->groups) {
         return 1;
     }
-    to->members = from->members;
     to->largest = from->largest;
-    to->blocks = from->blocks;
+    to->stored = from->stored;
     to->group_of = malloc(n * sizeof *to->group_of);
-    to->member = malloc(from->members * sizeof *to->member);
     to->group = malloc(from->groups * sizeof *to->group);
     to->touched = malloc(from->groups * sizeof *to->touched);
-    if (!to->group_of || !to->member || !to->group || !to->touched) {
+    if (!to->group_of || !to->group || !to->touched) {
         return 0;
     }
     memcpy(to->group_of, from->group_of, n * sizeof *to->group_of);
-    memcpy(to->member, from->member, from->members * sizeof *to->member);
     for (to->groups = 0; to->groups < from->groups; to->groups++) {
         to->group[to->groups] = from->group[to->groups];
         if (!tribo_sparse_clone(&to->group[to->groups].sparse, from->group[to->groups].sparse)) {
             return 0;
         }
     }
-    if (!allocate_pools(to, n) || !allocate_program(to) || !allocate_basis(to)) {
+    if (!allocate_store(to, n) || !allocate_program(to) || !allocate_basis(to)) {
         return 0;
     }
     memcpy(to->touched, from->touched, from->touches * sizeof *to->touched);
     to->touches = from->touches;
-    tribo_copy(to->r, from->r, from->blocks);
-    tribo_copy(to->l, from->l, from->blocks);
-    tribo_copy(to->scale, from->scale, from->members);
-    tribo_copy(to->x, from->x, from->members);
-    memcpy(to->at, from->at, from->members);
-    memcpy(to->order, from->order, from->members * sizeof *to->order);
-    memcpy(to->terms, from->terms, from->members * sizeof *to->terms);
+    tribo_copy(to->store, from->store, from->stored);
     return 1;
 }
 
@@ -179,37 +177,41 @@ static size_t find_islands(const struct rows *a, size_t *label, size_t *parent)
     return islands;
 }
 
-/* From islands with their sizes in count to groups: label becomes the group, or TRIBO_ALONE. place [n]: of a contact in its
- * group. */
-static int find_groups(struct op *op, size_t n, size_t *label, size_t *count, size_t *place)
+/* From islands to groups. place [n]: of a contact in its group; member [n]: the contacts of the groups, one group after the other;
+ * first [islands]: where in member those of a group begin. */
+static int find_groups(struct op *op, size_t n, const size_t *label, size_t *place, size_t *member, size_t *first)
 {
+    size_t *count = first, members = 0;
     op->group_of = malloc((n + 1) * sizeof *op->group_of);
-    op->member = malloc((n + 1) * sizeof *op->member);
     op->group = calloc(op->islands + 1, sizeof *op->group);
     op->touched = malloc((op->islands + 1) * sizeof *op->touched);
-    if (!op->group_of || !op->member || !op->group || !op->touched) {
+    if (!op->group_of || !op->group || !op->touched) {
         return 0;
     }
+    memset(count, 0, op->islands * sizeof *count);
     for (size_t i = 0; i < n; i++) {
         op->group_of[i] = TRIBO_ALONE;
         place[i] = count[label[i]]++;
     }
     for (size_t i = 0; i < n; i++) {
         if (count[label[i]] > 1 && place[i] == 0) {
-            op->group[op->groups] = (struct island){.size = count[label[i]], .first = op->members};
-            op->members += count[label[i]];
+            op->group[op->groups].size = count[label[i]];
             op->group_of[i] = op->groups++;
             /* the others of the island learn it from their first */
             count[label[i]] = op->group_of[i];
         } else if (place[i] > 0) {
             op->group_of[i] = count[label[i]];
         }
-        if (op->group_of[i] != TRIBO_ALONE) {
-            op->member[op->group[op->group_of[i]].first + place[i]] = i;
-        }
     }
     for (size_t k = 0; k < op->groups; k++) {
+        first[k] = members;
+        members += op->group[k].size;
         op->largest = op->group[k].size > op->largest ? op->group[k].size : op->largest;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (op->group_of[i] != TRIBO_ALONE) {
+            member[first[op->group_of[i]] + place[i]] = i;
+        }
     }
     return 1;
 }
@@ -246,27 +248,31 @@ static double diagonal_of(const struct rows *a, size_t i)
     return entry ? *entry : 0.0;
 }
 
-static void fill(struct op *op, const struct rows *a, const size_t *place)
+static void fill_diagonal(struct op *op, const struct rows *a)
 {
     for (size_t i = 0; i < a->n; i++) {
         double sum = 0.0;
-        size_t terms = 0;
         op->diagonal[i] = greater(diagonal_of(a, i), DBL_MIN);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             sum += fabs(a->val[e]);
-            terms += a->val[e] != 0.0;
         }
         op->row_sum = greater(op->row_sum, sum / op->diagonal[i]);
-        if (op->group_of[i] == TRIBO_ALONE) {
-            continue;
-        }
-        struct island *is = &op->group[op->group_of[i]];
-        op->scale[is->first + place[i]] = tribo_scale(op->diagonal[i]);
-        op->terms[is->first + place[i]] = terms;
-        double *row = op->r + is->block + place[i] * is->size;
-        for (size_t e = a->first[i]; !is->sparse && e < a->first[i + 1]; e++) {
-            if (a->val[e] != 0.0) {
-                row[place[a->col[e]]] = a->val[e];
+    }
+}
+
+static void fill_group(struct op *op, size_t k, const struct rows *a, const size_t *member, const size_t *place)
+{
+    struct program *p = tribo_op_program(op, k);
+    const struct island *is = p->island;
+    for (size_t c = 0; c < is->size; c++) {
+        const size_t i = member[c];
+        p->member[c] = i;
+        p->at[c] = AWAY;
+        p->scale[c] = tribo_scale(op->diagonal[i]);
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            p->terms[c] += a->val[e] != 0.0;
+            if (a->val[e] != 0.0 && !is->sparse) {
+                p->r[c * is->size + place[a->col[e]]] = a->val[e];
             }
         }
     }
@@ -286,7 +292,7 @@ static int check_definite(struct op *op, struct flaw *flaw)
         size_t where = 0;
         const double left = tribo_factor_rebuild(p, &where);
         if (fabs(left) > 16.0 * (is->sparse ? TRIBO_SPARSE_ZERO : tribo_resolution(is->size))) {
-            *flaw = (struct flaw){op->member[is->first + where], is->size, left};
+            *flaw = (struct flaw){p->member[where], is->size, left};
             return TRIBO_ERR_INDEFINITE;
         }
         is->nullity = is->dependents;
@@ -297,20 +303,23 @@ static int check_definite(struct op *op, struct flaw *flaw)
     return TRIBO_OK;
 }
 
-static int create_groups(struct op *op, const struct rows *a, const size_t *place, struct flaw *flaw)
+static int create_groups(struct op *op, const struct rows *a, const size_t *member, const size_t *first, const size_t *place,
+                         struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct island *is = &op->group[k];
-        if (is->size > SPARSE_FROM && !make_sparse(is, a, op->member + is->first, place)) {
+        if (is->size > SPARSE_FROM && !make_sparse(is, a, member + first[k], place)) {
             return TRIBO_ERR_MEMORY;
         }
-        is->block = op->blocks;
-        op->blocks += is->sparse ? 0 : is->size * is->size;
+        is->kept = op->stored;
+        op->stored += kept_by(is);
     }
-    if (!allocate_pools(op, a->n) || !allocate_program(op)) {
+    if (!allocate_store(op, a->n) || !allocate_program(op)) {
         return TRIBO_ERR_MEMORY;
     }
-    fill(op, a, place);
+    for (size_t k = 0; k < op->groups; k++) {
+        fill_group(op, k, a, member + first[k], place);
+    }
     const int status = check_definite(op, flaw);
     return status || allocate_basis(op) ? status : TRIBO_ERR_MEMORY;
 }
@@ -319,41 +328,23 @@ int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw)
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
-    size_t *label = malloc((n + 1) * sizeof *label), *count = malloc((n + 1) * sizeof *count),
-           *place = malloc((n + 1) * sizeof *place);
-    if (label && count && place && tribo_op_diagonal(op, n, NULL)) {
+    size_t *label = malloc((n + 1) * sizeof *label), *first = malloc((n + 1) * sizeof *first),
+           *place = malloc((n + 1) * sizeof *place), *member = malloc((n + 1) * sizeof *member);
+    if (label && first && place && member && tribo_op_diagonal(op, n, NULL)) {
         op->islands = find_islands(a, label, place);
-        memset(count, 0, n * sizeof *count);
+        fill_diagonal(op, a);
         if (op->islands == n) {
-            for (size_t i = 0; i < n; i++) {
-                op->diagonal[i] = greater(diagonal_of(a, i), DBL_MIN);
-            }
             status = TRIBO_OK;
-        } else if (find_groups(op, n, label, count, place)) {
-            status = create_groups(op, a, place, flaw);
+        } else if (find_groups(op, n, label, place, member, first)) {
+            status = create_groups(op, a, member, first, place, flaw);
         }
     }
     if (status) {
         tribo_op_free(op);
     }
     free(label);
-    free(count);
+    free(first);
     free(place);
+    free(member);
     return status;
-}
-
-struct program *tribo_op_program(struct op *op, size_t k)
-{
-    struct program *p = &op->program;
-    struct island *is = &op->group[k];
-    p->island = is;
-    p->r = op->r + is->block;
-    p->l = op->l + is->block;
-    p->terms = op->terms + is->first;
-    p->scale = op->scale + is->first;
-    p->at = op->at + is->first;
-    p->order = op->order + is->first;
-    p->x = op->x + is->first;
-    p->redundant = op->basis / is->size;
-    return p;
 }

@@ -36,18 +36,26 @@ TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, unsig
     }
 }
 
-/* The same, and the contacts near stick, |v| <= band, or v = 0 if band is NULL. */
+/* The same, and contacts near stick if all have one band: BACK, NEAR and FORTH count 0, 1, 2. */
+TRIBO_SIMD static void find_states(size_t n, const double *restrict v, double band, unsigned char *restrict state)
+{
+    for (size_t i = 0; i < n; i++) {
+        state[i] = (unsigned char)((v[i] > band) + (v[i] >= -band));
+    }
+}
+
+/* The same with each contact's own band, or 0 if band is NULL. Open ones, which are not near stick, are as good as BACK: nothing
+ * is more than NaN. */
 TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
                                  unsigned char *restrict state)
 {
-    if (band) {
-        for (size_t i = 0; i < n; i++) {
-            state[i] = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0) ? NEAR : v[i] > 0.0 ? FORTH : BACK;
-        }
-    } else {
-        for (size_t i = 0; i < n; i++) {
-            state[i] = (v[i] == 0.0) & (limit[i] > 0.0) ? NEAR : v[i] > 0.0 ? FORTH : BACK;
-        }
+    for (size_t i = 0; band && i < n; i++) {
+        const double b = limit[i] > 0.0 ? band[i] : NAN;
+        state[i] = (unsigned char)((v[i] > b) + (v[i] >= -b));
+    }
+    for (size_t i = 0; !band && i < n; i++) {
+        const double b = limit[i] > 0.0 ? 0.0 : NAN;
+        state[i] = (unsigned char)((v[i] > b) + (v[i] >= -b));
     }
 }
 
@@ -72,14 +80,6 @@ TRIBO_SIMD static void slide_alike(size_t n, const unsigned char *restrict state
 {
     for (size_t i = 0; i < n; i++) {
         f[i] = state[i] == FORTH ? -limit : limit;
-    }
-}
-
-TRIBO_SIMD static void mix(size_t n, const unsigned char *restrict state, const double *restrict limit,
-                           const double *restrict kept, double *restrict f)
-{
-    for (size_t i = 0; i < n; i++) {
-        f[i] = state[i] <= NEAR ? kept[i] : state[i] == FORTH ? -limit[i] : limit[i];
     }
 }
 
@@ -111,68 +111,94 @@ static int check(const tribo_context *ctx, const double *v, const double *a)
 int tribo_look(tribo_context *ctx, const double *v, const double *a)
 {
     const struct look look = ctx->spare;
-    const struct chunk *c = ctx->chunk;
-    unsigned char *kind = look.kind;
-    if (!v || !a) {
+    if (!v || !a || !ctx->op.groups || !ctx->law->uses_feq) {
         const int status = check(ctx, v, a);
-        if (status) {
-            return status;
-        }
+        ctx->kept = status ? ctx->kept : 1;
+        return status;
     }
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK, c++, kind++) {
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
+        const double band = ctx->law->sticks_in_band ? ctx->chunk[k].widest : lesser(ctx->chunk[k].widest, 0.0);
         int any;
-        if (!scan(n, v + i, a + i, ctx->law->sticks_in_band ? c->widest : lesser(c->widest, 0.0), &any)) {
+        if (!scan(n, v + i, a + i, band, &any)) {
             return check(ctx, v, a);
         }
-        *kind = any || !ctx->law->uses_feq ? KEPT : SLIDES;
-        if (*kind == SLIDES) {
+        look.mixed[k] = (unsigned char)any;
+        if (any) {
+            find_states(n, v + i, band, look.state + i);
+        } else {
             find_directions(n, v + i, look.state + i);
         }
     }
     ctx->spare = ctx->last;
     ctx->last = look;
+    ctx->kept = 0;
     return TRIBO_OK;
+}
+
+size_t tribo_next_near(const tribo_context *ctx, size_t *i, size_t end)
+{
+    const unsigned char *state = ctx->last.state, *found = memchr(state + *i, NEAR, end - *i);
+    size_t n = 0;
+    *i = found ? (size_t)(found - state) : end;
+    while (*i + n < end && state[*i + n] == NEAR) {
+        n++;
+    }
+    return n;
+}
+
+/* Of the contacts in the widest band those that are near stick. */
+static void narrow(tribo_context *ctx, const double *v, size_t i, size_t end)
+{
+    for (size_t n; (n = tribo_next_near(ctx, &i, end)) > 0; i += n) {
+        find_near(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, ctx->limit + i, ctx->last.state + i);
+    }
+}
+
+/* Contacts from i on, as if they were alone. */
+static void apply_law(tribo_context *ctx, const struct contacts *all, size_t i, size_t n, const double *v, const double *a)
+{
+    const struct contacts c = tribo_contacts_from(all, i);
+    feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
+    ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
 }
 
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     const struct contacts all = tribo_contacts(ctx);
-    const struct chunk *c = ctx->chunk;
-    unsigned char *kind = ctx->last.kind, *state = ctx->last.state;
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK, c++, kind++) {
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
-        const int own = *kind != SLIDES && (c->alone || !ctx->law->uses_feq);
-        if (*kind != SLIDES && ctx->op.groups && ctx->law->uses_feq) {
-            *kind = MIXED;
-            find_near(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, ctx->limit + i, state + i);
-        } else if (*kind != SLIDES) {
-            memset(state + i, PLAIN, n);
+        if (ctx->kept) {
+            apply_law(ctx, &all, i, n, v, a);
+            continue;
         }
-        if (wanted || own) {
+        if (ctx->last.mixed[k]) {
+            narrow(ctx, v, i, i + n);
+        }
+        if (ctx->last.mixed[k] && ctx->chunk[k].alone) {
+            apply_law(ctx, &all, i, n, v, a);
+        } else if (wanted) {
             feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
-        }
-        if (own) {
-            const struct contacts some = tribo_contacts_from(&all, i);
-            ctx->law->force(&some, n, v + i, ctx->feq + i, ctx->f + i);
         }
     }
 }
 
 void tribo_forces(const tribo_context *ctx, double *f)
 {
-    const struct chunk *c = ctx->chunk;
-    const unsigned char *kind = ctx->last.kind, *state = ctx->last.state;
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK, c++, kind++) {
+    if (ctx->kept) {
+        tribo_copy(f, ctx->f, ctx->n);
+        return;
+    }
+    const unsigned char *state = ctx->last.state;
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
-        if (*kind == KEPT) {
-            tribo_copy(f + i, ctx->f + i, n);
-        } else if (*kind == MIXED) {
-            mix(n, state + i, ctx->limit + i, ctx->f + i, f + i);
-        } else if (isnan(c->limit)) {
+        if (isnan(ctx->chunk[k].limit)) {
             slide(n, state + i, ctx->limit + i, f + i);
         } else {
-            slide_alike(n, state + i, c->limit, f + i);
+            slide_alike(n, state + i, ctx->chunk[k].limit, f + i);
+        }
+        for (size_t j = i, near; ctx->last.mixed[k] && (near = tribo_next_near(ctx, &j, i + n)) > 0; j += near) {
+            tribo_copy(f + j, ctx->f + j, near);
         }
     }
 }

@@ -56,7 +56,7 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
                           double *df)
 {
     const int partition = ctx->coupling == TRIBO_PARTITION;
-    const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
+    const size_t *member = p->member, size = p->island->size;
     double *rhs = p->noise;
     for (size_t k = 0; k < size; k++) {
         const size_t i = member[k];
@@ -92,7 +92,7 @@ static double alone(const tribo_context *ctx, size_t i, double dv, double da)
 
 static void touched_columns(tribo_context *ctx, struct program *p, double *df_dv, double *df_da)
 {
-    const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
+    const size_t *member = p->member, size = p->island->size;
     const size_t vectors = tribo_null_basis(p);
     double *zero = p->lo, *unit = p->hi, *df = p->gradient;
     memset(zero, 0, size * sizeof *zero);
@@ -159,7 +159,7 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
     }
     for (size_t g = 0; g < ctx->op.touches; g++) {
         struct program *p = tribo_collect(ctx, ctx->op.touched[g]);
-        const size_t *member = ctx->op.member + p->island->first, size = p->island->size;
+        const size_t *member = p->member, size = p->island->size;
         for (size_t k = 0; k < size; k++) {
             p->lo[k] = dv ? dv[member[k]] : 0.0;
             p->hi[k] = da ? da[member[k]] : 0.0;
