@@ -35,11 +35,11 @@ static void remember(tribo_context *ctx)
     }
 }
 
-/* The groups with a contact near stick. */
-static void find_groups(tribo_context *ctx)
+/* The groups with a contact near stick among those from i to end. */
+static void find_groups(tribo_context *ctx, size_t i, size_t end)
 {
     struct op *op = &ctx->op;
-    for (size_t i = 0, n; (n = tribo_next_near(ctx, &i, ctx->n)) > 0; i += n) {
+    for (size_t n; (n = tribo_next_near(ctx, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
             const size_t g = op->group_of[k];
             if (g != TRIBO_ALONE && !op->group[g].touched) {
@@ -188,11 +188,16 @@ static int balance(tribo_context *ctx, const double *v, const double *a, int wan
 {
     begin(ctx);
     tribo_forces_alone(ctx, v, a, wanted);
-    if (ctx->op.groups && ctx->law->uses_feq) {
-        find_groups(ctx);
+    for (size_t i = 0, k = 0; !ctx->kept && i < ctx->n; i += TRIBO_CHUNK, k++) {
+        if (ctx->last.mixed[k]) {
+            find_groups(ctx, i, ctx->n - i < TRIBO_CHUNK ? ctx->n : i + TRIBO_CHUNK);
+        }
     }
     int status = TRIBO_OK;
     for (size_t k = 0; k < ctx->op.touches; k++) {
+        if (k + 2 < ctx->op.touches) {
+            tribo_op_expect(&ctx->op, ctx->op.touched[k + 2]);
+        }
         struct program *p = tribo_collect(ctx, ctx->op.touched[k]);
         const int one = ctx->coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
         if (one == TRIBO_ERR_NO_CONVERGENCE) {
@@ -247,7 +252,7 @@ static int box(tribo_context *ctx, const double *a, double scale, const double *
         ctx->last.state[i] = lower[i] < upper[i] && !(reach && fabs(scale * a[i]) > reach[i]) ? NEAR : BACK;
     }
     if (ctx->op.groups) {
-        find_groups(ctx);
+        find_groups(ctx, 0, ctx->n);
     }
     for (size_t g = 0; g < ctx->op.touches; g++) {
         struct program *p = tribo_collect(ctx, ctx->op.touched[g]);

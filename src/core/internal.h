@@ -113,6 +113,9 @@ void tribo_op_free(struct op *op);
 /* Views of group k in op's program. */
 struct program *tribo_op_program(struct op *op, size_t k);
 
+/* What group k keeps will soon be looked at: groups may be far from each other. */
+void tribo_op_expect(const struct op *op, size_t k);
+
 /* look.c: what depends on settings, brought up to date. */
 void tribo_refresh_chunks(tribo_context *ctx);
 

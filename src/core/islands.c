@@ -7,6 +7,7 @@
 #include "internal.h"
 #include "rows.h"
 #include "../real.h"
+#include "../simd.h"
 
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128
@@ -67,6 +68,14 @@ struct program *tribo_op_program(struct op *op, size_t k)
     p->l = p->r + size * size;
     p->redundant = op->basis / size;
     return p;
+}
+
+void tribo_op_expect(const struct op *op, size_t k)
+{
+    enum { MOST = 256 }; /* of a larger group that is the beginning, and what follows will come by itself */
+    const struct island *is = &op->group[k];
+    const size_t all = kept_by(is);
+    tribo_expect(op->store + is->kept, all < MOST ? all : MOST, 0);
 }
 
 static int allocate_store(struct op *op, size_t n)

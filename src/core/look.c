@@ -6,27 +6,27 @@
 #include "internal.h"
 #include "../real.h"
 
-/* Whether all of v and a is finite: x - x is zero then, and NaN otherwise. Sums side by side, since one would have to be added up
- * in order. And whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
-TRIBO_SIMD static int scan(size_t n, const double *restrict v, const double *restrict a, double band, int *any)
+/* The sum of v and a, which is finite if all of them are, unless it overflows; side by side, since one sum would have to be added
+ * up in order. And whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
+TRIBO_SIMD static double scan(size_t n, const double *restrict v, const double *restrict a, double band, int *any)
 {
-    enum { SUMS = 4 };
+    enum { SUMS = 8 };
     double sum[SUMS] = {0.0};
     int64_t in_band = 0; /* as wide as what is compared */
     size_t i = 0;
     for (; i + SUMS <= n; i += SUMS) {
         for (size_t k = 0; k < SUMS; k++) {
-            sum[k] += (v[i + k] - v[i + k]) + (a[i + k] - a[i + k]);
+            sum[k] += v[i + k] + a[i + k];
         }
     }
     for (; i < n; i++) {
-        sum[0] += (v[i] - v[i]) + (a[i] - a[i]);
+        sum[0] += v[i] + a[i];
     }
     for (i = 0; i < n; i++) {
-        in_band |= fabs(v[i]) <= band;
+        in_band |= fabs(v[i]) <= band ? -1 : 0;
     }
     *any = in_band != 0;
-    return sum[0] + sum[1] + (sum[2] + sum[3]) == 0.0;
+    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7]));
 }
 
 TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, unsigned char *restrict state)
@@ -88,6 +88,12 @@ static size_t chunk_size(const tribo_context *ctx, size_t i)
     return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
 }
 
+/* How much of the chunk after next there is from i on, where a chunk begins. */
+static size_t ahead(const tribo_context *ctx, size_t i)
+{
+    return ctx->n - i > 2 * TRIBO_CHUNK ? chunk_size(ctx, i + 2 * TRIBO_CHUNK) : 0;
+}
+
 void tribo_refresh_chunks(tribo_context *ctx)
 {
     struct chunk *c = ctx->chunk;
@@ -120,8 +126,13 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
         const size_t n = chunk_size(ctx, i);
         const double band = ctx->law->sticks_in_band ? ctx->chunk[k].widest : lesser(ctx->chunk[k].widest, 0.0);
         int any;
-        if (!scan(n, v + i, a + i, band, &any)) {
-            return check(ctx, v, a);
+        tribo_expect(v + i + 2 * TRIBO_CHUNK, ahead(ctx, i), 0);
+        tribo_expect(a + i + 2 * TRIBO_CHUNK, ahead(ctx, i), 0);
+        if (!isfinite(scan(n, v + i, a + i, band, &any))) {
+            const int status = check(ctx, v, a);
+            if (status) {
+                return status;
+            }
         }
         look.mixed[k] = (unsigned char)any;
         if (any) {
@@ -192,6 +203,7 @@ void tribo_forces(const tribo_context *ctx, double *f)
     const unsigned char *state = ctx->last.state;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
+        tribo_expect(f + i + 2 * TRIBO_CHUNK, ahead(ctx, i), 1);
         if (isnan(ctx->chunk[k].limit)) {
             slide(n, state + i, ctx->limit + i, f + i);
         } else {
