@@ -39,7 +39,7 @@ static void remember(tribo_context *ctx)
 static void find_groups(tribo_context *ctx, size_t i, size_t end)
 {
     struct op *op = &ctx->op;
-    for (size_t n; (n = tribo_next_near(ctx, &i, end)) > 0; i += n) {
+    for (size_t n; (n = tribo_next_near(ctx->last.state, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
             const size_t g = op->group_of[k];
             if (g != TRIBO_ALONE && !op->group[g].touched) {

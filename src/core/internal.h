@@ -125,7 +125,7 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a);
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 
 /* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
-size_t tribo_next_near(const tribo_context *ctx, size_t *i, size_t end);
+size_t tribo_next_near(const unsigned char *state, size_t *i, size_t end);
 
 /* The forces of all contacts, f [n], or of one. */
 void tribo_forces(const tribo_context *ctx, double *f);

@@ -114,6 +114,25 @@ static int check(const tribo_context *ctx, const double *v, const double *a)
     return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
 }
 
+size_t tribo_next_near(const unsigned char *state, size_t *i, size_t end)
+{
+    const unsigned char *found = memchr(state + *i, NEAR, end - *i);
+    size_t n = 0;
+    *i = found ? (size_t)(found - state) : end;
+    while (*i + n < end && state[*i + n] == NEAR) {
+        n++;
+    }
+    return n;
+}
+
+/* Of the contacts in the widest band those that are near stick. */
+static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t end, unsigned char *state)
+{
+    for (size_t n; (n = tribo_next_near(state, &i, end)) > 0; i += n) {
+        find_near(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, ctx->limit + i, state + i);
+    }
+}
+
 int tribo_look(tribo_context *ctx, const double *v, const double *a)
 {
     const struct look look = ctx->spare;
@@ -137,6 +156,7 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
         look.mixed[k] = (unsigned char)any;
         if (any) {
             find_states(n, v + i, band, look.state + i);
+            narrow(ctx, v, i, i + n, look.state);
         } else {
             find_directions(n, v + i, look.state + i);
         }
@@ -145,25 +165,6 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
     ctx->last = look;
     ctx->kept = 0;
     return TRIBO_OK;
-}
-
-size_t tribo_next_near(const tribo_context *ctx, size_t *i, size_t end)
-{
-    const unsigned char *state = ctx->last.state, *found = memchr(state + *i, NEAR, end - *i);
-    size_t n = 0;
-    *i = found ? (size_t)(found - state) : end;
-    while (*i + n < end && state[*i + n] == NEAR) {
-        n++;
-    }
-    return n;
-}
-
-/* Of the contacts in the widest band those that are near stick. */
-static void narrow(tribo_context *ctx, const double *v, size_t i, size_t end)
-{
-    for (size_t n; (n = tribo_next_near(ctx, &i, end)) > 0; i += n) {
-        find_near(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, ctx->limit + i, ctx->last.state + i);
-    }
 }
 
 /* Contacts from i on, as if they were alone. */
@@ -182,9 +183,6 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
         if (ctx->kept) {
             apply_law(ctx, &all, i, n, v, a);
             continue;
-        }
-        if (ctx->last.mixed[k]) {
-            narrow(ctx, v, i, i + n);
         }
         if (ctx->last.mixed[k] && ctx->chunk[k].alone) {
             apply_law(ctx, &all, i, n, v, a);
@@ -209,7 +207,7 @@ void tribo_forces(const tribo_context *ctx, double *f)
         } else {
             slide_alike(n, state + i, ctx->chunk[k].limit, f + i);
         }
-        for (size_t j = i, near; ctx->last.mixed[k] && (near = tribo_next_near(ctx, &j, i + n)) > 0; j += near) {
+        for (size_t j = i, near; ctx->last.mixed[k] && (near = tribo_next_near(state, &j, i + n)) > 0; j += near) {
             tribo_copy(f + j, ctx->f + j, near);
         }
     }
