@@ -56,8 +56,8 @@ static int allocate(tribo_context *ctx, size_t n)
         ctx->last.mixed = ctx->last.state + m;
         ctx->spare.mixed = ctx->spare.state + m;
     }
-    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limit && ctx->epsilon && ctx->slope && ctx->moving && ctx->feq && ctx->f &&
-           ctx->v && ctx->lower && ctx->tangent;
+    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limit && ctx->epsilon &&
+           ctx->slope && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->lower && ctx->tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)

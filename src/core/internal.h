@@ -15,16 +15,16 @@
 
 /* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. */
 struct op {
-    double *diagonal;       /* [n] R_ii, at least DBL_MIN, which is the limit R_ii -> +0 */
-    double row_sum;         /* max over i of sum_j |R_ij|/R_ii */
-    size_t islands;         /* groups and single contacts */
-    size_t groups;          /* of two contacts and more */
-    struct island *group;   /* [groups] */
-    size_t *group_of;       /* [n] TRIBO_ALONE if contact i is */
-    size_t *touched;        /* [groups] those solved for in the last call, */
-    size_t touches;         /* so many */
-    size_t largest;         /* contacts in the largest group */
-    double *store;          /* [stored] what groups keep from call to call, group by group */
+    double *diagonal;     /* [n] R_ii, at least DBL_MIN, which is the limit R_ii -> +0 */
+    double row_sum;       /* max over i of sum_j |R_ij|/R_ii */
+    size_t islands;       /* groups and single contacts */
+    size_t groups;        /* of two contacts and more */
+    struct island *group; /* [groups] */
+    size_t *group_of;     /* [n] TRIBO_ALONE if contact i is */
+    size_t *touched;      /* [groups] those solved for in the last call, */
+    size_t touches;       /* so many */
+    size_t largest;       /* contacts in the largest group */
+    double *store;        /* [stored] what groups keep from call to call, group by group */
     size_t stored;
     size_t basis;           /* room for null vectors */
     double *reach;          /* [n] sum of |R_ij| N_j: what friction can do to a contact at most */
@@ -119,8 +119,8 @@ void tribo_op_expect(const struct op *op, size_t k);
 /* look.c: what depends on settings, brought up to date. */
 void tribo_refresh_chunks(tribo_context *ctx);
 
-/* Checks v and a, and finds the chunks that slide; a status, and on failure nothing is changed. Then finds the contacts near stick
- * in the others, and, as if they were alone, f of contacts that need no solver, and f_eq of those, or of all if wanted. */
+/* Checks v and a, and finds the chunks that slide; a status, and on failure nothing is changed. Then finds the contacts near
+ * stick in the others, and, as if they were alone, f of contacts that need no solver, and f_eq of those, or of all if wanted. */
 int tribo_look(tribo_context *ctx, const double *v, const double *a);
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 

@@ -44,14 +44,14 @@ struct work {
 struct program {
     struct island *island;
     /* kept, side by side */
-    double *x;           /* [size] */
-    size_t *member;      /* [size] the contacts, ascending */
-    size_t *order;       /* [size] rank independent free contacts, in the order of the factor, then the dependents */
-    signed char *at;     /* [size] */
-    size_t *terms;       /* [size] entries of R in a row */
-    double *scale;       /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
-    double *r;           /* [size][size], if dense */
-    double *l;           /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
+    double *x;       /* [size] */
+    size_t *member;  /* [size] the contacts, ascending */
+    size_t *order;   /* [size] rank independent free contacts, in the order of the factor, then the dependents */
+    signed char *at; /* [size] */
+    size_t *terms;   /* [size] entries of R in a row */
+    double *scale;   /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
+    double *r;       /* [size][size], if dense */
+    double *l;       /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
     /* the program: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
     size_t *near, count; /* near[0 .. count): the contacts in the program, ascending; near[count .. size): the others */
     double *q, *lo, *hi;

@@ -186,8 +186,8 @@ static size_t find_islands(const struct rows *a, size_t *label, size_t *parent)
     return islands;
 }
 
-/* From islands to groups. place [n]: of a contact in its group; member [n]: the contacts of the groups, one group after the other;
- * first [islands]: where in member those of a group begin. */
+/* From islands to groups. place [n]: of a contact in its group; member [n]: the contacts of the groups, one group after the
+ * other; first [islands]: where in member those of a group begin. */
 static int find_groups(struct op *op, size_t n, const size_t *label, size_t *place, size_t *member, size_t *first)
 {
     size_t *count = first, members = 0;

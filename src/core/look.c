@@ -88,10 +88,12 @@ static size_t chunk_size(const tribo_context *ctx, size_t i)
     return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
 }
 
-/* How much of the chunk after next there is from i on, where a chunk begins. */
-static size_t ahead(const tribo_context *ctx, size_t i)
+/* The chunk after next will soon be read, or written. */
+static void expect(const tribo_context *ctx, const double *x, size_t i, int written)
 {
-    return ctx->n - i > 2 * TRIBO_CHUNK ? chunk_size(ctx, i + 2 * TRIBO_CHUNK) : 0;
+    if (ctx->n - i > 2 * TRIBO_CHUNK) {
+        tribo_expect(x + i + 2 * TRIBO_CHUNK, chunk_size(ctx, i + 2 * TRIBO_CHUNK), written);
+    }
 }
 
 void tribo_refresh_chunks(tribo_context *ctx)
@@ -145,8 +147,8 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
         const size_t n = chunk_size(ctx, i);
         const double band = ctx->law->sticks_in_band ? ctx->chunk[k].widest : lesser(ctx->chunk[k].widest, 0.0);
         int any;
-        tribo_expect(v + i + 2 * TRIBO_CHUNK, ahead(ctx, i), 0);
-        tribo_expect(a + i + 2 * TRIBO_CHUNK, ahead(ctx, i), 0);
+        expect(ctx, v, i, 0);
+        expect(ctx, a, i, 0);
         if (!isfinite(scan(n, v + i, a + i, band, &any))) {
             const int status = check(ctx, v, a);
             if (status) {
@@ -180,11 +182,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
     const struct contacts all = tribo_contacts(ctx);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
-        if (ctx->kept) {
-            apply_law(ctx, &all, i, n, v, a);
-            continue;
-        }
-        if (ctx->last.mixed[k] && ctx->chunk[k].alone) {
+        if (ctx->kept || (ctx->last.mixed[k] && ctx->chunk[k].alone)) {
             apply_law(ctx, &all, i, n, v, a);
         } else if (wanted) {
             feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
@@ -201,7 +199,7 @@ void tribo_forces(const tribo_context *ctx, double *f)
     const unsigned char *state = ctx->last.state;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
-        tribo_expect(f + i + 2 * TRIBO_CHUNK, ahead(ctx, i), 1);
+        expect(ctx, f, i, 1);
         if (isnan(ctx->chunk[k].limit)) {
             slide(n, state + i, ctx->limit + i, f + i);
         } else {

@@ -75,7 +75,8 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             const struct tangent *d = &ctx->tangent[i];
-            const double dfeq = ctx->last.state[i] == NEAR ? -(da[k] + tribo_row_others(p, k, p->step)) / ctx->op.diagonal[i] : 0.0;
+            const double dfeq =
+                ctx->last.state[i] == NEAR ? -(da[k] + tribo_row_others(p, k, p->step)) / ctx->op.diagonal[i] : 0.0;
             df[k] = d->dfeq * dfeq + (dv[k] != 0.0 ? d->dv * dv[k] : 0.0);
         }
     }
