@@ -539,6 +539,105 @@ TEST(sliding_singles)
     tribo_destroy(c);
 }
 
+/* Groups of three and single contacts by turns, in a scene so large that whole stretches of it slide. */
+enum { STRETCH = 300, STRETCHES = 6, SCENE = STRETCH * STRETCHES };
+
+static int coupled_with(size_t i, size_t j)
+{
+    return i / STRETCH % 2 == 0 && i / 3 == j / 3;
+}
+
+static tribo_context *mostly_sliding_scene(struct random *g, int law, int alike, double *limit, double *epsilon)
+{
+    static size_t first[SCENE + 1], col[3 * SCENE];
+    static double val[3 * SCENE];
+    size_t k = 0;
+    tribo_context *c;
+    for (size_t i = 0; i < SCENE; i++) {
+        for (size_t j = i - i % 3; j < i - i % 3 + 3; j++) {
+            if (j == i || coupled_with(i, j)) {
+                col[k] = j;
+                val[k++] = j == i ? 2.0 : 0.5;
+            }
+        }
+        first[i + 1] = k;
+        limit[i] = alike ? 1.0 : below(g, 9) == 0 || i / STRETCH == 4 ? 0.0 : uniform(g, 0.5, 2.0);
+        epsilon[i] = alike ? 1.0 : uniform(g, 0.5, 1.5);
+    }
+    assert_ok(tribo_create(&c, SCENE));
+    assert_ok(tribo_set_law(c, law));
+    assert_ok(tribo_set_operator_csr(c, first, col, val));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_epsilon(c, epsilon));
+    return c;
+}
+
+/* Which forces are kept and which follow from directions makes no difference: not to forces, modes or clones, nor after a call
+ * that failed. */
+TEST(mostly_sliding)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), alike = _i / tribo_law_count() % 2;
+    static double limit[SCENE], epsilon[SCENE], v[SCENE], a[SCENE], f[SCENE], feq[SCENE], again[SCENE];
+    static signed char mode[SCENE], before[SCENE];
+    tribo_context *c = mostly_sliding_scene(&g, law, alike, limit, epsilon), *d;
+    for (int call = 0; call < 10; call++) {
+        const size_t busy = below(&g, STRETCHES), crowd = call % 3 ? 40 : 2;
+        for (size_t i = 0; i < SCENE; i++) {
+            const int near = i / STRETCH == busy && below(&g, crowd) == 0;
+            v[i] = near ? (below(&g, 2) ? 0.0 : uniform(&g, -1.5, 1.5)) : below(&g, 2) ? uniform(&g, 2.0, 3.0) : -2.0;
+            a[i] = uniform(&g, -5.0, 5.0);
+        }
+        assert_ok(tribo_clone(c, &d));
+        assert_ok(tribo_balance(c, v, a, call % 2 ? feq : NULL, f));
+        for (size_t i = 0; i < SCENE && law != TRIBO_QUINN_REVERSAL; i++) { /* whose f_eq is not that of its own forces */
+            double rest = a[i];
+            for (size_t j = i - i % 3; j < i - i % 3 + 3; j++) {
+                rest += j != i && coupled_with(i, j) ? 0.5 * f[j] : 0.0;
+            }
+            const double want = limit[i] > 0.0 ? -0.5 * rest : 0.0;
+            assert_close(f[i], law_force(law, v[i], want, limit[i], epsilon[i]), 1e-14);
+            assert_close(call % 2 ? feq[i] : want, want, 1e-14);
+        }
+        assert_ok(tribo_get_modes(c, mode));
+        for (size_t i = 0; i < SCENE && law != TRIBO_SMOOTH; i++) {
+            const int holds = fabs(f[i]) < limit[i];
+            ck_assert_int_eq(mode[i], limit[i] == 0.0 ? 2 : holds ? 0 : f[i] < 0.0 ? 1 : -1);
+        }
+        /* the same calls from the same beginning give the same bits, whether f_eq is wanted or not */
+        assert_ok(tribo_balance(d, v, a, call % 2 ? NULL : feq, again));
+        assert_all_exact(again, f, SCENE);
+        tribo_destroy(d);
+        assert_ok(tribo_clone(c, &d));
+        assert_ok(tribo_get_modes(d, before));
+        ck_assert_mem_eq(before, mode, sizeof mode);
+        tribo_destroy(d);
+        /* a bad number in the last contact, after all others have been looked at */
+        double *bad = below(&g, 2) ? v : a;
+        const double good = bad[SCENE - 1];
+        bad[SCENE - 1] = below(&g, 2) ? NAN : -HUGE_VAL;
+        for (size_t i = 0; i + 1 < SCENE; i++) {
+            v[i] = -v[i];
+        }
+        assert_status(tribo_balance(c, v, a, NULL, again), TRIBO_ERR_NOT_FINITE);
+        assert_says(tribo_message(c), bad == v ? "v[1799]" : "a[1799]");
+        assert_all_exact(again, f, SCENE);
+        assert_ok(tribo_get_modes(c, before));
+        ck_assert_mem_eq(before, mode, sizeof mode);
+        bad[SCENE - 1] = good;
+    }
+    /* finite, though no sum of them is */
+    for (size_t i = 0; i < SCENE; i++) {
+        v[i] = DBL_MAX;
+        a[i] = 0.9 * DBL_MAX;
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    for (size_t i = 0; i < SCENE; i++) {
+        assert_exact(f[i], law_force(law, v[i], 0.0, limit[i], epsilon[i]));
+    }
+    tribo_destroy(c);
+}
+
 /* Groups without a contact near stick are left alone, in the balance and in the step force. */
 TEST(sleeping_islands)
 {
@@ -924,7 +1023,8 @@ TEST(product_of_tangents)
 
 TEST_MAIN("coupled", {gauss_seidel_agrees, 60}, {fixed_point_after_many_changes, 60}, {identical_contacts_share, 100},
           {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {one_after_the_other, 300},
-          {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4}, {sleeping_islands, 2},
-          {sliding_singles, 6}, {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {outside_the_range_and_sparse, 1},
-          {shares_after_sliding, 1}, {beyond_all_numbers, 2}, {first_call_of_a_sparse_group, 1}, {tangents_of_open_contacts, 1},
-          {consistent_mass, 40}, {callback_fails, 1}, {product_of_tangents, 120})
+          {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4}, {mostly_sliding, 24},
+          {sleeping_islands, 2}, {sliding_singles, 6}, {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3},
+          {outside_the_range_and_sparse, 1}, {shares_after_sliding, 1}, {beyond_all_numbers, 2},
+          {first_call_of_a_sparse_group, 1}, {tangents_of_open_contacts, 1}, {consistent_mass, 40}, {callback_fails, 1},
+          {product_of_tangents, 120})
