@@ -14,7 +14,7 @@
 static void begin(tribo_context *ctx)
 {
     for (size_t k = 0; k < ctx->op.touches; k++) {
-        ctx->op.group[ctx->op.touched[k]].touched = 0;
+        ctx->op.awake[ctx->op.touched[k]] = 0;
     }
     ctx->op.touches = 0;
     ctx->rank = 0;
@@ -28,7 +28,7 @@ static void remember(tribo_context *ctx)
 {
     for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
-        for (size_t k = 0; !p->island->touched && k < p->island->size; k++) {
+        for (size_t k = 0; !ctx->op.awake[g] && k < p->island->size; k++) {
             p->x[k] = tribo_force_of(ctx, p->member[k]);
             p->at[k] = p->at[k] == FREE ? FREE : AWAY;
         }
@@ -42,8 +42,8 @@ static void find_groups(tribo_context *ctx, size_t i, size_t end)
     for (size_t n; (n = tribo_next_near(ctx->last.state, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
             const size_t g = op->group_of[k];
-            if (g != TRIBO_ALONE && !op->group[g].touched) {
-                op->group[g].touched = 1;
+            if (g != TRIBO_ALONE && !op->awake[g]) {
+                op->awake[g] = 1;
                 op->touched[op->touches++] = g;
             }
         }
@@ -176,7 +176,7 @@ static void feq_of_others(tribo_context *ctx, const double *a)
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!(p->island->touched && ctx->last.state[i] == NEAR) && ctx->limit[i] > 0.0) {
+            if (!(ctx->op.awake[g] && ctx->last.state[i] == NEAR) && ctx->limit[i] > 0.0) {
                 const double sum = a[i] + tribo_row_others(p, k, p->step);
                 ctx->feq[i] = clamp(-sum / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX);
             }

@@ -21,7 +21,8 @@ struct op {
     size_t groups;        /* of two contacts and more */
     struct island *group; /* [groups] */
     size_t *group_of;     /* [n] TRIBO_ALONE if contact i is */
-    size_t *touched;      /* [groups] those solved for in the last call, */
+    unsigned char *awake; /* [groups] solved for in the last call */
+    size_t *touched;      /* [groups] which these are, */
     size_t touches;       /* so many */
     size_t largest;       /* contacts in the largest group */
     double *store;        /* [stored] what groups keep from call to call, group by group */

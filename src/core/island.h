@@ -32,7 +32,6 @@ struct island {
     size_t nullity;        /* size - rank of R: redundant contacts */
     size_t rank;           /* now: free contacts in the factor, independent of each other, */
     size_t dependents;     /* and those that depend on them */
-    int touched;           /* the last call solved for it */
 };
 
 /* Work done so far. */

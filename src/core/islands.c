@@ -21,6 +21,7 @@ void tribo_op_free(struct op *op)
     free(op->diagonal);
     free(op->group);
     free(op->group_of);
+    free(op->awake);
     free(op->touched);
     free(op->store);
     free(op->reach);
@@ -134,8 +135,9 @@ int tribo_op_copy(struct op *to, const struct op *from, size_t n)
     to->stored = from->stored;
     to->group_of = malloc(n * sizeof *to->group_of);
     to->group = malloc(from->groups * sizeof *to->group);
+    to->awake = malloc(from->groups);
     to->touched = malloc(from->groups * sizeof *to->touched);
-    if (!to->group_of || !to->group || !to->touched) {
+    if (!to->group_of || !to->group || !to->awake || !to->touched) {
         return 0;
     }
     memcpy(to->group_of, from->group_of, n * sizeof *to->group_of);
@@ -148,6 +150,7 @@ int tribo_op_copy(struct op *to, const struct op *from, size_t n)
     if (!allocate_store(to, n) || !allocate_program(to) || !allocate_basis(to)) {
         return 0;
     }
+    memcpy(to->awake, from->awake, from->groups);
     memcpy(to->touched, from->touched, from->touches * sizeof *to->touched);
     to->touches = from->touches;
     tribo_copy(to->store, from->store, from->stored);
@@ -193,8 +196,9 @@ static int find_groups(struct op *op, size_t n, const size_t *label, size_t *pla
     size_t *count = first, members = 0;
     op->group_of = malloc((n + 1) * sizeof *op->group_of);
     op->group = calloc(op->islands + 1, sizeof *op->group);
+    op->awake = calloc(op->islands + 1, 1);
     op->touched = malloc((op->islands + 1) * sizeof *op->touched);
-    if (!op->group_of || !op->group || !op->touched) {
+    if (!op->group_of || !op->group || !op->awake || !op->touched) {
         return 0;
     }
     memset(count, 0, op->islands * sizeof *count);
