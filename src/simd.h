@@ -12,20 +12,20 @@
 #define TRIBO_SIMD
 #endif
 
-/* x [n] will soon be read, or written: what the memory needs to know where loops do more than pass over it. */
-static inline void tribo_expect(const double *x, size_t n, int written)
+/* So many bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
+static inline void tribo_expect(const void *from, size_t bytes, int written)
 {
 #if defined(__GNUC__)
-    enum { LINE = 8 };
-    for (size_t i = 0; i < n; i += LINE) {
+    enum { LINE = 64 };
+    for (size_t i = 0; i < bytes; i += LINE) {
         if (written) {
-            __builtin_prefetch(x + i, 1);
+            __builtin_prefetch((const char *)from + i, 1);
         } else {
-            __builtin_prefetch(x + i, 0);
+            __builtin_prefetch((const char *)from + i, 0);
         }
     }
 #else
-    (void)x, (void)n, (void)written;
+    (void)from, (void)bytes, (void)written;
 #endif
 }
 

@@ -73,10 +73,9 @@ struct program *tribo_op_program(struct op *op, size_t k)
 
 void tribo_op_expect(const struct op *op, size_t k)
 {
-    enum { MOST = 256 }; /* of a larger group that is the beginning, and what follows will come by itself */
-    const struct island *is = &op->group[k];
-    const size_t all = kept_by(is);
-    tribo_expect(op->store + is->kept, all < MOST ? all : MOST, 0);
+    enum { MOST = 2048 }; /* what there is beyond will come by itself */
+    const size_t bytes = kept_by(&op->group[k]) * sizeof *op->store;
+    tribo_expect(op->store + op->group[k].kept, bytes < MOST ? bytes : MOST, 0);
 }
 
 static int allocate_store(struct op *op, size_t n)

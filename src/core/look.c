@@ -92,7 +92,7 @@ static size_t chunk_size(const tribo_context *ctx, size_t i)
 static void expect(const tribo_context *ctx, const double *x, size_t i, int written)
 {
     if (ctx->n - i > 2 * TRIBO_CHUNK) {
-        tribo_expect(x + i + 2 * TRIBO_CHUNK, chunk_size(ctx, i + 2 * TRIBO_CHUNK), written);
+        tribo_expect(x + i + 2 * TRIBO_CHUNK, chunk_size(ctx, i + 2 * TRIBO_CHUNK) * sizeof *x, written);
     }
 }
 
