@@ -43,7 +43,6 @@ struct message;
 struct chunk {
     double widest; /* epsilon; negative if all are open */
     double limit;  /* of all, or NaN if they differ */
-    int alone;     /* one shares no body */
 };
 
 static inline size_t tribo_chunks(size_t n)

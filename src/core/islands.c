@@ -45,12 +45,10 @@ int tribo_op_diagonal(struct op *op, size_t n, const double *r)
     return op->diagonal != NULL;
 }
 
-/* What a group keeps, in doubles, which are as large as everything else that it keeps. In whole lines of the cache. */
+/* What a group keeps, in doubles, which are as large as everything else that it keeps. */
 static size_t kept_by(const struct island *is)
 {
-    enum { VECTORS = 6, LINE = 8 };
-    const size_t all = VECTORS * is->size + (is->sparse ? 0 : 2 * is->size * is->size);
-    return (all + LINE - 1) / LINE * LINE;
+    return 6 * is->size + (is->sparse ? 0 : 2 * is->size * is->size);
 }
 
 struct program *tribo_op_program(struct op *op, size_t k)

@@ -96,17 +96,31 @@ static void expect(const tribo_context *ctx, const double *x, size_t i, int writ
     }
 }
 
+TRIBO_SIMD static struct chunk chunk_of(size_t n, const double *restrict limit, const double *restrict epsilon)
+{
+    enum { LANES = 4 }; /* side by side, since one would have to be found in order */
+    double widest[LANES] = {-1.0, -1.0, -1.0, -1.0};
+    int64_t differ = 0;
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            const double e = limit[i + k] > 0.0 ? epsilon[i + k] : -1.0;
+            widest[k] = greater(widest[k], e);
+        }
+    }
+    for (; i < n; i++) {
+        widest[0] = limit[i] > 0.0 ? greater(widest[0], epsilon[i]) : widest[0];
+    }
+    for (i = 0; i < n; i++) {
+        differ |= limit[i] != limit[0] ? -1 : 0;
+    }
+    return (struct chunk){greater(greater(widest[0], widest[1]), greater(widest[2], widest[3])), differ ? NAN : limit[0]};
+}
+
 void tribo_refresh_chunks(tribo_context *ctx)
 {
-    struct chunk *c = ctx->chunk;
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK, c++) {
-        const size_t n = chunk_size(ctx, i);
-        *c = (struct chunk){.widest = -1.0, .limit = ctx->limit[i]};
-        for (size_t k = i; k < i + n; k++) {
-            c->widest = ctx->limit[k] > 0.0 ? greater(c->widest, ctx->epsilon[k]) : c->widest;
-            c->limit = c->limit == ctx->limit[k] ? c->limit : NAN;
-            c->alone |= !ctx->op.groups || ctx->op.group_of[k] == TRIBO_ALONE;
-        }
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        ctx->chunk[k] = chunk_of(chunk_size(ctx, i), ctx->limit + i, ctx->epsilon + i);
     }
 }
 
@@ -180,9 +194,10 @@ static void apply_law(tribo_context *ctx, const struct contacts *all, size_t i, 
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     const struct contacts all = tribo_contacts(ctx);
+    const int some = ctx->op.islands > ctx->op.groups;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
-        if (ctx->kept || (ctx->last.mixed[k] && ctx->chunk[k].alone)) {
+        if (ctx->kept || (some && ctx->last.mixed[k])) {
             apply_law(ctx, &all, i, n, v, a);
         } else if (wanted) {
             feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
