@@ -53,8 +53,8 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->spare.state = calloc(m + tribo_chunks(m), 1);
     ctx->tangent = malloc(m * sizeof *ctx->tangent);
     if (ctx->last.state && ctx->spare.state) {
-        ctx->last.mixed = ctx->last.state + m;
-        ctx->spare.mixed = ctx->spare.state + m;
+        ctx->last.kind = ctx->last.state + m;
+        ctx->spare.kind = ctx->spare.state + m;
     }
     return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limit && ctx->epsilon &&
            ctx->slope && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->lower && ctx->tangent;
@@ -111,7 +111,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     memcpy(c->moving, ctx->moving, n);
     memcpy(c->chunk, ctx->chunk, tribo_chunks(n) * sizeof *c->chunk);
     memcpy(c->last.state, ctx->last.state, n);
-    memcpy(c->last.mixed, ctx->last.mixed, tribo_chunks(n));
+    memcpy(c->last.kind, ctx->last.kind, tribo_chunks(n));
     *copy = c;
     return TRIBO_OK;
 }

@@ -53,9 +53,12 @@ static inline size_t tribo_chunks(size_t n)
 /* What a call finds of contacts where some are coupled: they slide towards v < 0, are near stick, or slide towards v > 0. */
 enum { BACK, NEAR, FORTH };
 
+/* Whether all contacts of a chunk slide, or some, or nobody knows, and ctx->f holds all their forces. */
+enum { SLIDES, MIXED, KEPT };
+
 struct look {
     unsigned char *state; /* [n] */
-    unsigned char *mixed; /* [chunks] not all slide; in the same piece of memory */
+    unsigned char *kind;  /* [chunks] in the same piece of memory */
 };
 
 struct tribo_context {

@@ -152,7 +152,8 @@ static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t e
 int tribo_look(tribo_context *ctx, const double *v, const double *a)
 {
     const struct look look = ctx->spare;
-    if (!v || !a || !ctx->op.groups || !ctx->law->uses_feq) {
+    const int pays = ctx->op.groups > 0 || ctx->n > TRIBO_CHUNK;
+    if (!v || !a || !pays || !ctx->law->uses_feq) {
         const int status = check(ctx, v, a);
         ctx->kept = status ? ctx->kept : 1;
         return status;
@@ -169,8 +170,10 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
                 return status;
             }
         }
-        look.mixed[k] = (unsigned char)any;
-        if (any) {
+        look.kind[k] = !any ? SLIDES : ctx->op.groups ? MIXED : KEPT;
+        if (look.kind[k] == KEPT) {
+            memset(look.state + i, NEAR, n); /* or not: the law will tell */
+        } else if (look.kind[k] == MIXED) {
             find_states(n, v + i, band, look.state + i);
             narrow(ctx, v, i, i + n, look.state);
         } else {
@@ -197,7 +200,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
     const int some = ctx->op.islands > ctx->op.groups;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
-        if (ctx->kept || (some && ctx->last.mixed[k])) {
+        if (ctx->kept || (some && ctx->last.kind[k] != SLIDES)) {
             apply_law(ctx, &all, i, n, v, a);
         } else if (wanted) {
             feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
@@ -215,12 +218,14 @@ void tribo_forces(const tribo_context *ctx, double *f)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = chunk_size(ctx, i);
         expect(ctx, f, i, 1);
-        if (isnan(ctx->chunk[k].limit)) {
+        if (ctx->last.kind[k] == KEPT) {
+            tribo_copy(f + i, ctx->f + i, n);
+        } else if (isnan(ctx->chunk[k].limit)) {
             slide(n, state + i, ctx->limit + i, f + i);
         } else {
             slide_alike(n, state + i, ctx->chunk[k].limit, f + i);
         }
-        for (size_t j = i, near; ctx->last.mixed[k] && (near = tribo_next_near(state, &j, i + n)) > 0; j += near) {
+        for (size_t j = i, near; ctx->last.kind[k] == MIXED && (near = tribo_next_near(state, &j, i + n)) > 0; j += near) {
             tribo_copy(f + j, ctx->f + j, near);
         }
     }
