@@ -273,7 +273,7 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 /* ----------------------------------------------------------------------------------------------------------- queries */
 
 /* What each contact did in the last tribo_balance or tribo_step_force. mode [n] out: 0 stuck, +1 and -1 sliding in that
- * direction (the force is -limit * mode), 2 open; by the limits that are set now.
+ * direction (the force is -limit * mode), 2 open; by the limits that it had.
  * Returns TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or tribo_set_operator_... since. */
 TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
 

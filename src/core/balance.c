@@ -17,6 +17,7 @@ static void begin(tribo_context *ctx)
         ctx->op.awake[ctx->op.touched[k]] = 0;
     }
     ctx->op.touches = 0;
+    ctx->limit_then = ctx->limit;
     ctx->rank = 0;
     ctx->residual = 0.0;
     ctx->balanced = 0;

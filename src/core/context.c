@@ -40,7 +40,7 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->n = n;
     ctx->message = tribo_message_create();
     ctx->given = malloc(m * sizeof *ctx->given);
-    ctx->limit = calloc(m, sizeof *ctx->limit);
+    ctx->limit = ctx->limit_then = ctx->limits = calloc(2 * m, sizeof *ctx->limits);
     ctx->epsilon = malloc(m * sizeof *ctx->epsilon);
     ctx->slope = malloc(m * sizeof *ctx->slope);
     ctx->moving = calloc(m, sizeof *ctx->moving);
@@ -56,7 +56,7 @@ static int allocate(tribo_context *ctx, size_t n)
         ctx->last.kind = ctx->last.state + m;
         ctx->spare.kind = ctx->spare.state + m;
     }
-    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limit && ctx->epsilon &&
+    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limits && ctx->epsilon &&
            ctx->slope && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->lower && ctx->tangent;
 }
 
@@ -104,6 +104,10 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     c->linearized = 0;
     tribo_copy(c->given, ctx->given, n);
     tribo_copy(c->limit, ctx->limit, n);
+    if (ctx->limit_then != ctx->limit) {
+        c->limit_then = c->limits + n + 1;
+        tribo_copy(c->limit_then, ctx->limit_then, n);
+    }
     tribo_copy(c->epsilon, ctx->epsilon, n);
     tribo_copy(c->slope, ctx->slope, n);
     tribo_copy(c->feq, ctx->feq, n);
@@ -124,7 +128,7 @@ void tribo_destroy(tribo_context *ctx)
     tribo_op_free(&ctx->op);
     free(ctx->message);
     free(ctx->given);
-    free(ctx->limit);
+    free(ctx->limits);
     free(ctx->epsilon);
     free(ctx->slope);
     free(ctx->moving);
@@ -178,6 +182,15 @@ int tribo_get_law(const tribo_context *ctx, int *law)
     return TRIBO_OK;
 }
 
+/* Where limits are set: those of the last balance stay, for its modes. */
+static double *new_limits(tribo_context *ctx)
+{
+    if (ctx->limit_then == ctx->limit) {
+        ctx->limit = ctx->limits + (ctx->limit == ctx->limits ? ctx->n + 1 : 0);
+    }
+    return ctx->limit;
+}
+
 int tribo_set_limit(tribo_context *ctx, const double *limit)
 {
     if (!ctx) {
@@ -187,7 +200,7 @@ int tribo_set_limit(tribo_context *ctx, const double *limit)
     if (status) {
         return status;
     }
-    tribo_copy(ctx->limit, limit, ctx->n);
+    tribo_copy(new_limits(ctx), limit, ctx->n);
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
@@ -203,8 +216,9 @@ int tribo_set_limit_all(tribo_context *ctx, double limit)
     if (limit < 0.0) {
         return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "limit = %g is negative", limit);
     }
+    double *each = new_limits(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->limit[i] = limit;
+        each[i] = limit;
     }
     tribo_refresh(ctx);
     return TRIBO_OK;
@@ -344,7 +358,7 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
  * it counts as holding where |v| < epsilon.) */
 static signed char mode_of(const tribo_context *ctx, size_t i)
 {
-    const double limit = ctx->limit[i], f = tribo_force_of(ctx, i);
+    const double limit = ctx->limit_then[i], f = tribo_force_of(ctx, i);
     return (signed char)(limit > 0.0 ? fabs(f) < ctx->holds * limit ? 0 : f < 0.0 ? 1 : -1 : 2);
 }
 

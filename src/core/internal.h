@@ -50,10 +50,10 @@ static inline size_t tribo_chunks(size_t n)
     return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
 }
 
-/* What a call finds of contacts where some are coupled: they slide towards v < 0, are near stick, or slide towards v > 0. */
+/* What a call finds of a contact: it slides towards v < 0, is near stick, or slides towards v > 0. An open one slides. */
 enum { BACK, NEAR, FORTH };
 
-/* Whether all contacts of a chunk slide, or some, or nobody knows, and ctx->f holds all their forces. */
+/* All contacts of a chunk slide; or perhaps not; or that does not matter, since ctx->f holds all their forces. */
 enum { SLIDES, MIXED, KEPT };
 
 struct look {
@@ -68,11 +68,13 @@ struct tribo_context {
     double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
     double *given;          /* [n] epsilon as given */
     double *limit, *epsilon, *slope;
+    double *limit_then;    /* [n] limits of the last balance: the same array, or the other of limits */
+    double *limits;        /* [2][n + 1] */
     unsigned char *moving; /* [n] reversal memory */
     struct op op;
     struct chunk *chunk;     /* [chunks] */
     struct look last, spare; /* of the last balance; room for the next */
-    int kept;                /* f holds all forces; otherwise those of contacts near stick, and others are at their limits */
+    int kept;                /* f holds all forces, and last has not been asked; otherwise f holds those of contacts NEAR */
     double *feq, *f;         /* [n] of the last balance */
     double *v;               /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
     struct tangent *tangent; /* [n] */
@@ -122,21 +124,23 @@ void tribo_op_expect(const struct op *op, size_t k);
 /* look.c: what depends on settings, brought up to date. */
 void tribo_refresh_chunks(tribo_context *ctx);
 
-/* Checks v and a, and finds the chunks that slide; a status, and on failure nothing is changed. Then finds the contacts near
- * stick in the others, and, as if they were alone, f of contacts that need no solver, and f_eq of those, or of all if wanted. */
+/* Checks v and a, and finds who is near stick; a status, and on failure all is as after the last call. */
 int tribo_look(tribo_context *ctx, const double *v, const double *a);
+
+/* f of contacts that need no solver, where ctx->f is to hold it, and their f_eq, or that of all contacts if wanted, as if all
+ * were alone. */
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 
 /* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
 size_t tribo_next_near(const unsigned char *state, size_t *i, size_t end);
 
-/* The forces of all contacts, f [n], or of one. */
+/* The forces of all contacts, f [n], while limits are those of the balance; or of one. */
 void tribo_forces(const tribo_context *ctx, double *f);
 
 static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 {
     const int state = ctx->kept ? NEAR : ctx->last.state[i];
-    return state == NEAR ? ctx->f[i] : state == FORTH ? -ctx->limit[i] : ctx->limit[i];
+    return state == NEAR ? ctx->f[i] : state == FORTH ? -ctx->limit_then[i] : ctx->limit_then[i];
 }
 
 /* balance.c: the contacts of group k in the program's order, those near stick first. */

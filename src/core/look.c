@@ -6,9 +6,9 @@
 #include "internal.h"
 #include "../real.h"
 
-/* The sum of v and a, which is finite if all of them are, unless it overflows; side by side, since one sum would have to be added
- * up in order. And whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
-TRIBO_SIMD static double scan(size_t n, const double *restrict v, const double *restrict a, double band, int *any)
+/* Whether all of v and a is finite: x - x is zero then, and NaN otherwise. Sums side by side, since one would have to be added up
+ * in order. And whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
+TRIBO_SIMD static int scan(size_t n, const double *restrict v, const double *restrict a, double band, int *any)
 {
     enum { SUMS = 8 };
     double sum[SUMS] = {0.0};
@@ -16,17 +16,17 @@ TRIBO_SIMD static double scan(size_t n, const double *restrict v, const double *
     size_t i = 0;
     for (; i + SUMS <= n; i += SUMS) {
         for (size_t k = 0; k < SUMS; k++) {
-            sum[k] += v[i + k] + a[i + k];
+            sum[k] += (v[i + k] - v[i + k]) + (a[i + k] - a[i + k]);
         }
     }
     for (; i < n; i++) {
-        sum[0] += v[i] + a[i];
+        sum[0] += (v[i] - v[i]) + (a[i] - a[i]);
     }
     for (i = 0; i < n; i++) {
         in_band |= fabs(v[i]) <= band ? -1 : 0;
     }
     *any = in_band != 0;
-    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7]));
+    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
 }
 
 TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, unsigned char *restrict state)
@@ -44,18 +44,17 @@ TRIBO_SIMD static void find_states(size_t n, const double *restrict v, double ba
     }
 }
 
-/* The same with each contact's own band, or 0 if band is NULL. Open ones, which are not near stick, are as good as BACK: nothing
- * is more than NaN. */
+/* The same with each contact's own band, or 0 if band is NULL, and open ones are not near stick. */
 TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
                                  unsigned char *restrict state)
 {
     for (size_t i = 0; band && i < n; i++) {
-        const double b = limit[i] > 0.0 ? band[i] : NAN;
-        state[i] = (unsigned char)((v[i] > b) + (v[i] >= -b));
+        const int near = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
+        state[i] = (unsigned char)(near | (((v[i] > 0.0) & !near) << 1));
     }
     for (size_t i = 0; !band && i < n; i++) {
-        const double b = limit[i] > 0.0 ? 0.0 : NAN;
-        state[i] = (unsigned char)((v[i] > b) + (v[i] >= -b));
+        const int near = (v[i] == 0.0) & (limit[i] > 0.0);
+        state[i] = (unsigned char)(near | (((v[i] > 0.0) & !near) << 1));
     }
 }
 
@@ -164,11 +163,8 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
         int any;
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
-        if (!isfinite(scan(n, v + i, a + i, band, &any))) {
-            const int status = check(ctx, v, a);
-            if (status) {
-                return status;
-            }
+        if (!scan(n, v + i, a + i, band, &any)) {
+            return check(ctx, v, a);
         }
         look.kind[k] = !any ? SLIDES : ctx->op.groups ? MIXED : KEPT;
         if (look.kind[k] == KEPT) {
