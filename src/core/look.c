@@ -151,8 +151,8 @@ static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t e
 int tribo_look(tribo_context *ctx, const double *v, const double *a)
 {
     const struct look look = ctx->spare;
-    const int pays = ctx->op.groups > 0 || ctx->n > TRIBO_CHUNK;
-    if (!v || !a || !pays || !ctx->law->uses_feq) {
+    const int few = !ctx->op.groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
+    if (!v || !a || few || !ctx->law->uses_feq) {
         const int status = check(ctx, v, a);
         ctx->kept = status ? ctx->kept : 1;
         return status;

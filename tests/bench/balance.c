@@ -76,7 +76,7 @@ static const struct curve {
     size_t from, to, quick; /* x */
 } curves[] = {
     {CONTACTS, "no two coupled", ALONE, 1, SAME, 10, 1000000, 100000},
-    {CONTACTS, "no two coupled, sliding", ALONE, 0, SAME, 10, 1000000, 100000},
+    {CONTACTS, "no two coupled: sliding", ALONE, 0, SAME, 10, 1000000, 100000},
     {CONTACTS, "sliding islands of 8", ISLANDS, 0, SAME, 10, 1000000, 100000},
     {CONTACTS, "stuck islands of 8", ISLANDS, 1, SAME, 10, 100000, 10000},
     {CONTACTS, "one stuck dense group", DENSE, 1, SAME, 10, 1000, 300},

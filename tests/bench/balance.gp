@@ -32,8 +32,8 @@ set xlabel name eq 'near' ? 'contacts near stick in one dense group, s' : name e
 if (name eq 'contacts') {
     set title 'A call against the number of contacts'
     plot for [k = 1:n] rows(k) using 2:($4*1e6) with linespoints linestyle k title curve(k), \
-        reference(x, 3, 1, 2) linestyle 20 title 'slope 1', \
-        reference(x, 4, 2, 1.5) linestyle 20 title 'slope 2'
+        reference(x, 4, 1, 2) linestyle 20 title 'slope 1', \
+        reference(x, 5, 2, 1.5) linestyle 20 title 'slope 2'
 }
 if (name eq 'near') {
     set title 'A call against the number of contacts near stick'
