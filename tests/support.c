@@ -66,6 +66,12 @@ int stained(const void *memory, size_t bytes)
     return i == bytes;
 }
 
+int setting(const char *name, int otherwise)
+{
+    const char *text = getenv(name);
+    return text ? atoi(text) : otherwise;
+}
+
 struct random random_of(int seed)
 {
     return (struct random){(uint64_t)seed * 0x632BE59BD9B4E019u + 1u};

@@ -75,6 +75,9 @@ int says(const char *text, const char *part);
 void stain(void *memory, size_t bytes);
 int stained(const void *memory, size_t bytes);
 
+/* The number in an environment variable, or another if it is not set. */
+int setting(const char *name, int otherwise);
+
 /* splitmix64 (Steele, Lea and Flood 2014): the same numbers on every machine. */
 struct random {
     uint64_t state;

@@ -1,7 +1,6 @@
 /* Random scenes of contacts between bodies, from a few to hundreds, in rows and in heaps, with repeated ones among them, masses
  * and limits up to six orders of magnitude apart: one context each through many calls, every answer against its equations.
  * TRIBO_SEED and TRIBO_BLOCKS as in random.c. */
-#include <stdlib.h>
 #include <string.h>
 
 #include "support.h"
@@ -15,12 +14,6 @@ struct scene {
     double arm[ARMS * MOST], inverse[2 * MOST], diagonal[MOST];
     double limit[MOST], epsilon[MOST], v[MOST], a[MOST];
 };
-
-static int setting(const char *name, int otherwise)
-{
-    const char *value = getenv(name);
-    return value ? atoi(value) : otherwise;
-}
 
 /* Contact i touches bodies near one another, or is one that was before. */
 static void connect(struct scene *s, struct random *g, size_t i, int in_a_row, int repeats)

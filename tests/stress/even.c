@@ -2,7 +2,6 @@
  * limit, or stay at it for good, contacts that repeat each other, loads in resonance. TRIBO_SEED and TRIBO_BLOCKS as in random.c.
  */
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "structure.h"
@@ -10,12 +9,6 @@
 #define BLOCK 25
 #define DURATION 20.0
 #define AGREE 1e-8
-
-static int setting(const char *name, int otherwise)
-{
-    const char *text = getenv(name);
-    return text ? atoi(text) : otherwise;
-}
 
 /* "" if exact and event agree, else what is wrong. */
 static void compare(const struct structure *s, double scale, char *wrong, size_t size)

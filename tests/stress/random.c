@@ -1,18 +1,11 @@
 /* Random linear structures with friction: the closed form, the event-driven series and central differences know nothing of each
  * other's integration, and have to agree. TRIBO_SEED is the first seed, TRIBO_BLOCKS how many blocks of them are run. */
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "structure.h"
 
 #define BLOCK 25
 #define DURATION 20.0
-
-static int setting(const char *name, int otherwise)
-{
-    const char *text = getenv(name);
-    return text ? atoi(text) : otherwise;
-}
 
 static int first_seed(int block)
 {

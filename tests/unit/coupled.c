@@ -715,16 +715,12 @@ TEST(long_chain)
     free(f);
 }
 
-/* A row of bodies in which every contact is there twice: too many for a dense factor, and half of them redundant. Contacts come
- * and go one by one, and by the hundred. */
-TEST(redundant_and_sparse)
+/* A row of bodies in which every contact is there twice: too many for a dense factor, and half of them redundant. */
+static tribo_context *doubled_row(size_t bodies)
 {
-    struct random g = random_of(_i);
-    const size_t bodies = 1100, n = 2 * bodies;
+    const size_t n = 2 * bodies;
     size_t *first = calloc(n + 1, sizeof *first), *col = malloc(2 * n * sizeof *col), k = 0;
     double *val = malloc(2 * n * sizeof *val), *inverse = malloc(bodies * sizeof *inverse);
-    double *v = calloc(n, sizeof *v), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f), *u = calloc(bodies + 1, sizeof *u);
-    double *pull = calloc(bodies + 1, sizeof *pull);
     tribo_context *c;
     for (size_t i = 0; i < n; i++) {
         col[k] = i / 2;
@@ -740,6 +736,21 @@ TEST(redundant_and_sparse)
     assert_ok(tribo_set_limit_all(c, 1.0));
     assert_ok(tribo_set_epsilon_all(c, 1.0));
     assert_ok(tribo_set_operator_mass(c, bodies, inverse, first, col, val));
+    free(first);
+    free(col);
+    free(val);
+    free(inverse);
+    return c;
+}
+
+/* Contacts come and go one by one, and by the hundred. */
+TEST(redundant_and_sparse)
+{
+    struct random g = random_of(_i);
+    const size_t bodies = 1100, n = 2 * bodies;
+    double *v = calloc(n, sizeof *v), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f), *u = calloc(bodies + 1, sizeof *u);
+    double *pull = calloc(bodies + 1, sizeof *pull);
+    tribo_context *c = doubled_row(bodies);
     for (int step = 0; step < 80; step++) {
         for (size_t i = step % 4 ? below(&g, n) : 0; i < n; i += step % 4 ? n : 7) {
             v[i] = below(&g, 2) ? 0.0 : 5.0;
@@ -760,10 +771,6 @@ TEST(redundant_and_sparse)
         }
     }
     tribo_destroy(c);
-    free(first);
-    free(col);
-    free(val);
-    free(inverse);
     free(v);
     free(a);
     free(f);
@@ -800,37 +807,17 @@ TEST(sparse_clone)
 TEST(outside_the_range_and_sparse)
 {
     const size_t bodies = 1100, n = 2 * bodies;
-    size_t *first = calloc(n + 1, sizeof *first), *both = malloc(2 * n * sizeof *both), k = 0;
-    double *val = malloc(2 * n * sizeof *val), *zero = calloc(n, sizeof *zero), *a = calloc(n, sizeof *a),
-           *f = calloc(n, sizeof *f);
-    tribo_context *c;
-    for (size_t i = 0; i < n; i++) {
-        both[k] = i / 2;
-        val[k++] = 1.0;
-        if (i / 2 + 1 < bodies) {
-            both[k] = i / 2 + 1;
-            val[k++] = -1.0;
-        }
-        first[i + 1] = k;
-    }
-    for (size_t b = 0; b < bodies; b++) {
-        f[b] = 1.0;
-    }
-    assert_ok(tribo_create(&c, n));
-    assert_ok(tribo_set_limit_all(c, 1.0));
+    double *zero = calloc(n, sizeof *zero), *a = calloc(n, sizeof *a), *f = calloc(n, sizeof *f);
+    tribo_context *c = doubled_row(bodies);
     assert_ok(tribo_set_coupling(c, TRIBO_PARTITION));
-    assert_ok(tribo_set_operator_mass(c, bodies, f, first, both, val));
     a[10] = a[11] = 0.3;
     assert_ok(tribo_balance(c, zero, a, NULL, f));
     a[11] = -0.3;
     assert_status(tribo_balance(c, zero, a, NULL, f), TRIBO_ERR_INCONSISTENT);
     tribo_destroy(c);
-    free(first);
-    free(val);
     free(zero);
     free(a);
     free(f);
-    free(both);
 }
 
 /* Forces go on from those of sliding, for which nothing was solved. */
