@@ -191,7 +191,7 @@ static int balance(tribo_context *ctx, const double *v, const double *a, int wan
     tribo_forces_alone(ctx, v, a, wanted);
     for (size_t i = 0, k = 0; !ctx->kept && i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.kind[k] == MIXED) {
-            find_groups(ctx, i, ctx->n - i < TRIBO_CHUNK ? ctx->n : i + TRIBO_CHUNK);
+            find_groups(ctx, i, i + tribo_chunk_size(ctx, i));
         }
     }
     int status = TRIBO_OK;

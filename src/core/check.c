@@ -3,11 +3,10 @@
 
 #include "internal.h"
 
-/* x - x is zero if x is finite, and NaN otherwise; four sums, since one would have to be added up in order. The culprit is looked
- * for only after. */
-TRIBO_SIMD static int all_finite(const double *x, size_t n)
+/* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
+TRIBO_SIMD int tribo_all_finite(const double *x, size_t n)
 {
-    enum { SUMS = 4 };
+    enum { SUMS = 8 };
     double sum[SUMS] = {0.0};
     size_t i = 0;
     for (; i + SUMS <= n; i += SUMS) {
@@ -18,7 +17,7 @@ TRIBO_SIMD static int all_finite(const double *x, size_t n)
     for (; i < n; i++) {
         sum[0] += x[i] - x[i];
     }
-    return sum[0] + sum[1] + (sum[2] + sum[3]) == 0.0;
+    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
 }
 
 int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
@@ -26,7 +25,7 @@ int tribo_check_finite(const tribo_context *ctx, const char *name, const double 
     if (!x && n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
     }
-    if (!all_finite(x, n)) {
+    if (!tribo_all_finite(x, n)) { /* only now the culprit is looked for */
         size_t i = 0;
         while (isfinite(x[i])) {
             i++;

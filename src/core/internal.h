@@ -95,7 +95,16 @@ int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)
     ;
 struct message *tribo_message_create(void);
 
-/* check.c: TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
+/* Contacts of the chunk that begins with i. */
+static inline size_t tribo_chunk_size(const tribo_context *ctx, size_t i)
+{
+    return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
+}
+
+/* check.c */
+int tribo_all_finite(const double *x, size_t n);
+
+/* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
 int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);

@@ -117,6 +117,15 @@ static int allocate_basis(struct op *op)
     return op->program.held && op->program.basis;
 }
 
+static int allocate_groups(struct op *op, size_t n, size_t groups)
+{
+    op->group_of = malloc(n * sizeof *op->group_of);
+    op->group = calloc(groups, sizeof *op->group);
+    op->awake = calloc(groups, 1);
+    op->touched = malloc(groups * sizeof *op->touched);
+    return op->group_of && op->group && op->awake && op->touched;
+}
+
 int tribo_op_copy(struct op *to, const struct op *from, size_t n)
 {
     if (!tribo_op_diagonal(to, n, from->diagonal)) {
@@ -130,11 +139,7 @@ int tribo_op_copy(struct op *to, const struct op *from, size_t n)
     }
     to->largest = from->largest;
     to->stored = from->stored;
-    to->group_of = malloc(n * sizeof *to->group_of);
-    to->group = malloc(from->groups * sizeof *to->group);
-    to->awake = malloc(from->groups);
-    to->touched = malloc(from->groups * sizeof *to->touched);
-    if (!to->group_of || !to->group || !to->awake || !to->touched) {
+    if (!allocate_groups(to, n, from->groups)) {
         return 0;
     }
     memcpy(to->group_of, from->group_of, n * sizeof *to->group_of);
@@ -191,11 +196,7 @@ static size_t find_islands(const struct rows *a, size_t *label, size_t *parent)
 static int find_groups(struct op *op, size_t n, const size_t *label, size_t *place, size_t *member, size_t *first)
 {
     size_t *count = first, members = 0;
-    op->group_of = malloc((n + 1) * sizeof *op->group_of);
-    op->group = calloc(op->islands + 1, sizeof *op->group);
-    op->awake = calloc(op->islands + 1, 1);
-    op->touched = malloc((op->islands + 1) * sizeof *op->touched);
-    if (!op->group_of || !op->group || !op->awake || !op->touched) {
+    if (!allocate_groups(op, n, op->islands)) {
         return 0;
     }
     memset(count, 0, op->islands * sizeof *count);

@@ -6,27 +6,14 @@
 #include "internal.h"
 #include "../real.h"
 
-/* Whether all of v and a is finite: x - x is zero then, and NaN otherwise. Sums side by side, since one would have to be added up
- * in order. And whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
-TRIBO_SIMD static int scan(size_t n, const double *restrict v, const double *restrict a, double band, int *any)
+/* Whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
+TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
 {
-    enum { SUMS = 8 };
-    double sum[SUMS] = {0.0};
-    int64_t in_band = 0; /* as wide as what is compared */
-    size_t i = 0;
-    for (; i + SUMS <= n; i += SUMS) {
-        for (size_t k = 0; k < SUMS; k++) {
-            sum[k] += (v[i + k] - v[i + k]) + (a[i + k] - a[i + k]);
-        }
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t i = 0; i < n; i++) {
+        any |= fabs(v[i]) <= band ? -1 : 0;
     }
-    for (; i < n; i++) {
-        sum[0] += (v[i] - v[i]) + (a[i] - a[i]);
-    }
-    for (i = 0; i < n; i++) {
-        in_band |= fabs(v[i]) <= band ? -1 : 0;
-    }
-    *any = in_band != 0;
-    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
+    return any != 0;
 }
 
 TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, unsigned char *restrict state)
@@ -82,16 +69,11 @@ TRIBO_SIMD static void slide_alike(size_t n, const unsigned char *restrict state
     }
 }
 
-static size_t chunk_size(const tribo_context *ctx, size_t i)
-{
-    return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
-}
-
 /* The chunk after next will soon be read, or written. */
 static void expect(const tribo_context *ctx, const double *x, size_t i, int written)
 {
     if (ctx->n - i > 2 * TRIBO_CHUNK) {
-        tribo_expect(x + i + 2 * TRIBO_CHUNK, chunk_size(ctx, i + 2 * TRIBO_CHUNK) * sizeof *x, written);
+        tribo_expect(x + i + 2 * TRIBO_CHUNK, tribo_chunk_size(ctx, i + 2 * TRIBO_CHUNK) * sizeof *x, written);
     }
 }
 
@@ -119,7 +101,7 @@ TRIBO_SIMD static struct chunk chunk_of(size_t n, const double *restrict limit, 
 void tribo_refresh_chunks(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        ctx->chunk[k] = chunk_of(chunk_size(ctx, i), ctx->limit + i, ctx->epsilon + i);
+        ctx->chunk[k] = chunk_of(tribo_chunk_size(ctx, i), ctx->limit + i, ctx->epsilon + i);
     }
 }
 
@@ -158,14 +140,14 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
         return status;
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const size_t n = chunk_size(ctx, i);
+        const size_t n = tribo_chunk_size(ctx, i);
         const double band = ctx->law->sticks_in_band ? ctx->chunk[k].widest : lesser(ctx->chunk[k].widest, 0.0);
-        int any;
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
-        if (!scan(n, v + i, a + i, band, &any)) {
+        if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
             return check(ctx, v, a);
         }
+        const int any = any_in_band(n, v + i, band);
         look.kind[k] = !any ? SLIDES : ctx->op.groups ? MIXED : KEPT;
         if (look.kind[k] == KEPT) {
             memset(look.state + i, NEAR, n); /* or not: the law will tell */
@@ -195,7 +177,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
     const struct contacts all = tribo_contacts(ctx);
     const int some = ctx->op.islands > ctx->op.groups;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const size_t n = chunk_size(ctx, i);
+        const size_t n = tribo_chunk_size(ctx, i);
         if (ctx->kept || (some && ctx->last.kind[k] != SLIDES)) {
             apply_law(ctx, &all, i, n, v, a);
         } else if (wanted) {
@@ -212,7 +194,7 @@ void tribo_forces(const tribo_context *ctx, double *f)
     }
     const unsigned char *state = ctx->last.state;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const size_t n = chunk_size(ctx, i);
+        const size_t n = tribo_chunk_size(ctx, i);
         expect(ctx, f, i, 1);
         if (ctx->last.kind[k] == KEPT) {
             tribo_copy(f + i, ctx->f + i, n);
