@@ -796,8 +796,13 @@ static int find_watches(struct build *b)
     if (!h->watch) {
         return 0;
     }
+    int base_moves = 0;
+    for (size_t w = 0; w < h->harmonics; w++) {
+        base_moves |= b->sys->harmonic[w].moves_base;
+    }
+    /* one that rests by itself on a moving base may part from it */
     for (size_t i = 0; i < c; i++) {
-        if (!h->key[i] && !watch_sliding(b, &h->watch[h->watches++], i)) {
+        if ((h->key[i] == 0 || (h->key[i] == 1 && base_moves)) && !watch_sliding(b, &h->watch[h->watches++], i)) {
             return 0;
         }
     }

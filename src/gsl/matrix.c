@@ -301,3 +301,16 @@ int tribo_matrix_is_diagonal(const struct matrix *a)
     }
     return 1;
 }
+
+double tribo_matrix_row_sum(const struct matrix *a)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < a->rows; i++) {
+        double sum = 0.0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            sum += fabs(a->val[k]);
+        }
+        most = sum > most ? sum : most;
+    }
+    return most;
+}

@@ -39,6 +39,8 @@ int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *
 
 /* 1 if no entry is off the diagonal. */
 int tribo_matrix_is_diagonal(const struct matrix *a);
+/* The largest sum of a row's absolute values: no eigenvalue is larger. 0 without rows. */
+double tribo_matrix_row_sum(const struct matrix *a);
 double tribo_matrix_get(const struct matrix *a, size_t i, size_t j);
 
 #endif

@@ -217,6 +217,15 @@ void tribo_system_loads(const tribo_system *sys, int moves_base, int order, doub
     }
 }
 
+double tribo_system_fastest(const tribo_system *sys)
+{
+    double most = greater(sqrt(tribo_matrix_row_sum(&sys->stiffness)), tribo_matrix_row_sum(&sys->damping));
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        most = greater(most, fabs(sys->harmonic[s].omega));
+    }
+    return most;
+}
+
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
 {
     const struct matrix *a = &sys->direction;

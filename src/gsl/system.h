@@ -77,6 +77,9 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 /* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
 double tribo_system_next_kink(const tribo_system *sys, double t);
 
+/* A bound on the frequencies: neither an exponent of the structure, held or not, nor a load is faster. */
+double tribo_system_fastest(const tribo_system *sys);
+
 /* R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 

@@ -1,16 +1,14 @@
 /* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
- * form from the modes of the structure with its contacts at rest held (held.h); no event can be skipped (roots.h), since the
+ * form from the modes of the structure with its contacts at rest held (held.h); no event can be skipped (first_zero.h), since the
  * sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
- * strays from a quintic; and at an event the contacts at rest are decided about anew (modes.h). The energy integral is closed
+ * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is closed
  * too: a sliding force is constant, so that it dissipates its size times the distance slid. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "driver.h"
+#include "events.h"
 #include "held.h"
-#include "modes.h"
-#include "search.h"
 #include "../real.h"
 
 /* Decompositions are dropped when they take more than this. */
@@ -21,7 +19,7 @@
 
 struct exact {
     tribo_system *sys;
-    struct modes modes;
+    struct events events;
     struct held **held;
     size_t helds, room, bytes, revision;
 
@@ -38,8 +36,7 @@ struct exact {
     double *cos_t, *sin_t, *cos_0, *sin_0;   /* [harmonics] at t0 + tau, at t0 */
     double *now, *work;                      /* [modes] eta and eta' at tau; workspace */
     double *dq;                              /* [ndof] */
-    double slowest, shown;                   /* 1/length of the advance; when the observer looks next */
-    struct search search;
+    double longest;                          /* so long do the bounds of the guards hold */
 };
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
@@ -54,10 +51,10 @@ static void drop_helds(struct exact *x)
     x->h = NULL;
 }
 
-static int rests_like(const struct held *h, const struct modes *m, size_t n)
+static int rests_like(const struct held *h, const struct stick_slip *m, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        if (h->key[i] != (m->mode[i] == 0) + m->holds[i]) {
+        if (h->key[i] != (m->slip[i] == 0) + m->holds[i]) {
             return 0;
         }
     }
@@ -65,12 +62,12 @@ static int rests_like(const struct held *h, const struct modes *m, size_t n)
 }
 
 /* Sets x->h to the structure with the contacts of mode 0 held. Those used last are looked at first. */
-static int find_held(struct exact *x, tribo_driver *drv)
+static int find_held(struct exact *x)
 {
-    tribo_system *sys = drv->sys;
+    tribo_system *sys = x->sys;
     for (size_t i = x->helds; i-- > 0;) {
         struct held *h = x->held[i];
-        if (rests_like(h, &x->modes, sys->ncontact)) {
+        if (rests_like(h, &x->events.stick_slip, sys->ncontact)) {
             memmove(x->held + i, x->held + i + 1, (x->helds - 1 - i) * sizeof *x->held);
             x->held[x->helds - 1] = h;
             x->h = h;
@@ -84,15 +81,15 @@ static int find_held(struct exact *x, tribo_driver *drv)
         const size_t room = 2 * x->room + 16;
         struct held **more = realloc(x->held, room * sizeof *more);
         if (!more) {
-            return tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
         }
         x->held = more;
         x->room = room;
     }
     struct held *h;
-    const int status = tribo_held_create(&h, sys, x->modes.mode, x->modes.holds);
+    const int status = tribo_held_create(&h, sys, x->events.stick_slip.slip, x->events.stick_slip.holds);
     if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+        return status;
     }
     x->held[x->helds++] = h;
     x->bytes += h->bytes;
@@ -138,7 +135,7 @@ static void add_resonance(struct exact *x, const tribo_system *sys, size_t p, si
 {
     const struct held *h = x->h;
     const double omega = sys->harmonic[s].omega, nu = h->li[p];
-    const double c0 = cos(omega * x->t0), s0 = sin(omega * x->t0);
+    const double c0 = x->cos_0[s], s0 = x->sin_0[s];
     const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
     const double e = exp(h->lr[p] * tau), er = e * cos(nu * tau), ei = e * sin(nu * tau);
     double zr = 0.0, zi = 0.0;
@@ -192,8 +189,8 @@ static void grow_little(const struct held *h, size_t p, double delta, double *re
     *im = y + x * y;
 }
 
-/* z and its derivatives, and the harmonics, at t0 + tau: from t0, or, if that is close, from the last look. */
-static void look(void *motion, double tau)
+/* z and its derivatives, and the harmonics, at t0 + tau: from t0, or, if that is close, from where it was. */
+static void go(void *motion, double tau)
 {
     struct exact *x = motion;
     const tribo_system *sys = x->sys;
@@ -207,9 +204,10 @@ static void look(void *motion, double tau)
             x->cos_t[s] = c * ct - turn * st;
             x->sin_t[s] = c * st + turn * ct;
         } else {
-            const double phase = omega * (x->t0 + tau);
-            x->cos_t[s] = cos(phase);
-            x->sin_t[s] = sin(phase);
+            /* from t0, since what rounding leaves of a late time must not tremble within a phase */
+            const double c = cos(omega * tau), d = sin(omega * tau);
+            x->cos_t[s] = c * x->cos_0[s] - d * x->sin_0[s];
+            x->sin_t[s] = d * x->cos_0[s] + c * x->sin_0[s];
         }
     }
     for (size_t p = 0; p < h->exponents; p++) {
@@ -229,12 +227,12 @@ static void look(void *motion, double tau)
     x->tau = tau;
 }
 
-/* A guard where look() was. */
+/* A guard where go() was. */
 static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct watch *w = g->watch;
+    const struct watch *w = g->output;
     double v0 = g->start + g->ramp * x->tau, v1 = g->ramp, v2 = 0.0;
     for (size_t p = 0; p < x->h->exponents; p++) {
         v0 += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
@@ -262,7 +260,7 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
         for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
             way += j->val[e] * x->dq[j->col[e]];
         }
-        energy -= x->modes.force[i] * way;
+        energy -= x->events.stick_slip.force[i] * way;
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
@@ -270,13 +268,13 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
             const double c = w->cosine[e], d = w->sine[e];
             const double way =
                 w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
-            energy += x->modes.mode[w->index[e]] ? x->modes.force[w->index[e]] * way : 0.0;
+            energy += x->events.stick_slip.slip[w->index[e]] ? x->events.stick_slip.force[w->index[e]] * way : 0.0;
         }
     }
     return sys->power * energy;
 }
 
-/* eta (into now) and eta' (into work) where look() was. */
+/* eta (into now) and eta' (into work) where go() was. */
 static void amplitudes(struct exact *x, const tribo_system *sys)
 {
     const struct held *h = x->h;
@@ -308,11 +306,13 @@ static void amplitudes(struct exact *x, const tribo_system *sys)
 }
 
 /* The state at t0 + tau. from is the state at t0; to may be the same. */
-static void move_to(struct exact *x, const tribo_system *sys, double tau, const double *from, double *to)
+static void move_to(void *motion, double tau, const double *from, double *to)
 {
+    struct exact *x = motion;
+    const tribo_system *sys = x->sys;
     const struct held *h = x->h;
     const size_t n = sys->ndof;
-    look(x, tau);
+    go(x, tau);
     amplitudes(x, sys);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
@@ -359,7 +359,7 @@ static void split_motion(struct exact *x, tribo_system *sys, const double *y)
         for (size_t i = 0; i < h->moving; i++) {
             q += psi[i] * y[h->dof[i]];
             u += psi[i] * y[n + h->dof[i]];
-            a += psi[i] * x->modes.acceleration[h->dof[i]];
+            a += psi[i] * x->events.stick_slip.acceleration[h->dof[i]];
         }
         x->eta[k] = q;
         x->rate[k] = u;
@@ -411,71 +411,120 @@ static void split_motion(struct exact *x, tribo_system *sys, const double *y)
     }
 }
 
-/* How long the bounds of this phase hold: for good, unless something grows. */
-static double bound_motion(struct exact *x, double longest)
+/* How long the bounds of a phase can hold: for good, unless something grows. */
+static double longest_phase(const struct held *h, double longest)
 {
-    const struct held *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
         longest = h->lr[p] > 0.0 ? lesser(longest, 1.0 / h->lr[p]) : longest;
     }
-    longest = h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
+    return h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
+}
+
+/* Bounds of the exponents from tau on. */
+static void bound_exponents(struct exact *x, double tau)
+{
+    const struct held *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double lambda = h->size[p];
-        x->growth[p] = sqrt(x->zr[p] * x->zr[p] + x->zi[p] * x->zi[p]) * (h->lr[p] > 0.0 ? exp(h->lr[p] * longest) : 1.0);
+        const double lambda = h->size[p], time = h->lr[p] > 0.0 ? x->longest : tau;
+        x->growth[p] = sqrt(x->zr[p] * x->zr[p] + x->zi[p] * x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
         x->growth6[p] = x->growth[p];
         for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
             const size_t at = s * h->modes + h->owner[p];
             if (h->resonant[at]) {
                 const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
                 /* the frequencies are within RESONANCE of each other */
-                x->growth[p] += force * longest;
-                x->growth6[p] += force * (longest + 6.1 / lambda);
+                x->growth[p] += force * x->longest;
+                x->growth6[p] += force * (x->longest + 6.1 / lambda);
             }
         }
     }
-    return longest;
 }
 
-/* Guards of a watch, for a phase that lasts no longer than longest. now is what it watches at t0. */
-static void add_guards(struct exact *x, const struct watch *w, int slides, double now, double longest)
+/* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */
+static void bound_guard(const struct exact *x, struct guard *g)
+{
+    const struct held *h = x->h;
+    const struct watch *w = g->output;
+    g->bend = 0.0;
+    g->size = fabs(g->offset) + fabs(g->start) + fabs(g->ramp) * x->longest;
+    for (size_t p = 0; p < h->exponents; p++) {
+        g->bend += w->bend[p] * x->growth6[p];
+        g->size += w->size[p] * x->growth[p];
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        g->size += w->wave[s];
+        g->bend += w->wave_bend[s];
+    }
+}
+
+/* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on. */
+static double bound(void *motion, double tau)
+{
+    struct exact *x = motion;
+    double decay = 0.0;
+    for (size_t p = 0; p < x->h->exponents; p++) {
+        decay = greater(decay, -x->h->lr[p]);
+    }
+    bound_exponents(x, tau);
+    for (size_t k = 0; k < x->events.search.guards; k++) {
+        bound_guard(x, &x->events.search.guard[k]);
+    }
+    return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
+}
+
+/* Guards of a watch. now is what it watches at t0. */
+static void add_guards(struct exact *x, const struct watch *w, int of_velocity, double now)
 {
     const struct held *h = x->h;
     const size_t i = w->contact;
-    double start = now, bend = 0.0, size = fabs(now), ramp = w->ramp;
+    struct guard g = {.output = w, .start = now, .ramp = w->ramp};
     for (size_t p = 0; p < h->exponents; p++) {
-        start -= w->cr[p] * x->zr[p] - w->ci[p] * x->zi[p];
-        bend += w->bend[p] * x->growth6[p];
-        size += w->size[p] * x->growth[p];
+        g.start -= w->cr[p] * x->zr[p] - w->ci[p] * x->zi[p];
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        start -= w->rr[s] * x->cos_0[s] - w->ri[s] * x->sin_0[s];
-        size += w->wave[s];
-        bend += w->wave_bend[s];
+        g.start -= w->rr[s] * x->cos_0[s] - w->ri[s] * x->sin_0[s];
     }
     for (size_t k = 0; k < h->modes; k++) {
-        ramp += w->on_rate[k] * (slides ? x->acc[k] : x->vel[k]);
+        g.ramp += w->on_rate[k] * (of_velocity ? x->acc[k] : x->vel[k]);
     }
-    const double range = size - fabs(now) + fabs(start) + fabs(ramp) * longest, limit = x->modes.limit[i];
-    struct guard g = {
-        .contact = i, .watch = w, .side = x->modes.mode[i], .start = start, .ramp = ramp, .size = size, .bend = bend};
-    if (slides) {
-        g.from_zero = x->modes.rested[i];
-        x->search.guard[x->search.guards++] = g;
-        return;
-    }
-    /* far from the limit for the whole phase: nothing to guard */
-    g.offset = limit;
-    g.size += limit;
-    for (int side = -1; side <= 1 && range >= limit; side += 2) {
-        g.side = side;
-        g.from_zero = x->modes.weak[i] && side * x->modes.force[i] < 0.0;
-        x->search.guard[x->search.guards++] = g;
+    if (of_velocity && x->events.stick_slip.slip[i] == 0) {
+        tribo_events_guard_part(&x->events, i, g);
+    } else if (of_velocity) {
+        tribo_events_guard_slip(&x->events, i, g);
+    } else {
+        bound_guard(x, &g);
+        g.offset = x->events.stick_slip.limit[i];
+        /* nothing to guard if it is far from the limit for the whole phase */
+        if (g.size >= g.offset) {
+            tribo_events_guard_stick(&x->events, i, g);
+        }
     }
 }
 
-/* Starts a phase at (t, y) with modes, forces and accelerations as decided. Returns how long its bounds hold. */
-static double begin_phase(struct exact *x, tribo_system *sys, double t, const double *y, double longest)
+static void set_guards(struct exact *x, const double *y)
 {
+    const struct held *h = x->h;
+    const struct stick_slip *m = &x->events.stick_slip;
+    tribo_events_clear_guards(&x->events);
+    for (size_t k = 0; k < h->watches; k++) {
+        const struct watch *w = &h->watch[k];
+        const size_t i = w->contact;
+        const int of_velocity = k < h->sliding;
+        if (m->slip[i] != 2) {
+            const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+            add_guards(x, w, of_velocity, of_velocity ? v : m->force[i]);
+        }
+    }
+}
+
+static int begin(void *motion, double t, const double *y, double end, double *reach)
+{
+    struct exact *x = motion;
+    tribo_system *sys = x->sys;
+    const int status = find_held(x);
+    if (status) {
+        return status;
+    }
     const struct held *h = x->h;
     x->t0 = t;
     split_motion(x, sys, y);
@@ -488,17 +537,10 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
     }
     memcpy(x->wr, x->zr, h->exponents * sizeof *x->wr);
     memcpy(x->wi, x->zi, h->exponents * sizeof *x->wi);
-    longest = bound_motion(x, longest);
-    x->search.guards = 0;
-    for (size_t k = 0; k < h->watches; k++) {
-        const struct watch *w = &h->watch[k];
-        if (x->modes.mode[w->contact] != 2) {
-            const int slides = k < h->sliding;
-            const double v = x->modes.rested[w->contact] ? 0.0 : tribo_modes_velocity(&x->modes, sys, w->contact, y);
-            add_guards(x, w, slides, slides ? v : x->modes.force[w->contact], longest);
-        }
-    }
-    return longest;
+    *reach = x->longest = longest_phase(h, end - t);
+    bound_exponents(x, 0.0);
+    set_guards(x, y);
+    return TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
@@ -509,37 +551,38 @@ static void destroy(tribo_driver *drv)
     if (x) {
         drop_helds(x);
         free(x->held);
-        tribo_modes_free(&x->modes);
+        tribo_events_free(&x->events);
         free(x->eta);
         free(x->cos_t);
-        free(x->search.guard);
         free(x);
     }
 }
 
 static int create(tribo_driver *drv)
 {
-    const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
+    const size_t n = drv->sys->ndof;
     struct exact *x = calloc(1, sizeof *x);
     drv->own = x;
     if (!x) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
-    x->search.look = look;
-    x->search.read = read_guard;
-    x->search.motion = x;
-    const int status = tribo_modes_create(&x->modes, drv->sys);
+    const int status = tribo_events_create(&x->events, drv->sys);
     if (status) {
         return status;
     }
+    x->events.search.go = go;
+    x->events.search.read = read_guard;
+    x->events.search.bound = bound;
+    x->events.search.motion = x->events.motion = x;
+    x->events.begin = begin;
+    x->events.state = move_to;
+    x->events.shows_between = 1;
     double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
                                 &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
     double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
     double *work = malloc((10 * n + 20 * n + 1) * sizeof *work);
-    x->search.guard = malloc((2 * c + 1) * sizeof *x->search.guard);
-    if (!work || !x->search.guard) {
-        free(work);
+    if (!work) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     for (size_t k = 0; k < 10; k++) {
@@ -567,18 +610,6 @@ static int prepare(struct exact *x, tribo_system *sys)
     return TRIBO_OK;
 }
 
-/* Shows the observer the motion in steps of dt, up to tau. */
-static int show(struct exact *x, tribo_driver *drv, double tau, const double *y)
-{
-    int status = TRIBO_OK;
-    while (drv->seen && !status && x->shown < x->t0 + tau) {
-        move_to(x, drv->sys, x->shown - x->t0, y, drv->slope);
-        status = tribo_driver_tell(drv, x->shown, drv->slope, 0);
-        x->shown += drv->dt;
-    }
-    return status;
-}
-
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct exact *x = drv->own;
@@ -587,34 +618,9 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                  "method exact takes harmonic loads only; method event takes tables too");
     }
-    int status = prepare(x, sys);
-    status = status ? status : tribo_modes_start(&x->modes, sys, *t, y, continues);
-    if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
-    }
-    status = find_held(x, drv);
-    x->slowest = 1.0 / (t1 - *t);
-    x->shown = *t + drv->dt;
-    while (!status && *t < t1) {
-        double longest = begin_phase(x, sys, *t, y, t1 - *t), when = 0.0;
-        const struct guard *event = tribo_search(&x->search, longest, &when);
-        when = event ? lesser(when, longest) : longest;
-        status = show(x, drv, when, y);
-        if (status) {
-            break;
-        }
-        move_to(x, sys, when, y, y);
-        *t = !event && longest == t1 - *t ? t1 : lesser(*t + when, t1);
-        drv->steps++;
-        status = tribo_modes_proceed(&x->modes, drv, &x->search, event, *t, y, 1.0 / greater(x->h->fastest, x->slowest));
-        status = status ? status : find_held(x, drv);
-        if (!status && (event || *t >= t1)) {
-            status = tribo_driver_tell(drv, *t, y, event != NULL);
-        }
-    }
-    sys->evaluations += x->search.looks;
-    x->search.looks = 0;
-    return status;
+    const int status = prepare(x, sys);
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts))
+                  : tribo_events_advance(&x->events, drv, t, t1, y, continues);
 }
 
 const struct method tribo_method_exact = {"exact", 0, create, destroy, advance, NULL};
