@@ -78,7 +78,7 @@ void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard)
 void tribo_events_guard_part(struct events *e, size_t i, struct guard guard)
 {
     guard.slides = 1;
-    guard.allowance = 4.0 * e->stick_slip.doubt * e->stick_slip.noise[i];
+    guard.allowance = e->stick_slip.parting[i];
     append_both(e, i, guard);
 }
 
@@ -134,8 +134,8 @@ static void learn(struct events *e)
 {
     for (size_t k = 0; k < e->search.guards; k++) {
         const struct guard *g = &e->search.guard[k];
-        if (g->slides && e->stick_slip.slip[g->contact] != 0) {
-            e->stick_slip.noise[g->contact] = TRIBO_VELOCITY_NOISE * g->size;
+        if (g->slides) {
+            e->stick_slip.seen[g->contact] = g->size;
         }
     }
 }

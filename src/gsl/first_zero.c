@@ -10,6 +10,9 @@
 /* More looks at a motion than this between two events mean that it has frequencies which cannot be followed. */
 #define MOST_LOOKS ((size_t)1 << 24)
 
+/* A guard that begins at zero may stray from there by this part of its size. */
+#define ALLOWED 1e-14
+
 /* Values of a guard that are rounding. */
 static double noise(const struct guard *g)
 {
@@ -100,22 +103,24 @@ static void keep_right(struct first_zero *s)
     }
 }
 
-/* How far a guard's zero is from its middle sample by Newton's method, if that is as good as another look; 0 if there is need of
- * one. */
-static double last_bit(const struct guard *g)
-{
-    const double step = g->middle.d < 0.0 ? -g->middle.g / g->middle.d : 0.0;
-    return fabs(0.5 * g->middle.e * step * step) <= noise(g) ? step : 0.0;
-}
-
-static int some_below(const struct first_zero *s, const struct guard *but)
+/* Whether another guard is below zero where the middle sample is, or by its slope step after it. */
+static int some_below(const struct first_zero *s, const struct guard *but, double step)
 {
     for (size_t k = 0; k < s->guards; k++) {
-        if (&s->guard[k] != but && s->guard[k].middle.g < -noise(&s->guard[k])) {
+        const struct guard *g = &s->guard[k];
+        if (g != but && g->middle.g + step * g->middle.d < -noise(g)) {
             return 1;
         }
     }
     return 0;
+}
+
+/* How far a guard's zero is from its middle sample by Newton's method, if that is as good as another look; 0 if there is need of
+ * one. */
+static double last_bit(const struct first_zero *s, const struct guard *g)
+{
+    const double step = g->middle.d < 0.0 ? -g->middle.g / g->middle.d : 0.0;
+    return fabs(0.5 * g->middle.e * step * step) <= noise(g) && !some_below(s, g, step) ? step : 0.0;
 }
 
 /* A guard is not positive at *b; falls seems to be the first to be so, at from *a. Narrows [*a, *b] to the first zero of all
@@ -125,8 +130,8 @@ static const struct guard *narrow(struct first_zero *s, struct guard *falls, dou
     while (falls->right.g < -noise(falls) && *a + at > *a && *a + at < *b && s->looks < MOST_LOOKS) {
         const double trial = *a + at;
         sample(s, trial);
-        const double step = last_bit(falls);
-        if (some_below(s, falls) || (falls->middle.g < -noise(falls) && step == 0.0)) {
+        const double step = last_bit(s, falls);
+        if (some_below(s, falls, 0.0) || (falls->middle.g < -noise(falls) && step == 0.0)) {
             *b = trial;
             keep_right(s);
             falls = first_to_fall(s, *b - *a, &at);
@@ -156,9 +161,13 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         return 1;
     }
     s->looks = 0;
+    double a = 0.0, better = s->bound(s->motion, 0.0), h = first_length(s, longest), at = 0.0;
+    for (size_t k = 0; k < s->guards; k++) {
+        struct guard *g = &s->guard[k];
+        g->allowance = greater(g->allowance, greater(ALLOWED * g->size, DBL_MIN));
+    }
     sample(s, 0.0);
     keep_left(s);
-    double a = 0.0, better = s->bound(s->motion, 0.0), h = first_length(s, longest), at = 0.0;
     while (a < longest) {
         if (s->looks >= MOST_LOOKS) {
             return 0;

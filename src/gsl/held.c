@@ -18,6 +18,9 @@
 #define UNDAMPED 1e-9
 #define CRITICAL 1e-8
 
+/* Bases that part from each other by no more than this part of their motion go together. */
+#define NO_MOTION 1e-14
+
 /* What is needed only while a held structure is built. Vectors of the whole structure: [ndof], modes of it [modes][ndof]. */
 struct build {
     tribo_system *sys;
@@ -684,6 +687,44 @@ static void finish_watch(const struct build *b, struct watch *w)
     }
 }
 
+/* The largest |x + i y|, nearly. */
+static double largest(const double *x, const double *y, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = greater(most, fabs(x[i]) + fabs(y[i]));
+    }
+    return most;
+}
+
+/* What the belts make of v_i = J_i q' - b_i, in all harmonics; what is only rounding of their motion is left out. Returns whether
+ * there is anything. */
+static int watch_belts(const struct build *b, struct watch *w, size_t i)
+{
+    const struct matrix *j = &b->sys->direction;
+    int any = 0;
+    for (size_t s = 0; s < b->h->harmonics; s++) {
+        const struct harmonic *wave = &b->sys->harmonic[s];
+        const double *yr = b->yr + s * b->n, *yi = b->yi + s * b->n, most = largest(yr, yi, b->n);
+        double re = 0.0, im = 0.0, size = 0.0;
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            re += j->val[e] * yr[j->col[e]];
+            im += j->val[e] * yi[j->col[e]];
+            size += fabs(j->val[e]) * most;
+        }
+        for (size_t e = 0; wave->moves_base && wave->omega != 0.0 && e < wave->count; e++) {
+            re -= wave->index[e] == i ? wave->cosine[e] : 0.0;
+            im += wave->index[e] == i ? wave->sine[e] : 0.0;
+        }
+        if (fabs(re) + fabs(im) > NO_MOTION * size) {
+            w->rr[s] += re;
+            w->ri[s] += im;
+            any = 1;
+        }
+    }
+    return any;
+}
+
 /* v_i = J_i q' - b_i. */
 static int watch_sliding(struct build *b, struct watch *w, size_t i)
 {
@@ -699,17 +740,19 @@ static int watch_sliding(struct build *b, struct watch *w, size_t i)
         w->on_rate[k] = shape;
         watch_mode(b, w, k, 0.0, shape);
     }
-    for (size_t s = 0; s < b->h->harmonics; s++) {
-        const struct harmonic *wave = &b->sys->harmonic[s];
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-            w->rr[s] += j->val[e] * b->yr[s * b->n + j->col[e]];
-            w->ri[s] += j->val[e] * b->yi[s * b->n + j->col[e]];
-        }
-        for (size_t e = 0; wave->moves_base && wave->omega != 0.0 && e < wave->count; e++) {
-            w->rr[s] -= wave->index[e] == i ? wave->cosine[e] : 0.0;
-            w->ri[s] += wave->index[e] == i ? wave->sine[e] : 0.0;
-        }
+    watch_belts(b, w, i);
+    finish_watch(b, w);
+    return 1;
+}
+
+/* The same of a contact that rests by itself: the modes do not move it, but its base may part from those that hold. */
+static int watch_parting(struct build *b, struct watch *all, size_t *used, size_t i)
+{
+    struct watch *w = &all[*used];
+    if (!create_watch(b, w, i)) {
+        return 0;
     }
+    *used += watch_belts(b, w, i) != 0;
     finish_watch(b, w);
     return 1;
 }
@@ -796,13 +839,11 @@ static int find_watches(struct build *b)
     if (!h->watch) {
         return 0;
     }
-    int base_moves = 0;
-    for (size_t w = 0; w < h->harmonics; w++) {
-        base_moves |= b->sys->harmonic[w].moves_base;
-    }
-    /* one that rests by itself on a moving base may part from it */
     for (size_t i = 0; i < c; i++) {
-        if ((h->key[i] == 0 || (h->key[i] == 1 && base_moves)) && !watch_sliding(b, &h->watch[h->watches++], i)) {
+        const int done = h->key[i] == 0   ? watch_sliding(b, &h->watch[h->watches++], i)
+                         : h->key[i] == 1 ? watch_parting(b, h->watch, &h->watches, i)
+                                          : 1;
+        if (!done) {
             return 0;
         }
     }

@@ -232,6 +232,21 @@ static double bound(void *motion, double tau)
     return HUGE_VAL;
 }
 
+/* What the velocity of contact i, or of those that hold it, is the sum of, over [0, h]. */
+static double parts_of_velocity(const struct event *e, size_t i, double h)
+{
+    const struct matrix *j = &e->sys->direction;
+    double size = 0.0, power = 1.0, lever = 0.0;
+    for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
+        lever += fabs(j->val[d]);
+    }
+    for (size_t k = 0; k <= e->order; k++) {
+        size += lever * largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
+        power *= h;
+    }
+    return size;
+}
+
 static void set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -243,6 +258,7 @@ static void set_guards(struct event *e)
         if (m->slip[i] == 1 || m->slip[i] == -1) {
             tribo_events_guard_slip(&e->events, i, g);
         } else if (tribo_stick_slip_may_part(m, i)) {
+            e->size[i] = parts_of_velocity(e, i, h);
             tribo_events_guard_part(&e->events, i, g);
         } else if (m->slip[i] == 0 && e->size[i] >= lesser(m->limit[i], m->limit[i] + m->limit_rate[i] * h)) {
             g.offset = m->limit[i];

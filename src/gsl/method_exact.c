@@ -257,7 +257,7 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
     for (size_t k = 0; k < x->h->sliding; k++) {
         const size_t i = x->h->watch[k].contact;
         double way = 0.0;
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        for (size_t e = j->first[i]; x->events.stick_slip.slip[i] && e < j->first[i + 1]; e++) {
             way += j->val[e] * x->dq[j->col[e]];
         }
         energy -= x->events.stick_slip.force[i] * way;

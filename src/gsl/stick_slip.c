@@ -15,8 +15,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Accelerations are known to this part of what they are the sum of. */
+/* Accelerations, and velocities, are known to this part of what they are the sum of. */
 #define NOISE 2e-14
+#define VELOCITY_NOISE 2e-14
 
 /* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
 #define ALLOWED 8.0
@@ -39,12 +40,12 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force, &m->allowance, &m->base, &m->noise, &m->diagonal,
+    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force, &m->allowance, &m->base, &m->noise, &m->diagonal, &m->seen, &m->parting,
                                    &m->v,     &m->a,          &m->gain,  &m->lo,        &m->hi,   &m->f,     &m->still};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(5, c);
+    m->slip = calloc(6, c);
     m->at = malloc(c * sizeof *m->at);
     m->limit = work;
     if (status || !work || !m->slip || !m->at) {
@@ -59,8 +60,9 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     }
     m->tied = m->slip + c;
     m->before = m->slip + 2 * c;
-    m->holds = (unsigned char *)m->slip + 3 * c;
-    m->rested = (unsigned char *)m->slip + 4 * c;
+    m->loose = m->slip + 3 * c;
+    m->holds = (unsigned char *)m->slip + 4 * c;
+    m->rested = (unsigned char *)m->slip + 5 * c;
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
@@ -113,14 +115,15 @@ static void add_amplitudes(const tribo_system *sys, int moves_base, int order, d
     }
 }
 
-/* What of the velocities may be rounding, as far as the state alone tells. */
+/* What of the velocities may be rounding, as far as the state tells, and the phase before. */
 static void find_noise(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->noise, 0, sys->ncontact * sizeof *m->noise);
     add_amplitudes(sys, 1, 0, m->noise);
     add_sizes(&sys->direction, y + sys->ndof, m->noise);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->noise[i] *= TRIBO_VELOCITY_NOISE;
+        m->noise[i] = VELOCITY_NOISE * greater(m->noise[i], m->seen[i]);
+        m->seen[i] = 0.0;
     }
 }
 
@@ -149,6 +152,7 @@ static void find_gains(struct stick_slip *m, const tribo_system *sys, const doub
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->gain[i] *= NOISE * m->doubt;
         m->allowance[i] = m->diagonal[i] > 0.0 ? ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
     }
 }
 
@@ -218,17 +222,15 @@ static int find_holds(struct stick_slip *m, const tribo_system *sys)
         m->holds[i] = m->slip[i] == 0 && m->diagonal[i] > 0.0;
     }
     m->dependents = 0;
-    if (m->uncoupled) {
-        return TRIBO_OK;
-    }
-    if (rest > 1 && !choose_holds(m, sys, rest)) {
+    if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
     }
     for (size_t i = 0; i < c; i++) {
         m->dependents += m->slip[i] == 0 && !m->holds[i];
+        m->loose[i] = !m->holds[i];
         m->lo[i] = m->holds[i] ? 1.0 : 0.0;
     }
-    return tribo_set_limit(m->hold, m->lo);
+    return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
 }
 
 /* 1 if J x - base is more than the rounding of x for a contact that holds. */
@@ -252,7 +254,7 @@ static int moves(struct stick_slip *m, const tribo_system *sys, const double *ba
  * leaves rounding of what it takes away. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    tribo_system_snap(sys, m->slip, base, x);
+    tribo_system_snap(sys, m->loose, base, x);
     if (m->simple || !moves(m, sys, base, x)) {
         return TRIBO_OK;
     }
@@ -267,7 +269,7 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
         }
         tribo_matrix_multiply_add(&sys->response, 1.0, m->f, x);
     }
-    tribo_system_snap(sys, m->slip, base, x);
+    tribo_system_snap(sys, m->loose, base, x);
     return TRIBO_OK;
 }
 
@@ -308,7 +310,7 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
     }
 }
 
-/* Whoever has no velocity is at rest, also those that another contact now holds. But where bases part, a contact that rests by
+/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds. But where bases part, a contact that rests by
  * itself goes with them. */
 static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
@@ -318,7 +320,8 @@ static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
         found = 0;
         for (size_t i = 0; !status && i < sys->ncontact; i++) {
-            if ((m->slip[i] == 1 || m->slip[i] == -1) && slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)) == 0) {
+            if ((m->slip[i] == 1 || m->slip[i] == -1) &&
+                m->slip[i] != slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y))) {
                 m->slip[i] = 0;
                 found++;
             }
@@ -477,6 +480,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, 1, 0, 1.0, m->base);
     memset(m->tied, 0, sys->ncontact);
+    find_noise(m, sys, y);
     update_limits(m, sys, y);
     int status = find_resting(m, sys, y);
     if (!status) {
@@ -509,7 +513,7 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     m->doubt = 1.0;
     m->base_moves = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
-        m->base_moves |= sys->harmonic[k].moves_base;
+        m->base_moves |= sys->harmonic[k].moves_base && sys->harmonic[k].count > 0;
     }
     const double most = tribo_system_fastest(sys);
     m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);

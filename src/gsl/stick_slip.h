@@ -10,9 +10,6 @@
 #include "driver.h"
 #include "first_zero.h"
 
-/* Velocities are known to this part of what they are the sum of. */
-#define TRIBO_VELOCITY_NOISE 2e-14
-
 struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
     tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */
@@ -25,13 +22,16 @@ struct stick_slip {
     signed char *slip;          /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
     unsigned char *holds;       /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                                    by themselves, and keep their forces */
-    size_t dependents;          /* how many these are */
+    signed char *loose;         /* [ncontact] 1: it does not hold */
+    size_t dependents;          /* how many rest by themselves */
     unsigned char *rested;      /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     double *limit, *limit_rate; /* [ncontact] */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *acceleration;       /* [ndof] and q'' */
     double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
+    double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
     double *base, *noise;       /* [ncontact] b(t); what of v may be rounding */
+    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known */
     double *diagonal;           /* [ncontact] R_ii */
     double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
     double *gain, *lo, *hi, *f; /* [ncontact] workspace: what accelerations of contacts may be rounding; bounds, forces */

@@ -242,14 +242,14 @@ double tribo_system_weight(const tribo_system *sys, size_t i)
     return sys->loads_accelerate && sys->metric.rows ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
 }
 
-void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x)
+void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
     for (size_t i = 0; i < sys->ncontact; i++) {
         const size_t first = j->first[i], count = j->first[i + 1] - first;
-        if (mode[i] == 0 && count == 1) {
+        if (!loose[i] && count == 1) {
             x[j->col[first]] = base[i] / j->val[first];
-        } else if (mode[i] == 0 && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
+        } else if (!loose[i] && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
             x[j->col[first + 1]] = (base[i] - j->val[first] * x[j->col[first]]) / j->val[first + 1];
         }
     }
