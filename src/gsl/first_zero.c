@@ -168,6 +168,13 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
     }
     sample(s, 0.0);
     keep_left(s);
+    for (size_t k = 0; k < s->guards; k++) {
+        if (s->guard[k].left.g <= 0.0) {
+            *first = &s->guard[k];
+            *when = 0.0;
+            return 1;
+        }
+    }
     while (a < longest) {
         if (s->looks >= MOST_LOOKS) {
             return 0;

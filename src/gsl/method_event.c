@@ -105,7 +105,8 @@ static int expand_forces(struct event *e, size_t k)
     add_harmonics(e, 1, k, -1.0, watch);
     tribo_matrix_multiply_add(&sys->direction, 1.0, u, watch);
     for (size_t i = 0; i < c; i++) {
-        const double force = e->held[i] + (k < 2 ? e->given[i] : 0.0), v = k == 0 && m->rested[i] ? 0.0 : watch[i];
+        const double force = k == 0 ? m->force[i] : e->held[i] + (k < 2 ? e->given[i] : 0.0);
+        const double v = k == 0 && m->rested[i] ? 0.0 : watch[i];
         watch[i] = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : v;
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
