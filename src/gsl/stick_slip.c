@@ -472,6 +472,41 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     return TRIBO_OK;
 }
 
+/* ------------------------------------------------------------------------------------------------------------ overload */
+
+/* Of a light body between heavy ones the acceleration may be nothing but rounding, also where a contact on it lets go. Then the
+ * forces tell that it would take to hold all that are at rest: if they go beyond the limits, the one that is most overloaded
+ * slides. */
+static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
+{
+    int status = find_holds(m, sys);
+    memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = m->holds[i] ? 0.0 : m->force[i];
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
+    contact_accelerations(sys, m->rate, 1, m->v);
+    status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
+    if (status) {
+        return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+    }
+    size_t worst = sys->ncontact;
+    double most = 1.0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double excess = m->force[i] > 0.0 ? m->f[i] - m->limit[i] : -m->f[i] - m->limit[i];
+        if (m->tied[i] && m->holds[i] && excess > most * m->allowance[i]) {
+            worst = i;
+            most = excess / m->allowance[i];
+        }
+    }
+    if (worst < sys->ncontact) {
+        m->slip[worst] = m->force[worst] > 0.0 ? -1 : 1;
+        m->tied[worst] = 0;
+        *changes = 1;
+    }
+    return TRIBO_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
@@ -494,6 +529,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         changes = status ? 0 : let_slide(m, sys, y, &ties);
         if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
             status = look_ahead(m, sys, y, &changes);
+        }
+        if (!status && !changes && ties) {
+            status = relieve(m, sys, &changes);
         }
     }
     return status ? status : find_holds(m, sys);
