@@ -402,7 +402,8 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     contact_accelerations(sys, m->acceleration, 1, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double room = m->limit[i] - fabs(m->force[i]);
-        if (m->slip[i] == 0 && room <= m->allowance[i] / ALLOWED) {
+        const double within = i == m->reached ? CLOSE * m->limit[i] : m->allowance[i] / ALLOWED;
+        if (m->slip[i] == 0 && room <= within) {
             const signed char direction = m->force[i] > 0.0 ? -1 : 1;
             m->tied[i] = 1;
             changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
@@ -474,37 +475,47 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 
 /* ------------------------------------------------------------------------------------------------------------ overload */
 
-/* Of a light body between heavy ones the acceleration may be nothing but rounding, also where a contact on it lets go. Then the
- * forces tell that it would take to hold all that are at rest: if they go beyond the limits, the one that is most overloaded
- * slides. */
-static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
+/* f = the forces that hold all contacts at rest where they are, the others having theirs. */
+static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
     int status = find_holds(m, sys);
-    memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->holds[i] ? 0.0 : m->force[i];
     }
+    memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
     contact_accelerations(sys, m->rate, 1, m->v);
     status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
-    if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
-    }
+    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
+}
+
+/* Of a light body between heavy ones the acceleration may be nothing but rounding, also where a contact on it lets go, or goes back
+ * inside its limit. Then the forces tell that it takes to hold all that are at rest: if they go beyond the limits, the contact
+ * that is most overloaded slides; and otherwise these are the forces. */
+static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
+{
+    const int status = find_holding_forces(m, sys);
     size_t worst = sys->ncontact;
     double most = 1.0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double excess = m->force[i] > 0.0 ? m->f[i] - m->limit[i] : -m->f[i] - m->limit[i];
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        const double excess = fabs(m->f[i]) - m->limit[i];
         if (m->tied[i] && m->holds[i] && excess > most * m->allowance[i]) {
             worst = i;
             most = excess / m->allowance[i];
         }
     }
     if (worst < sys->ncontact) {
-        m->slip[worst] = m->force[worst] > 0.0 ? -1 : 1;
+        m->slip[worst] = m->f[worst] > 0.0 ? -1 : 1;
         m->tied[worst] = 0;
         *changes = 1;
+        return status;
     }
-    return TRIBO_OK;
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->limit[i], m->limit[i]) : m->force[i];
+    }
+    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
@@ -534,6 +545,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
             status = relieve(m, sys, &changes);
         }
     }
+    m->reached = m->contacts;
     return status ? status : find_holds(m, sys);
 }
 
@@ -549,6 +561,7 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     }
     m->fresh = 1;
     m->doubt = 1.0;
+    m->reached = m->contacts;
     m->base_moves = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
         m->base_moves |= sys->harmonic[k].moves_base && sys->harmonic[k].count > 0;

@@ -18,6 +18,7 @@ struct stick_slip {
     int base_moves;
     int simple;     /* no contact has more than one degree of freedom */
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
+    size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
     signed char *slip;          /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
     unsigned char *holds;       /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
@@ -55,7 +56,7 @@ void tribo_stick_slip_free(struct stick_slip *m);
  * rounding. Decides. */
 int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
-/* Decides about the contacts at rest, and takes rounding out of their velocities in y. Sets slip, holds, force, acceleration and
+/* Decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out of their velocities in y. Sets slip, holds, force, acceleration and
  * allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
