@@ -5,6 +5,7 @@
  * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can
  * have, what the series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials
  * cannot skip a zero (first_zero.h). */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,13 +62,15 @@ static void add_harmonics(const struct event *e, int moves_base, size_t k, doubl
     }
 }
 
-/* The k-th coefficient of f for the contacts that do not hold: sliding ones follow their limit, others keep their force. */
+/* The k-th coefficient of f for the contacts that do not hold: those that slide follow their limit, and so do those that are just
+ * at it; others keep their force. */
 static void given_forces(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        const double limit = k == 0 ? m->limit[i] : m->limit_rate[i], kept = k == 0 && !m->holds[i] ? m->force[i] : 0.0;
-        e->given[i] = m->slip[i] == 0 ? kept : m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
+        const double limit = k == 0 ? m->limit[i] : m->limit_rate[i];
+        const double kept = k == 0 ? m->force[i] : m->tied[i] ? (m->force[i] > 0.0 ? limit : -limit) : 0.0;
+        e->given[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? kept : -m->slip[i] * limit;
     }
 }
 
@@ -166,13 +169,15 @@ static double step_length(const struct event *e)
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
     const double q = drv->abstol + drv->reltol * largest(e->q, n), u = drv->abstol + drv->reltol * largest(e->u, n);
     const double d = drv->abstol + drv->reltol * fabs(e->d[0]);
-    double h = 0.5 * (double)(e->order + 1) / e->fastest;
+    const double most = e->fastest > 0.0 ? 0.5 * (double)(e->order + 1) / e->fastest : HUGE_VAL;
+    double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(largest(e->q + k * n, n) / q, greater(largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
-            /* forces of contacts at rest to the same part of their limit */
-            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? e->tolerance * m->limit[i] : u;
-            term = greater(term, fabs(e->watch[k * c + i]) / scale);
+            /* forces of contacts at rest to the same part of their limit, or of what it becomes */
+            const double limit = m->limit[i] + (m->limit_rate[i] != 0.0 ? fabs(m->limit_rate[i]) * lesser(most, DBL_MAX) : 0.0);
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? e->tolerance * limit : u;
+            term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
         }
         h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
     }
