@@ -122,8 +122,7 @@ typedef struct tribo_driver tribo_driver;
  *               2/omega_max) and by the implicit midpoint rule (Moreau and Jean). Second order, but for contacts that reverse
  *               without sticking, and central with damping: there first order
  *               "auto": exact if the system is linear, harmonic and small, else event; see tribo_driver_method
- *               exact and event do not cover contacts whose bases move differently while they hold one and the same body together,
- *               all at rest for a moment: in rare cases the wrong one then slides.
+ *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step;
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL
@@ -160,6 +159,15 @@ enum {
     TRIBO_COUNT_EVENTS = 104       /* events located */
 };
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
+
+/* How far the motion has strayed from Coulomb's law since creation, "exact" and "event": bounds, over all of the motion and not
+ * only where it was looked at. What a contact is off, the motion is off by no more than the impulse of that. */
+enum {
+    TRIBO_REAL_EXCESS = 100,  /* the largest force of a contact at rest beyond its limit */
+    TRIBO_REAL_BACKSLIP = 101 /* the largest velocity of a contact against the direction in which its force takes it to slide */
+};
+/* Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_UNSUPPORTED (other methods). */
+TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
 
 /* Has seen called after every accepted step (event 0) and at events (event 1: a contact sticks, breaks away or reverses). What
  * it answers ends the run unless 0: the advance then returns TRIBO_ERR_STOPPED. It must not change the system. NULL: no observer.

@@ -94,6 +94,7 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     d->state = work;
     d->slope = work + dimension;
     d->time = NAN;
+    d->excess = d->backslip = NAN;
     status = m->create(d);
     if (status) {
         tribo_driver_destroy(d);
@@ -166,6 +167,22 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
     default:
         return TRIBO_ERR_RANGE;
     }
+}
+
+int tribo_driver_real(const tribo_driver *drv, int which, double *value)
+{
+    if (!drv || !value) {
+        return TRIBO_ERR_NULL;
+    }
+    if (which != TRIBO_REAL_EXCESS && which != TRIBO_REAL_BACKSLIP) {
+        return TRIBO_ERR_RANGE;
+    }
+    const double found = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
+    if (isnan(found)) {
+        return TRIBO_ERR_UNSUPPORTED;
+    }
+    *value = found;
+    return TRIBO_OK;
 }
 
 int tribo_driver_tell(tribo_driver *drv, double t, const double *y, int event)

@@ -23,6 +23,7 @@ struct tribo_driver {
     double *state, *slope; /* [dimension] where the last advance ended; workspace */
     double time;
     size_t steps, rejected, evaluations, jacobians, events;
+    double excess, backslip; /* largest so far; NaN for methods that do not know them */
     int (*seen)(double t, const double *y, int event, void *data);
     void *data;
     char message[240];

@@ -16,8 +16,9 @@ static double most_credit(const struct events *e)
     return 32.0 + 8.0 * (double)e->stick_slip.contacts;
 }
 
-int tribo_events_create(struct events *e, tribo_system *sys)
+int tribo_events_create(struct events *e, tribo_driver *drv)
 {
+    tribo_system *sys = drv->sys;
     const int status = tribo_stick_slip_create(&e->stick_slip, sys);
     if (status) {
         return status;
@@ -27,6 +28,7 @@ int tribo_events_create(struct events *e, tribo_system *sys)
     if (!e->next || !e->search.guard) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contacts", sys->ncontact);
     }
+    drv->excess = drv->backslip = 0.0;
     return TRIBO_OK;
 }
 
@@ -130,12 +132,16 @@ static int count_event(struct events *e, tribo_driver *drv, const struct guard *
 }
 
 /* What the search has learnt of the size of velocities, and how far the phase strayed from the law. */
-static void learn(struct events *e)
+static void learn(struct events *e, tribo_driver *drv)
 {
+    struct stick_slip *m = &e->stick_slip;
     for (size_t k = 0; k < e->search.guards; k++) {
         const struct guard *g = &e->search.guard[k];
         if (g->slides) {
-            e->stick_slip.seen[g->contact] = g->size;
+            m->seen[g->contact] = g->size;
+            drv->backslip = greater(drv->backslip, g->lowest);
+        } else {
+            drv->excess = greater(drv->excess, g->lowest + m->excess[g->contact]);
         }
     }
 }
@@ -152,6 +158,11 @@ static int all_finite(const double *x, size_t n)
         sum += x[i] - x[i];
     }
     return sum == 0.0;
+}
+
+static int grows(tribo_driver *drv, double t)
+{
+    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "the motion grows without bound after t = %.17g", t);
 }
 
 /* Shows the observer the motion between t and t + tau at begin + k dt. */
@@ -182,7 +193,11 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     e->search.resolution = greater(0.5 * DBL_EPSILON * fabs(*t), DBL_EPSILON * DBL_EPSILON * reach);
     if (!tribo_first_zero(&e->search, reach, &event, &when)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "from t = %.17g on the motion is too fast to be followed: %zu looks at it", *t,
+        e->state(e->motion, reach, y, e->next);
+        if (!all_finite(e->next, dimension)) {
+            return grows(drv, *t);
+        }
+        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "from t = %.17g on the motion is too fast to be followed (%zu looks)", *t,
                                  e->search.looks);
     }
     when = event ? lesser(when, reach) : reach;
@@ -192,12 +207,12 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     e->state(e->motion, when, y, e->next);
     if (!all_finite(e->next, dimension)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "the motion grows without bound after t = %.17g", *t);
+        return grows(drv, *t);
     }
     memcpy(y, e->next, dimension * sizeof *y);
     *t = !event && reach == end - *t ? end : lesser(*t + when, end);
     drv->steps++;
-    learn(e);
+    learn(e, drv);
     sys->evaluations += e->shows_between ? e->search.looks : 0;
     if (event) {
         status = count_event(e, drv, event, *t, fastest);

@@ -27,7 +27,7 @@ struct events {
 };
 
 /* The method sets its own, and search.go, .read, .bound and .motion. */
-int tribo_events_create(struct events *e, tribo_system *sys);
+int tribo_events_create(struct events *e, tribo_driver *drv);
 void tribo_events_free(struct events *e);
 
 /* As advance of struct method. */

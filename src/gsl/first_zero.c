@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-/* More looks at a motion than this between two events mean that it has frequencies which cannot be followed. */
+/* So many looks at a motion between two events, or a first step of zero, mean that it has frequencies which cannot be followed. */
 #define MOST_LOOKS ((size_t)1 << 24)
 
 /* A guard that begins at zero may stray from there by this part of its size. */
@@ -176,7 +176,7 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         }
     }
     while (a < longest) {
-        if (s->looks >= MOST_LOOKS) {
+        if (s->looks >= MOST_LOOKS || !(h > 0.0)) {
             return 0;
         }
         if (a >= better) {

@@ -161,14 +161,19 @@ static double largest(const double *x, size_t n)
     return most;
 }
 
+/* The error that a step may have in something of this size: not less than its rounding. */
+static double wanted(const tribo_driver *drv, double size)
+{
+    return greater(drv->abstol + drv->reltol * size, DBL_EPSILON * size);
+}
+
 /* The step on which the last two terms of everything stay below the tolerance. */
 static double step_length(const struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const tribo_driver *drv = e->drv;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
-    const double q = drv->abstol + drv->reltol * largest(e->q, n), u = drv->abstol + drv->reltol * largest(e->u, n);
-    const double d = drv->abstol + drv->reltol * fabs(e->d[0]);
+    const double q = wanted(drv, largest(e->q, n)), u = wanted(drv, largest(e->u, n)), d = wanted(drv, fabs(e->d[0]));
     const double most = e->fastest > 0.0 ? 0.5 * (double)(e->order + 1) / e->fastest : HUGE_VAL;
     double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
@@ -299,7 +304,7 @@ static int create(tribo_driver *drv)
     if (!e) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
-    const int status = tribo_events_create(&e->events, sys);
+    const int status = tribo_events_create(&e->events, drv);
     if (status) {
         return status;
     }

@@ -426,7 +426,7 @@ static void bound_exponents(struct exact *x, double tau)
     const struct held *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
         const double lambda = h->size[p], time = h->lr[p] > 0.0 ? x->longest : tau;
-        x->growth[p] = sqrt(x->zr[p] * x->zr[p] + x->zi[p] * x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
+        x->growth[p] = hypot(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
         x->growth6[p] = x->growth[p];
         for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
             const size_t at = s * h->modes + h->owner[p];
@@ -567,7 +567,7 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
-    const int status = tribo_events_create(&x->events, drv->sys);
+    const int status = tribo_events_create(&x->events, drv);
     if (status) {
         return status;
     }

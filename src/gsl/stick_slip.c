@@ -40,7 +40,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force, &m->allowance, &m->base, &m->noise, &m->diagonal, &m->seen, &m->parting,
+    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force, &m->allowance, &m->base, &m->noise, &m->diagonal, &m->seen, &m->parting, &m->excess,
                                    &m->v,     &m->a,          &m->gain,  &m->lo,        &m->hi,   &m->f,     &m->still};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
@@ -512,6 +512,7 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     }
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
         m->force[i] = m->holds[i] ? clamp(m->f[i], -m->limit[i], m->limit[i]) : m->force[i];
+        m->excess[i] = m->holds[i] ? fabs(m->f[i] - m->force[i]) : 0.0;
     }
     memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
@@ -533,6 +534,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
         m->sized = 0;
         memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
+        memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
     }
     for (size_t changes = 1; !status && changes;) {
         size_t ties;

@@ -30,6 +30,7 @@ struct stick_slip {
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *acceleration;       /* [ndof] and q'' */
     double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
+    double *excess;             /* [ncontact] and by how much they do where this begins */
     double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
     double *base, *noise;       /* [ncontact] b(t); what of v may be rounding */
     double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known */
