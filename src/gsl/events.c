@@ -218,6 +218,8 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         status = count_event(e, drv, event, *t, fastest);
         if (event->slides) {
             e->stick_slip.slip[event->contact] = 0;
+        } else {
+            e->stick_slip.reached = event->contact;
         }
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
