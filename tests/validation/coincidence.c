@@ -83,7 +83,7 @@ TEST(next_to_nothing)
             tribo_system *sys = block(1.0, 1.0 + size, limit);
             assert_ok(tribo_system_add_load(sys, _i / 2 ? 0.7 : 0.0, _i / 2 ? NULL : &peak, _i / 2 ? &peak : NULL));
             run(sys, methods[_i % 2], 1.0, 1e-12, 50.0, y);
-            require(fabs(y[0]) <= 3.0 * limit * beyond && fabs(y[1]) <= 3.0 * limit * beyond && y[2] >= -1e-15,
+            require(fabs(y[0]) <= 3.0 * limit * beyond && fabs(y[1]) <= 3.0 * limit * beyond && y[2] >= -1e-14,
                     "%g beyond %g: x = %g, v = %g, E = %g", beyond, limit, y[0], y[1], y[2]);
             tribo_system_destroy(sys);
         }
