@@ -58,9 +58,9 @@ static const double LIMIT_FROM = 1e-3, LIMIT_TO = 10.0; /* times the load */
 
 static void print_help(void)
 {
-    printf(help, (int)MAX_CONTACTS, (int)MODES, standard.damping, beam.force, LIMIT_FROM, LIMIT_TO, (int)standard.limit_points,
-           standard.step, tribo_law_name(standard.law), standard.out, beam.mass, beam.stiffness, beam.dofs, beam.frequencies,
-           beam.contact[0].text, beam.contact[1].text, beam.contact[2].text, beam.load.text);
+    printf(help, (int)MAX_CONTACTS, (int)DEFAULT_MODES, standard.damping, beam.force, LIMIT_FROM, LIMIT_TO,
+           (int)standard.limit_points, standard.step, tribo_law_name(standard.law), standard.out, beam.mass, beam.stiffness,
+           beam.dofs, beam.frequencies, beam.contact[0].text, beam.contact[1].text, beam.contact[2].text, beam.load.text);
 }
 
 /* Reads a number that ends with the character end, and returns what is behind that. */

@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-enum { MAX_CONTACTS = 32, MODES = 12 /* kept by default */ };
+enum { MAX_CONTACTS = 32, DEFAULT_MODES = 12 /* kept by default */ };
 
 /* A degree of freedom as the user names it: a node by its coordinates, and a direction (1, 2, 3 for x, y, z). */
 struct place {

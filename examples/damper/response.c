@@ -91,7 +91,7 @@ struct damper create_damper(const struct options *o, const struct structure *s)
         die("option --modes %zu: the structure has %zu degrees of freedom", d.modes, s->ndof);
     }
     if (d.modes == 0) {
-        d.modes = s->ndof < MODES ? s->ndof : MODES;
+        d.modes = s->ndof < DEFAULT_MODES ? s->ndof : DEFAULT_MODES;
     }
     for (size_t c = 0; c < d.contacts; c++) {
         row[c] = find_degree(s, "--contact", &o->contact[c]);

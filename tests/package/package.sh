@@ -34,6 +34,24 @@ consume() {
     done
 }
 
+# bits <folder> <cmake option>...: builds the core and the consumer bits.c without a warning; what that prints is in <folder>/bits.
+bits() {
+    folder=$1
+    shift
+    rm -rf "$folder"
+    "$CMAKE" -S "$here/consumer" -B "$folder" -DTRIBO_SOURCE="$ROOT" -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=Release \
+        -DTRIBO_WERROR=ON -DCONSUMERS="bits.c C tribo" "$@"
+    "$CMAKE" --build "$folder" --parallel 2
+    if [ -e "$folder/bits.c.run" ]; then
+        "$folder/bits.c.run" >"$folder/bits"
+    else
+        command -v wine || exit 77
+        export WINEPATH="$folder/tribo/src" WINEPREFIX="$folder/wine" WINEDEBUG=-all
+        wine "$folder/bits.c.run.exe" | tr -d '\r' >"$folder/bits"
+    fi
+    [ -s "$folder/bits" ]
+}
+
 # compile <source> <language> <output> <flag>...: strictly, since headers must not bring warnings into other people's code.
 compile() {
     source=$here/consumer/$1 language=$2 output=$3
@@ -114,6 +132,21 @@ subdirectory) # <cmake option>... <consumer>...
         esac
     done
     consume subdirectory -DTRIBO_SOURCE="$ROOT" -DCONSUMERS="${consumers#;}" "$@"
+    ;;
+
+foreign) # "<compiler> <flag>..." <cmake option>...: the core for another machine or C library gives the same bits as here. Skipped
+    # where the compiler, or what runs its programs, is missing.
+    compiler=${1%% *} flags=${1#"${1%% *}"}
+    shift
+    mkdir -p "$WORK"
+    echo 'int main(void) { return 0; }' >"$WORK/probe.c"
+    $compiler $flags "$WORK/probe.c" -o "$WORK/probe" || exit 77
+    bits "$WORK/here"
+    bits "$WORK/there" -DCMAKE_C_COMPILER="$compiler" -DCMAKE_C_FLAGS="$flags" "$@"
+    cmp "$WORK/here/bits" "$WORK/there/bits" || {
+        say "the results differ"
+        exit 1
+    }
     ;;
 
 refused) # <name> <message> -S <folder> <cmake option>...
