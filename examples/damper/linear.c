@@ -89,7 +89,7 @@ double stuck_amplitude(const struct damper *d)
     double amplitude = 0.0;
     if (n > 0) {
         gsl_matrix_complex *h = gsl_matrix_complex_calloc(n, n);
-        gsl_vector_complex *b = gsl_vector_complex_calloc(n), *s = gsl_vector_complex_alloc(n);
+        gsl_vector_complex *b = gsl_vector_complex_calloc(n), *s = gsl_vector_complex_calloc(n);
         gsl_permutation *p = gsl_permutation_alloc(n);
         gsl_complex x;
         int sign;

@@ -101,7 +101,8 @@ double next_real(struct lines *l, const char *what)
         die_at(l, "the line ends before %s", what);
     }
     if (end != l->at + length || !isfinite(value)) {
-        die_at(l, "%s \"%s\" is no finite number", what, shown(l->at, length).text);
+        const struct shown word = shown(l->at, length);
+        die_at(l, "%s \"%s\" is no finite number", what, word.text);
     }
     l->at = end;
     return value;
@@ -110,10 +111,10 @@ double next_real(struct lines *l, const char *what)
 size_t next_whole(struct lines *l, const char *what, size_t least, size_t most)
 {
     const size_t length = next_word(l);
-    const char *word = l->at;
+    const struct shown word = shown(l->at, length);
     const double value = next_real(l, what);
     if (value != floor(value) || value < (double)least || value > (double)most) {
-        die_at(l, "%s \"%s\" is no whole number from %zu to %zu", what, shown(word, length).text, least, most);
+        die_at(l, "%s \"%s\" is no whole number from %zu to %zu", what, word.text, least, most);
     }
     return (size_t)value;
 }
@@ -122,7 +123,8 @@ void expect_end(struct lines *l)
 {
     const size_t length = next_word(l);
     if (length) {
-        die_at(l, "\"%s\" is too much", shown(l->at, length).text);
+        const struct shown word = shown(l->at, length);
+        die_at(l, "\"%s\" is too much", word.text);
     }
 }
 

@@ -100,7 +100,7 @@ follow() {
     modules=$(basename "$1"/include/tribo/gfortran-*[0-9])
     for page in fortran/README.md README.md; do
         page $page
-        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e '/^cc \|^gfortran /p' lines >compile.lines
+        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e '/^cc /p' -e '/^gfortran /p' lines >compile.lines
         while read -r compile; do
             rm -f a.out
             eval "$compile"
