@@ -10,10 +10,8 @@ function(tribo_test label name)
     endif()
   endforeach()
   target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}" "${PROJECT_SOURCE_DIR}/include")
-  target_link_libraries(${target} PRIVATE PkgConfig::CHECK m)
-  target_compile_options(${target} PRIVATE
-    $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
-    $<$<AND:$<C_COMPILER_ID:GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>)
+  target_link_libraries(${target} PRIVATE PkgConfig::CHECK ${TRIBO_LIBM})
+  tribo_warnings(${target})
   add_test(NAME ${label}/${name} COMMAND ${target})
   set_tests_properties(${label}/${name} PROPERTIES LABELS ${label})
 endfunction()
