@@ -1,5 +1,5 @@
 /* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
- * form from the modes of the structure with its contacts at rest held (held.h); no event can be skipped (roots.h), since the
+ * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (roots.h), since the
  * sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
  * strays from a quintic; and at an event the contacts at rest are decided about anew (modes.h). The energy integral is closed
  * too: a sliding force is constant, so that it dissipates its size times the distance slid. */
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "driver.h"
-#include "held.h"
+#include "modal.h"
 #include "modes.h"
 #include "search.h"
 #include "../real.h"
@@ -22,12 +22,12 @@
 struct exact {
     tribo_system *sys;
     struct modes modes;
-    struct held **held;
+    struct modal **held;
     size_t helds, room, bytes, revision;
 
     /* the phase: it began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics +
      * Re(r z) */
-    const struct held *h;
+    const struct modal *h;
     double t0, tau;                          /* tau: where w is */
     double fastest;                          /* exponent or harmonic */
     double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
@@ -47,14 +47,14 @@ struct exact {
 static void drop_helds(struct exact *x)
 {
     for (size_t i = 0; i < x->helds; i++) {
-        tribo_held_free(x->held[i]);
+        tribo_modal_free(x->held[i]);
     }
     x->helds = 0;
     x->bytes = 0;
     x->h = NULL;
 }
 
-static int rests_like(const struct held *h, const struct modes *m, size_t n)
+static int rests_like(const struct modal *h, const struct modes *m, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         if (h->key[i] != (m->mode[i] == 0) + m->holds[i]) {
@@ -69,7 +69,7 @@ static int find_held(struct exact *x, tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
     for (size_t i = x->helds; i-- > 0;) {
-        struct held *h = x->held[i];
+        struct modal *h = x->held[i];
         if (rests_like(h, &x->modes, sys->ncontact)) {
             memmove(x->held + i, x->held + i + 1, (x->helds - 1 - i) * sizeof *x->held);
             x->held[x->helds - 1] = h;
@@ -82,15 +82,15 @@ static int find_held(struct exact *x, tribo_driver *drv)
     }
     if (x->helds == x->room) {
         const size_t room = 2 * x->room + 16;
-        struct held **more = realloc(x->held, room * sizeof *more);
+        struct modal **more = realloc(x->held, room * sizeof *more);
         if (!more) {
             return tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
         }
         x->held = more;
         x->room = room;
     }
-    struct held *h;
-    const int status = tribo_held_create(&h, sys, x->modes.mode, x->modes.holds);
+    struct modal *h;
+    const int status = tribo_modal_create(&h, sys, x->modes.mode, x->modes.holds);
     if (status) {
         return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
     }
@@ -136,7 +136,7 @@ static void ramp_up(double dr, double di, double tau, double *re, double *im)
 /* Adds what a resonant harmonic does to an exponent, from nothing at t0 on: z' = lambda z - (i/nu) Re(g e^{i Omega t}). */
 static void add_resonance(struct exact *x, const tribo_system *sys, size_t p, size_t s, double tau)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const double omega = sys->harmonic[s].omega, nu = h->li[p];
     const double c0 = cos(omega * x->t0), s0 = sin(omega * x->t0);
     const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
@@ -166,7 +166,7 @@ static void add_resonance(struct exact *x, const tribo_system *sys, size_t p, si
 
 static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         for (size_t p = 0; p < h->exponents; p++) {
             if (h->resonant[s * h->modes + h->owner[p]]) {
@@ -177,7 +177,7 @@ static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
 }
 
 /* e^{lambda delta} of an exponent. */
-static void grow(const struct held *h, size_t p, double delta, double *re, double *im)
+static void grow(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
     const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0;
     *re = size * cos(h->li[p] * delta);
@@ -185,7 +185,7 @@ static void grow(const struct held *h, size_t p, double delta, double *re, doubl
 }
 
 /* The same where |lambda delta| is tiny. */
-static void grow_little(const struct held *h, size_t p, double delta, double *re, double *im)
+static void grow_little(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
     const double x = h->lr[p] * delta, y = h->li[p] * delta;
     *re = 1.0 + x + 0.5 * (x * x - y * y);
@@ -197,7 +197,7 @@ static void look(void *motion, double tau)
 {
     struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const double delta = tau - x->tau;
     const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -234,7 +234,7 @@ static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct watch *w = g->watch;
+    const struct output *w = g->watch;
     double v0 = g->start + g->ramp * x->tau, v1 = g->ramp, v2 = 0.0;
     for (size_t p = 0; p < x->h->exponents; p++) {
         v0 += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
@@ -257,7 +257,7 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
     const struct matrix *j = &sys->direction;
     double energy = 0.0;
     for (size_t k = 0; k < x->h->sliding; k++) {
-        const size_t i = x->h->watch[k].contact;
+        const size_t i = x->h->output[k].contact;
         double way = 0.0;
         for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
             way += j->val[e] * x->dq[j->col[e]];
@@ -279,7 +279,7 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
 /* eta (into now) and eta' (into work) where look() was. */
 static void amplitudes(struct exact *x, const tribo_system *sys)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t m = h->modes, e = h->exponents;
     for (size_t k = 0; k < m; k++) {
         const double start = h->drifts[k] ? x->drift[k] + x->drift_rate[k] * x->tau : 0.0;
@@ -310,7 +310,7 @@ static void amplitudes(struct exact *x, const tribo_system *sys)
 /* The state at t0 + tau. from is the state at t0; to may be the same. */
 static void move_to(struct exact *x, const tribo_system *sys, double tau, const double *from, double *to)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t n = sys->ndof;
     look(x, tau);
     amplitudes(x, sys);
@@ -346,7 +346,7 @@ static void move_to(struct exact *x, const tribo_system *sys, double tau, const 
 /* Amplitudes of eta at t0, split into what the right-hand side makes of it and exponentials. */
 static void split_motion(struct exact *x, tribo_system *sys, const double *y)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t n = sys->ndof, m = h->modes;
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -414,7 +414,7 @@ static void split_motion(struct exact *x, tribo_system *sys, const double *y)
 /* How long the bounds of this phase hold: for good, unless something grows. */
 static double bound_motion(struct exact *x, double longest)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
         longest = h->lr[p] > 0.0 ? lesser(longest, 1.0 / h->lr[p]) : longest;
     }
@@ -436,10 +436,10 @@ static double bound_motion(struct exact *x, double longest)
     return longest;
 }
 
-/* Guards of a watch, for a phase that lasts no longer than longest. now is what it watches at t0. */
-static void add_guards(struct exact *x, const struct watch *w, int slides, double now, double longest)
+/* Guards of an output, for a phase that lasts no longer than longest. now is its value at t0. */
+static void add_guards(struct exact *x, const struct output *w, int slides, double now, double longest)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t i = w->contact;
     double start = now, bend = 0.0, size = fabs(now), ramp = w->ramp;
     for (size_t p = 0; p < h->exponents; p++) {
@@ -476,7 +476,7 @@ static void add_guards(struct exact *x, const struct watch *w, int slides, doubl
 /* Starts a phase at (t, y) with modes, forces and accelerations as decided. Returns how long its bounds hold. */
 static double begin_phase(struct exact *x, tribo_system *sys, double t, const double *y, double longest)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     x->t0 = t;
     split_motion(x, sys, y);
     x->tau = 0.0;
@@ -490,8 +490,8 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
     memcpy(x->wi, x->zi, h->exponents * sizeof *x->wi);
     longest = bound_motion(x, longest);
     x->search.guards = 0;
-    for (size_t k = 0; k < h->watches; k++) {
-        const struct watch *w = &h->watch[k];
+    for (size_t k = 0; k < h->outputs; k++) {
+        const struct output *w = &h->output[k];
         if (x->modes.mode[w->contact] != 2) {
             const int slides = k < h->sliding;
             const double v = x->modes.rested[w->contact] ? 0.0 : tribo_modes_velocity(&x->modes, sys, w->contact, y);
