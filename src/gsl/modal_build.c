@@ -1,11 +1,16 @@
 #include "modal_build.h"
 #include "../real.h"
+#include "normal_modes.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_linalg.h>
+/* Damping that two modes share is none beside so much more of their own. */
+#define NEGLIGIBLE 1e-9
+
+/* Damping that is not more than so many times the rounding of its terms is none. */
+#define ROUNDING 8.0
 
 /* ------------------------------------------------------------------------------------------------------------ memory */
 
@@ -71,250 +76,219 @@ void tribo_modal_free(struct modal *h)
     }
 }
 
-/* ------------------------------------------------------------------------------------- the contacts that hold, and R_II */
+/* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
-/* Lists the contacts that hold, and their R_II if it is diagonal. */
 static int list_rest(struct build *b, const unsigned char *holds)
 {
-    struct modal *h = b->h;
-    size_t islands;
     b->rest = tribo_modal_scratch_indices(b, b->sys->ncontact);
     for (size_t i = 0; b->rest && i < b->sys->ncontact; i++) {
         if (holds[i]) {
-            b->rest[h->rest++] = i;
+            b->rest[b->h->rest++] = i;
         }
     }
-    tribo_get_count(b->sys->contacts, TRIBO_COUNT_ISLANDS, &islands);
-    if (!b->rest || islands < b->sys->ncontact) {
-        return b->rest != NULL;
+    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->metric, b->rest, b->h->rest, NULL)) {
+        return 0;
     }
-    b->r_diagonal = tribo_modal_scratch(b, h->rest);
-    for (size_t p = 0; b->r_diagonal && p < h->rest; p++) {
-        b->r_diagonal[p] = tribo_system_delassus(b->sys, b->rest[p], b->rest[p]);
+    if (b->ties.rank < b->h->rest) {
+        b->status =
+            tribo_system_fail(b->sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
+                              b->rest[b->ties.order[b->ties.rank]]);
+        return 0;
     }
-    return b->r_diagonal != NULL;
+    return 1;
 }
 
-/* Factorizes R_II, for solve_rest. */
-static int factorize_rest(struct build *b)
+void tribo_modal_add_mass(const struct build *b, double factor, const double *x, double *to)
 {
-    const size_t s = b->h->rest;
-    double *r = tribo_modal_scratch(b, s * s), pivot;
-    size_t where;
-    struct matrix m = {0};
-    for (size_t p = 0; r && p < s; p++) {
-        for (size_t q = 0; q < s; q++) {
-            r[p * s + q] = tribo_system_delassus(b->sys, b->rest[p], b->rest[q]);
-        }
-    }
-    const int done = r && tribo_matrix_from_dense(&m, s, s, r) && tribo_cholesky_create(&b->r, &m, &where, &pivot) == TRIBO_OK;
-    tribo_matrix_free(&m);
-    return done;
-}
-
-/* x [rest] = R_II^-1 x. */
-void tribo_modal_solve_rest(const struct build *b, double *x)
-{
-    if (b->r_diagonal) {
-        for (size_t p = 0; p < b->h->rest; p++) {
-            x[p] /= b->r_diagonal[p];
-        }
+    if (b->sys->metric.rows) {
+        tribo_matrix_multiply_add(&b->sys->metric, factor, x, to);
     } else {
-        tribo_half_solve(&b->r, x, 1);
-        tribo_half_solve_back(&b->r, x, 1);
+        tribo_add(to, factor, x, b->n);
     }
 }
 
-/* x [rest] = factor * J_I q + keep * x. */
-void tribo_modal_at_rest(const struct build *b, double factor, const double *q, double keep_part, double *x)
+void tribo_modal_hold(const struct build *b, const double *force, double *f)
 {
-    const struct matrix *j = &b->sys->direction;
+    tribo_constraints_react(&b->ties, force, f);
     for (size_t p = 0; p < b->h->rest; p++) {
-        double sum = 0.0;
-        for (size_t k = j->first[b->rest[p]]; k < j->first[b->rest[p] + 1]; k++) {
-            sum += j->val[k] * q[j->col[k]];
-        }
-        x[p] = factor * sum + keep_part * x[p];
+        f[p] /= tribo_system_weight(b->sys, b->rest[p]);
     }
+}
+
+void tribo_modal_react(const struct build *b, double *force, double *f)
+{
+    for (size_t k = 0; k < b->h->modes; k++) {
+        tribo_add(force, -tribo_dot(b->phi + k * b->n, force, b->n), b->psi + k * b->n, b->n);
+    }
+    tribo_modal_hold(b, force, f);
 }
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
 
-/* 1 if every contact that holds has one degree of freedom, and W is diagonal: those degrees of freedom simply drop out. */
-static int holds_single_dofs(const struct build *b)
+/* K or C: as given, or W times what accelerates. */
+static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
+                                         struct matrix *own)
 {
-    const struct matrix *j = &b->sys->direction;
-    for (size_t p = 0; p < b->h->rest; p++) {
-        if (j->first[b->rest[p] + 1] - j->first[b->rest[p]] != 1) {
-            return 0;
-        }
+    if (given->rows || !sys->metric.rows) {
+        return given->rows ? given : accelerates;
     }
-    return b->sys->factor.factor == NULL;
+    double *mass = malloc(sys->ndof * sizeof *mass);
+    for (size_t d = 0; mass && d < sys->ndof; d++) {
+        mass[d] = tribo_matrix_get(&sys->metric, d, d);
+    }
+    int done = mass && tribo_matrix_copy(own, accelerates);
+    done = done && tribo_matrix_scale_rows(own, mass);
+    free(mass);
+    return done ? own : NULL;
 }
 
-/* phi and omega^2 from the stiffness of the degrees of freedom that are not held. */
-static int modes_by_elimination(struct build *b)
+static int find_forces(struct build *b)
 {
-    const struct matrix *j = &b->sys->direction, *ak = &b->sys->stiffness;
-    size_t *place = tribo_modal_scratch_indices(b, b->n), m = 0;
-    if (!place) {
-        return 0;
-    }
-    for (size_t p = 0; p < b->h->rest; p++) {
-        place[j->col[j->first[b->rest[p]]]] = (size_t)-1;
-    }
-    for (size_t d = 0; d < b->n; d++) {
-        place[d] = place[d] ? (size_t)-1 : m++;
-    }
-    b->h->modes = m;
-    double *k = tribo_modal_scratch(b, m * m), *v = tribo_modal_scratch(b, m * m);
-    b->h->omega2 = tribo_modal_keep(b, m);
-    b->phi = tribo_modal_scratch(b, m * b->n);
-    if (!k || !v || !b->h->omega2 || !b->phi) {
-        return 0;
-    }
-    const double *root = b->sys->factor.root;
-    for (size_t d = 0; d < b->n; d++) {
-        for (size_t e = ak->first[d]; place[d] < m && e < ak->first[d + 1]; e++) {
-            const size_t other = ak->col[e];
-            if (place[other] < m) {
-                const double x = ak->val[e] * (root ? root[d] / root[other] : 1.0);
-                k[place[d] * m + place[other]] += 0.5 * x;
-                k[place[other] * m + place[d]] += 0.5 * x;
-            }
-        }
-    }
-    if (!tribo_symmetric_eigen(k, m, b->h->omega2, v)) {
-        return 0;
-    }
-    for (size_t mode = 0; mode < m; mode++) {
-        for (size_t d = 0; d < b->n; d++) {
-            b->phi[mode * b->n + d] = place[d] < m ? v[place[d] * m + mode] / (root ? root[d] : 1.0) : 0.0;
-        }
-    }
-    return 1;
+    const tribo_system *sys = b->sys;
+    b->stiffness = force_matrix(sys, &sys->elastic, &sys->stiffness, &b->own_stiffness);
+    b->damping = sys->damping.rows ? force_matrix(sys, &sys->viscous, &sys->damping, &b->own_damping) : NULL;
+    return b->stiffness && (b->damping || !sys->damping.rows);
 }
 
-/* The same by an orthogonal basis Q2 of what J_I S leaves free, S S' = W^-1: phi = S Q2 V. */
-static int modes_by_projection(struct build *b)
+/* Factor of Z'WZ. Returns a status. */
+static int factorize_mass(struct build *b, const struct matrix *z, struct cholesky *c)
 {
-    const size_t n = b->n, s = b->h->rest, m = n - s;
-    const struct matrix *j = &b->sys->direction;
-    b->h->modes = m;
-    double *js = tribo_modal_scratch(b, n * s), *q = tribo_modal_scratch(b, n * n), *tau = tribo_modal_scratch(b, s),
-           *r = tribo_modal_scratch(b, n * s), *z = tribo_modal_scratch(b, m * n);
-    double *kz = tribo_modal_scratch(b, m * n), *wkz = tribo_modal_scratch(b, m * n), *k = tribo_modal_scratch(b, m * m),
-           *v = tribo_modal_scratch(b, m * m);
-    b->h->omega2 = tribo_modal_keep(b, m);
-    b->phi = tribo_modal_scratch(b, m * n);
-    if (!js || !q || !tau || !r || !z || !kz || !wkz || !k || !v || !b->h->omega2 || !b->phi) {
-        return 0;
+    const size_t m = z->cols;
+    double *mass = tribo_modal_scratch(b, m * m), pivot = 0.0;
+    struct matrix w = {0};
+    size_t where = 0;
+    int status = TRIBO_ERR_MEMORY;
+    if (mass && tribo_matrix_congruent(&b->sys->metric, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
+        status = tribo_cholesky_create(c, &w, &where, &pivot);
     }
-    for (size_t p = 0; p < s; p++) {
-        for (size_t e = j->first[b->rest[p]]; e < j->first[b->rest[p] + 1]; e++) {
-            js[j->col[e] * s + p] = j->val[e];
-        }
+    tribo_matrix_free(&w);
+    if (status == TRIBO_ERR_INDEFINITE) {
+        tribo_system_fail(b->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
     }
-    if (s) {
-        tribo_half_solve(&b->sys->factor, js, s);
-        gsl_matrix_view jv = gsl_matrix_view_array(js, n, s), qv = gsl_matrix_view_array(q, n, n),
-                        rv = gsl_matrix_view_array(r, n, s);
-        gsl_vector_view tv = gsl_vector_view_array(tau, s);
-        gsl_linalg_QR_decomp(&jv.matrix, &tv.vector);
-        gsl_linalg_QR_unpack(&jv.matrix, &tv.vector, &qv.matrix, &rv.matrix);
-    } else {
-        for (size_t d = 0; d < n; d++) {
-            q[d * n + d] = 1.0;
-        }
-    }
-    tribo_half_solve_back(&b->sys->factor, q, n);
-    for (size_t mode = 0; mode < m; mode++) {
-        for (size_t d = 0; d < n; d++) {
-            z[mode * n + d] = q[d * n + s + mode];
-        }
-        tribo_matrix_multiply_add(&b->sys->stiffness, 1.0, z + mode * n, kz + mode * n);
-        if (b->sys->metric.rows) {
-            tribo_matrix_multiply_add(&b->sys->metric, 1.0, kz + mode * n, wkz + mode * n);
-        } else {
-            memcpy(wkz + mode * n, kz + mode * n, n * sizeof *wkz);
-        }
-    }
-    for (size_t p = 0; p < m; p++) {
-        for (size_t o = 0; o < m; o++) {
-            const double x = 0.5 * dot(z + p * n, wkz + o * n, n);
-            k[p * m + o] += x;
-            k[o * m + p] += x;
-        }
-    }
-    if (!tribo_symmetric_eigen(k, m, b->h->omega2, v)) {
-        return 0;
-    }
-    for (size_t mode = 0; mode < m; mode++) {
-        for (size_t p = 0; p < m; p++) {
-            add(b->phi + mode * n, v[p * m + mode], z + p * n, n);
-        }
-    }
-    return 1;
+    return status;
 }
 
-/* Sum of the diagonal's absolute values: of a semidefinite matrix no eigenvalue is larger. */
-static double trace(const struct matrix *a)
+/* What to say of modes that were not found. */
+static int modes_failed(const struct build *b, int status, const struct doubt *doubt)
 {
-    double sum = 0.0;
-    for (size_t i = 0; i < a->rows; i++) {
-        sum += fabs(tribo_matrix_get(a, i, i));
+    switch (status) {
+    case TRIBO_ERR_NOT_FINITE:
+        return tribo_system_fail(b->sys, status, "stiffness over mass overflows");
+    case TRIBO_ERR_UNSUPPORTED:
+        return tribo_system_fail(b->sys, status,
+                                 "with contacts at rest held, omega^2 = %g of mode %zu is hardly more than rounding of the "
+                                 "stiffness, which comes to %g: make the stiffest parts softer, or rigid",
+                                 doubt->omega2, doubt->mode, doubt->noise);
+    case TRIBO_ERR_NO_CONVERGENCE:
+        return tribo_system_fail(b->sys, status,
+                                 "with contacts at rest held, omega^2 = %g of mode %zu does not come out pure: take method event",
+                                 doubt->omega2, doubt->mode);
+    default:
+        return status;
     }
-    return sum;
 }
 
-/* What follows from phi: W phi, AK phi, AC phi, damping, and which modes drift. */
-static int complete_modes(struct build *b)
+static int find_modes(struct build *b)
 {
-    struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes;
-    double *c = tribo_modal_scratch(b, m * m);
+    struct matrix z = {0};
+    struct cholesky own = {0};
+    struct doubt doubt = {0};
+    const int held = b->h->rest > 0;
+    int status = !held || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    b->h->modes = b->n - b->h->rest;
+    b->h->omega2 = tribo_modal_keep(b, b->h->modes);
+    b->phi = tribo_modal_scratch(b, b->h->modes * b->n);
+    status = status || (b->h->omega2 && b->phi) ? status : TRIBO_ERR_MEMORY;
+    if (!status && b->h->modes > 0) {
+        status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
+        status = status ? status
+                        : modes_failed(b,
+                                       tribo_normal_modes(b->stiffness, &z, held ? &own : &b->sys->factor, b->h->modes,
+                                                          b->h->omega2, b->phi, &doubt),
+                                       &doubt);
+    }
+    tribo_matrix_free(&z);
+    tribo_cholesky_free(&own);
+    b->status = status;
+    return !status;
+}
+
+/* W phi, K phi and C phi. */
+static int multiply_modes(struct build *b)
+{
+    const size_t n = b->n, m = b->h->modes;
     b->psi = tribo_modal_scratch(b, m * n);
-    b->ak_phi = tribo_modal_scratch(b, m * n);
-    b->ac_phi = tribo_modal_scratch(b, m * n);
-    h->damping = tribo_modal_keep(b, m);
-    h->drifts = tribo_modal_keep_bytes(b, m);
-    if (!c || !b->psi || !b->ak_phi || !b->ac_phi || !h->damping || !h->drifts) {
+    b->k_phi = tribo_modal_scratch(b, m * n);
+    b->c_phi = b->damping ? tribo_modal_scratch(b, m * n) : NULL;
+    if (!b->psi || !b->k_phi || (b->damping && !b->c_phi)) {
         return 0;
     }
     for (size_t k = 0; k < m; k++) {
         const double *phi = b->phi + k * n;
-        if (b->sys->metric.rows) {
-            tribo_matrix_multiply_add(&b->sys->metric, 1.0, phi, b->psi + k * n);
-        } else {
-            memcpy(b->psi + k * n, phi, n * sizeof *phi);
-        }
-        tribo_matrix_multiply_add(&b->sys->stiffness, 1.0, phi, b->ak_phi + k * n);
-        if (b->sys->damping.rows) {
-            tribo_matrix_multiply_add(&b->sys->damping, 1.0, phi, b->ac_phi + k * n);
+        tribo_modal_add_mass(b, 1.0, phi, b->psi + k * n);
+        tribo_matrix_multiply_add(b->stiffness, 1.0, phi, b->k_phi + k * n);
+        if (b->damping) {
+            tribo_matrix_multiply_add(b->damping, 1.0, phi, b->c_phi + k * n);
         }
     }
-    /* what is left where motion is held may be nothing but rounding of the whole: zero is in terms of that */
-    double most = trace(&b->sys->damping), beside = 0.0;
+    return 1;
+}
+
+/* 1 if the modes share damping c [modes][modes] that is neither negligible beside their own nor rounding. */
+static int damping_couples(const struct build *b, const double *c, const double *root)
+{
+    const size_t n = b->n, m = b->h->modes;
     for (size_t k = 0; k < m; k++) {
-        for (size_t l = 0; b->sys->damping.rows && l < m; l++) {
-            c[k * m + l] = dot(b->psi + k * n, b->ac_phi + l * n, n);
-            beside = k == l ? beside : greater(beside, fabs(c[k * m + l]));
+        for (size_t l = 0; l < m; l++) {
+            const double shared = fabs(c[k * m + l]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
+            if (k != l && shared > NEGLIGIBLE * own &&
+                shared > ROUNDING * tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + l * n)) {
+                return 1;
+            }
         }
     }
-    if (beside > 1e-14 * most) {
+    return 0;
+}
+
+/* Damping of the modes, each by itself, or coupled. */
+static int find_damping(struct build *b)
+{
+    struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes;
+    h->damping = tribo_modal_keep(b, m);
+    double *c = b->damping ? tribo_modal_scratch(b, m * m) : NULL, *root = tribo_modal_scratch(b, n);
+    if (!h->damping || !root || (b->damping && !c)) {
+        return 0;
+    }
+    if (!b->damping) {
+        return 1;
+    }
+    tribo_matrix_roots(b->damping, root);
+    for (size_t k = 0; k < m; k++) {
+        for (size_t l = 0; l < m; l++) {
+            c[k * m + l] = tribo_dot(b->phi + k * n, b->c_phi + l * n, n);
+        }
+        const double own = c[k * m + k], noise = tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + k * n);
+        h->damping[k] = fabs(own) > ROUNDING * noise ? own : 0.0;
+    }
+    if (damping_couples(b, c, root)) {
         h->coupling = tribo_modal_keep(b, m * m);
         if (!h->coupling) {
             return 0;
         }
         memcpy(h->coupling, c, m * m * sizeof *c);
     }
-    const double zero = 1e-13 * trace(&b->sys->stiffness);
-    for (size_t k = 0; k < m; k++) {
-        h->damping[k] = fabs(c[k * m + k]) > 1e-14 * most ? c[k * m + k] : 0.0;
-        h->omega2[k] = fabs(h->omega2[k]) > zero ? h->omega2[k] : 0.0;
+    return 1;
+}
+
+static int find_drifts(struct build *b)
+{
+    struct modal *h = b->h;
+    h->drifts = tribo_modal_keep_bytes(b, h->modes);
+    for (size_t k = 0; h->drifts && k < h->modes; k++) {
         h->drifts[k] = h->omega2[k] == 0.0 && h->damping[k] == 0.0;
     }
-    return 1;
+    return h->drifts != NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------------- structures */
@@ -367,9 +341,9 @@ static int build(struct build *b, const signed char *mode, const unsigned char *
     for (size_t i = 0; h->key && i < b->sys->ncontact; i++) {
         h->key[i] = (signed char)((mode[i] == 0) + holds[i]);
     }
-    if (!h->key || !list_rest(b, holds) || (!b->r_diagonal && !factorize_rest(b)) ||
-        !(holds_single_dofs(b) ? modes_by_elimination(b) : modes_by_projection(b)) || !complete_modes(b)) {
-        return TRIBO_ERR_MEMORY;
+    if (!h->key || !list_rest(b, holds) || !find_forces(b) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
+        !find_drifts(b)) {
+        return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
     const int status = tribo_modal_exponents(b);
     if (status) {
@@ -389,7 +363,9 @@ int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed cha
     struct build b = {.sys = sys, .n = sys->ndof, .h = calloc(1, sizeof *b.h)};
     int status = b.h ? build(&b, mode, holds) : TRIBO_ERR_MEMORY;
     give_back(b.scratch);
-    tribo_cholesky_free(&b.r);
+    tribo_constraints_free(&b.ties);
+    tribo_matrix_free(&b.own_stiffness);
+    tribo_matrix_free(&b.own_damping);
     if (status) {
         tribo_modal_free(b.h);
         return status == TRIBO_ERR_MEMORY ? tribo_system_fail(sys, status, "out of memory for the modes of a held structure")

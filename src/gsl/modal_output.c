@@ -84,76 +84,137 @@ static int output_sliding(struct build *b, struct output *w, size_t i)
     return 1;
 }
 
-/* f_I = R_II^-1 (J_I AK q + J_I AC q' - J_I load + b_I'), for all that hold, by modes and by harmonics; only those that change at
- * all are outputs. */
+/* What the held contacts carry, J_I'f = K q + C q' + W q'' - W load: by modes, by harmonics, and per unit of time. */
+struct holding {
+    double *by_q, *by_u;     /* [modes][rest] */
+    double *wave_r, *wave_i; /* [harmonics][rest] */
+    double *ramp;            /* [rest] */
+    double *force[2], *load; /* [ndof] workspace */
+};
+
+/* Mode k, with K phi_k = omega_k^2 W phi_k + J_I'f, and so with damping. */
+static void hold_mode(const struct build *b, struct holding *f, size_t k)
+{
+    const struct modal *h = b->h;
+    const size_t n = b->n, s = h->rest;
+    const double *psi = b->psi + k * n;
+    memcpy(f->load, b->k_phi + k * n, n * sizeof *f->load);
+    tribo_add(f->load, -h->omega2[k], psi, n);
+    tribo_modal_hold(b, f->load, f->by_q + k * s);
+    if (b->damping) {
+        memcpy(f->load, b->c_phi + k * n, n * sizeof *f->load);
+        for (size_t l = 0; h->coupling && l < h->modes; l++) {
+            tribo_add(f->load, -h->coupling[l * h->modes + k], b->psi + l * n, n);
+        }
+        tribo_add(f->load, h->coupling ? 0.0 : -h->damping[k], psi, n);
+        tribo_modal_hold(b, f->load, f->by_u + k * s);
+    }
+}
+
+/* A harmonic load. */
+static void hold_load(const struct build *b, struct holding *f, const struct harmonic *wave)
+{
+    for (int part = 0; part < 2; part++) {
+        memset(f->load, 0, b->n * sizeof *f->load);
+        for (size_t e = 0; e < wave->count; e++) {
+            f->load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
+        }
+        tribo_modal_add_mass(b, 1.0, f->load, f->force[part]);
+    }
+}
+
+/* Belts that move y [2][ndof], displaced by y/(i Omega), accelerated by i Omega y. */
+static void hold_motion(const struct build *b, struct holding *f, double omega, const double *const *y)
+{
+    for (int part = 0; part < 2; part++) {
+        const double turn = part ? 1.0 : -1.0;
+        if (b->damping) {
+            tribo_matrix_multiply_add(b->damping, 1.0, y[part], f->force[part]);
+        }
+        tribo_matrix_multiply_add(b->stiffness, turn / omega, y[part], f->force[1 - part]);
+        tribo_modal_add_mass(b, -turn * omega, y[part], f->force[1 - part]);
+    }
+}
+
+static void hold_harmonic(const struct build *b, struct holding *f, size_t w)
+{
+    const struct harmonic *wave = &b->sys->harmonic[w];
+    const size_t n = b->n, s = b->h->rest;
+    const double *const y[] = {b->yr + w * n, b->yi + w * n};
+    memset(f->force[0], 0, n * sizeof **f->force);
+    memset(f->force[1], 0, n * sizeof **f->force);
+    if (wave->moves_base) {
+        hold_motion(b, f, wave->omega, y);
+    } else {
+        hold_load(b, f, wave);
+    }
+    tribo_modal_react(b, f->force[0], f->wave_r + w * s);
+    tribo_modal_react(b, f->force[1], f->wave_i + w * s);
+}
+
+static int find_holding(struct build *b, struct holding *f)
+{
+    const struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes, s = h->rest;
+    double **const all[] = {&f->by_q, &f->by_u, &f->wave_r, &f->wave_i, &f->ramp, &f->force[0], &f->force[1], &f->load};
+    const size_t count[] = {m * s, m * s, h->harmonics * s, h->harmonics * s, s, n, n, n};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        *all[k] = tribo_modal_scratch(b, count[k]);
+        if (!*all[k]) {
+            return 0;
+        }
+    }
+    for (size_t k = 0; k < m; k++) {
+        hold_mode(b, f, k);
+    }
+    for (size_t w = 0; w < h->harmonics; w++) {
+        if (b->sys->harmonic[w].omega != 0.0) {
+            hold_harmonic(b, f, w);
+        }
+    }
+    memset(f->load, 0, n * sizeof *f->load);
+    tribo_matrix_multiply_add(b->stiffness, 1.0, b->y0, f->load);
+    tribo_modal_react(b, f->load, f->ramp);
+    return 1;
+}
+
+/* 1 if what contact p of those that hold carries changes at all. */
+static int changes(const struct modal *h, const struct holding *f, size_t p)
+{
+    int found = f->ramp[p] != 0.0;
+    for (size_t k = 0; k < h->modes; k++) {
+        found |= f->by_q[k * h->rest + p] != 0.0 || f->by_u[k * h->rest + p] != 0.0;
+    }
+    for (size_t w = 0; w < h->harmonics; w++) {
+        found |= f->wave_r[w * h->rest + p] != 0.0 || f->wave_i[w * h->rest + p] != 0.0;
+    }
+    return found;
+}
+
+/* Outputs of those contacts that hold and do not always carry the same. */
 static int output_held(struct build *b, struct output *all, size_t *used)
 {
     struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, s = h->rest;
-    double *by_q = tribo_modal_scratch(b, m * s), *by_u = tribo_modal_scratch(b, m * s),
-           *wave_r = tribo_modal_scratch(b, h->harmonics * s);
-    double *wave_i = tribo_modal_scratch(b, h->harmonics * s), *ramp = tribo_modal_scratch(b, s),
-           *load = tribo_modal_scratch(b, n), *x = tribo_modal_scratch(b, s);
-    if (!by_q || !by_u || !wave_r || !wave_i || !ramp || !load || !x) {
+    struct holding f;
+    if (!find_holding(b, &f)) {
         return 0;
     }
-    for (size_t k = 0; k < m; k++) {
-        tribo_modal_at_rest(b, 1.0, b->ak_phi + k * n, 0.0, by_q + k * s);
-        tribo_modal_at_rest(b, 1.0, b->ac_phi + k * n, 0.0, by_u + k * s);
-        tribo_modal_solve_rest(b, by_q + k * s);
-        tribo_modal_solve_rest(b, by_u + k * s);
-    }
-    for (size_t w = 0; w < h->harmonics; w++) {
-        const struct harmonic *wave = &b->sys->harmonic[w];
-        double *f[] = {wave_r + w * s, wave_i + w * s}, *y[] = {b->yr + w * n, b->yi + w * n};
-        for (int part = 0; wave->omega != 0.0 && part < 2; part++) {
-            memset(load, 0, n * sizeof *load);
-            for (size_t e = 0; !wave->moves_base && e < wave->count; e++) {
-                load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
-            }
-            if (b->sys->damping.rows) {
-                tribo_matrix_multiply_add(&b->sys->damping, 1.0, y[part], load);
-            }
-            tribo_modal_at_rest(b, 1.0, load, 1.0, f[part]);
-            memset(load, 0, n * sizeof *load);
-            tribo_matrix_multiply_add(&b->sys->stiffness, (part ? 1.0 : -1.0) / wave->omega, y[part], load);
-            tribo_modal_at_rest(b, 1.0, load, 1.0, f[1 - part]);
-            if (wave->moves_base) {
-                tribo_modal_base_part(b, wave, part, x);
-                add(f[1 - part], part ? -wave->omega : wave->omega, x, s);
-            }
-        }
-        tribo_modal_solve_rest(b, f[0]);
-        tribo_modal_solve_rest(b, f[1]);
-    }
-    memset(load, 0, n * sizeof *load);
-    tribo_matrix_multiply_add(&b->sys->stiffness, 1.0, b->y0, load);
-    tribo_modal_at_rest(b, 1.0, load, 0.0, ramp);
-    tribo_modal_solve_rest(b, ramp);
-
-    for (size_t p = 0; p < s; p++) {
-        int changes = ramp[p] != 0.0;
-        for (size_t k = 0; k < m; k++) {
-            changes |= by_q[k * s + p] != 0.0 || by_u[k * s + p] != 0.0;
-        }
-        for (size_t w = 0; w < h->harmonics; w++) {
-            changes |= wave_r[w * s + p] != 0.0 || wave_i[w * s + p] != 0.0;
-        }
-        if (!changes) {
+    for (size_t p = 0; p < h->rest; p++) {
+        if (!changes(h, &f, p)) {
             continue;
         }
         struct output *output = &all[(*used)++];
         if (!create_output(b, output, b->rest[p])) {
             return 0;
         }
-        output->ramp = ramp[p];
-        for (size_t k = 0; k < m; k++) {
-            output->on_rate[k] = by_q[k * s + p];
-            output_mode(b, output, k, by_q[k * s + p], by_u[k * s + p]);
+        output->ramp = f.ramp[p];
+        for (size_t k = 0; k < h->modes; k++) {
+            output->on_rate[k] = f.by_q[k * h->rest + p];
+            output_mode(b, output, k, f.by_q[k * h->rest + p], f.by_u[k * h->rest + p]);
         }
         for (size_t w = 0; w < h->harmonics; w++) {
-            output->rr[w] += wave_r[w * s + p];
-            output->ri[w] += wave_i[w * s + p];
+            output->rr[w] += f.wave_r[w * h->rest + p];
+            output->ri[w] += f.wave_i[w * h->rest + p];
         }
         finish_output(b, output);
     }

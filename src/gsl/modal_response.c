@@ -4,24 +4,18 @@
 #include <math.h>
 #include <string.h>
 
-#include <gsl/gsl_linalg.h>
-
 /* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor. */
 #define RESONANCE 1e-3
 
 /* A response larger than one over this would leave too few digits. */
 #define UNDAMPED 1e-9
 
-/* y [ndof] = velocities from the b of the contacts that hold: B_I R_II^-1 b_I. x [rest] has b_I. */
-static void belt_velocities(const struct build *b, double *x, double *y)
+/* y [ndof] = velocities from the b [rest] of the contacts that hold, in which the modes have no part. */
+static void belt_velocities(const struct build *b, const double *x, double *y)
 {
-    tribo_modal_solve_rest(b, x);
-    for (size_t d = 0; d < b->n; d++) {
-        double sum = 0.0;
-        for (size_t p = 0; p < b->h->rest; p++) {
-            sum += tribo_matrix_get(&b->sys->response, d, b->rest[p]) * x[p];
-        }
-        y[d] = sum;
+    tribo_constraints_follow(&b->ties, x, y);
+    for (size_t k = 0; k < b->h->modes; k++) {
+        tribo_add(y, -tribo_dot(b->psi + k * b->n, y, b->n), b->phi + k * b->n, b->n);
     }
 }
 
@@ -71,29 +65,76 @@ int tribo_modal_forcing(struct build *b)
         for (int part = 0; wave->moves_base && part < 2; part++) {
             if (wave->omega == 0.0) {
                 if (part == 0) {
-                    add(b->y0, 1.0, y[0], n);
+                    tribo_add(b->y0, 1.0, y[0], n);
                 }
                 memset(y[part], 0, n * sizeof **y);
                 continue;
             }
-            /* -AK y/(i Omega) - AC y; 1/i turns the real part into minus the imaginary one */
+            /* -K y/(i Omega) - C y; 1/i turns the real part into minus the imaginary one */
             memset(pull, 0, n * sizeof *pull);
             memset(drag, 0, n * sizeof *drag);
-            tribo_matrix_multiply_add(&b->sys->stiffness, (part ? -1.0 : 1.0) / wave->omega, y[part], pull);
-            if (b->sys->damping.rows) {
-                tribo_matrix_multiply_add(&b->sys->damping, -1.0, y[part], drag);
+            tribo_matrix_multiply_add(b->stiffness, (part ? -1.0 : 1.0) / wave->omega, y[part], pull);
+            if (b->damping) {
+                tribo_matrix_multiply_add(b->damping, -1.0, y[part], drag);
             }
             for (size_t k = 0; k < m; k++) {
-                g[1 - part][k] += dot(b->psi + k * n, pull, n);
-                g[part][k] += dot(b->psi + k * n, drag, n);
+                g[1 - part][k] += tribo_dot(b->phi + k * n, pull, n);
+                g[part][k] += tribo_dot(b->phi + k * n, drag, n);
             }
         }
     }
     memset(pull, 0, n * sizeof *pull);
-    tribo_matrix_multiply_add(&b->sys->stiffness, -1.0, b->y0, pull);
+    tribo_matrix_multiply_add(b->stiffness, -1.0, b->y0, pull);
     for (size_t k = 0; k < m; k++) {
-        h->ramp[k] = dot(b->psi + k * n, pull, n);
+        h->ramp[k] = tribo_dot(b->phi + k * n, pull, n);
     }
+    return 1;
+}
+
+/* Response of modes of which each has damping of its own. */
+static void respond_alone(struct build *b, size_t w)
+{
+    struct modal *h = b->h;
+    const double omega = b->sys->harmonic[w].omega;
+    for (size_t k = 0; k < h->modes; k++) {
+        const size_t at = w * h->modes + k;
+        const double gr = h->gr[at], gi = h->gi[at];
+        const double re = h->omega2[k] - omega * omega, im = omega * h->damping[k], square = re * re + im * im;
+        h->resonant[at] = sqrt(square) < RESONANCE * fabs(h->omega2[k]) && (gr != 0.0 || gi != 0.0);
+        h->any_resonant |= h->resonant[at];
+        if (!h->resonant[at] && (gr != 0.0 || gi != 0.0)) {
+            h->xr[at] = (gr * re + gi * im) / square;
+            h->xi[at] = (gi * re - gr * im) / square;
+        }
+    }
+}
+
+/* Response of modes that damping couples: real and imaginary parts are the unknowns. a [2 modes][2 modes], x [2 modes]. */
+static int respond_together(struct build *b, size_t w, double *a, double *x, size_t *pivot)
+{
+    struct modal *h = b->h;
+    const size_t m = h->modes, size = 2 * m;
+    const double omega = b->sys->harmonic[w].omega;
+    memset(a, 0, size * size * sizeof *a);
+    for (size_t k = 0; k < m; k++) {
+        a[k * size + k] = a[(m + k) * size + m + k] = h->omega2[k] - omega * omega;
+        for (size_t l = 0; l < m; l++) {
+            a[k * size + m + l] = -omega * h->coupling[k * m + l];
+            a[(m + k) * size + l] = omega * h->coupling[k * m + l];
+        }
+    }
+    memcpy(x, h->gr + w * m, m * sizeof *x);
+    memcpy(x + m, h->gi + w * m, m * sizeof *x);
+    if (!(tribo_lu_create(a, size, pivot) > UNDAMPED * omega * omega)) {
+        b->status = tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED,
+                                      "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
+                                      "others: take method event",
+                                      omega);
+        return 0;
+    }
+    tribo_lu_solve(a, size, pivot, x, 1);
+    memcpy(h->xr + w * m, x, m * sizeof *x);
+    memcpy(h->xi + w * m, x + m, m * sizeof *x);
     return 1;
 }
 
@@ -101,58 +142,19 @@ int tribo_modal_forcing(struct build *b)
 int tribo_modal_response(struct build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, count = h->harmonics;
+    const size_t m = h->modes, count = h->harmonics, size = h->coupling ? 2 * m : 0;
     h->xr = tribo_modal_keep(b, count * m);
     h->xi = tribo_modal_keep(b, count * m);
     h->resonant = tribo_modal_keep_bytes(b, count * m);
-    double *a = tribo_modal_scratch(b, 2 * m * m), *x = tribo_modal_scratch(b, 2 * m);
-    size_t *order = tribo_modal_scratch_indices(b, m);
-    if (!h->xr || !h->xi || !h->resonant || !a || !x || !order) {
-        return 0;
-    }
-    for (size_t w = 0; w < count; w++) {
-        const double omega = b->sys->harmonic[w].omega;
-        const double *gr = h->gr + w * m, *gi = h->gi + w * m;
-        for (size_t k = 0; omega != 0.0 && !h->coupling && k < m; k++) {
-            const double re = h->omega2[k] - omega * omega, im = omega * h->damping[k], square = re * re + im * im;
-            h->resonant[w * m + k] = sqrt(square) < RESONANCE * fabs(h->omega2[k]) && (gr[k] != 0.0 || gi[k] != 0.0);
-            h->any_resonant |= h->resonant[w * m + k];
-            if (!h->resonant[w * m + k] && (gr[k] != 0.0 || gi[k] != 0.0)) {
-                h->xr[w * m + k] = (gr[k] * re + gi[k] * im) / square;
-                h->xi[w * m + k] = (gi[k] * re - gr[k] * im) / square;
-            }
-        }
-        if (omega == 0.0 || !h->coupling || m == 0) {
-            continue;
-        }
-        for (size_t k = 0; k < m; k++) {
-            for (size_t l = 0; l < m; l++) {
-                a[2 * (k * m + l)] = k == l ? h->omega2[k] - omega * omega : 0.0;
-                a[2 * (k * m + l) + 1] = omega * h->coupling[k * m + l];
-            }
-            x[2 * k] = gr[k];
-            x[2 * k + 1] = gi[k];
-        }
-        gsl_matrix_complex_view av = gsl_matrix_complex_view_array(a, m, m);
-        gsl_vector_complex_view xv = gsl_vector_complex_view_array(x, m);
-        gsl_permutation p = {m, order};
-        int sign;
-        gsl_linalg_complex_LU_decomp(&av.matrix, &p, &sign);
-        for (size_t k = 0; k < m; k++) {
-            if (hypot(a[2 * (k * m + k)], a[2 * (k * m + k) + 1]) <= UNDAMPED * omega * omega) {
-                b->status =
-                    tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED,
-                                      "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
-                                      "others: take method event",
-                                      omega);
-                return 0;
-            }
-        }
-        gsl_linalg_complex_LU_svx(&av.matrix, &p, &xv.vector);
-        for (size_t k = 0; k < m; k++) {
-            h->xr[w * m + k] = x[2 * k];
-            h->xi[w * m + k] = x[2 * k + 1];
+    double *a = tribo_modal_scratch(b, size * size), *x = tribo_modal_scratch(b, size);
+    size_t *pivot = tribo_modal_scratch_indices(b, size);
+    int done = h->xr && h->xi && h->resonant && a && x && pivot;
+    for (size_t w = 0; done && w < count; w++) {
+        if (b->sys->harmonic[w].omega != 0.0 && h->coupling) {
+            done = respond_together(b, w, a, x, pivot);
+        } else if (b->sys->harmonic[w].omega != 0.0) {
+            respond_alone(b, w);
         }
     }
-    return 1;
+    return done;
 }
