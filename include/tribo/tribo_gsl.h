@@ -46,11 +46,13 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * stiffness  [ndof][ndof] in  symmetric
  * direction  [ncontact][ndof] in  J: row i is how the velocities of the degrees of freedom make that of contact i
  * nmode      in   0, or: keep only the motion in the nmode lowest modes of (K, M); q then holds their amplitudes (modes have
- *                 modal mass 1), ndof of the system is nmode, and damping must be NULL (see tribo_system_set_damping_ratio)
+ *                 modal mass 1, and the first of their largest displacements is positive), ndof of the system is nmode, and damping must be NULL (see tribo_system_set_damping_ratio)
  * message    [size] out, or NULL: on error, the text that says what is wrong and where
  * The context starts with Quinn's law and limit 0 (all contacts open), and with R = J M^-1 J'. No load, no motion yet.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_MEMORY.
- */
+ * Modes are found to the accuracy of the stiffness's own entries, however soft beside the stiffest, and omega of rigid-body
+ * motions is 0; one of which rounding of the entries leaves less than two digits is refused (TRIBO_ERR_UNSUPPORTED).
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
+ * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
                                   const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 
@@ -147,7 +149,8 @@ TRIBO_API const char *tribo_method_name(int method);
  * t  in/out   time
  * y  [dimension] in/out   state; may be changed between calls
  * On error t and y hold the last good step. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (t1 < t),
- * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, TRIBO_ERR_CHATTER, TRIBO_ERR_UNSUPPORTED (exact), and what tribo_balance returns. */
+ * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, TRIBO_ERR_CHATTER, TRIBO_ERR_UNSUPPORTED and TRIBO_ERR_INDEFINITE (exact: a structure with
+ * contacts held whose motion has no closed form, or is not known to two digits), and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
 /* Counts since creation. */

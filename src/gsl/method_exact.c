@@ -1,5 +1,5 @@
 /* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
- * form from the modes of the structure with its contacts at rest held (held.h); no event can be skipped (first_zero.h), since the
+ * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (first_zero.h), since the
  * sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
  * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is closed
  * too: a sliding force is constant, so that it dissipates its size times the distance slid. */
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "events.h"
-#include "held.h"
+#include "modal.h"
 #include "../real.h"
 
 /* Decompositions are dropped when they take more than this. */
@@ -20,12 +20,12 @@
 struct exact {
     tribo_system *sys;
     struct events events;
-    struct held **held;
+    struct modal **held;
     size_t helds, room, bytes, revision;
 
     /* the phase: it began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics +
      * Re(r z) */
-    const struct held *h;
+    const struct modal *h;
     double t0, tau;                          /* tau: where w is */
     double fastest;                          /* exponent or harmonic */
     double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
@@ -44,14 +44,14 @@ struct exact {
 static void drop_helds(struct exact *x)
 {
     for (size_t i = 0; i < x->helds; i++) {
-        tribo_held_free(x->held[i]);
+        tribo_modal_free(x->held[i]);
     }
     x->helds = 0;
     x->bytes = 0;
     x->h = NULL;
 }
 
-static int rests_like(const struct held *h, const struct stick_slip *m, size_t n)
+static int rests_like(const struct modal *h, const struct stick_slip *m, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         if (h->key[i] != (m->slip[i] == 0) + m->holds[i]) {
@@ -66,7 +66,7 @@ static int find_held(struct exact *x)
 {
     tribo_system *sys = x->sys;
     for (size_t i = x->helds; i-- > 0;) {
-        struct held *h = x->held[i];
+        struct modal *h = x->held[i];
         if (rests_like(h, &x->events.stick_slip, sys->ncontact)) {
             memmove(x->held + i, x->held + i + 1, (x->helds - 1 - i) * sizeof *x->held);
             x->held[x->helds - 1] = h;
@@ -79,15 +79,15 @@ static int find_held(struct exact *x)
     }
     if (x->helds == x->room) {
         const size_t room = 2 * x->room + 16;
-        struct held **more = realloc(x->held, room * sizeof *more);
+        struct modal **more = realloc(x->held, room * sizeof *more);
         if (!more) {
             return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
         }
         x->held = more;
         x->room = room;
     }
-    struct held *h;
-    const int status = tribo_held_create(&h, sys, x->events.stick_slip.slip, x->events.stick_slip.holds);
+    struct modal *h;
+    const int status = tribo_modal_create(&h, sys, x->events.stick_slip.slip, x->events.stick_slip.holds);
     if (status) {
         return status;
     }
@@ -133,7 +133,7 @@ static void ramp_up(double dr, double di, double tau, double *re, double *im)
 /* Adds what a resonant harmonic does to an exponent, from nothing at t0 on: z' = lambda z - (i/nu) Re(g e^{i Omega t}). */
 static void add_resonance(struct exact *x, const tribo_system *sys, size_t p, size_t s, double tau)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const double omega = sys->harmonic[s].omega, nu = h->li[p];
     const double c0 = x->cos_0[s], s0 = x->sin_0[s];
     const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
@@ -163,7 +163,7 @@ static void add_resonance(struct exact *x, const tribo_system *sys, size_t p, si
 
 static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         for (size_t p = 0; p < h->exponents; p++) {
             if (h->resonant[s * h->modes + h->owner[p]]) {
@@ -174,7 +174,7 @@ static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
 }
 
 /* e^{lambda delta} of an exponent. */
-static void grow(const struct held *h, size_t p, double delta, double *re, double *im)
+static void grow(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
     const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0;
     *re = size * cos(h->li[p] * delta);
@@ -182,7 +182,7 @@ static void grow(const struct held *h, size_t p, double delta, double *re, doubl
 }
 
 /* The same where |lambda delta| is tiny. */
-static void grow_little(const struct held *h, size_t p, double delta, double *re, double *im)
+static void grow_little(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
     const double x = h->lr[p] * delta, y = h->li[p] * delta;
     *re = 1.0 + x + 0.5 * (x * x - y * y);
@@ -194,7 +194,7 @@ static void go(void *motion, double tau)
 {
     struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const double delta = tau - x->tau;
     const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -232,7 +232,7 @@ static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct watch *w = g->output;
+    const struct output *w = g->output;
     double v0 = g->start + g->ramp * x->tau, v1 = g->ramp, v2 = 0.0;
     for (size_t p = 0; p < x->h->exponents; p++) {
         v0 += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
@@ -255,7 +255,7 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
     const struct matrix *j = &sys->direction;
     double energy = 0.0;
     for (size_t k = 0; k < x->h->sliding; k++) {
-        const size_t i = x->h->watch[k].contact;
+        const size_t i = x->h->output[k].contact;
         double way = 0.0;
         for (size_t e = j->first[i]; x->events.stick_slip.slip[i] && e < j->first[i + 1]; e++) {
             way += j->val[e] * x->dq[j->col[e]];
@@ -277,7 +277,7 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
 /* eta (into now) and eta' (into work) where go() was. */
 static void amplitudes(struct exact *x, const tribo_system *sys)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t m = h->modes, e = h->exponents;
     for (size_t k = 0; k < m; k++) {
         const double start = h->drifts[k] ? x->drift[k] + x->drift_rate[k] * x->tau : 0.0;
@@ -310,7 +310,7 @@ static void move_to(void *motion, double tau, const double *from, double *to)
 {
     struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t n = sys->ndof;
     go(x, tau);
     amplitudes(x, sys);
@@ -343,10 +343,49 @@ static void move_to(void *motion, double tau, const double *from, double *to)
 
 /* ------------------------------------------------------------------------------------------------------------- phases */
 
+/* J_i q, less what harmonics of the base have moved it by. */
+static double offset(const tribo_system *sys, size_t i, const double *q)
+{
+    const struct matrix *j = &sys->direction;
+    double sum = 0.0;
+    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        sum += j->val[e] * q[j->col[e]];
+    }
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        for (size_t e = 0; w->moves_base && w->omega != 0.0 && e < w->count; e++) {
+            sum -= w->index[e] == i ? (w->cosine[e] * w->sin_t - w->sine[e] * w->cos_t) / w->omega : 0.0;
+        }
+    }
+    return sum;
+}
+
+/* now = the constant part of the right-hand side at t0: by forces that slide, by where contacts hold, by constant loads. The
+ * stiffness of the whole has no part in it: what it makes of a rigid-body displacement would be its rounding. */
+static void find_constant(struct exact *x, const tribo_system *sys, const double *y)
+{
+    const struct modal *h = x->h;
+    const size_t m = h->modes;
+    memcpy(x->now, h->drag, m * sizeof *x->now);
+    for (size_t o = 0; o < h->outputs; o++) {
+        const struct output *out = &h->output[o];
+        const double push = o < h->sliding ? x->events.stick_slip.force[out->contact] : -offset(sys, out->contact, y);
+        const double weight = tribo_system_weight(sys, out->contact);
+        for (size_t k = 0; k < m; k++) {
+            x->now[k] += weight * push * out->on_rate[k];
+        }
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        for (size_t k = 0; sys->harmonic[s].omega == 0.0 && k < m; k++) {
+            x->now[k] += h->gr[s * m + k];
+        }
+    }
+}
+
 /* Amplitudes of eta at t0, split into what the right-hand side makes of it and exponentials. */
 static void split_motion(struct exact *x, tribo_system *sys, const double *y)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t n = sys->ndof, m = h->modes;
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -355,23 +394,17 @@ static void split_motion(struct exact *x, tribo_system *sys, const double *y)
     }
     for (size_t k = 0; k < m; k++) {
         const double *psi = h->psi + k * h->moving;
-        double q = 0.0, u = 0.0, a = 0.0;
+        double q = 0.0, u = 0.0;
         for (size_t i = 0; i < h->moving; i++) {
             q += psi[i] * y[h->dof[i]];
             u += psi[i] * y[n + h->dof[i]];
-            a += psi[i] * x->events.stick_slip.acceleration[h->dof[i]];
         }
         x->eta[k] = q;
         x->rate[k] = u;
-        x->now[k] = a;
     }
+    find_constant(x, sys, y);
     for (size_t k = 0; k < m; k++) {
-        /* the constant part of the right-hand side is what the present acceleration leaves */
-        const double damping = h->coupling ? dot(h->coupling + k * m, x->rate, m) : h->damping[k] * x->rate[k];
-        double force = x->now[k] + damping + h->omega2[k] * x->eta[k];
-        for (size_t s = 0; s < h->harmonics; s++) {
-            force -= sys->harmonic[s].omega != 0.0 ? h->gr[s * m + k] * x->cos_0[s] - h->gi[s * m + k] * x->sin_0[s] : 0.0;
-        }
+        const double force = x->now[k];
         x->off[k] = x->vel[k] = x->acc[k] = 0.0;
         if (h->drifts[k]) {
             x->acc[k] = force;
@@ -412,7 +445,7 @@ static void split_motion(struct exact *x, tribo_system *sys, const double *y)
 }
 
 /* How long the bounds of a phase can hold: for good, unless something grows. */
-static double longest_phase(const struct held *h, double longest)
+static double longest_phase(const struct modal *h, double longest)
 {
     for (size_t p = 0; p < h->exponents; p++) {
         longest = h->lr[p] > 0.0 ? lesser(longest, 1.0 / h->lr[p]) : longest;
@@ -423,7 +456,7 @@ static double longest_phase(const struct held *h, double longest)
 /* Bounds of the exponents from tau on. */
 static void bound_exponents(struct exact *x, double tau)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
         const double lambda = h->size[p], time = h->lr[p] > 0.0 ? x->longest : tau;
         x->growth[p] = hypot(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
@@ -443,8 +476,8 @@ static void bound_exponents(struct exact *x, double tau)
 /* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */
 static void bound_guard(const struct exact *x, struct guard *g)
 {
-    const struct held *h = x->h;
-    const struct watch *w = g->output;
+    const struct modal *h = x->h;
+    const struct output *w = g->output;
     g->bend = 0.0;
     g->size = fabs(g->offset) + fabs(g->start) + fabs(g->ramp) * x->longest;
     for (size_t p = 0; p < h->exponents; p++) {
@@ -472,10 +505,10 @@ static double bound(void *motion, double tau)
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
 }
 
-/* Guards of a watch. now is what it watches at t0. */
-static void add_guards(struct exact *x, const struct watch *w, int of_velocity, double now)
+/* Guards of an output. now is its value at t0. */
+static void add_guards(struct exact *x, const struct output *w, int of_velocity, double now)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t i = w->contact;
     struct guard g = {.output = w, .start = now, .ramp = w->ramp};
     for (size_t p = 0; p < h->exponents; p++) {
@@ -503,11 +536,11 @@ static void add_guards(struct exact *x, const struct watch *w, int of_velocity, 
 
 static void set_guards(struct exact *x, const double *y)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const struct stick_slip *m = &x->events.stick_slip;
     tribo_events_clear_guards(&x->events);
-    for (size_t k = 0; k < h->watches; k++) {
-        const struct watch *w = &h->watch[k];
+    for (size_t k = 0; k < h->outputs; k++) {
+        const struct output *w = &h->output[k];
         const size_t i = w->contact;
         const int of_velocity = k < h->sliding;
         if (m->slip[i] != 2) {
@@ -525,7 +558,7 @@ static int begin(void *motion, double t, const double *y, double end, double *re
     if (status) {
         return status;
     }
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     x->t0 = t;
     split_motion(x, sys, y);
     x->tau = 0.0;

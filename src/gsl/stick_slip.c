@@ -7,6 +7,7 @@
  *     until none does
  *
  * At last an independent set of those at rest is chosen to hold. */
+#include "constraint.h"
 #include "stick_slip.h"
 #include "../real.h"
 
@@ -47,8 +48,9 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
     m->slip = calloc(6, c);
     m->at = malloc(c * sizeof *m->at);
+    m->last = malloc(c);
     m->limit = work;
-    if (status || !work || !m->slip || !m->at) {
+    if (status || !work || !m->slip || !m->at || !m->last) {
         tribo_stick_slip_free(m);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stick and slip of %zu contacts", sys->ncontact);
     }
@@ -85,8 +87,6 @@ void tribo_stick_slip_free(struct stick_slip *m)
     free(m->limit);
     free(m->slip);
     free(m->at);
-    free(m->order);
-    free(m->block);
     free(m->last);
     memset(m, 0, sizeof *m);
 }
@@ -166,40 +166,21 @@ int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
     return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
 }
 
-/* Room for what choose_holds needs for so many contacts. */
-static int make_room(struct stick_slip *m, size_t rest)
-{
-    if (rest <= m->room) {
-        return 1;
-    }
-    free(m->order);
-    free(m->block);
-    free(m->last);
-    m->order = malloc(rest * sizeof *m->order);
-    m->block = malloc(rest * rest * sizeof *m->block);
-    m->last = malloc(rest);
-    m->room = m->order && m->block && m->last ? rest : 0;
-    return m->room > 0;
-}
-
 /* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
  * there. */
 static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t rest)
 {
-    if (!make_room(m, rest)) {
-        return 0;
-    }
+    struct constraints c;
     for (size_t p = 0; p < rest; p++) {
         const signed char tied = m->tied[m->at[p]];
         m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
-        for (size_t q = 0; q < rest; q++) {
-            m->block[p * rest + q] = tribo_system_delassus(sys, m->at[p], m->at[q]);
-        }
     }
-    for (size_t k = tribo_independent_rows(m->block, rest, m->last, m->order); k < rest; k++) {
-        m->holds[m->at[m->order[k]]] = 0;
+    const int done = tribo_constraints_create(&c, &sys->direction, &sys->metric, m->at, rest, m->last);
+    for (size_t k = done ? c.rank : rest; k < rest; k++) {
+        m->holds[m->at[c.order[k]]] = 0;
     }
-    return 1;
+    tribo_constraints_free(&c);
+    return done;
 }
 
 /* Which of the contacts at rest hold. */

@@ -43,10 +43,8 @@ struct stick_slip {
     signed char *before;        /* [ncontact] what find_holds saw last */
     int fresh;                  /* it saw nothing yet */
     double *still;              /* [ncontact] zeros */
-    size_t *at;                 /* [ncontact] workspace of find_holds, and for as many as room contacts at rest: */
-    size_t room, *order;
-    double *block;
-    unsigned char *last;
+    size_t *at;                 /* [ncontact] workspace of find_holds, */
+    unsigned char *last;        /* [ncontact] and this */
 };
 
 /* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */

@@ -77,6 +77,8 @@ void tribo_system_destroy(tribo_system *sys)
     }
     free(sys->table);
     free_table(&sys->limits);
+    tribo_matrix_free(&sys->elastic);
+    tribo_matrix_free(&sys->viscous);
     tribo_matrix_free(&sys->metric);
     tribo_cholesky_free(&sys->factor);
     free(sys->modes);

@@ -39,6 +39,10 @@ struct tribo_system {
     size_t revision;     /* counts changes of harmonics and damping */
     double time;         /* that cos_t and sin_t belong to; NaN: none yet */
 
+    /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: W AK and W AC are
+     * K and C to rounding of every entry. */
+    struct matrix elastic, viscous;
+
     /* The metric W, in which AK is symmetric: the mass matrix, but for chain and reduced systems. No rows: the identity. */
     struct matrix metric;
     struct cholesky factor; /* of W */
