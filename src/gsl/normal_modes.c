@@ -14,6 +14,9 @@
 /* Modes whose omega^2 are closer than this, relative, are left as they are: what mixes them is rounding of either. */
 #define CLOSE 1e-6
 
+/* A turn is a small correction. What asks for more is between modes whose omega^2 are rounding, and would only skew them. */
+#define SLIGHT 1e-3
+
 /* Of another mode a mode may have so much, in terms of the root of its energy. */
 #define SHARED 1e-6
 
@@ -108,7 +111,8 @@ static void separate(struct spectrum *s, size_t low)
         const double value = tribo_dot(s->y + k * n, s->ky + k * n, n);
         for (size_t j = 0; j < others; j++) {
             const double gap = s->value[low + j] - value, least = CLOSE * greater(fabs(s->value[low + j]), fabs(value));
-            s->block[k * others + j] = fabs(gap) > least ? s->block[k * others + j] / gap : 0.0;
+            const double shared = s->block[k * others + j];
+            s->block[k * others + j] = fabs(gap) > least && fabs(shared) <= SLIGHT * fabs(gap) ? shared / gap : 0.0;
         }
     }
     tribo_multiply_add(low, others, n, -1.0, s->block, s->y + low * n, s->y);
