@@ -9,6 +9,9 @@
 /* Damping that two modes share is none beside so much more of their own. */
 #define NEGLIGIBLE 1e-9
 
+/* A mode may have so much of another one. */
+#define IMPURITY 1e-14
+
 /* Damping that is not more than so many times the rounding of its terms is none. */
 #define ROUNDING 8.0
 
@@ -241,7 +244,8 @@ static int damping_couples(const struct build *b, const double *c, const double 
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; l < m; l++) {
             const double shared = fabs(c[k * m + l]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
-            if (k != l && shared > NEGLIGIBLE * own &&
+            const double impure = IMPURITY * greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
+            if (k != l && shared > greater(NEGLIGIBLE * own, impure) &&
                 shared > ROUNDING * tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + l * n)) {
                 return 1;
             }
@@ -264,12 +268,16 @@ static int find_damping(struct build *b)
         return 1;
     }
     tribo_matrix_roots(b->damping, root);
+    double most = 0.0;
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; l < m; l++) {
             c[k * m + l] = tribo_dot(b->phi + k * n, b->c_phi + l * n, n);
         }
+        most = greater(most, fabs(c[k * m + k]));
+    }
+    for (size_t k = 0; k < m; k++) {
         const double own = c[k * m + k], noise = tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + k * n);
-        h->damping[k] = fabs(own) > ROUNDING * noise ? own : 0.0;
+        h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
     }
     if (damping_couples(b, c, root)) {
         h->coupling = tribo_modal_keep(b, m * m);

@@ -20,6 +20,9 @@
 /* Of another mode a mode may have so much, in terms of the root of its energy. */
 #define SHARED 1e-6
 
+/* Displacements of a mode are known to this part of the largest, and the stiffest mode makes the square of that of it. */
+#define ROUNDING (4.0 * DBL_EPSILON)
+
 /* What is not more than so many times the rounding of its terms is nothing else; what is more than so many times has two digits
  * at the very least. */
 #define NOTHING 2.0
@@ -228,11 +231,12 @@ static int judge(struct spectrum *s, const struct entries *stiffness, const stru
     memset(stiffness->force, 0, n * sizeof *stiffness->force);
     tribo_matrix_multiply_add(stiffness->matrix, 1.0, phi, stiffness->force);
     *omega2 = tribo_dot(phi, stiffness->force, n);
-    if (fabs(*omega2) >= greater(FOUND * s->most, CERTAIN * noise_bound(stiffness, phi))) {
+    const double least = ROUNDING * ROUNDING * s->most;
+    if (fabs(*omega2) >= greater(FOUND * s->most, CERTAIN * (noise_bound(stiffness, phi) + least))) {
         return TRIBO_OK;
     }
     const struct impurity impurity = find_impurity(s, stiffness, z, k, phi);
-    const double noise = impurity.energy + tribo_matrix_noise(stiffness->matrix, stiffness->root, phi, phi);
+    const double noise = impurity.energy + tribo_matrix_noise(stiffness->matrix, stiffness->root, phi, phi) + least;
     *omega2 = tribo_matrix_form(stiffness->matrix, phi, phi);
     *doubt = (struct doubt){k, *omega2, noise};
     if (fabs(*omega2) <= NOTHING * noise) {
