@@ -6,31 +6,69 @@
 #include <string.h>
 
 #include "internal.h"
-#include "../real.h"
 
 #define DEFAULT_EPSILON 1e-6
 
 double tribo_slope(double limit, double epsilon)
 {
-    return lesser(2.0 * limit / epsilon, DBL_MAX);
+    return 2.0 * quotient(limit, epsilon);
+}
+
+/* The bounds of the solver, which are the limits unless one of them is beyond what can be told apart. */
+static void find_bounds(tribo_context *ctx)
+{
+    ctx->largest = 0.0;
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->largest = greater(ctx->largest, ctx->chunk[k].largest);
+    }
+    if (ctx->largest <= ctx->op.most) {
+        ctx->bound = ctx->limit;
+        return;
+    }
+    ctx->bound = ctx->bounds;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->bound[i] = lesser(ctx->limit[i], TRIBO_FAR);
+    }
+    for (size_t g = 0; g < ctx->op.groups; g++) {
+        const struct program *p = tribo_op_program(&ctx->op, g);
+        for (size_t k = 0; k < p->island->size; k++) {
+            ctx->bound[p->member[k]] = lesser(ctx->limit[p->member[k]], tribo_most(p, k));
+        }
+    }
+}
+
+static void take_given(tribo_context *ctx)
+{
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->epsilon[i] = ctx->given[i];
+        ctx->slope[i] = tribo_slope(ctx->bound[i], ctx->given[i]);
+    }
+}
+
+/* epsilon = 2 limit R_ii time, with a slope that knows nothing of the limit. */
+static void follow_step(tribo_context *ctx)
+{
+    const double time = quotient(ctx->step, ctx->lambda_dt);
+    for (size_t i = 0; i < ctx->n; i++) {
+        const double width = greater(product(ctx->op.diagonal[i], time), DBL_MIN), slope = 1.0 / width;
+        const double limit = lesser(ctx->bound[i], 0.5 * TRIBO_FAR * lesser(slope, 1.0));
+        ctx->epsilon[i] = greater(2.0 * width * limit, DBL_MIN);
+        ctx->slope[i] = limit > 0.0 ? slope : 0.0;
+    }
 }
 
 void tribo_refresh(tribo_context *ctx)
 {
     ctx->op.reaches = 0;
     ctx->linearized = 0;
-    for (size_t i = 0; i < ctx->n; i++) {
-        const double r = ctx->op.diagonal[i];
-        if (ctx->step > 0.0) {
-            const double time = ctx->step / ctx->lambda_dt;
-            ctx->epsilon[i] = clamp(2.0 * ctx->limit[i] * (r * time), DBL_MIN, DBL_MAX);
-            ctx->slope[i] = ctx->limit[i] > 0.0 ? lesser(1.0 / (r * time), DBL_MAX) : 0.0;
-        } else {
-            ctx->epsilon[i] = ctx->given[i];
-            ctx->slope[i] = tribo_slope(ctx->limit[i], ctx->given[i]);
-        }
+    tribo_refresh_limits(ctx);
+    find_bounds(ctx);
+    if (ctx->step > 0.0) {
+        follow_step(ctx);
+    } else {
+        take_given(ctx);
     }
-    tribo_refresh_chunks(ctx);
+    tribo_refresh_widths(ctx);
 }
 
 /* Everything but the operator. One contact more than asked for, so that no array is empty. */
@@ -41,13 +79,13 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->message = tribo_message_create();
     ctx->given = malloc(m * sizeof *ctx->given);
     ctx->limit = ctx->limit_then = ctx->limits = calloc(2 * m, sizeof *ctx->limits);
+    ctx->bounds = malloc(m * sizeof *ctx->bounds);
     ctx->epsilon = malloc(m * sizeof *ctx->epsilon);
     ctx->slope = malloc(m * sizeof *ctx->slope);
     ctx->moving = calloc(m, sizeof *ctx->moving);
     ctx->feq = calloc(m, sizeof *ctx->feq);
     ctx->f = calloc(m, sizeof *ctx->f);
     ctx->v = malloc(m * sizeof *ctx->v);
-    ctx->lower = malloc(m * sizeof *ctx->lower);
     ctx->chunk = malloc(tribo_chunks(m) * sizeof *ctx->chunk);
     ctx->last.state = calloc(m + tribo_chunks(m), 1);
     ctx->spare.state = calloc(m + tribo_chunks(m), 1);
@@ -56,8 +94,8 @@ static int allocate(tribo_context *ctx, size_t n)
         ctx->last.kind = ctx->last.state + m;
         ctx->spare.kind = ctx->spare.state + m;
     }
-    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limits && ctx->epsilon &&
-           ctx->slope && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->lower && ctx->tangent;
+    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limits && ctx->bounds &&
+           ctx->epsilon && ctx->slope && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -108,6 +146,8 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         c->limit_then = c->limits + n + 1;
         tribo_copy(c->limit_then, ctx->limit_then, n);
     }
+    c->bound = ctx->bound == ctx->limit ? c->limit : c->bounds;
+    tribo_copy(c->bound, ctx->bound, n);
     tribo_copy(c->epsilon, ctx->epsilon, n);
     tribo_copy(c->slope, ctx->slope, n);
     tribo_copy(c->feq, ctx->feq, n);
@@ -129,13 +169,13 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx->message);
     free(ctx->given);
     free(ctx->limits);
+    free(ctx->bounds);
     free(ctx->epsilon);
     free(ctx->slope);
     free(ctx->moving);
     free(ctx->feq);
     free(ctx->f);
     free(ctx->v);
-    free(ctx->lower);
     free(ctx->chunk);
     free(ctx->last.state);
     free(ctx->spare.state);
@@ -417,7 +457,7 @@ static double max_rate(const tribo_context *ctx)
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
         if (ctx->limit[i] > 0.0) {
-            rate = greater(rate, ctx->slope[i] * ctx->op.diagonal[i]);
+            rate = greater(rate, product(ctx->slope[i], ctx->op.diagonal[i]));
         }
     }
     if (!ctx->law->uses_feq) {
@@ -446,7 +486,7 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
         return TRIBO_OK;
     case TRIBO_REAL_MAX_STEP: {
         const double rate = max_rate(ctx);
-        *value = rate > 0.0 ? 2.785 / rate : HUGE_VAL;
+        *value = rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
         return TRIBO_OK;
     }
     default:

@@ -6,7 +6,6 @@
 
 #include "internal.h"
 #include "rows.h"
-#include "../real.h"
 #include "../simd.h"
 
 /* Smaller groups are dense, whatever their entries. */
@@ -38,9 +37,10 @@ int tribo_op_diagonal(struct op *op, size_t n, const double *r)
     memset(op, 0, sizeof *op);
     op->row_sum = 1.0;
     op->islands = n;
+    op->most = TRIBO_FAR;
     op->diagonal = malloc((n + 1) * sizeof *op->diagonal);
     for (size_t i = 0; op->diagonal && i < n; i++) {
-        op->diagonal[i] = r ? greater(r[i], DBL_MIN) : 1.0;
+        op->diagonal[i] = r ? greater(r[i], TRIBO_IMMOVABLE) : 1.0;
     }
     return op->diagonal != NULL;
 }
@@ -85,7 +85,7 @@ static int allocate_store(struct op *op, size_t n)
 
 static int allocate_program(struct op *op)
 {
-    enum { VECTORS = 10 };
+    enum { VECTORS = 11 };
     const size_t s = op->largest + 1;
     struct program *p = &op->program;
     p->near = malloc(s * sizeof *p->near);
@@ -94,7 +94,8 @@ static int allocate_program(struct op *op)
     if (!p->near || !p->to || !p->q) {
         return 0;
     }
-    double **const vector[] = {&p->lo, &p->hi, &p->gradient, &p->noise, &p->unit, &p->step, &p->row, &p->spare[0], &p->spare[1]};
+    double **const vector[] = {&p->lo,   &p->hi,   &p->gradient, &p->noise,    &p->first,
+                               &p->unit, &p->step, &p->row,      &p->spare[0], &p->spare[1]};
     for (size_t k = 0; k < VECTORS - 1; k++) {
         *vector[k] = p->q + (k + 1) * s;
     }
@@ -133,6 +134,7 @@ int tribo_op_copy(struct op *to, const struct op *from, size_t n)
     }
     to->row_sum = from->row_sum;
     to->islands = from->islands;
+    to->most = from->most;
     to->program.work = from->program.work;
     if (!from->groups) {
         return 1;
@@ -263,29 +265,36 @@ static void fill_diagonal(struct op *op, const struct rows *a)
 {
     for (size_t i = 0; i < a->n; i++) {
         double sum = 0.0;
-        op->diagonal[i] = greater(diagonal_of(a, i), DBL_MIN);
+        op->diagonal[i] = greater(diagonal_of(a, i), TRIBO_IMMOVABLE);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
-            sum += fabs(a->val[e]);
+            sum += fabs(quotient(a->val[e], op->diagonal[i]));
         }
-        op->row_sum = greater(op->row_sum, sum / op->diagonal[i]);
+        op->row_sum = greater(op->row_sum, sum);
     }
 }
 
 static void fill_group(struct op *op, size_t k, const struct rows *a, const size_t *member, const size_t *place)
 {
     struct program *p = tribo_op_program(op, k);
-    const struct island *is = p->island;
+    struct island *is = p->island;
+    is->lightest = HUGE_VAL;
+    is->terms = 0;
     for (size_t c = 0; c < is->size; c++) {
         const size_t i = member[c];
         p->member[c] = i;
         p->at[c] = AWAY;
         p->scale[c] = tribo_scale(op->diagonal[i]);
+        is->lightest = lesser(is->lightest, p->scale[c]);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             p->terms[c] += a->val[e] != 0.0;
             if (a->val[e] != 0.0 && !is->sparse) {
                 p->r[c * is->size + place[a->col[e]]] = a->val[e];
             }
         }
+        is->terms = p->terms[c] > is->terms ? p->terms[c] : is->terms;
+    }
+    for (size_t c = 0; c < is->size; c++) {
+        op->most = lesser(op->most, tribo_most(p, c));
     }
 }
 

@@ -56,8 +56,11 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     if (!f) {
         return TRIBO_ERR_NULL;
     }
+    if (!isfinite(v) || !isfinite(limit) || !isfinite(epsilon)) {
+        return TRIBO_ERR_NOT_FINITE;
+    }
     const int needs_feq = l->uses_feq && fabs(v) <= epsilon;
-    if (!isfinite(v) || !isfinite(limit) || !isfinite(epsilon) || (needs_feq && !isfinite(feq))) {
+    if (needs_feq && !isfinite(feq)) {
         return TRIBO_ERR_NOT_FINITE;
     }
     if (limit < 0.0) {
@@ -66,12 +69,13 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     if (epsilon <= 0.0) {
         return TRIBO_ERR_NOT_POSITIVE;
     }
-    const double slope = tribo_slope(limit, epsilon);
+    const double slope = tribo_slope(lesser(limit, TRIBO_FAR), epsilon),
+                 read = needs_feq ? clamp(feq, -TRIBO_FAR, TRIBO_FAR) : 0.0;
     const unsigned char moving = 1;
     const struct contacts c = {&limit, &epsilon, &slope, &moving, 0.0};
     struct tangent d;
-    l->force(&c, 1, &v, &feq, f);
-    l->tangent(&c, 1, &v, &feq, &d);
+    l->force(&c, 1, &v, &read, f);
+    l->tangent(&c, 1, &v, &read, &d);
     if (df_dv) {
         *df_dv = d.dv;
     }

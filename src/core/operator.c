@@ -8,7 +8,6 @@
 
 #include "internal.h"
 #include "rows.h"
-#include "../real.h"
 
 /* Entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
 #define ASYMMETRY 1e-10
@@ -35,11 +34,11 @@ static int symmetrize(const tribo_context *ctx, const struct rows *a, double *di
             if (!isfinite(x)) {
                 return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r of contacts %zu, %zu is %g", i, j, x);
             }
-            if (fabs(x - y) > ASYMMETRY * greater(size, greater(fabs(x), fabs(y)))) {
+            if (fabs(0.5 * x - 0.5 * y) > 0.5 * ASYMMETRY * greater(size, greater(fabs(x), fabs(y)))) {
                 return tribo_fail(ctx, TRIBO_ERR_NOT_SYMMETRIC, "r of contacts %zu, %zu is %g one way and %g the other", i, j, x,
                                   y);
             }
-            if (fabs(x) > (1.0 + ASYMMETRY) * size) {
+            if (fabs(x) - size > ASYMMETRY * size) {
                 return tribo_fail(ctx, TRIBO_ERR_INDEFINITE,
                                   "r of contacts %zu, %zu is %g, more than the root of their diagonal entries' product, %g", i, j,
                                   x, size);
