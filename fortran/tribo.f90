@@ -449,20 +449,40 @@ contains
     call to_text(c_law_reference(int(law, c_int)), text)
   end function tribo_law_reference
 
-  !> Number of the law called name.
+  !> Number of the law called name, in upper or lower case.
   subroutine tribo_law_find(name, law, stat, errmsg)
     character(len=*), intent(in) :: name
     integer, intent(inout) :: law
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    integer(c_int) :: number
 
-    w%status = c_law_find(trim(name) // c_null_char, number)
-    if (w%status == TRIBO_OK) law = int(number)
-    if (w%status /= TRIBO_OK) w%text = 'no law is called "' // trim(name) // '"'
+    w%status = number_of(name, law)
+    if (w%status /= TRIBO_OK) call tell_laws(name, w%text)
     call finish(w, stat, errmsg)
   end subroutine tribo_law_find
+
+  integer(c_int) function number_of(name, law) result(status)
+    character(len=*), intent(in) :: name
+    integer, intent(inout) :: law
+    integer(c_int) :: number
+    status = c_law_find(trim(name) // c_null_char, number)
+    if (status == TRIBO_OK) law = int(number)
+  end function number_of
+
+  !> That no law has this name, and which there are.
+  subroutine tell_laws(name, text)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable :: law
+    integer :: i
+    text = 'no law is called "' // name(:min(len_trim(name), 40)) // '": there are'
+    do i = 0, tribo_law_count() - 1
+      call to_text(c_law_name(int(i, c_int)), law)
+      text = text // ' ' // law // ','
+    end do
+    text = text(:len(text) - 1)
+  end subroutine tell_laws
 
   !> One contact, no context: the force and its derivatives, one-sided at a kink, df_dv = 0 at a jump. Elemental: with arrays,
   !> stat and errmsg are arrays too. TRIBO_QUINN_REVERSAL: as for a contact that comes in sliding.
@@ -556,7 +576,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_ncontact
 
-  !> Law of all contacts, by number or by name; clears the reversal memory.
+  !> Law of all contacts, by number or by name (in upper or lower case); clears the reversal memory.
   subroutine set_law_number(this, law, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     integer, intent(in) :: law
@@ -575,12 +595,17 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    character(len=200) :: text
-    integer :: number, found
+    character(len=:), allocatable :: text
+    integer(c_int) :: found
+    integer :: number
 
     call begin(this, w)
-    call tribo_law_find(law, number, found, text)
-    if (found /= TRIBO_OK) call fail(w, found, trim(text))
+    number = 0
+    found = number_of(law, number)
+    if (found /= TRIBO_OK) then
+      call tell_laws(law, text)
+      call fail(w, int(found), text)
+    end if
     if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(number, c_int))
     call finish(w, stat, errmsg)
   end subroutine set_law_name

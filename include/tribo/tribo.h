@@ -142,6 +142,10 @@ TRIBO_API const char *tribo_message(const tribo_context *ctx);
 /* For libraries on top of this one: makes text the message of ctx, and returns status. */
 TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
 
+/* For libraries on top of this one: the operator is that of owner, a text that outlives ctx ("a tribo_system"), and cannot be
+ * changed: tribo_set_operator_... return TRIBO_ERR_UNSUPPORTED. NULL: it is the caller's again, as it is in a clone. */
+TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
+
 /* Number of contacts. */
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 

@@ -216,7 +216,8 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    int status = tribo_look(ctx, v, a);
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_look(ctx, v, a);
     if (status) {
         return status;
     }
@@ -321,7 +322,8 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
     if (dt <= 0.0) {
         return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
     }
-    int status = tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
     if (status) {
         return status;
     }
@@ -342,7 +344,8 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    int status = tribo_check_finite(ctx, "a", a, ctx->n);
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "lower", lower, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "upper", upper, ctx->n);
     if (status) {

@@ -63,7 +63,7 @@ void tribo_refresh(tribo_context *ctx)
     ctx->linearized = 0;
     tribo_refresh_limits(ctx);
     find_bounds(ctx);
-    if (ctx->step > 0.0) {
+    if (ctx->step > 0.0 && ctx->op.diagonal) {
         follow_step(ctx);
     } else {
         take_given(ctx);
@@ -107,10 +107,11 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         return TRIBO_ERR_SIZE;
     }
     tribo_context *c = calloc(1, sizeof *c);
-    if (!c || !allocate(c, ncontact) || !tribo_op_diagonal(&c->op, ncontact, NULL)) {
+    if (!c || !allocate(c, ncontact)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
+    c->op.most = TRIBO_FAR;
     c->law = tribo_law(TRIBO_QUINN);
     c->kept = 1;
     c->coupling = TRIBO_CONSISTENT;
@@ -134,6 +135,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }
     *c = *ctx;
+    c->owner = NULL;
     memset(&c->op, 0, sizeof c->op);
     if (!allocate(c, n) || !tribo_op_copy(&c->op, &ctx->op, n)) {
         tribo_destroy(c);
@@ -181,6 +183,29 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx->spare.state);
     free(ctx->tangent);
     free(ctx);
+}
+
+int tribo_set_owner(tribo_context *ctx, const char *owner)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    ctx->owner = owner;
+    return TRIBO_OK;
+}
+
+int tribo_need_operator(const tribo_context *ctx)
+{
+    if (ctx->op.diagonal || !ctx->n) {
+        return TRIBO_OK;
+    }
+    return tribo_fail(ctx, TRIBO_ERR_STATE,
+                      "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
+}
+
+int tribo_need_epsilon(const tribo_context *ctx)
+{
+    return ctx->step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
 }
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
@@ -280,7 +305,11 @@ int tribo_get_limit(const tribo_context *ctx, double *limit)
 
 int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
 {
-    return ctx ? copy_out(ctx, "epsilon", ctx->epsilon, epsilon) : TRIBO_ERR_NULL;
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_need_epsilon(ctx);
+    return status ? status : copy_out(ctx, "epsilon", ctx->epsilon, epsilon);
 }
 
 int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
@@ -420,6 +449,15 @@ int tribo_get_modes(const tribo_context *ctx, signed char *mode)
     return TRIBO_OK;
 }
 
+static size_t count_stuck(const tribo_context *ctx)
+{
+    size_t stuck = 0;
+    for (size_t i = 0; ctx->balanced && i < ctx->n; i++) {
+        stuck += mode_of(ctx, i) == 0;
+    }
+    return stuck;
+}
+
 int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
 {
     if (!ctx) {
@@ -428,12 +466,8 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     if (!value) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
     }
-    size_t stuck = 0;
-    for (size_t i = 0; ctx->balanced && i < ctx->n; i++) {
-        stuck += mode_of(ctx, i) == 0;
-    }
     const size_t counts[] = {
-        [TRIBO_COUNT_STUCK] = stuck,
+        [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
         [TRIBO_COUNT_RANK] = ctx->rank,
         [TRIBO_COUNT_ISLANDS] = ctx->op.islands,
         [TRIBO_COUNT_SOLVES] = ctx->solves,
@@ -477,19 +511,17 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
     if (!value) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
     }
-    switch (which) {
-    case TRIBO_REAL_RESIDUAL:
+    if (which == TRIBO_REAL_RESIDUAL) {
         *value = ctx->residual;
         return TRIBO_OK;
-    case TRIBO_REAL_MAX_RATE:
-        *value = max_rate(ctx);
-        return TRIBO_OK;
-    case TRIBO_REAL_MAX_STEP: {
-        const double rate = max_rate(ctx);
-        *value = rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
-        return TRIBO_OK;
     }
-    default:
+    if (which != TRIBO_REAL_MAX_RATE && which != TRIBO_REAL_MAX_STEP) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no real quantity", which);
     }
+    const int status = tribo_need_operator(ctx);
+    if (!status) {
+        const double rate = max_rate(ctx);
+        *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
+    }
+    return status;
 }

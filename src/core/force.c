@@ -34,7 +34,8 @@ TRIBO_SIMD static void cut(size_t n, double *x)
 
 static int check(const tribo_context *ctx, const double *v, const double *feq)
 {
-    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
+    int status = tribo_need_epsilon(ctx);
+    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
     if (status) {
         return status;
     }

@@ -20,7 +20,7 @@
 
 /* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. */
 struct op {
-    double *diagonal;     /* [n] R_ii, at least TRIBO_IMMOVABLE */
+    double *diagonal;     /* [n] R_ii, at least TRIBO_IMMOVABLE; NULL: there is no operator yet */
     double row_sum;       /* max over i of sum_j |R_ij|/R_ii */
     size_t islands;       /* groups and single contacts */
     size_t groups;        /* of two contacts and more */
@@ -69,6 +69,7 @@ struct look {
 
 struct tribo_context {
     size_t n;
+    const char *owner; /* of the operator; NULL: the caller */
     const struct law *law;
     int coupling, sharing;
     double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
@@ -118,6 +119,10 @@ int tribo_check_finite(const tribo_context *ctx, const char *name, const double 
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
+/* context.c: TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
+int tribo_need_operator(const tribo_context *ctx);
+int tribo_need_epsilon(const tribo_context *ctx);
+
 /* islands.c */
 struct rows;
 
@@ -129,9 +134,9 @@ struct flaw {
 
 /* The operator of rows that are symmetric and finite, with sorted columns; a status. */
 int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw);
-int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* 1s if r is NULL; 1, or 0 if out of memory */
+int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* r NULL: not set yet; 1, or 0 if out of memory */
 int tribo_op_copy(struct op *to, const struct op *from, size_t n);
-void tribo_op_free(struct op *op);
+void tribo_op_free(struct op *op); /* what is left is no operator */
 
 /* Views of group k in op's program. */
 struct program *tribo_op_program(struct op *op, size_t k);

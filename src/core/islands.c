@@ -29,18 +29,15 @@ void tribo_op_free(struct op *op)
     free(p->to);
     free(p->q);
     free(p->basis);
-    memset(op, 0, sizeof *op);
+    *op = (struct op){.most = TRIBO_FAR};
 }
 
 int tribo_op_diagonal(struct op *op, size_t n, const double *r)
 {
-    memset(op, 0, sizeof *op);
-    op->row_sum = 1.0;
-    op->islands = n;
-    op->most = TRIBO_FAR;
+    *op = (struct op){.most = TRIBO_FAR, .row_sum = 1.0, .islands = n};
     op->diagonal = malloc((n + 1) * sizeof *op->diagonal);
-    for (size_t i = 0; op->diagonal && i < n; i++) {
-        op->diagonal[i] = r ? greater(r[i], TRIBO_IMMOVABLE) : 1.0;
+    for (size_t i = 0; op->diagonal && r && i < n; i++) {
+        op->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
     }
     return op->diagonal != NULL;
 }
@@ -129,6 +126,10 @@ static int allocate_groups(struct op *op, size_t n, size_t groups)
 
 int tribo_op_copy(struct op *to, const struct op *from, size_t n)
 {
+    if (!from->diagonal) {
+        *to = (struct op){.most = TRIBO_FAR};
+        return 1;
+    }
     if (!tribo_op_diagonal(to, n, from->diagonal)) {
         return 0;
     }

@@ -32,13 +32,30 @@ const char *tribo_law_reference(int law)
     return l ? l->reference : NULL;
 }
 
+/* Without locales, of which names know nothing. */
+static char lower(char c)
+{
+    static const char upper_case[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ", lower_case[] = "abcdefghijklmnopqrstuvwxyz";
+    const char *found = c ? strchr(upper_case, c) : NULL;
+    return found ? lower_case[found - upper_case] : c;
+}
+
+static int same_name(const char *x, const char *y)
+{
+    while (*x && lower(*x) == lower(*y)) {
+        x++;
+        y++;
+    }
+    return !*x && !*y;
+}
+
 int tribo_law_find(const char *name, int *law)
 {
     if (!name || !law) {
         return TRIBO_ERR_NULL;
     }
     for (int i = 0; i < tribo_law_count(); i++) {
-        if (strcmp(laws[i]->name, name) == 0) {
+        if (same_name(laws[i]->name, name)) {
             *law = i;
             return TRIBO_OK;
         }

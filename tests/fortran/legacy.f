@@ -528,7 +528,13 @@ C     Values
       CALL WANTED('TRBLAW', IH, IERR, 5, 'law = 6 is none of the 6 laws'
      1            )
       CALL TRBNAM(IH, 'quin', IERR)
-      CALL WANTED('TRBNAM', IH, IERR, 7, 'no law is called "quin"')
+      CALL WANTED('TRBNAM', IH, IERR, 7, 'no law is called "quin": th'//
+     1'ere are coulomb, velocity-limited, smooth, karnopp, quinn, quin'
+     2//'n-reversal')
+      CALL TRBNAM(IH, 'KARNOPP   ', IERR)
+      CALL TRBGLW(IH, J, IERR)
+      CALL EXPECT('upper case', IERR .EQ. 0 .AND. J .EQ. 3)
+      J = -777
       CALL TRBCPL(IH, 2, IERR)
       CALL WANTED('TRBCPL', IH, IERR, 5,
      1'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
@@ -595,6 +601,14 @@ C     Values
      1            'which = -1 is no real quantity')
       CALL TRBSTF(IH, N, 0D0, X, Y, IERR)
       CALL WANTED('TRBSTF', IH, IERR, 4, 'dt = 0 is not positive')
+      CALL TRBBAL(IH, N, X, X, Y, Z, IERR)
+      CALL WANTED('TRBBAL', IH, IERR, 8, 'no operator: call tribo_set'//
+     1'_operator_diagonal or another tribo_set_operator_... first')
+      CALL TRBSTP(IH, 1D0, 1D0, IERR)
+      CALL TRBGEP(IH, N, Y, IERR)
+      CALL WANTED('TRBGEP', IH, IERR, 8, 'no operator: call tribo_set'//
+     1'_operator_diagonal or another tribo_set_operator_... first')
+      CALL TRBOPD(IH, N, VAL, IERR)
       CALL TRBBOX(IH, N, X, VAL, X, Y, IERR)
       CALL WANTED('TRBBOX', IH, IERR, 5,
      1            'lower(1) = 1 is above upper(1) = 0')

@@ -455,12 +455,13 @@ TEST(modes)
 /* The smooth law never reaches its limit; where it gives less than N tanh(1) the contact counts as stuck. */
 TEST(modes_of_the_smooth_law)
 {
-    const double v[] = {0.5, -0.99, 1.01, -7.0}, rest[] = {0.0, 0.0, 0.0, 0.0};
+    const double v[] = {0.5, -0.99, 1.01, -7.0}, rest[] = {0.0, 0.0, 0.0, 0.0}, unit[] = {1.0, 1.0, 1.0, 1.0};
     const signed char want[] = {0, 0, 1, -1};
     signed char mode[4];
     tribo_context *c;
     assert_ok(tribo_create(&c, 4));
     assert_ok(tribo_set_law(c, TRIBO_SMOOTH));
+    assert_ok(tribo_set_operator_diagonal(c, unit));
     assert_ok(tribo_set_limit_all(c, 2.0));
     assert_ok(tribo_set_epsilon_all(c, 1.0));
     assert_ok(tribo_balance(c, v, rest, NULL, NULL));

@@ -269,6 +269,27 @@ TEST(state_errors)
     tribo_system_destroy(sys);
 }
 
+/* The operator of a system's context is the system's; that of a copy is not. */
+TEST(operator_of_a_system)
+{
+    const double twice = 2.0, y[3] = {0.1, 0.0, 0.0}, v = 0.0, a = -0.1;
+    double before, after;
+    tribo_system *sys = oscillator(TRIBO_QUINN, 0.0, 1.0);
+    tribo_context *copy;
+    assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, &before));
+    REFUSED(TRIBO_ERR_UNSUPPORTED, "the operator is that of a tribo_system",
+            tribo_set_operator_diagonal(tribo_system_context(sys), &twice));
+    assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, &after));
+    assert_exact(after, before);
+    assert_exact(after, 0.1);
+    assert_ok(tribo_clone(tribo_system_context(sys), &copy));
+    assert_ok(tribo_set_operator_diagonal(copy, &twice));
+    assert_ok(tribo_balance(copy, &v, &a, NULL, &after));
+    assert_exact(after, 0.05);
+    tribo_destroy(copy);
+    tribo_system_destroy(sys);
+}
+
 /* What only reduced systems have. */
 TEST(unreduced)
 {
@@ -299,5 +320,5 @@ TEST(reduced)
 }
 
 TEST_MAIN("systems", {oscillator_equations, 2}, {chain_equations, 2}, {belt_equations, 2}, {long_chain, 1}, {sizes, 1},
-          {acceptance, 1}, {creation_errors, 1}, {load_errors, 1}, {loads_add_up, 2}, {state_errors, 1}, {unreduced, 1},
+          {acceptance, 1}, {creation_errors, 1}, {load_errors, 1}, {loads_add_up, 2}, {state_errors, 1}, {operator_of_a_system, 1}, {unreduced, 1},
           {reduced, 1})
