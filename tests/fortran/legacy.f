@@ -341,8 +341,12 @@ C     Every routine that takes a handle, with one that is none.
    20    FORMAT ('IH = ', I11,
      1           ' is no handle: it was never given, or has been delet',
      2           'ed')
+         IERR = 0
          CALL TRBMSG(IH, TEXT, IERR)
          CALL EXPECT('TRBMSG', IERR .EQ. 1)
+         IERR = 42
+         CALL TRBMSG(IH, TEXT, IERR)
+         CALL EXPECT('TRBMSG leaves IERR alone', IERR .EQ. 42)
          CALL SQUEEZ(SAYS)
          CALL EXPECT('text of no handle', TEXT .EQ. SAYS)
          CALL TRBCPY(IH, IH2, IERR)
@@ -514,6 +518,11 @@ C     Values
       CALL WANTED('TRBLIM', IH, IERR, 3, 'limit(3) = -1 is negative')
       CALL TRBLM1(IH, -2D0, IERR)
       CALL WANTED('TRBLM1', IH, IERR, 3, 'limit = -2 is negative')
+      CALL TRBMSG(IH, SAYS, IERR)
+      CALL EXPECT('TRBMSG leaves IERR alone', IERR .EQ. 3)
+      IERR = 0
+      CALL TRBMSG(IH, SAYS, IERR)
+      CALL EXPECT('TRBMSG after all', IERR .EQ. 0)
       CALL TRBEPS(IH, N, NEG, IERR)
       CALL WANTED('TRBEPS', IH, IERR, 4,
      1            'epsilon(3) = -1 is not positive')

@@ -420,6 +420,7 @@ TEST(texts_of_statuses)
     for (size_t i = 0; i < COUNT(odd); i++) {
         ck_assert_str_eq(tribo_strerror(odd[i]), unknown);
     }
+    assert_says(tribo_strerror(TRIBO_ERR_CHATTER), "central/fixed");
     for (int status = -300; status < 300; status++) {
         require(strlen(tribo_strerror(status)) > 3, "status %d", status);
     }
