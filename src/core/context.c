@@ -194,18 +194,10 @@ int tribo_set_owner(tribo_context *ctx, const char *owner)
     return TRIBO_OK;
 }
 
-int tribo_need_operator(const tribo_context *ctx)
+int tribo_fail_without_operator(const tribo_context *ctx)
 {
-    if (ctx->op.diagonal || !ctx->n) {
-        return TRIBO_OK;
-    }
     return tribo_fail(ctx, TRIBO_ERR_STATE,
                       "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
-}
-
-int tribo_need_epsilon(const tribo_context *ctx)
-{
-    return ctx->step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
 }
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
@@ -485,7 +477,8 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
 }
 
 /* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
- * 2N/epsilon, or half of it for the laws that are dampers near v = 0, and a row sum bounds the eigenvalues. */
+ * 2N/epsilon, or half of it for the laws that are dampers near v = 0. The eigenvalues of that are at most the largest s_i R_ii
+ * times the largest eigenvalue of D^-1 R, for any set of contacts near stick. */
 static double max_rate(const tribo_context *ctx)
 {
     double rate = 0.0;
@@ -495,12 +488,12 @@ static double max_rate(const tribo_context *ctx)
         }
     }
     if (!ctx->law->uses_feq) {
-        return 0.5 * rate * ctx->op.row_sum;
+        return product(0.5 * rate, ctx->op.growth);
     }
     if (!ctx->law->relaxes) {
         return 0.0;
     }
-    return ctx->coupling == TRIBO_PARTITION ? rate * ctx->op.row_sum : rate;
+    return ctx->coupling == TRIBO_PARTITION ? product(rate, ctx->op.growth) : rate;
 }
 
 int tribo_get_real(const tribo_context *ctx, int which, double *value)

@@ -21,7 +21,7 @@
 /* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. */
 struct op {
     double *diagonal;     /* [n] R_ii, at least TRIBO_IMMOVABLE; NULL: there is no operator yet */
-    double row_sum;       /* max over i of sum_j |R_ij|/R_ii */
+    double growth;        /* at least the largest eigenvalue of D^-1 R, D being the diagonal */
     size_t islands;       /* groups and single contacts */
     size_t groups;        /* of two contacts and more */
     double most;          /* the smallest tribo_most of their contacts; TRIBO_FAR if there is no group */
@@ -119,9 +119,18 @@ int tribo_check_finite(const tribo_context *ctx, const char *name, const double 
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
-/* context.c: TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
-int tribo_need_operator(const tribo_context *ctx);
-int tribo_need_epsilon(const tribo_context *ctx);
+/* TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
+int tribo_fail_without_operator(const tribo_context *ctx); /* context.c */
+
+static inline int tribo_need_operator(const tribo_context *ctx)
+{
+    return ctx->op.diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
+}
+
+static inline int tribo_need_epsilon(const tribo_context *ctx)
+{
+    return ctx->step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
+}
 
 /* islands.c */
 struct rows;
