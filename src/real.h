@@ -24,6 +24,11 @@ static inline double clamp(double x, double lo, double hi)
     return lesser(greater(x, lo), hi);
 }
 
+static inline double cut(double x)
+{
+    return clamp(x, -TRIBO_FAR, TRIBO_FAR);
+}
+
 /* x/y, TRIBO_FAR at most; y > 0. */
 static inline double quotient(double x, double y)
 {

@@ -19,7 +19,6 @@ static void begin(tribo_context *ctx)
     ctx->far = ctx->largest > TRIBO_ROOM * ctx->op.most;
     ctx->limit_then = ctx->limit;
     ctx->rank = 0;
-    ctx->residual = 0.0;
     ctx->balanced = 0;
     ctx->linearized = 0;
 }
@@ -88,12 +87,6 @@ static int solve(tribo_context *ctx, struct program *p)
         tribo_box_share(p);
     }
     ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->near[e];
-        const double to = clamp(p->x[i] - quotient(p->gradient[i], ctx->op.diagonal[member[i]]), p->lo[i], p->hi[i]);
-        const double size = greater(ctx->bound[member[i]], 0.5 * p->hi[i] - 0.5 * p->lo[i]);
-        ctx->residual = greater(ctx->residual, fabs(p->x[i] - to) / greater(size, DBL_MIN));
-    }
     ctx->rank += is->rank;
     return TRIBO_OK;
 }
@@ -113,14 +106,15 @@ static int solve_consistent(tribo_context *ctx, struct program *p, const double 
         const double limit = ctx->bound[i], kappa = relaxation(ctx, i, v);
         p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
         p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
-        p->q[k] = a[i] + ctx->op.diagonal[i] * kappa;
+        p->q[k] = cut(a[i]) + ctx->op.diagonal[i] * kappa;
     }
     const int status = solve(ctx, p);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
+        const double beyond = quotient(p->gradient[k], ctx->op.diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
+        ctx->residual = greater(ctx->residual, fabs(p->x[k] - to) / greater(ctx->bound[i], DBL_MIN));
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
-        const double beyond = p->at[k] == FREE ? 0.0 : quotient(p->gradient[k], ctx->op.diagonal[i]);
-        ctx->feq[i] = clamp(p->x[k] + relaxation(ctx, i, v) - beyond, -TRIBO_FAR, TRIBO_FAR);
+        ctx->feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
     }
     return status;
 }
@@ -132,7 +126,7 @@ static int solve_partition(tribo_context *ctx, struct program *p, const double *
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        p->q[k] = a[i];
+        p->q[k] = cut(a[i]);
         p->unit[k] = ctx->op.diagonal[i] * ctx->bound[i];
     }
     ctx->solves++;
@@ -180,7 +174,7 @@ static void feq_of_others(tribo_context *ctx, const double *a)
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             if (!(ctx->op.awake[g] && ctx->last.state[i] == NEAR) && ctx->limit[i] > 0.0) {
-                ctx->feq[i] = quotient(-(a[i] + tribo_row_others(p, k, p->step)), ctx->op.diagonal[i]);
+                ctx->feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op.diagonal[i]);
             }
         }
     }
@@ -189,6 +183,7 @@ static void feq_of_others(tribo_context *ctx, const double *a)
 static int balance(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     begin(ctx);
+    ctx->residual = 0.0;
     tribo_forces_alone(ctx, v, a, wanted);
     for (size_t i = 0, k = 0; !ctx->kept && i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.kind[k] == MIXED) {
@@ -276,15 +271,15 @@ static int box(tribo_context *ctx, double dt, const double *v, const double *low
             const double lo = lower ? lower[i] : -upper[i];
             p->lo[k] = ctx->far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->far ? tribo_cut(p, k, upper[i]) : upper[i];
-            p->q[k] = scale * v[i];
+            p->q[k] = cut(scale * v[i]);
         }
         const int status = solve(ctx, p);
         if (status) {
             return status;
         }
         for (size_t e = 0; e < p->count; e++) {
-            const size_t k = p->near[e];
-            ctx->f[member[k]] = clamp(p->x[k], p->lo[k], p->hi[k]);
+            const size_t k = p->near[e], i = member[k];
+            ctx->f[i] = clamp(p->x[k], lower ? lower[i] : -upper[i], upper[i]);
         }
     }
     ctx->skipped += ctx->op.islands - ctx->op.touches;

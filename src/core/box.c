@@ -143,7 +143,7 @@ static int settled(const struct program *p, double noises)
 static double moved(const struct program *p, size_t i)
 {
     const double x = p->x[i] + p->step[i];
-    return p->far ? tribo_cut(p, i, x) : clamp(x, -TRIBO_FAR, TRIBO_FAR);
+    return p->far ? tribo_cut(p, i, x) : cut(x);
 }
 
 /* Takes the gradient of the independent x, which is found, to zero. */

@@ -45,7 +45,7 @@ static void take_given(tribo_context *ctx)
     }
 }
 
-/* epsilon = 2 limit R_ii time, with a slope that knows nothing of the limit. */
+/* epsilon = 2 limit R_ii time, with a slope that knows nothing of the limit. What friction cannot move does not relax. */
 static void follow_step(tribo_context *ctx)
 {
     const double time = quotient(ctx->step, ctx->lambda_dt);
@@ -53,7 +53,7 @@ static void follow_step(tribo_context *ctx)
         const double width = greater(product(ctx->op.diagonal[i], time), DBL_MIN), slope = 1.0 / width;
         const double limit = lesser(ctx->bound[i], 0.5 * TRIBO_FAR * lesser(slope, 1.0));
         ctx->epsilon[i] = greater(2.0 * width * limit, DBL_MIN);
-        ctx->slope[i] = limit > 0.0 ? slope : 0.0;
+        ctx->slope[i] = limit > 0.0 && ctx->op.diagonal[i] > TRIBO_IMMOVABLE ? slope : 0.0;
     }
 }
 

@@ -63,17 +63,17 @@ static double largest_step(const struct program *p, const double *step)
 
 void tribo_factor_solve(const struct program *p, double *step)
 {
-    const double far = TRIBO_ROOM * TRIBO_FAR;
-    if (!p->far || largest_step(p, step) < far) {
+    if (!p->far) {
         solve(p, step);
         return;
     }
+    const double room = largest_step(p, step) < TRIBO_ROOM * TRIBO_FAR ? 1.0 : TRIBO_ROOM, far = room * TRIBO_FAR;
     for (size_t k = 0; k < p->island->rank; k++) {
-        step[p->order[k]] *= TRIBO_ROOM;
+        step[p->order[k]] *= room;
     }
     solve(p, step);
     for (size_t k = 0; k < p->island->rank; k++) {
-        step[p->order[k]] = clamp(step[p->order[k]], -far, far) / TRIBO_ROOM;
+        step[p->order[k]] = clamp(step[p->order[k]], -far, far) / room;
     }
 }
 

@@ -25,10 +25,10 @@ static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double 
     }
 }
 
-TRIBO_SIMD static void cut(size_t n, double *x)
+TRIBO_SIMD static void cut_all(size_t n, double *x)
 {
     for (size_t i = 0; i < n; i++) {
-        x[i] = clamp(x[i], -TRIBO_FAR, TRIBO_FAR);
+        x[i] = cut(x[i]);
     }
 }
 
@@ -79,7 +79,7 @@ static void evaluate(const tribo_context *ctx, const double *v, const double *fe
         const size_t n = tribo_chunk_size(ctx, i);
         const struct contacts c = tribo_contacts_from(&all, i);
         used_feq(ctx, i, n, v, feq, used);
-        cut(n, used);
+        cut_all(n, used);
         if (f) {
             ctx->law->force(&c, n, v + i, used, f + i);
         }

@@ -86,8 +86,7 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     if (epsilon <= 0.0) {
         return TRIBO_ERR_NOT_POSITIVE;
     }
-    const double slope = tribo_slope(lesser(limit, TRIBO_FAR), epsilon),
-                 read = needs_feq ? clamp(feq, -TRIBO_FAR, TRIBO_FAR) : 0.0;
+    const double slope = tribo_slope(lesser(limit, TRIBO_FAR), epsilon), read = needs_feq ? cut(feq) : 0.0;
     const unsigned char moving = 1;
     const struct contacts c = {&limit, &epsilon, &slope, &moving, 0.0};
     struct tangent d;

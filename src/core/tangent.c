@@ -56,6 +56,7 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
                           double *df)
 {
     const int partition = ctx->coupling == TRIBO_PARTITION;
+    p->far = 1; /* derivatives may be anything */
     const size_t *member = p->member, size = p->island->size;
     double *rhs = p->noise;
     for (size_t k = 0; k < size; k++) {
