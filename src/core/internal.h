@@ -11,6 +11,7 @@
 
 #include "island.h"
 #include "law.h"
+#include "../compiler.h"
 #include "../real.h"
 
 #define TRIBO_ALONE SIZE_MAX
@@ -99,7 +100,7 @@ struct tribo_context {
 
 /* message.c: keeps the text for tribo_message and returns status. */
 int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)
-#if defined(__GNUC__)
+#if defined(TRIBO_GNU_C)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;

@@ -286,7 +286,7 @@ static void set_operator(struct slot *s, struct string *in)
     double *r = calloc(n * n + 1, sizeof *r), *val = calloc(n * n + 1, sizeof *val);
     size_t *first = calloc(n + 1, sizeof *first), *col = calloc(n * n + 1, sizeof *col);
     require(r && val && first && col, "memory");
-    int want = form >= 3 ? TRIBO_OK : TRIBO_OK;
+    int want = TRIBO_OK;
     for (size_t i = 0; i < n * n; i++) {
         r[i] = form == 0 && i % (n + 1) ? 0.0 : coupling_of(&b, i / n, i % n);
     }
@@ -615,6 +615,14 @@ static void law(struct slot *s, struct string *in)
     for (size_t k = 0; k < 3; k++) {
         check_finite(d[k], s->n, "derivatives");
     }
+    for (size_t i = 0; i < s->n; i++) {
+        for (int each = 0; each < tribo_law_count(); each++) {
+            const int status = tribo_law_eval(each, v[i], feq[i], s->limit[i], epsilon[i], f, d[0], d[1], d[2]);
+            require(status == TRIBO_OK || (status == TRIBO_ERR_NOT_FINITE && !isfinite(feq[i])), "law %d: %d", each, status);
+            require(status || (fabs(*f) <= s->limit[i] && isfinite(*d[0] + *d[1] + *d[2])), "law %d: %g", each, *f);
+        }
+    }
+    check_exceptions(wild);
     if (take(in) % 2) {
         check(s, "accept", tribo_accept(s->c, v, feq), TRIBO_OK);
         s->linear = s->linear && s->law != TRIBO_QUINN_REVERSAL;

@@ -64,7 +64,7 @@ static double crossing(double r)
     return r > 1.0 ? (double)(x - (x - 1.0L) * (x + 1.0L) / 2.0L * logl((x + 1.0L) / (x - 1.0L))) : 1.0;
 }
 
-/* The forms of equations.md; Quinn's as the paper has it, by s and xi, which is not how the library computes it. */
+/* The laws as their sources write them; Quinn's by s and xi, which is not how the library computes it. */
 static double formula(int law, double v, double feq, double limit, double epsilon)
 {
     const double held = clamped(feq, limit), slid = -limit * sgn(v);
