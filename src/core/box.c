@@ -18,7 +18,7 @@
 #define DISAGREED_TERMS 5e-9
 
 /* So much of the first terms is no gradient at all, though it may be all that there is. */
-#define NOTHING 1e-30
+#define NOTHING 1e-45
 
 /* A bound that moves by this factor is another one. */
 #define FAR_AWAY 1e3
@@ -34,21 +34,20 @@ static double find_gradient(struct program *p, size_t i)
     return size + fabs(p->q[i]) + DBL_MIN;
 }
 
-void tribo_box_gradient(struct program *p)
+/* first: they are the first ones of a call. */
+static void find_gradients(struct program *p, int first)
 {
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        p->noise[i] = tribo_resolution(p->terms[i]) * find_gradient(p, i) + NOTHING * p->first[i];
+        const double terms = find_gradient(p, i);
+        p->first[i] = first ? terms : p->first[i];
+        p->noise[i] = tribo_resolution(p->terms[i]) * terms + NOTHING * p->first[i];
     }
 }
 
-static void first_gradient(struct program *p)
+void tribo_box_gradient(struct program *p)
 {
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->near[e];
-        p->first[i] = find_gradient(p, i);
-        p->noise[i] = tribo_resolution(p->terms[i]) * p->first[i];
-    }
+    find_gradients(p, 0);
 }
 
 void tribo_box_change(struct program *p, size_t i, signed char to)
@@ -214,11 +213,7 @@ static void put_at_bounds(struct program *p)
 static void solve(struct program *p, int first)
 {
     put_at_bounds(p);
-    if (first) {
-        first_gradient(p);
-    } else {
-        tribo_box_gradient(p);
-    }
+    find_gradients(p, first);
     refine(p);
     if (!settled(p, SETTLED)) {
         tribo_factor_rebuild(p, NULL);
@@ -455,11 +450,7 @@ static int minimum_norm(struct program *p)
     const size_t vectors = tribo_null_basis(p);
     int consistent = 1;
     for (int pass = 0; pass < 3; pass++) {
-        if (pass == 0) {
-            first_gradient(p);
-        } else {
-            tribo_box_gradient(p);
-        }
+        find_gradients(p, pass == 0);
         if (vectors) {
             double rounding = DBL_MIN;
             for (size_t e = 0; e < p->count; e++) {

@@ -43,7 +43,7 @@ double tribo_factor_rebuild(struct program *p, size_t *where)
     return p->island->sparse ? tribo_sparse_rebuild(p, where) : tribo_dense_rebuild(p, where);
 }
 
-static void solve(const struct program *p, double *step)
+static void factor_solve(const struct program *p, double *step)
 {
     if (p->island->sparse) {
         tribo_sparse_solve(p, step);
@@ -64,14 +64,14 @@ static double largest_step(const struct program *p, const double *step)
 void tribo_factor_solve(const struct program *p, double *step)
 {
     if (!p->far) {
-        solve(p, step);
+        factor_solve(p, step);
         return;
     }
     const double room = largest_step(p, step) < TRIBO_ROOM * TRIBO_FAR ? 1.0 : TRIBO_ROOM, far = room * TRIBO_FAR;
     for (size_t k = 0; k < p->island->rank; k++) {
         step[p->order[k]] *= room;
     }
-    solve(p, step);
+    factor_solve(p, step);
     for (size_t k = 0; k < p->island->rank; k++) {
         step[p->order[k]] = clamp(step[p->order[k]], -far, far) / room;
     }
