@@ -97,8 +97,8 @@ TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
 TRIBO_API size_t tribo_system_ncontact(const tribo_system *sys);
 TRIBO_API size_t tribo_system_dimension(const tribo_system *sys);
 
-/* The context of the system's contacts, borrowed: set law, limits, epsilon and coupling here. Its operator is the system's. Calls
- * on the system that fail leave their message on it. NULL for NULL. */
+/* The context of the system's contacts, borrowed: set law, limits, epsilon and coupling here. Its operator is the system's, and
+ * stays (that of a copy, tribo_clone, may be changed). Calls on the system that fail leave their message on it. NULL for NULL. */
 TRIBO_API tribo_context *tribo_system_context(tribo_system *sys);
 
 /* The system for anyone's own GSL driver, with Jacobian; borrowed. Use one driver at a time. */

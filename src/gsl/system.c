@@ -105,6 +105,9 @@ size_t tribo_system_dimension(const tribo_system *sys)
 
 tribo_context *tribo_system_context(tribo_system *sys)
 {
+    if (sys) {
+        tribo_set_owner(sys->contacts, "a tribo_system");
+    }
     return sys ? sys->contacts : NULL;
 }
 
