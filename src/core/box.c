@@ -20,18 +20,27 @@
 /* So much of the first terms is no gradient at all, though it may be all that there is. */
 #define NOTHING 1e-45
 
+/* Rounding of a graded island's terms beside that of doubles. */
+#define GRADED_PART 0x1p-50
+
 /* A bound that moves by this factor is another one. */
 #define FAR_AWAY 1e3
 
 /* Refinement ends with gradients of so much rounding, or the factor is not what it should be. */
 #define SETTLED 4.0
 
-/* The gradient of i; returns the size of its terms, of which some may have underflowed. */
-static double find_gradient(struct program *p, size_t i)
+/* The gradient of i, and of how much of its terms the rounding is in it; returns the size of all its terms, of which some may
+ * have underflowed. A graded island's forces and R are as good as exact, and what it knows of q is q. */
+static double find_gradient(struct program *p, size_t i, double *rounded)
 {
-    double size;
+    double size, low;
+    if (p->island->graded) {
+        p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
+        *rounded = fabs(p->q[i]) + GRADED_PART * size + DBL_MIN;
+        return size + fabs(p->q[i]) + DBL_MIN;
+    }
     p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
-    return size + fabs(p->q[i]) + DBL_MIN;
+    return *rounded = size + fabs(p->q[i]) + DBL_MIN;
 }
 
 /* first: they are the first ones of a call. */
@@ -39,9 +48,10 @@ static void find_gradients(struct program *p, int first)
 {
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        const double terms = find_gradient(p, i);
+        double rounded;
+        const double terms = find_gradient(p, i, &rounded);
         p->first[i] = first ? terms : p->first[i];
-        p->noise[i] = tribo_resolution(p->terms[i]) * terms + NOTHING * p->first[i];
+        p->noise[i] = tribo_resolution(p->terms[i]) * rounded + NOTHING * p->first[i];
     }
 }
 
@@ -118,12 +128,16 @@ static void enter(struct program *p, int keep_bounds)
 static void newton(struct program *p)
 {
     const size_t rank = p->island->rank;
-    for (size_t k = 0; k < rank; k++) {
-        p->step[p->order[k]] = -p->gradient[p->order[k]];
+    if (p->island->graded) {
+        tribo_graded_newton(p);
+    } else {
+        for (size_t k = 0; k < rank; k++) {
+            p->step[p->order[k]] = -p->gradient[p->order[k]];
+        }
+        tribo_factor_solve(p, p->step);
     }
-    tribo_factor_solve(p, p->step);
     for (size_t k = rank; k < rank + p->island->dependents; k++) {
-        p->step[p->order[k]] = 0.0;
+        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
     }
 }
 
@@ -139,9 +153,9 @@ static int settled(const struct program *p, double noises)
 }
 
 /* Where the step takes x. */
-static double moved(const struct program *p, size_t i)
+static double moved(struct program *p, size_t i)
 {
-    const double x = p->x[i] + p->step[i];
+    const double x = p->island->graded ? tribo_graded_move(p, i, 1.0) : p->x[i] + p->step[i];
     return p->far ? tribo_cut(p, i, x) : cut(x);
 }
 
@@ -197,8 +211,17 @@ static int revise(struct program *p)
     return memcmp(p->to, p->at, is->size) == 0;
 }
 
+/* What rounding left of x is known of what a solver found, and of nothing else. */
+static void forget_low(const struct program *p)
+{
+    if (p->island->graded) {
+        memset(p->low, 0, p->island->size * sizeof *p->low);
+    }
+}
+
 static void put_at_bounds(struct program *p)
 {
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         p->x[i] = p->at[i] == AT_LOWER ? p->lo[i] : p->at[i] == AT_UPPER ? p->hi[i] : p->x[i];
@@ -260,10 +283,13 @@ size_t tribo_box_advance(struct program *p, double longest)
     }
     for (size_t k = 0; k < all; k++) {
         const size_t i = p->order[k];
-        p->x[i] = clamp(p->x[i] + length * p->step[i], p->lo[i], p->hi[i]);
+        const double x = p->island->graded ? tribo_graded_move(p, i, length) : p->x[i] + length * p->step[i];
+        p->x[i] = clamp(x, p->lo[i], p->hi[i]);
+        p->low[i] = p->x[i] == x ? p->low[i] : 0.0;
     }
     if (hit < p->island->size) {
         p->x[hit] = p->step[hit] > 0.0 ? p->hi[hit] : p->lo[hit];
+        p->low[hit] = 0.0;
     }
     return hit;
 }
@@ -320,6 +346,7 @@ static int slide(struct program *p, size_t d)
     double size;
     const double pull = p->gradient[d];
     memset(p->step, 0, p->island->size * sizeof *p->step);
+    memset(p->step_low, 0, p->island->size * sizeof *p->step_low);
     tribo_null_vector(p, d, p->step);
     for (size_t k = 0; pull > 0.0 && k < p->island->rank + p->island->dependents; k++) {
         p->step[p->order[k]] *= -1.0;
@@ -340,6 +367,7 @@ static int descend(struct program *p)
 static int primal(struct program *p)
 {
     memcpy(p->to, p->at, p->island->size);
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
@@ -387,6 +415,7 @@ static double violation(const struct program *p)
 
 static void restore(struct program *p, const double *x)
 {
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         p->x[p->near[e]] = x[p->near[e]];
     }
@@ -444,6 +473,7 @@ void tribo_box_share(struct program *p)
 /* With the factor as it is. */
 static int minimum_norm(struct program *p)
 {
+    forget_low(p);
     for (size_t e = 0; e < p->count; e++) {
         p->x[p->near[e]] = 0.0;
     }

@@ -117,28 +117,24 @@ void tribo_dense_remove(struct program *p, size_t i)
     }
 }
 
-/* Symmetric exchange of rows and columns k and other > k in the lower triangle, columns before k included. */
-static void exchange(struct program *p, size_t all, size_t k, size_t other)
+void tribo_dense_exchange(const struct program *p, double *l, size_t all, size_t k, size_t other)
 {
-    const size_t size = p->island->size, order = p->order[k];
-    p->order[k] = p->order[other];
-    p->order[other] = order;
+    const size_t size = p->island->size;
     for (size_t j = 0; j < all; j++) {
         if (j != k && j != other) {
-            double *a = j < k ? &p->l[k * size + j] : &p->l[j * size + k];
-            double *b = j < other ? &p->l[other * size + j] : &p->l[j * size + other];
+            double *a = j < k ? &l[k * size + j] : &l[j * size + k];
+            double *b = j < other ? &l[other * size + j] : &l[j * size + other];
             const double x = *a;
             *a = *b;
             *b = x;
         }
     }
-    const double x = p->l[k * size + k];
-    p->l[k * size + k] = p->l[other * size + other];
-    p->l[other * size + other] = x;
+    const double x = l[k * size + k];
+    l[k * size + k] = l[other * size + other];
+    l[other * size + other] = x;
 }
 
-/* What elimination has left of the rows from k on. */
-static double leftover(const struct program *p, size_t k, size_t all, size_t *where)
+double tribo_dense_leftover(const struct program *p, size_t k, size_t all, size_t *where)
 {
     const size_t size = p->island->size;
     double most = 0.0;
@@ -154,17 +150,23 @@ static double leftover(const struct program *p, size_t k, size_t all, size_t *wh
     return most;
 }
 
-/* Cholesky factorization with the largest pivot next, so that the rank is revealed. */
-double tribo_dense_rebuild(struct program *p, size_t *where)
+size_t tribo_dense_order(struct program *p)
 {
-    struct island *is = p->island;
-    const size_t size = is->size;
-    size_t all = 0, k = 0;
+    size_t all = 0;
     for (size_t e = 0; e < p->count; e++) {
         if (p->at[p->near[e]] == FREE) {
             p->order[all++] = p->near[e];
         }
     }
+    return all;
+}
+
+/* Cholesky factorization with the largest pivot next, so that the rank is revealed. */
+double tribo_dense_rebuild(struct program *p, size_t *where)
+{
+    struct island *is = p->island;
+    const size_t size = is->size, all = tribo_dense_order(p);
+    size_t k = 0;
     for (size_t i = 0; i < all; i++) {
         for (size_t j = 0; j <= i; j++) {
             p->l[i * size + j] = scaled(p, p->order[i], p->order[j]);
@@ -179,7 +181,10 @@ double tribo_dense_rebuild(struct program *p, size_t *where)
             break;
         }
         if (best != k) {
-            exchange(p, all, k, best);
+            tribo_dense_exchange(p, p->l, all, k, best);
+            const size_t order = p->order[k];
+            p->order[k] = p->order[best];
+            p->order[best] = order;
         }
         const double inverse = 1.0 / sqrt(p->l[k * size + k]);
         p->l[k * size + k] = inverse;
@@ -195,7 +200,7 @@ double tribo_dense_rebuild(struct program *p, size_t *where)
     }
     is->rank = k;
     is->dependents = all - k;
-    return where ? leftover(p, k, all, where) : 0.0;
+    return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
 }
 
 void tribo_dense_solve(const struct program *p, double *step)

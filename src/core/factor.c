@@ -3,6 +3,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 #include "../real.h"
 #include "../simd.h"
@@ -21,7 +22,9 @@ double tribo_scale(double diagonal)
 
 void tribo_factor_add(struct program *p, size_t i)
 {
-    if (p->island->sparse) {
+    if (p->island->graded) {
+        tribo_factor_rebuild(p, NULL);
+    } else if (p->island->sparse) {
         tribo_sparse_add(p, i);
     } else {
         tribo_dense_add(p, i);
@@ -30,7 +33,9 @@ void tribo_factor_add(struct program *p, size_t i)
 
 void tribo_factor_remove(struct program *p, size_t i)
 {
-    if (p->island->sparse) {
+    if (p->island->graded) {
+        tribo_factor_rebuild(p, NULL);
+    } else if (p->island->sparse) {
         tribo_sparse_remove(p, i);
     } else {
         tribo_dense_remove(p, i);
@@ -40,12 +45,18 @@ void tribo_factor_remove(struct program *p, size_t i)
 double tribo_factor_rebuild(struct program *p, size_t *where)
 {
     p->work.factorizations++;
+    if (p->island->graded) {
+        return tribo_graded_rebuild(p, where);
+    }
     return p->island->sparse ? tribo_sparse_rebuild(p, where) : tribo_dense_rebuild(p, where);
 }
 
 static void factor_solve(const struct program *p, double *step)
 {
-    if (p->island->sparse) {
+    if (p->island->graded) {
+        tribo_graded_solve(p, step, p->row);
+        memset(p->row, 0, p->island->size * sizeof *p->row);
+    } else if (p->island->sparse) {
         tribo_sparse_solve(p, step);
     } else {
         tribo_dense_solve(p, step);
@@ -80,7 +91,7 @@ void tribo_factor_solve(const struct program *p, double *step)
 int tribo_factor_many(const struct program *p, size_t changes, size_t free)
 {
     /* dense: about rank^2 for each, and a third of that for every free contact */
-    return p->island->sparse ? tribo_sparse_many(p, changes) : 3 * changes > free;
+    return p->island->sparse ? tribo_sparse_many(p, changes) : p->island->graded || 3 * changes > free;
 }
 
 /* Sums side by side, since one would have to be added up in order. */

@@ -142,8 +142,16 @@ struct flaw {
     double pivot;          /* relative to the diagonal */
 };
 
-/* The operator of rows that are symmetric and finite, with sorted columns; a status. */
-int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw);
+/* What the rows of R = J diag(w) J' came from; t is J'. */
+struct inertia {
+    const double *w;
+    const size_t *rowptr, *col;
+    const double *val;
+    const struct rows *t;
+};
+
+/* The operator of rows that are symmetric and finite, with sorted columns; a status. from: NULL if not known. */
+int tribo_op_create(struct op *op, const struct rows *a, const struct inertia *from, struct flaw *flaw);
 int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* r NULL: not set yet; 1, or 0 if out of memory */
 int tribo_op_copy(struct op *to, const struct op *from, size_t n);
 void tribo_op_free(struct op *op); /* what is left is no operator */

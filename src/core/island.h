@@ -3,6 +3,7 @@
  *
  *   dense.c     factor of R over the free contacts, kept from call to call and changed row by row
  *   sparse.c    the same for large islands with few entries
+ *   graded.c    the same for light bodies between heavy ones, with twice as many digits
  *   box.c       which contacts are free and which at a bound: the program itself, and the linear system of the partition coupling
  *   split.c     the share of redundant contacts */
 #ifndef TRIBO_ISLAND_H
@@ -22,6 +23,10 @@ enum { AT_LOWER = -1, FREE = 0, AT_UPPER = 1, AWAY = 2 };
 /* Without a choice of pivots, those of a sparse factor below this count as zero. */
 #define TRIBO_SPARSE_ZERO 1e-10
 
+/* Pivots of a graded island below this count as zero: those of rows of J that depend on each other up to rounding are, since they
+ * go with its square. */
+#define TRIBO_GRADED_ZERO 1e-28
+
 /* Redundant contacts of one sparse island whose share is found; of a dense one, all of them. */
 #define TRIBO_SPARSE_REDUNDANT 64
 
@@ -35,6 +40,7 @@ struct island {
     size_t terms;          /* entries of the fullest row */
     int far;               /* what program.far was in the last call */
     struct sparse *sparse; /* R and its factor, if they are sparse */
+    int graded;            /* they are kept to twice as many digits */
     size_t nullity;        /* size - rank of R: redundant contacts */
     size_t rank;           /* now: free contacts in the factor, independent of each other, */
     size_t dependents;     /* and those that depend on them */
@@ -57,15 +63,19 @@ struct program {
     double *scale;   /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
     double *r;       /* [size][size], if dense */
     double *l;       /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
+    double *r_low;   /* [size][size] what rounding left of R, if graded */
+    double *l_low;   /* [size][size] and of the factor */
     /* the program: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
     int far;             /* solutions may be as large as they can be told apart */
     size_t *near, count; /* near[0 .. count): the contacts in the program, ascending; near[count .. size): the others */
     double *q, *lo, *hi;
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
+    double *low;              /* what rounding left of x, if the island is graded */
     double *first;            /* the size of the terms of the gradient that the call began with */
     double *unit;             /* R_ii times the limit, or half the box; of islands with redundant contacts */
     signed char *to;          /* workspace */
-    double *step, *spare[2];  /* workspace, [size] */
+    double *step, *step_low;  /* workspace, [size]; the latter is what rounding left, if the island is graded */
+    double *spare[2];         /* workspace, [size] */
     double *row;              /* the same, zero between calls */
     double *basis;            /* workspace: orthonormal null vectors, [redundant][size] */
     size_t redundant;         /* how many there is room for */
@@ -117,6 +127,24 @@ void tribo_dense_add(struct program *p, size_t i);
 void tribo_dense_remove(struct program *p, size_t i);
 double tribo_dense_rebuild(struct program *p, size_t *where);
 void tribo_dense_solve(const struct program *p, double *step);
+
+/* What factorizations that choose their pivots share: the free contacts, in p->order; symmetric exchange of rows and columns k
+ * and other > k in the lower triangle l, columns before k included; what elimination has left of the rows from k on. */
+size_t tribo_dense_order(struct program *p);
+void tribo_dense_exchange(const struct program *p, double *l, size_t all, size_t k, size_t other);
+double tribo_dense_leftover(const struct program *p, size_t k, size_t all, size_t *where);
+
+double tribo_graded_rebuild(struct program *p, size_t *where);
+void tribo_graded_solve(const struct program *p, double *step, double *low);
+
+/* (R x + q)_i, *low being what rounding left of it, and *size the size of R x's terms. */
+double tribo_graded_gradient(const struct program *p, size_t i, double *low, double *size);
+
+/* step and step_low = the move of the independent x that takes their gradient to zero. */
+void tribo_graded_newton(struct program *p);
+
+/* x_i + length step_i, its low part kept. */
+double tribo_graded_move(struct program *p, size_t i, double length);
 
 void tribo_sparse_add(struct program *p, size_t i);
 void tribo_sparse_remove(struct program *p, size_t i);

@@ -7,9 +7,18 @@
 #include "internal.h"
 #include "rows.h"
 #include "../simd.h"
+#include "../twofold.h"
 
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128
+
+/* Masses whose inverses differ by more than this at one contact are kept apart by twice as many digits, */
+#define GRADED_FROM 1e6
+
+/* which does in groups so small, and up to this; in larger ones up to that. */
+#define GRADED_TO 256
+#define GRADED_MOST 1e24
+#define GRADED_MOST_LARGE 1e10
 
 void tribo_op_free(struct op *op)
 {
@@ -45,7 +54,7 @@ int tribo_op_diagonal(struct op *op, size_t n, const double *r)
 /* What a group keeps, in doubles, which are as large as everything else that it keeps. */
 static size_t kept_by(const struct island *is)
 {
-    return 6 * is->size + (is->sparse ? 0 : 2 * is->size * is->size);
+    return 6 * is->size + (is->sparse ? 0 : (is->graded ? 4 : 2) * is->size * is->size);
 }
 
 struct program *tribo_op_program(struct op *op, size_t k)
@@ -62,6 +71,8 @@ struct program *tribo_op_program(struct op *op, size_t k)
     p->scale = p->x + 5 * size;
     p->r = p->x + 6 * size;
     p->l = p->r + size * size;
+    p->r_low = p->l + size * size;
+    p->l_low = p->r_low + size * size;
     p->redundant = op->basis / size;
     return p;
 }
@@ -82,7 +93,7 @@ static int allocate_store(struct op *op, size_t n)
 
 static int allocate_program(struct op *op)
 {
-    enum { VECTORS = 11 };
+    enum { VECTORS = 13 };
     const size_t s = op->largest + 1;
     struct program *p = &op->program;
     p->near = malloc(s * sizeof *p->near);
@@ -91,8 +102,8 @@ static int allocate_program(struct op *op)
     if (!p->near || !p->to || !p->q) {
         return 0;
     }
-    double **const vector[] = {&p->lo,   &p->hi,   &p->gradient, &p->noise,    &p->first,
-                               &p->unit, &p->step, &p->row,      &p->spare[0], &p->spare[1]};
+    double **const vector[] = {&p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,     &p->first,
+                               &p->unit, &p->step, &p->step_low, &p->row, &p->spare[0], &p->spare[1]};
     for (size_t k = 0; k < VECTORS - 1; k++) {
         *vector[k] = p->q + (k + 1) * s;
     }
@@ -301,7 +312,58 @@ static int find_growth(struct op *op, const struct rows *a)
     return x != NULL;
 }
 
-static void fill_group(struct op *op, size_t k, const struct rows *a, const size_t *member, const size_t *place)
+/* How much the shares J_ik^2 w_k of bodies in R_ii differ: the largest over the smallest. */
+static double spread_of(const struct inertia *from, size_t i)
+{
+    double least = HUGE_VAL, most = 0.0;
+    for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
+        const double x = fabs(from->val[e]), root = x * sqrt(from->w[from->col[e]]);
+        if (root > 0.0) {
+            least = lesser(least, root);
+            most = greater(most, root);
+        }
+    }
+    const double ratio = most > 0.0 ? quotient(most, least) : 1.0;
+    return ratio < 1e150 ? ratio * ratio : TRIBO_FAR;
+}
+
+/* Whether the group is graded. Returns 0 if the masses differ too much for it: then flaw says where. */
+static int find_grading(struct island *is, const struct inertia *from, const size_t *member, struct flaw *flaw)
+{
+    double most = 1.0;
+    for (size_t c = 0; from && c < is->size; c++) {
+        const double spread = spread_of(from, member[c]);
+        if (spread > most) {
+            most = spread;
+            *flaw = (struct flaw){member[c], is->size, spread};
+        }
+    }
+    is->graded = most > GRADED_FROM && is->size <= GRADED_TO;
+    return most <= (is->graded ? GRADED_MOST : GRADED_MOST_LARGE);
+}
+
+/* R of a graded group to twice as many digits, at which r and r_low begin as zero. */
+static void fill_graded(const struct program *p, const struct inertia *from, const size_t *member, const size_t *place)
+{
+    const size_t size = p->island->size;
+    for (size_t c = 0; c < size; c++) {
+        const size_t i = member[c];
+        for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
+            const size_t dof = from->col[e];
+            const struct twofold x = twofold_product(from->val[e], from->w[dof]);
+            for (size_t k = from->t->first[dof]; x.hi != 0.0 && k < from->t->first[dof + 1]; k++) {
+                const size_t at = c * size + place[from->t->col[k]];
+                const struct twofold term = twofold_times(x, (struct twofold){from->t->val[k], 0.0}),
+                                     sum = twofold_add((struct twofold){p->r[at], p->r_low[at]}, term);
+                p->r[at] = sum.hi;
+                p->r_low[at] = sum.lo;
+            }
+        }
+    }
+}
+
+static void fill_group(struct op *op, size_t k, const struct rows *a, const struct inertia *from, const size_t *member,
+                       const size_t *place)
 {
     struct program *p = tribo_op_program(op, k);
     struct island *is = p->island;
@@ -315,11 +377,14 @@ static void fill_group(struct op *op, size_t k, const struct rows *a, const size
         is->lightest = lesser(is->lightest, p->scale[c]);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             p->terms[c] += a->val[e] != 0.0;
-            if (a->val[e] != 0.0 && !is->sparse) {
+            if (a->val[e] != 0.0 && !is->sparse && !is->graded) {
                 p->r[c * is->size + place[a->col[e]]] = a->val[e];
             }
         }
         is->terms = p->terms[c] > is->terms ? p->terms[c] : is->terms;
+    }
+    if (is->graded) {
+        fill_graded(p, from, member, place);
     }
     for (size_t c = 0; c < is->size; c++) {
         op->most = lesser(op->most, tribo_most(p, c));
@@ -339,7 +404,8 @@ static int check_definite(struct op *op, struct flaw *flaw)
         p->count = is->size;
         size_t where = 0;
         const double left = tribo_factor_rebuild(p, &where);
-        if (fabs(left) > 16.0 * (is->sparse ? TRIBO_SPARSE_ZERO : tribo_resolution(is->size))) {
+        const double zero = is->sparse ? TRIBO_SPARSE_ZERO : is->graded ? TRIBO_GRADED_ZERO : tribo_resolution(is->size);
+        if (fabs(left) > 16.0 * zero) {
             *flaw = (struct flaw){p->member[where], is->size, left};
             return TRIBO_ERR_INDEFINITE;
         }
@@ -351,12 +417,15 @@ static int check_definite(struct op *op, struct flaw *flaw)
     return TRIBO_OK;
 }
 
-static int create_groups(struct op *op, const struct rows *a, const size_t *member, const size_t *first, const size_t *place,
-                         struct flaw *flaw)
+static int create_groups(struct op *op, const struct rows *a, const struct inertia *from, const size_t *member,
+                         const size_t *first, const size_t *place, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct island *is = &op->group[k];
-        if (is->size > SPARSE_FROM && !make_sparse(is, a, member + first[k], place)) {
+        if (!find_grading(is, from, member + first[k], flaw)) {
+            return TRIBO_ERR_UNSUPPORTED;
+        }
+        if (!is->graded && is->size > SPARSE_FROM && !make_sparse(is, a, member + first[k], place)) {
             return TRIBO_ERR_MEMORY;
         }
         is->kept = op->stored;
@@ -366,13 +435,13 @@ static int create_groups(struct op *op, const struct rows *a, const size_t *memb
         return TRIBO_ERR_MEMORY;
     }
     for (size_t k = 0; k < op->groups; k++) {
-        fill_group(op, k, a, member + first[k], place);
+        fill_group(op, k, a, from, member + first[k], place);
     }
     const int status = check_definite(op, flaw);
     return status || allocate_basis(op) ? status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw)
+int tribo_op_create(struct op *op, const struct rows *a, const struct inertia *from, struct flaw *flaw)
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
@@ -384,7 +453,7 @@ int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw)
         if (op->islands == n) {
             status = TRIBO_OK;
         } else if (find_growth(op, a) && find_groups(op, n, label, place, member, first)) {
-            status = create_groups(op, a, member, first, place, flaw);
+            status = create_groups(op, a, from, member, first, place, flaw);
         }
     }
     if (status) {

@@ -96,16 +96,20 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
     return tribo_op_diagonal(&op, ctx->n, r) ? install(ctx, &op) : out_of_memory(ctx);
 }
 
-/* Takes a, sorted rows with finite entries, as the operator. Frees a. */
-static int install_rows(tribo_context *ctx, struct rows *a)
+/* Takes a, sorted rows with finite entries, as the operator. Frees a. from: what they came from, if that is known. */
+static int install_rows(tribo_context *ctx, struct rows *a, const struct inertia *from)
 {
     struct op op = {0};
     struct flaw flaw;
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
     int status = diagonal ? symmetrize(ctx, a, diagonal) : out_of_memory(ctx);
     if (!status) {
-        status = tribo_op_create(&op, a, &flaw);
-        if (status == TRIBO_ERR_INDEFINITE) {
+        status = tribo_op_create(&op, a, from, &flaw);
+        if (status == TRIBO_ERR_UNSUPPORTED) {
+            tribo_fail(ctx, status,
+                       "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contacts",
+                       flaw.contact, flaw.pivot, flaw.group);
+        } else if (status == TRIBO_ERR_INDEFINITE) {
             tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contacts",
                        flaw.pivot, flaw.contact, flaw.group);
         } else {
@@ -152,7 +156,7 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
         }
         a.first[i + 1] = k;
     }
-    return install_rows(ctx, &a);
+    return install_rows(ctx, &a, NULL);
 }
 
 /* Checks the compressed rows of an [n][columns] matrix called name. */
@@ -216,7 +220,7 @@ int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_
         status = out_of_memory(ctx);
     }
     tribo_rows_free(&t);
-    return status ? status : install_rows(ctx, &a);
+    return status ? status : install_rows(ctx, &a, NULL);
 }
 
 /* J [n][ndof] in compressed rows is right; t is J'. */
@@ -253,13 +257,15 @@ int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inver
     if (status) {
         return status;
     }
+    const struct inertia from = {inverse_mass, rowptr, col, val, &t};
     const int done = tribo_rows_product(&a, ctx->n, &t, inverse_mass, rowptr, col, val);
+    status = done ? install_rows(ctx, &a, &from) : out_of_memory(ctx);
     tribo_rows_free(&t);
-    return done ? install_rows(ctx, &a) : out_of_memory(ctx);
+    return status;
 }
 
 /* The caller's mass matrix, with a force and the acceleration that it makes. */
-struct inertia {
+struct solver {
     size_t ndof;
     int (*apply)(size_t ndof, const double *force, double *acceleration, void *data);
     void *data;
@@ -267,7 +273,7 @@ struct inertia {
 };
 
 /* column [n] = R e_j. */
-static int find_column(const tribo_context *ctx, const struct inertia *m, size_t j, const size_t *rowptr, const size_t *col,
+static int find_column(const tribo_context *ctx, const struct solver *m, size_t j, const size_t *rowptr, const size_t *col,
                        const double *val, double *column)
 {
     for (size_t k = rowptr[j]; k < rowptr[j + 1]; k++) {
@@ -364,7 +370,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
         return out_of_memory(ctx);
     }
     double *column = work + 2 * ndof;
-    const struct inertia m = {ndof, apply, data, work, work + ndof};
+    const struct solver m = {ndof, apply, data, work, work + ndof};
     for (size_t j = 0; !status && j < ctx->n; j++) {
         status = find_column(ctx, &m, j, rowptr, col, val, column);
         if (!status && !append(&a, &room, j, column)) {
@@ -375,7 +381,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
         tribo_rows_free(&a);
     } else {
         drop_negligible(&a, column);
-        status = install_rows(ctx, &a);
+        status = install_rows(ctx, &a, NULL);
     }
     free(work);
     return status;

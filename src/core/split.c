@@ -95,7 +95,7 @@ static void hold(struct program *p, size_t vectors, size_t i)
 static void aim(struct program *p, size_t vectors)
 {
     for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
-        p->step[p->order[k]] = 0.0;
+        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
     }
     for (size_t j = 0; j < vectors; j++) {
         const double *b = p->basis + j * p->island->size;

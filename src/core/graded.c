@@ -1,0 +1,164 @@
+/* The factor of a graded island: one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double the
+ * light body's 1/m hides the heavy one's 1/M, but for the digits that are left, and with them what friction does to it. So R, its
+ * factor, and the forces of the free contacts are kept to twice as many digits, which are enough for masses that differ by 1e24.
+ *
+ * Changes of the stick set factorize anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in dense.c. */
+#include "island.h"
+
+#include <math.h>
+
+#include "../real.h"
+#include "../twofold.h"
+
+static struct twofold entry(const struct program *p, size_t i, size_t j)
+{
+    const size_t at = i * p->island->size + j;
+    return twofold_scale((struct twofold){p->r[at], p->r_low[at]}, p->scale[i] * p->scale[j]);
+}
+
+static struct twofold factor(const struct program *p, size_t i, size_t j)
+{
+    const size_t at = i * p->island->size + j;
+    return (struct twofold){p->l[at], p->l_low[at]};
+}
+
+static void set_factor(const struct program *p, size_t i, size_t j, struct twofold x)
+{
+    const size_t at = i * p->island->size + j;
+    p->l[at] = x.hi;
+    p->l_low[at] = x.lo;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- rebuild */
+
+static void load(struct program *p, size_t all)
+{
+    for (size_t i = 0; i < all; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            set_factor(p, i, j, entry(p, p->order[i], p->order[j]));
+        }
+    }
+}
+
+static void eliminate(struct program *p, size_t all, size_t k)
+{
+    const struct twofold inverse = twofold_inverse_root(factor(p, k, k));
+    set_factor(p, k, k, inverse);
+    for (size_t i = k + 1; i < all; i++) {
+        set_factor(p, i, k, twofold_times(factor(p, i, k), inverse));
+    }
+    for (size_t i = k + 1; i < all; i++) {
+        const struct twofold x = factor(p, i, k);
+        for (size_t j = k + 1; x.hi != 0.0 && j <= i; j++) {
+            set_factor(p, i, j, twofold_minus(factor(p, i, j), twofold_times(x, factor(p, j, k))));
+        }
+    }
+}
+
+double tribo_graded_rebuild(struct program *p, size_t *where)
+{
+    struct island *is = p->island;
+    const size_t size = is->size, all = tribo_dense_order(p);
+    size_t k = 0;
+    load(p, all);
+    for (; k < all; k++) {
+        size_t best = k;
+        for (size_t i = k + 1; i < all; i++) {
+            best = p->l[i * size + i] > p->l[best * size + best] ? i : best;
+        }
+        if (p->l[best * size + best] <= TRIBO_GRADED_ZERO) {
+            break;
+        }
+        if (best != k) {
+            tribo_dense_exchange(p, p->l, all, k, best);
+            tribo_dense_exchange(p, p->l_low, all, k, best);
+            const size_t i = p->order[k];
+            p->order[k] = p->order[best];
+            p->order[best] = i;
+        }
+        eliminate(p, all, k);
+    }
+    is->rank = k;
+    is->dependents = all - k;
+    return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ solve */
+
+/* The number over a power of 2, or as much of it as may be worked with. */
+static struct twofold over(double hi, double lo, double scale)
+{
+    const double most = TWOFOLD_FAR * lesser(scale, 1.0), by = 1.0 / scale;
+    return fabs(hi) <= most ? (struct twofold){hi * by, lo * by} : (struct twofold){clamp(hi, -most, most) * by, 0.0};
+}
+
+/* y -= l_kj x */
+static struct twofold subtract(const struct program *p, struct twofold y, size_t k, size_t j, struct twofold x)
+{
+    return twofold_minus(y, twofold_times(factor(p, k, j), x));
+}
+
+void tribo_graded_solve(const struct program *p, double *step, double *low)
+{
+    const size_t rank = p->island->rank;
+    for (size_t k = 0; k < rank; k++) {
+        const size_t i = p->order[k];
+        struct twofold y = over(step[i], low[i], 1.0 / p->scale[i]);
+        for (size_t j = 0; j < k; j++) {
+            y = subtract(p, y, k, j, (struct twofold){step[p->order[j]], low[p->order[j]]});
+        }
+        y = twofold_times(y, factor(p, k, k));
+        step[i] = y.hi;
+        low[i] = y.lo;
+    }
+    for (size_t k = rank; k-- > 0;) {
+        const size_t i = p->order[k];
+        struct twofold y = {step[i], low[i]};
+        for (size_t j = k + 1; j < rank; j++) {
+            y = subtract(p, y, j, k, (struct twofold){step[p->order[j]], low[p->order[j]]});
+        }
+        y = twofold_times(y, factor(p, k, k));
+        step[i] = y.hi;
+        low[i] = y.lo;
+    }
+    for (size_t k = 0; k < rank; k++) {
+        step[p->order[k]] *= p->scale[p->order[k]];
+        low[p->order[k]] *= p->scale[p->order[k]];
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- gradient */
+
+double tribo_graded_gradient(const struct program *p, size_t i, double *low, double *size)
+{
+    const double own = 1.0 / p->scale[i];
+    struct twofold sum = over(p->q[i], 0.0, own);
+    *size = 0.0;
+    for (size_t j = 0; j < p->island->size; j++) {
+        const struct twofold term = twofold_times(entry(p, i, j), over(p->x[j], p->low[j], p->scale[j]));
+        sum = twofold_add(sum, term);
+        *size += fabs(term.hi);
+    }
+    *size *= own;
+    *low = own * sum.lo;
+    return own * sum.hi;
+}
+
+void tribo_graded_newton(struct program *p)
+{
+    double size;
+    for (size_t k = 0; k < p->island->rank; k++) {
+        const size_t i = p->order[k];
+        p->step[i] = -tribo_graded_gradient(p, i, &p->step_low[i], &size);
+        p->step_low[i] *= -1.0;
+    }
+    tribo_graded_solve(p, p->step, p->step_low);
+}
+
+double tribo_graded_move(struct program *p, size_t i, double length)
+{
+    const struct twofold step = twofold_times((struct twofold){p->step[i], p->step_low[i]}, (struct twofold){length, 0.0}),
+                         x = twofold_add((struct twofold){p->x[i], p->low[i]}, step);
+    p->low[i] = x.lo;
+    return x.hi;
+}
