@@ -223,7 +223,6 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         }
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
-    if(getenv("TRACE")){ struct stick_slip *m=&e->stick_slip; fprintf(stderr,"t %.14g (+%.3g) ev %d sl %d side %g g %.2e d %.2e looks %zu doubt %g",*t,when,event?(int)event->contact:-1,event?event->slides:0,event?event->side:0,event?event->middle.g:0,event?event->middle.d:0,e->search.looks,m->doubt); for(size_t i=0;i<sys->ncontact;i++) fprintf(stderr," [%d t%d h%d %+.1e a%.0e]",m->slip[i],m->tied[i],m->holds[i],fabs(m->force[i])-m->limit[i],m->allowance[i]); fprintf(stderr,"\n");}
     if (!status && (event || *t >= t1 || !e->shows_between)) {
         status = tribo_driver_tell(drv, *t, y, event != NULL);
     }
