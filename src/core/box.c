@@ -34,7 +34,7 @@
 static double find_gradient(struct program *p, size_t i, double *rounded)
 {
     double size, low;
-    if (p->island->graded) {
+    if (p->twofold) {
         p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
         *rounded = fabs(p->q[i]) + GRADED_PART * size + DBL_MIN;
         return size + fabs(p->q[i]) + DBL_MIN;
@@ -128,7 +128,7 @@ static void enter(struct program *p, int keep_bounds)
 static void newton(struct program *p)
 {
     const size_t rank = p->island->rank;
-    if (p->island->graded) {
+    if (p->twofold) {
         tribo_graded_newton(p);
     } else {
         for (size_t k = 0; k < rank; k++) {
@@ -155,7 +155,7 @@ static int settled(const struct program *p, double noises)
 /* Where the step takes x. */
 static double moved(struct program *p, size_t i)
 {
-    const double x = p->island->graded ? tribo_graded_move(p, i, 1.0) : p->x[i] + p->step[i];
+    const double x = p->twofold ? tribo_graded_move(p, i, 1.0) : p->x[i] + p->step[i];
     return p->far ? tribo_cut(p, i, x) : cut(x);
 }
 
@@ -179,7 +179,11 @@ static int outside(double x, double lo, double hi)
 
 static double disagreement(const struct program *p, size_t i)
 {
-    return p->island->nullity ? lesser(DISAGREEMENT * p->unit[i], DISAGREED_TERMS * p->first[i]) : 0.0;
+    if (!p->island->nullity) {
+        return 0.0;
+    }
+    /* of a graded island a unit may be a billion times what counts: there the largest q is taken */
+    return p->twofold ? DISAGREEMENT * p->pull : lesser(DISAGREEMENT * p->unit[i], DISAGREED_TERMS * p->first[i]);
 }
 
 double tribo_box_tolerance(const struct program *p, size_t i)
@@ -214,7 +218,7 @@ static int revise(struct program *p)
 /* What rounding left of x is known of what a solver found, and of nothing else. */
 static void forget_low(const struct program *p)
 {
-    if (p->island->graded) {
+    if (p->twofold) {
         memset(p->low, 0, p->island->size * sizeof *p->low);
     }
 }
@@ -283,7 +287,7 @@ size_t tribo_box_advance(struct program *p, double longest)
     }
     for (size_t k = 0; k < all; k++) {
         const size_t i = p->order[k];
-        const double x = p->island->graded ? tribo_graded_move(p, i, length) : p->x[i] + length * p->step[i];
+        const double x = p->twofold ? tribo_graded_move(p, i, length) : p->x[i] + length * p->step[i];
         p->x[i] = clamp(x, p->lo[i], p->hi[i]);
         p->low[i] = p->x[i] == x ? p->low[i] : 0.0;
     }
@@ -432,6 +436,15 @@ static int inside(const struct program *p)
     return all;
 }
 
+static void begin_graded(struct program *p, int bounded)
+{
+    p->twofold = p->island->graded && tribo_graded_fits(p, bounded);
+    p->pull = 0.0;
+    for (size_t e = 0; p->twofold && e < p->count; e++) {
+        p->pull = greater(p->pull, fabs(p->q[p->near[e]]));
+    }
+}
+
 int tribo_box_solve(struct program *p)
 {
     for (size_t e = 0; (p->far || p->island->far) && e < p->count; e++) {
@@ -439,6 +452,7 @@ int tribo_box_solve(struct program *p)
         p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
     }
     p->island->far = p->far;
+    begin_graded(p, 1);
     enter(p, 1);
     return primal_dual(p) || primal(p);
 }
@@ -514,6 +528,7 @@ static int minimum_norm(struct program *p)
 int tribo_box_linear(struct program *p)
 {
     p->island->far = p->far;
+    begin_graded(p, 0);
     enter(p, 0);
     int consistent = minimum_norm(p);
     /* a factor that grew row by row may see another rank than one that has chosen among all pivots */

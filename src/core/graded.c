@@ -1,14 +1,18 @@
 /* The factor of a graded island: one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double the
  * light body's 1/m hides the heavy one's 1/M, but for the digits that are left, and with them what friction does to it. So R, its
- * factor, and the forces of the free contacts are kept to twice as many digits, which are enough for masses that differ by 1e24.
+ * factor, and the forces of the free contacts are kept to twice as many digits, which are enough for masses that differ by 1e18.
  *
  * Changes of the stick set factorize anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in dense.c. */
 #include "island.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "../real.h"
 #include "../twofold.h"
+
+/* Numbers up to this are worked with: what solves make of them is below TWOFOLD_FAR. */
+#define FITS 1e100
 
 static struct twofold entry(const struct program *p, size_t i, size_t j)
 {
@@ -85,25 +89,32 @@ double tribo_graded_rebuild(struct program *p, size_t *where)
 
 /* ------------------------------------------------------------------------------------------------------------ solve */
 
-/* The number over a power of 2, or as much of it as may be worked with. */
-static struct twofold over(double hi, double lo, double scale)
-{
-    const double most = TWOFOLD_FAR * lesser(scale, 1.0), by = 1.0 / scale;
-    return fabs(hi) <= most ? (struct twofold){hi * by, lo * by} : (struct twofold){clamp(hi, -most, most) * by, 0.0};
-}
-
 /* y -= l_kj x */
 static struct twofold subtract(const struct program *p, struct twofold y, size_t k, size_t j, struct twofold x)
 {
     return twofold_minus(y, twofold_times(factor(p, k, j), x));
 }
 
+/* A power of 2 that brings step to sizes that may be worked with. */
+static double unit_of(const struct program *p, const double *step)
+{
+    double most = 1.0;
+    int e;
+    for (size_t k = 0; k < p->island->rank; k++) {
+        const size_t i = p->order[k];
+        most = greater(most, product(fabs(step[i]), greater(p->scale[i], 1.0)));
+    }
+    frexp(most, &e);
+    return most > FITS ? ldexp(1.0, -e) : 1.0;
+}
+
 void tribo_graded_solve(const struct program *p, double *step, double *low)
 {
     const size_t rank = p->island->rank;
+    const double unit = unit_of(p, step);
     for (size_t k = 0; k < rank; k++) {
         const size_t i = p->order[k];
-        struct twofold y = over(step[i], low[i], 1.0 / p->scale[i]);
+        struct twofold y = twofold_scale((struct twofold){unit * step[i], unit * low[i]}, p->scale[i]);
         for (size_t j = 0; j < k; j++) {
             y = subtract(p, y, k, j, (struct twofold){step[p->order[j]], low[p->order[j]]});
         }
@@ -122,20 +133,47 @@ void tribo_graded_solve(const struct program *p, double *step, double *low)
         low[i] = y.lo;
     }
     for (size_t k = 0; k < rank; k++) {
-        step[p->order[k]] *= p->scale[p->order[k]];
-        low[p->order[k]] *= p->scale[p->order[k]];
+        const size_t i = p->order[k];
+        step[i] = quotient(p->scale[i] * step[i], unit);
+        low[i] = quotient(p->scale[i] * low[i], unit);
     }
+}
+
+void tribo_graded_null_vector(const struct program *p, size_t d, double *y)
+{
+    const size_t size = p->island->size;
+    double *low = p->row;
+    for (size_t k = 0; k < p->island->rank; k++) {
+        const size_t i = p->order[k];
+        y[i] = -p->r[d * size + i];
+        low[i] = -p->r_low[d * size + i];
+    }
+    tribo_graded_solve(p, y, low);
+    memset(low, 0, size * sizeof *low);
 }
 
 /* --------------------------------------------------------------------------------------------------------- gradient */
 
+int tribo_graded_fits(const struct program *p, int bounded)
+{
+    double most = 0.0;
+    for (size_t e = 0; e < p->island->size; e++) {
+        const size_t i = p->near[e];
+        const int near = e < p->count;
+        const double x = !near ? fabs(p->x[i]) : bounded ? greater(fabs(p->lo[i]), fabs(p->hi[i])) : 0.0;
+        most = greater(most, greater(quotient(x, p->scale[i]), near ? product(fabs(p->q[i]), p->scale[i]) : 0.0));
+    }
+    return most <= FITS;
+}
+
 double tribo_graded_gradient(const struct program *p, size_t i, double *low, double *size)
 {
     const double own = 1.0 / p->scale[i];
-    struct twofold sum = over(p->q[i], 0.0, own);
+    struct twofold sum = {p->scale[i] * p->q[i], 0.0};
     *size = 0.0;
     for (size_t j = 0; j < p->island->size; j++) {
-        const struct twofold term = twofold_times(entry(p, i, j), over(p->x[j], p->low[j], p->scale[j]));
+        const struct twofold x = twofold_scale((struct twofold){p->x[j], p->low[j]}, 1.0 / p->scale[j]),
+                             term = twofold_times(entry(p, i, j), x);
         sum = twofold_add(sum, term);
         *size += fabs(term.hi);
     }

@@ -70,7 +70,9 @@ struct program {
     size_t *near, count; /* near[0 .. count): the contacts in the program, ascending; near[count .. size): the others */
     double *q, *lo, *hi;
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
-    double *low;              /* what rounding left of x, if the island is graded */
+    int twofold;              /* x is kept to twice as many digits */
+    double *low;              /* what rounding left of it */
+    double pull;              /* then, the largest q */
     double *first;            /* the size of the terms of the gradient that the call began with */
     double *unit;             /* R_ii times the limit, or half the box; of islands with redundant contacts */
     signed char *to;          /* workspace */
@@ -137,11 +139,17 @@ double tribo_dense_leftover(const struct program *p, size_t k, size_t all, size_
 double tribo_graded_rebuild(struct program *p, size_t *where);
 void tribo_graded_solve(const struct program *p, double *step, double *low);
 
+/* Whether q and x, which may be bounded, are of sizes for which there are twice as many digits. */
+int tribo_graded_fits(const struct program *p, int bounded);
+
 /* (R x + q)_i, *low being what rounding left of it, and *size the size of R x's terms. */
 double tribo_graded_gradient(const struct program *p, size_t i, double *low, double *size);
 
 /* step and step_low = the move of the independent x that takes their gradient to zero. */
 void tribo_graded_newton(struct program *p);
+
+/* tribo_null_vector, but for y of the dependents. */
+void tribo_graded_null_vector(const struct program *p, size_t d, double *y);
 
 /* x_i + length step_i, its low part kept. */
 double tribo_graded_move(struct program *p, size_t i, double length);

@@ -12,12 +12,13 @@
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128
 
-/* Masses whose inverses differ by more than this at one contact are kept apart by twice as many digits, */
-#define GRADED_FROM 1e6
+/* A group whose contacts touch bodies with masses so far apart is kept to twice as many digits, if a pivot of R is small, too. */
+#define GRADED_FROM 1e3
+#define GRADED_PIVOT 1e-4
 
-/* which does in groups so small, and up to this; in larger ones up to that. */
+/* That is worth its cost in groups so small, and does up to this; in larger ones masses must not differ more than that. */
 #define GRADED_TO 256
-#define GRADED_MOST 1e24
+#define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
 
 void tribo_op_free(struct op *op)
@@ -327,7 +328,7 @@ static double spread_of(const struct inertia *from, size_t i)
     return ratio < 1e150 ? ratio * ratio : TRIBO_FAR;
 }
 
-/* Whether the group is graded. Returns 0 if the masses differ too much for it: then flaw says where. */
+/* Whether the group may have to be graded. Returns 0 if the masses differ too much for it: then flaw says where. */
 static int find_grading(struct island *is, const struct inertia *from, const size_t *member, struct flaw *flaw)
 {
     double most = 1.0;
@@ -342,10 +343,32 @@ static int find_grading(struct island *is, const struct inertia *from, const siz
     return most <= (is->graded ? GRADED_MOST : GRADED_MOST_LARGE);
 }
 
-/* R of a graded group to twice as many digits, at which r and r_low begin as zero. */
+/* Everything is free. Returns what is left, as tribo_factor_rebuild does. */
+static double factorize_all(struct program *p, size_t *where)
+{
+    p->count = p->island->size;
+    for (size_t i = 0; i < p->count; i++) {
+        p->near[i] = i;
+        p->at[i] = FREE;
+    }
+    return tribo_factor_rebuild(p, where);
+}
+
+/* 1 if R as it is filled in has a pivot so small that its rounding counts. */
+static int loses_digits(struct program *p)
+{
+    const struct island *is = p->island;
+    size_t where;
+    factorize_all(p, &where);
+    const double last = is->rank ? p->l[(is->rank - 1) * (is->size + 1)] : 1.0; /* the root of its inverse */
+    return is->rank < is->size || 1.0 < GRADED_PIVOT * last * last;
+}
+
+/* R of a graded group to twice as many digits. */
 static void fill_graded(const struct program *p, const struct inertia *from, const size_t *member, const size_t *place)
 {
     const size_t size = p->island->size;
+    memset(p->r, 0, size * size * sizeof *p->r);
     for (size_t c = 0; c < size; c++) {
         const size_t i = member[c];
         for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
@@ -377,14 +400,18 @@ static void fill_group(struct op *op, size_t k, const struct rows *a, const stru
         is->lightest = lesser(is->lightest, p->scale[c]);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             p->terms[c] += a->val[e] != 0.0;
-            if (a->val[e] != 0.0 && !is->sparse && !is->graded) {
+            if (a->val[e] != 0.0 && !is->sparse) {
                 p->r[c * is->size + place[a->col[e]]] = a->val[e];
             }
         }
         is->terms = p->terms[c] > is->terms ? p->terms[c] : is->terms;
     }
     if (is->graded) {
-        fill_graded(p, from, member, place);
+        is->graded = 0;
+        is->graded = loses_digits(p);
+        if (is->graded) {
+            fill_graded(p, from, member, place);
+        }
     }
     for (size_t c = 0; c < is->size; c++) {
         op->most = lesser(op->most, tribo_most(p, c));
@@ -397,13 +424,8 @@ static int check_definite(struct op *op, struct flaw *flaw)
     for (size_t k = 0; k < op->groups; k++) {
         struct program *p = tribo_op_program(op, k);
         struct island *is = p->island;
-        for (size_t i = 0; i < is->size; i++) {
-            p->near[i] = i;
-            p->at[i] = FREE;
-        }
-        p->count = is->size;
         size_t where = 0;
-        const double left = tribo_factor_rebuild(p, &where);
+        const double left = factorize_all(p, &where);
         const double zero = is->sparse ? TRIBO_SPARSE_ZERO : is->graded ? TRIBO_GRADED_ZERO : tribo_resolution(is->size);
         if (fabs(left) > 16.0 * zero) {
             *flaw = (struct flaw){p->member[where], is->size, left};

@@ -13,8 +13,12 @@
 void tribo_null_vector(const struct program *p, size_t d, double *y)
 {
     const struct island *is = p->island;
-    tribo_row_spread(p, d, -1.0, y);
-    tribo_factor_solve(p, y);
+    if (is->graded) {
+        tribo_graded_null_vector(p, d, y);
+    } else {
+        tribo_row_spread(p, d, -1.0, y);
+        tribo_factor_solve(p, y);
+    }
     for (size_t k = is->rank; k < is->rank + is->dependents; k++) {
         y[p->order[k]] = p->order[k] == d ? 1.0 : 0.0;
     }

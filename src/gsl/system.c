@@ -247,6 +247,15 @@ double tribo_system_weight(const tribo_system *sys, size_t i)
     return sys->loads_accelerate && sys->metric.rows ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
 }
 
+/* Which of its two degrees of freedom a contact at rest moves by rounding of the other: the second, but no heavy one by a light
+ * one's. */
+static size_t follows(const tribo_system *sys, size_t i, size_t first)
+{
+    const size_t *dof = sys->direction.col + first;
+    const double one = fabs(tribo_matrix_get(&sys->response, dof[0], i)), other = fabs(tribo_matrix_get(&sys->response, dof[1], i));
+    return other >= 1e-3 * one;
+}
+
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
@@ -255,7 +264,8 @@ void tribo_system_snap(const tribo_system *sys, const signed char *loose, const 
         if (!loose[i] && count == 1) {
             x[j->col[first]] = base[i] / j->val[first];
         } else if (!loose[i] && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
-            x[j->col[first + 1]] = (base[i] - j->val[first] * x[j->col[first]]) / j->val[first + 1];
+            const size_t to = first + follows(sys, i, first), from = 2 * first + 1 - to;
+            x[j->col[to]] = (base[i] - j->val[from] * x[j->col[from]]) / j->val[to];
         }
     }
 }
