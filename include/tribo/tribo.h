@@ -142,6 +142,10 @@ TRIBO_API const char *tribo_message(const tribo_context *ctx);
 /* For libraries on top of this one: makes text the message of ctx, and returns status. */
 TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
 
+/* For libraries on top of this one: another number after every call that sets something of ctx (law, limits, epsilon, operator,
+ * coupling, sharing), so that they know whether what they have prepared still holds. 0 for NULL. */
+TRIBO_API size_t tribo_revision(const tribo_context *ctx);
+
 /* Number of contacts. */
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 

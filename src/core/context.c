@@ -19,6 +19,7 @@ void tribo_refresh(tribo_context *ctx)
 {
     ctx->op.reaches = 0;
     ctx->linearized = 0;
+    ctx->revision++;
     for (size_t i = 0; i < ctx->n; i++) {
         const double r = ctx->op.diagonal[i];
         if (ctx->step > 0.0) {
@@ -143,6 +144,11 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx);
 }
 
+size_t tribo_revision(const tribo_context *ctx)
+{
+    return ctx ? ctx->revision : 0;
+}
+
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 {
     if (!ctx) {
@@ -166,6 +172,7 @@ int tribo_set_law(tribo_context *ctx, int law)
     }
     ctx->law = l;
     ctx->linearized = 0;
+    ctx->revision++;
     memset(ctx->moving, 0, ctx->n);
     return TRIBO_OK;
 }
@@ -314,6 +321,7 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
     }
     ctx->coupling = coupling;
     ctx->linearized = 0;
+    ctx->revision++;
     return TRIBO_OK;
 }
 
@@ -339,6 +347,7 @@ int tribo_set_sharing(tribo_context *ctx, int sharing)
     }
     ctx->sharing = sharing;
     ctx->linearized = 0;
+    ctx->revision++;
     return TRIBO_OK;
 }
 
