@@ -374,7 +374,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         drv->steps++;
         status = tribo_modes_proceed(&e->modes, drv, &e->search, event, *t, y, shortest);
         if (!status) {
-            status = tribo_driver_tell(drv, *t, y, event != NULL);
+            status = tribo_driver_accept(drv, *t, y, event != NULL);
         }
     }
     return status;

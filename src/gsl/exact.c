@@ -573,7 +573,7 @@ static int show(struct exact *x, tribo_driver *drv, double tau, const double *y)
     int status = TRIBO_OK;
     while (drv->seen && !status && x->shown < x->t0 + tau) {
         move_to(x, drv->sys, x->shown - x->t0, y, drv->slope);
-        status = tribo_driver_tell(drv, x->shown, drv->slope, 0);
+        status = tribo_driver_accept(drv, x->shown, drv->slope, 0);
         x->shown += drv->dt;
     }
     return status;
@@ -609,7 +609,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         status = tribo_modes_proceed(&x->modes, drv, &x->search, event, *t, y, 1.0 / greater(x->h->fastest, x->slowest));
         status = status ? status : find_held(x, drv);
         if (!status && (event || *t >= t1)) {
-            status = tribo_driver_tell(drv, *t, y, event != NULL);
+            status = tribo_driver_accept(drv, *t, y, event != NULL);
         }
     }
     sys->evaluations += x->search.looks;
