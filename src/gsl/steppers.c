@@ -67,9 +67,9 @@ struct adaptive {
     double *to, *error, *end, *tolerance; /* [dimension] */
     int slope_known;                      /* drv->slope is that of the state */
 
-    /* what follows from the system */
-    size_t revision;
+    /* what follows from the system, as it was with these revisions */
     int prepared;
+    size_t structure, revision;
     double largest;      /* step by default */
     double *cap;         /* [ndof] on the tolerance of velocities */
     double *band, *rate; /* [ncontact] while |v| is at most band, v relaxes at rate */
@@ -148,22 +148,25 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     }
 }
 
+/* Brings all that up to date that follows from the system. */
 static int prepare(struct adaptive *a, tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
     const size_t revision = tribo_system_revision(sys);
-    if (a->prepared && a->revision == revision) {
-        return TRIBO_OK;
+    if (!a->prepared || a->structure != sys->revision) {
+        double fastest;
+        const int status = tribo_system_fastest(sys, &fastest);
+        if (status) {
+            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+        }
+        a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
     }
-    double fastest;
-    const int status = tribo_system_fastest(sys, &fastest);
-    if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+    if (!a->prepared || a->revision != revision) {
+        find_bands(a, sys);
     }
-    a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
-    find_bands(a, sys);
-    a->prepared = 1;
+    a->structure = sys->revision;
     a->revision = revision;
+    a->prepared = 1;
     return TRIBO_OK;
 }
 
@@ -190,27 +193,21 @@ static double largest(const double *x, size_t n)
     return most;
 }
 
-/* Displacements, velocities and the energy, each relative to the largest of their kind; a status: no step is short enough for an
+/* Displacements, velocities and the energy, each relative to the largest of their kind. A status: no step is short enough for an
  * error below rounding. */
 static int find_tolerance(const struct adaptive *a, tribo_driver *drv, double t, const double *y)
 {
-    static const char *const names[] = {"displacements", "velocities", "the energy"};
-    const size_t n = drv->sys->ndof;
-    const double size[] = {largest(y, n), largest(y + n, n), fabs(y[2 * n])};
-    double least[3];
-    for (size_t k = 0; k < 3; k++) {
-        least[k] = drv->abstol + drv->reltol * size[k];
-    }
+    const size_t n = drv->sys->ndof, dimension = 2 * n + 1;
+    const double q = drv->abstol + drv->reltol * largest(y, n), u = drv->abstol + drv->reltol * largest(y + n, n);
     for (size_t d = 0; d < n; d++) {
-        a->tolerance[d] = least[0];
-        a->tolerance[n + d] = lesser(drv->abstol + drv->reltol * size[1], a->cap[d]);
-        least[1] = lesser(least[1], a->tolerance[n + d]);
+        a->tolerance[d] = q;
+        a->tolerance[n + d] = lesser(u, a->cap[d]);
     }
-    a->tolerance[2 * n] = least[2];
-    for (size_t k = 0; k < 3; k++) {
-        if (least[k] < DBL_EPSILON * size[k]) {
-            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g no step is short enough: %s of %g to within %g", t,
-                                     names[k], size[k], least[k]);
+    a->tolerance[2 * n] = drv->abstol + drv->reltol * fabs(y[2 * n]);
+    for (size_t i = 0; i < dimension; i++) {
+        if (a->tolerance[i] < DBL_EPSILON * fabs(y[i])) {
+            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g no step is so short that y[%zu] = %g is found to %g", t,
+                                     i, y[i], a->tolerance[i]);
         }
     }
     return TRIBO_OK;

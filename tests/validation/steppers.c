@@ -306,8 +306,8 @@ TEST(singular_matrices)
 TEST(impossible_tolerance)
 {
     const double states[3][3] = {{1e12, 0.0, 0.0}, {0.0, 1e12, 0.0}, {0.0, 0.0, 1e12}};
-    const char *const texts[] = {"displacements of 1e+12 to within 1e-06", "velocities of 1e+12 to within 1e-06",
-                                 "the energy of 1e+12 to within 1e-06"};
+    const char *const texts[] = {"y[0] = 1e+12 is found to 1e-06", "y[1] = 1e+12 is found to 1e-06",
+                                 "y[2] = 1e+12 is found to 1e-06"};
     tribo_system *sys = fig_7a(0.05);
     tribo_driver *drv = driver_create(sys, steppers[_i].name, 1e-3, 1e-6);
     for (size_t k = 0; k < 3; k++) {
