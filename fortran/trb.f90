@@ -17,16 +17,18 @@
 !>   TRBNLW(NLAW, IERR)                                                                NLAW number of laws: 0 to NLAW - 1
 !>   TRBLNM(LAW, TEXT, IERR)                         LAW                               TEXT its name
 !>   TRBREF(LAW, TEXT, IERR)                         LAW                               TEXT where it comes from
-!>   TRBFND(NAME, LAW, IERR)                         NAME e.g. 'quinn'                 LAW its number
+!>   TRBFND(NAME, LAW, IERR)                         NAME e.g. 'quinn', 'QUINN'        LAW its number
 !>   TRBEVL(LAW, V, FEQ, FMUN, EPS,                  one contact, no handle            F and its derivatives by V, FEQ, FMUN
 !>          F, DFDV, DFDQ, DFDN, IERR)
 !> Life
-!>   TRBNEW(N, IH, IERR)                             N >= 0                            IH new: quinn, limit 0, epsilon 1E-6, R = 1
+!>   TRBNEW(N, IH, IERR)                             N >= 0                            IH new: quinn, limit 0, epsilon 1E-6,
+!>                                                                                     no operator yet
 !>   TRBCPY(IH, IHNEW, IERR)                         IH                                IHNEW a copy that shares nothing
 !>   TRBDEL(IH, IERR)                                IH
 !>   TRBNUM(IH, N, IERR)                             IH                                N number of contacts
-!>   TRBMSG(IH, TEXT, IERR)                          IH                                TEXT what its last failing call found;
-!>                                                                                     always defined, even if IH is no handle
+!>   TRBMSG(IH, TEXT, IERR)                          IH; IERR the one that one asks    TEXT what its last failing call found;
+!>                                                   about, or 0                       always defined, even if IH is no handle.
+!>                                                                                     An IERR that is not 0 stays as it is
 !> Settings
 !>   TRBLAW(IH, LAW, IERR)                           LAW
 !>   TRBNAM(IH, NAME, IERR)                          NAME of the law
@@ -325,14 +327,15 @@ subroutine trbmsg(ih, text, ierr)
   implicit none
   integer, intent(in) :: ih
   character(len=*), intent(inout) :: text
-  integer, intent(out) :: ierr
+  integer, intent(inout) :: ierr
   type(tribo_context), pointer :: c
   type(work) :: w
   character(len=:), allocatable :: found
   character(len=80) :: none
+  integer :: no_handle
 
-  call find(ih, c, ierr)
-  if (ierr == TRIBO_OK) then
+  call find(ih, c, no_handle)
+  if (no_handle == TRIBO_OK) then
     call begin(c, w)
     call message_of(w, found)
     text = found
@@ -340,6 +343,7 @@ subroutine trbmsg(ih, text, ierr)
     write (none, '(a,i0,a)') 'IH = ', ih, ' is no handle: it was never given, or has been deleted'
     text = none
   end if
+  if (ierr == TRIBO_OK) ierr = no_handle
 end subroutine trbmsg
 
 ! ------------------------------------------------------------------------------------------------------------------------ settings

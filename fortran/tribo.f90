@@ -1,9 +1,10 @@
 !> tribo: dry friction in structural dynamics.
 !>
 !> Quantities. A contact has a relative velocity v = dz/dt and a friction force f along +z. Its limit is mu times the normal
-!> load, so that sliding means f = -limit*sign(v). Contact accelerations are z'' = R f + a, where R = J M**-1 J' is symmetric
-!> and positive semidefinite, and a is everything but friction. f_eq is the friction force that makes a contact's z'' zero. Any
-!> consistent set of units will do.
+!> load, so that sliding means f = -limit*sign(v). With v = J u, u being the velocities of the bodies, these get the forces J' f:
+!> a contact with z = x1 - x2 puts f on body 1 and -f on body 2. Contact accelerations are z'' = R f + a, where R = J M**-1 J'
+!> is symmetric and positive semidefinite, and a is everything but friction. f_eq is the friction force that makes a contact's
+!> z'' zero. Any consistent set of units will do.
 !>
 !>     use tribo
 !>     type(tribo_context) :: c
@@ -70,9 +71,9 @@ module tribo
   integer, parameter, public :: &
     TRIBO_COUNT_STUCK = 0, &      !< contacts with mode 0; 0 where there are no modes
     TRIBO_COUNT_RANK = 1, &       !< sum of the ranks of the matrices that the last call solved with
-    TRIBO_COUNT_ISLANDS = 2, &    !< groups of coupled contacts in the operator
+    TRIBO_COUNT_ISLANDS = 2, &    !< groups of coupled contacts in the operator, and single contacts
     TRIBO_COUNT_SOLVES = 3, &     !< islands that had to be solved
-    TRIBO_COUNT_SKIPPED = 4, &    !< islands left alone: no contact near stick
+    TRIBO_COUNT_SKIPPED = 4, &    !< islands that needed no solver: a single contact, or none near stick
     TRIBO_COUNT_FACTORIZATIONS = 5, & !< matrices factorized
     TRIBO_COUNT_UPDATES = 6, &    !< changes of a stick set
     TRIBO_COUNT_MEMORY = 7, &     !< reversal marks that accept has set or cleared
@@ -80,9 +81,10 @@ module tribo
 
   !> For get_real.
   integer, parameter, public :: &
-    TRIBO_REAL_RESIDUAL = 0, &    !< last balance: largest abs(f - law(v, f_eq))/limit among the contacts near stick
-    TRIBO_REAL_MAX_RATE = 1, &    !< bound on lambda, the rate at which stuck contacts relax, 1/time
-    TRIBO_REAL_MAX_STEP = 2       !< largest step for which rk4 is stable with that rate; infinite if it is 0
+    TRIBO_REAL_RESIDUAL = 0, &    !< last balance: how much of its limit a contact near stick misses its balance by, at most
+    TRIBO_REAL_MAX_RATE = 1, &    !< lambda, 1/time: stuck contacts relax no faster. The largest 2*limit*R_ii/epsilon; in the
+                                  !< partition coupling, and for the laws that are dampers near v = 0, see tribo.h
+    TRIBO_REAL_MAX_STEP = 2       !< 2.785/lambda, up to which rk4 is stable; infinite if lambda is 0
 
   public :: tribo_version, tribo_version_string, tribo_strerror
   public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval
@@ -449,20 +451,40 @@ contains
     call to_text(c_law_reference(int(law, c_int)), text)
   end function tribo_law_reference
 
-  !> Number of the law called name.
+  !> Number of the law called name, in upper or lower case.
   subroutine tribo_law_find(name, law, stat, errmsg)
     character(len=*), intent(in) :: name
     integer, intent(inout) :: law
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    integer(c_int) :: number
 
-    w%status = c_law_find(trim(name) // c_null_char, number)
-    if (w%status == TRIBO_OK) law = int(number)
-    if (w%status /= TRIBO_OK) w%text = 'no law is called "' // trim(name) // '"'
+    w%status = number_of(name, law)
+    if (w%status /= TRIBO_OK) call tell_laws(name, w%text)
     call finish(w, stat, errmsg)
   end subroutine tribo_law_find
+
+  integer(c_int) function number_of(name, law) result(status)
+    character(len=*), intent(in) :: name
+    integer, intent(inout) :: law
+    integer(c_int) :: number
+    status = c_law_find(trim(name) // c_null_char, number)
+    if (status == TRIBO_OK) law = int(number)
+  end function number_of
+
+  !> That no law has this name, and which there are.
+  subroutine tell_laws(name, text)
+    character(len=*), intent(in) :: name
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable :: law
+    integer :: i
+    text = 'no law is called "' // name(:min(len_trim(name), 40)) // '": there are'
+    do i = 0, tribo_law_count() - 1
+      call to_text(c_law_name(int(i, c_int)), law)
+      text = text // ' ' // law // ','
+    end do
+    text = text(:len(text) - 1)
+  end subroutine tell_laws
 
   !> One contact, no context: the force and its derivatives, one-sided at a kink, df_dv = 0 at a jump. Elemental: with arrays,
   !> stat and errmsg are arrays too. TRIBO_QUINN_REVERSAL: as for a contact that comes in sliding.
@@ -488,7 +510,7 @@ contains
   ! ---------------------------------------------------------------------------------------------------------- life of a context
 
   !> A context for ncontact contacts (0 is fine), in the place of the one that this held before: Quinn's law, limit 0, epsilon
-  !> 1e-6, R = identity, consistent coupling.
+  !> 1e-6, consistent coupling, and no operator: that must be set before forces are asked for (TRIBO_ERR_STATE otherwise).
   subroutine create(this, ncontact, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     integer, intent(in) :: ncontact
@@ -556,7 +578,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_ncontact
 
-  !> Law of all contacts, by number or by name; clears the reversal memory.
+  !> Law of all contacts, by number or by name (in upper or lower case); clears the reversal memory.
   subroutine set_law_number(this, law, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     integer, intent(in) :: law
@@ -575,12 +597,17 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    character(len=200) :: text
-    integer :: number, found
+    character(len=:), allocatable :: text
+    integer(c_int) :: found
+    integer :: number
 
     call begin(this, w)
-    call tribo_law_find(law, number, found, text)
-    if (found /= TRIBO_OK) call fail(w, found, trim(text))
+    number = 0
+    found = number_of(law, number)
+    if (found /= TRIBO_OK) then
+      call tell_laws(law, text)
+      call fail(w, int(found), text)
+    end if
     if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(number, c_int))
     call finish(w, stat, errmsg)
   end subroutine set_law_name
@@ -653,8 +680,9 @@ contains
   end subroutine set_epsilon_each
 
   !> Velocity scale for all contacts: epsilon itself, or else the time step of the caller's integrator. Then the rate at which
-  !> stuck contacts relax, 2*limit*R_ii/epsilon, is lambda_dt/step, whatever limits and operator are or become. The paper takes
-  !> lambda_dt = 1 for the oscillator (as here where it is absent) and 0.4 for the chain; rk4 is stable to 2.785.
+  !> stuck contacts relax, 2*limit*R_ii/epsilon, is lambda_dt/step, whatever limits and operator are or become (in the partition
+  !> coupling up to a few times that, see TRIBO_REAL_MAX_RATE). The paper takes lambda_dt = 1 for the oscillator (as here where it
+  !> is absent) and 0.4 for the chain; rk4 is stable to 2.785. Before there is an operator there is no epsilon then.
   subroutine set_epsilon_all(this, epsilon, step, lambda_dt, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in), optional :: epsilon, step, lambda_dt
@@ -691,7 +719,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_epsilon
 
-  !> The operator R of z'' = R f + a; on error the old one stays. With a vector R is diagonal, for contacts that share no body;
+  !> The operator R of z'' = R f + a; on error the old one stays, and that of a system's context always (TRIBO_ERR_UNSUPPORTED).
+  !> With a vector R is diagonal, for contacts that share no body;
   !> r >= 0.
   subroutine set_operator_diagonal(this, r, stat, errmsg)
     class(tribo_context), intent(inout) :: this

@@ -35,6 +35,11 @@ module tribo_gsl
     TRIBO_COUNT_JACOBIANS = 103, &   !< evaluations of its Jacobian
     TRIBO_COUNT_EVENTS = 104         !< events located
 
+  !> For real of a driver: how far the motion of "exact" and "event" has strayed from Coulomb's law since its creation.
+  integer, parameter, public :: &
+    TRIBO_REAL_EXCESS = 100, &       !< the largest force of a contact at rest beyond its limit
+    TRIBO_REAL_BACKSLIP = 101        !< the largest velocity of a contact against the direction of its slip
+
   public :: tribo_method_count, tribo_method_name
 
   !> A sparse matrix.
@@ -71,6 +76,7 @@ module tribo_gsl
     procedure :: advance
     procedure, private :: count_short, count_long
     generic :: count => count_short, count_long
+    procedure :: real => driver_real
     procedure :: set_observer
     procedure :: set_max_step
     procedure :: message => driver_message
@@ -317,6 +323,14 @@ module tribo_gsl
       real(c_double), value :: t1
       integer(c_int) :: status
     end function c_advance
+
+    function c_driver_real(drv, which, value) result(status) bind(c, name='tribo_driver_real')
+      import :: c_ptr, c_int, c_double
+      type(c_ptr), value :: drv
+      integer(c_int), value :: which
+      real(c_double), intent(inout) :: value
+      integer(c_int) :: status
+    end function c_driver_real
 
     function c_driver_count(drv, which, value) result(status) bind(c, name='tribo_driver_count')
       import :: c_int, c_ptr, c_size_t
@@ -956,6 +970,30 @@ contains
       value = int(count, int64)
     end if
   end subroutine get_count
+
+  !> One of TRIBO_REAL_EXCESS, _BACKSLIP.
+  subroutine driver_real(this, which, value, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    integer, intent(in) :: which
+    real(dp), intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(held_driver), pointer :: held
+    character(len=60) :: text
+
+    call find_driver(this, held, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_real(held%drv, int(which, c_int), value)
+      if (w%status == TRIBO_ERR_RANGE) then
+        write (text, '(a,i0,a)') 'which = ', which, ' is no real quantity of a driver'
+        call fail(w, TRIBO_ERR_RANGE, trim(text))
+      else if (w%status == TRIBO_ERR_UNSUPPORTED) then
+        call fail(w, TRIBO_ERR_UNSUPPORTED, 'this method does not know how far it strays from Coulomb''s law')
+      end if
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine driver_real
 
   !> Has observer%seen called from now on, see tribo_observer; without observer, nothing. The observer must have the attribute
   !> target (or be a pointer) where it is declared, and live as long as it may be called.

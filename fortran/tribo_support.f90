@@ -32,7 +32,7 @@ module tribo_support
     TRIBO_ERR_STOPPED = 60, &     !< the observer ended the run
     TRIBO_ERR_STEP = 61, &        !< the step size fell below what time resolves
     TRIBO_ERR_CALLBACK = 62, &    !< a procedure of the caller's failed
-    TRIBO_ERR_CHATTER = 63        !< too many events in too short a time
+    TRIBO_ERR_CHATTER = 63        !< too many events in too short a time: 'central/fixed' and 'moreau/fixed' step over them
 
   public :: object_of, adopt, lend, register, forget, c_handle_add_short, c_handle_find
   public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, find, find_input, check_rows

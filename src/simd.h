@@ -6,6 +6,8 @@
 
 #include <stddef.h>
 
+#include "compiler.h"
+
 #if defined(TRIBO_CLONES)
 #define TRIBO_SIMD __attribute__((target_clones("avx2", "default")))
 #else
@@ -15,7 +17,7 @@
 /* So many bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
 static inline void tribo_expect(const void *from, size_t bytes, int written)
 {
-#if defined(__GNUC__)
+#if defined(TRIBO_GNU_C)
     enum { LINE = 64 };
     for (size_t i = 0; i < bytes; i += LINE) {
         if (written) {

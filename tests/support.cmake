@@ -1,3 +1,14 @@
+include(CheckLinkerFlag)
+include(CheckSymbolExists)
+include(CMakePushCheckState)
+
+# traps.c sets traps for floating-point exceptions where that can be done.
+cmake_push_check_state()
+set(CMAKE_REQUIRED_DEFINITIONS -D_GNU_SOURCE)
+set(CMAKE_REQUIRED_LIBRARIES m)
+check_symbol_exists(feenableexcept fenv.h TRIBO_HAVE_FEENABLEEXCEPT)
+cmake_pop_check_state()
+
 # tribo_test(<label> <name> [<file or library>...]): a suite, from <name>.c and what else it needs.
 function(tribo_test label name)
   set(target test_${label}_${name})
@@ -5,22 +16,22 @@ function(tribo_test label name)
   foreach(part IN LISTS ARGN)
     if(part MATCHES "\\.c$|TARGET_OBJECTS")
       target_sources(${target} PRIVATE "${part}")
+      if(part MATCHES "traps\\.c$" AND TRIBO_HAVE_FEENABLEEXCEPT)
+        target_compile_definitions(${target} PRIVATE TRIBO_HAVE_FEENABLEEXCEPT _GNU_SOURCE)
+      endif()
     else()
       target_link_libraries(${target} PRIVATE "${part}")
     endif()
   endforeach()
   target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}" "${PROJECT_SOURCE_DIR}/include")
-  target_link_libraries(${target} PRIVATE PkgConfig::CHECK m)
-  target_compile_options(${target} PRIVATE
-    $<$<C_COMPILER_ID:GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>
-    $<$<AND:$<C_COMPILER_ID:GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>)
+  target_link_libraries(${target} PRIVATE PkgConfig::CHECK ${TRIBO_LIBM})
+  tribo_warnings(${target})
   add_test(NAME ${label}/${name} COMMAND ${target})
   set_tests_properties(${label}/${name} PROPERTIES LABELS ${label})
 endfunction()
 
 # tribo_test_memory(<label> <name> <library> [...]): the same with the library's objects linked in, and its allocations counted
 # and made to fail (unit/memory.h), where the linker can do that.
-include(CheckLinkerFlag)
 check_linker_flag(C "LINKER:--wrap=tribo_nothing" TRIBO_HAVE_WRAP)
 function(tribo_test_memory label name library)
   if(TRIBO_HAVE_WRAP)

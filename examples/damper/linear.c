@@ -2,57 +2,111 @@
 
 #include <math.h>
 
+#include <gsl/gsl_blas.h>
 #include <gsl/gsl_complex_math.h>
 #include <gsl/gsl_linalg.h>
 
 #include "../common/output.h"
 
-/* Displacement along a per unit of a harmonic force along b. */
-static gsl_complex receptance(const struct damper *d, const double *a, const double *b)
+/* What a mode answers to a harmonic force on it is that force by this. */
+static gsl_complex dynamic_stiffness(const struct damper *d, size_t k)
 {
-    gsl_complex sum = GSL_COMPLEX_ZERO;
-    for (size_t k = 0; k < d->modes; k++) {
-        const gsl_complex dynamic =
-            gsl_complex_rect(d->omega[k] * d->omega[k] - d->drive * d->drive, 2.0 * d->damping * d->omega[k] * d->drive);
-        sum = gsl_complex_add(sum, gsl_complex_div(gsl_complex_rect(a[k] * b[k], 0.0), dynamic));
-    }
-    return sum;
+    return gsl_complex_rect(d->omega[k] * d->omega[k] - d->drive * d->drive, 2.0 * d->damping * d->omega[k] * d->drive);
 }
 
 double free_amplitude(const struct damper *d)
 {
-    return d->force * gsl_complex_abs(receptance(d, d->load_shape, d->load_shape));
+    gsl_complex sum = GSL_COMPLEX_ZERO;
+    for (size_t k = 0; k < d->modes; k++) {
+        const gsl_complex force = gsl_complex_rect(d->force * d->load_shape[k] * d->load_shape[k], 0.0);
+        sum = gsl_complex_add(sum, gsl_complex_div(force, dynamic_stiffness(d, k)));
+    }
+    return gsl_complex_abs(sum);
 }
 
-/* The contacts' forces g, per unit of load, hold them: H_cc g + H_cL = 0. */
-double stuck_amplitude(const struct damper *d)
+double free_norm(const struct damper *d)
 {
-    const size_t n = d->contacts;
-    gsl_matrix_complex *h = gsl_matrix_complex_alloc(n, n);
-    gsl_vector_complex *b = gsl_vector_complex_alloc(n), *g = gsl_vector_complex_alloc(n);
-    gsl_permutation *p = gsl_permutation_alloc(n);
-    int sign;
-    if (!h || !b || !g || !p) {
-        die("out of memory for %zu contacts", n);
+    double norm = 0.0;
+    for (size_t k = 0; k < d->modes; k++) {
+        const double q = d->force * fabs(d->load_shape[k]) / gsl_complex_abs(dynamic_stiffness(d, k));
+        norm = hypot(norm, hypot(d->omega[k], d->drive) * q);
     }
-    for (size_t i = 0; i < n; i++) {
-        const double *shape = d->contact_shape + i * d->modes;
-        gsl_vector_complex_set(b, i, gsl_complex_negative(receptance(d, shape, d->load_shape)));
-        for (size_t j = 0; j < n; j++) {
-            gsl_matrix_complex_set(h, i, j, receptance(d, shape, d->contact_shape + j * d->modes));
+    return norm;
+}
+
+/* Orthonormal motions of the modes that move no contact, as the last columns of *basis [modes][modes]; returns their number. */
+static size_t held_motions(const struct damper *d, gsl_matrix **basis)
+{
+    const size_t n = d->modes, m = d->contacts, least = n < m ? n : m;
+    gsl_matrix *shapes = gsl_matrix_alloc(n, m), *q = gsl_matrix_alloc(n, n), *r = gsl_matrix_alloc(n, m);
+    gsl_vector *tau = gsl_vector_alloc(least), *norm = gsl_vector_alloc(m);
+    gsl_permutation *p = gsl_permutation_alloc(m);
+    int sign;
+    if (!shapes || !q || !r || !tau || !norm || !p) {
+        die("out of memory for %zu contacts", m);
+    }
+    for (size_t c = 0; c < m; c++) {
+        for (size_t k = 0; k < n; k++) {
+            gsl_matrix_set(shapes, k, c, d->contact_shape[c * n + k]);
         }
     }
-    const int failed = gsl_linalg_complex_LU_decomp(h, p, &sign) || gsl_linalg_complex_LU_solve(h, p, b, g);
-    gsl_complex x = receptance(d, d->load_shape, d->load_shape);
-    for (size_t i = 0; i < n; i++) {
-        const gsl_complex at_load = receptance(d, d->load_shape, d->contact_shape + i * d->modes);
-        x = gsl_complex_add(x, gsl_complex_mul(at_load, gsl_vector_complex_get(g, i)));
+    gsl_linalg_QRPT_decomp2(shapes, q, r, tau, p, &sign, norm); /* fails for sizes that do not fit only */
+    size_t rank = 0;
+    while (rank < least && fabs(gsl_matrix_get(r, rank, rank)) > 1e-10 * fabs(gsl_matrix_get(r, 0, 0))) {
+        rank++;
     }
-    gsl_matrix_complex_free(h);
-    gsl_vector_complex_free(b);
-    gsl_vector_complex_free(g);
+    gsl_matrix_free(shapes);
+    gsl_matrix_free(r);
+    gsl_vector_free(tau);
+    gsl_vector_free(norm);
     gsl_permutation_free(p);
-    return failed ? (double)NAN : d->force * gsl_complex_abs(x);
+    *basis = q;
+    return n - rank;
+}
+
+/* The dynamic stiffness and the load's shape in those motions. */
+static void reduce(const struct damper *d, const gsl_matrix *basis, gsl_matrix_complex *h, gsl_vector_complex *b)
+{
+    const size_t first = d->modes - b->size;
+    for (size_t k = 0; k < d->modes; k++) {
+        for (size_t i = 0; i < b->size; i++) {
+            const double mode = gsl_matrix_get(basis, k, first + i);
+            gsl_complex *at = gsl_vector_complex_ptr(b, i);
+            *at = gsl_complex_add_real(*at, mode * d->load_shape[k]);
+            for (size_t j = 0; j < b->size; j++) {
+                at = gsl_matrix_complex_ptr(h, i, j);
+                *at = gsl_complex_add(*at,
+                                      gsl_complex_mul_real(dynamic_stiffness(d, k), mode * gsl_matrix_get(basis, k, first + j)));
+            }
+        }
+    }
+}
+
+double stuck_amplitude(const struct damper *d)
+{
+    gsl_matrix *basis;
+    const size_t n = held_motions(d, &basis);
+    double amplitude = 0.0;
+    if (n > 0) {
+        gsl_matrix_complex *h = gsl_matrix_complex_calloc(n, n);
+        gsl_vector_complex *b = gsl_vector_complex_calloc(n), *s = gsl_vector_complex_calloc(n);
+        gsl_permutation *p = gsl_permutation_alloc(n);
+        gsl_complex x;
+        int sign;
+        if (!h || !b || !s || !p) {
+            die("out of memory for %zu modes", d->modes);
+        }
+        reduce(d, basis, h, b);
+        const int failed = gsl_linalg_complex_LU_decomp(h, p, &sign) || gsl_linalg_complex_LU_solve(h, p, b, s);
+        gsl_blas_zdotu(b, s, &x);
+        amplitude = failed ? (double)NAN : d->force * gsl_complex_abs(x);
+        gsl_matrix_complex_free(h);
+        gsl_vector_complex_free(b);
+        gsl_vector_complex_free(s);
+        gsl_permutation_free(p);
+    }
+    gsl_matrix_free(basis);
+    return amplitude;
 }
 
 struct optimum harmonic_balance(const struct damper *d)

@@ -8,7 +8,10 @@
 /* Amplitude where the load acts, without friction. */
 double free_amplitude(const struct damper *d);
 
-/* The same with all contacts stuck for ever. */
+/* The same motion's size: energy norm of its modes' displacements and velocities, at their largest. */
+double free_norm(const struct damper *d);
+
+/* Amplitude where the load acts, with all contacts stuck for ever. */
 double stuck_amplitude(const struct damper *d);
 
 /* The best damper by harmonic balance of one mode that is driven at its resonance. All contacts slide in phase, so that the work

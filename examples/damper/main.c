@@ -2,7 +2,6 @@
  * the question which contact force makes the best friction damper. friction_damper --help tells the rest. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <gsl/gsl_errno.h>
 
@@ -20,12 +19,12 @@ struct job {
 static void show_frequencies(const struct job *job)
 {
     const struct damper *d = job->damper;
-    const int given = strcmp(job->options->frequencies, "none") != 0;
+    const char *given = job->options->frequencies;
     double *hz = need_memory(d->modes, sizeof *hz), worst = 0.0;
-    const size_t known = given ? read_frequencies(job->options->frequencies, hz, d->modes) : 0;
+    const size_t known = given ? read_frequencies(given, hz, d->modes) : 0;
     FILE *table = create_file(job->options->out, "damper-frequencies.csv");
     fprintf(table, "mode,frequency,given,relative difference\n");
-    printf("natural frequencies, Hz\n  mode         here        given  relative difference\n");
+    printf("natural frequencies, Hz\n  mode         here%s\n", known ? "        given  relative difference" : "");
     for (size_t k = 0; k < d->modes; k++) {
         const double here = d->omega[k] / (2.0 * acos(-1.0));
         printf("  %4zu %12.7g", k + 1, here);
@@ -39,7 +38,9 @@ static void show_frequencies(const struct job *job)
         fprintf(table, "%s\n", k < known ? "" : ",,");
         write_value(job->values, here, "damper.frequency%zu", k + 1);
     }
-    write_value(job->values, worst, "damper.frequency.error");
+    if (known) {
+        write_value(job->values, worst, "damper.frequency.error");
+    }
     close_file(table, "damper-frequencies.csv");
     free(hz);
 }
@@ -72,6 +73,12 @@ static void write_response(FILE *table, const struct response *r)
     fflush(stdout);
 }
 
+/* Relative difference; none between zeros. */
+static double difference(double a, double b)
+{
+    return a == b ? 0.0 : fabs(a - b) / fmax(fabs(a), fabs(b));
+}
+
 /* The curve; returns the place in r [points] of the largest dissipated power. */
 static size_t run_curve(const struct job *job, struct response *r)
 {
@@ -82,11 +89,11 @@ static size_t run_curve(const struct job *job, struct response *r)
     fprintf(table, "limit,amplitude,friction power,damping power,input power,cycles,steady\n");
     printf("         limit    amplitude friction power  damping power   cycles\n");
     for (size_t i = 0; i < o->limit_points; i++) {
-        const double exponent = (double)i / (double)(o->limit_points - 1);
+        const double exponent = i ? (double)i / (double)(o->limit_points - 1) : 0.0;
         r[i] = respond(job, o->limit_from * pow(o->limit_to / o->limit_from, exponent));
         write_response(table, &r[i]);
         best = r[i].friction > r[best].friction ? i : best;
-        unbalanced = fmax(unbalanced, fabs(r[i].input - r[i].friction - r[i].damped) / r[i].input);
+        unbalanced = fmax(unbalanced, difference(r[i].input, r[i].friction + r[i].damped));
         all_steady = r[i].steady ? all_steady : 0.0;
     }
     write_value(job->values, unbalanced, "damper.balance");
@@ -148,7 +155,7 @@ static void write_history(const struct job *job, double limit, const char *name)
 /* Without friction, and with so much that nothing slips: both are known. */
 static void check_extremes(const struct job *job)
 {
-    const struct response open = respond(job, 0.0), stuck = respond(job, 1e3 * job->options->force);
+    const struct response open = respond(job, 0.0), stuck = respond(job, 1e6 * job->options->force);
     const double amplitude[] = {free_amplitude(job->damper), stuck_amplitude(job->damper)};
     printf("amplitude without friction %.8g, from the modes' resonance curves %.8g\n", open.amplitude, amplitude[0]);
     printf("amplitude with all contacts stuck %.8g, from the modes held at the contacts %.8g\n", stuck.amplitude, amplitude[1]);
@@ -165,7 +172,7 @@ static void check_step(const struct job *job, const struct response *r, const ch
     set_steps(job->damper, 2 * steps);
     const struct response half = respond(job, r->limit);
     set_steps(job->damper, steps);
-    const double amplitude = fabs(r->amplitude / half.amplitude - 1.0), power = fabs(r->friction / half.friction - 1.0);
+    const double amplitude = difference(r->amplitude, half.amplitude), power = difference(r->friction, half.friction);
     printf("limit %.5g with half the step: amplitude differs by %.1e, power by %.1e\n", r->limit, amplitude, power);
     write_value(job->values, amplitude, "damper.%s.step.amplitude", key);
     write_value(job->values, power, "damper.%s.step.power", key);
@@ -192,7 +199,9 @@ static void run(const struct job *job)
     show_step(job);
     check_extremes(job);
     const size_t at = run_curve(job, r);
-    if (at == 0 || at == points - 1) {
+    if (r[at].friction <= 0.0) {
+        printf("friction dissipates nothing at any of these limits: nothing slips, or the contacts are where nothing moves\n");
+    } else if (at == 0 || at == points - 1) {
         printf("most power is dissipated at the end of the range, at limit %g: widen --limits to find the optimum\n",
                r[at].limit);
     } else {

@@ -1,199 +1,143 @@
 #include "matrix_market.h"
 
 #include <ctype.h>
-#include <errno.h>
-#include <math.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/output.h"
+#include "lines.h"
 
-enum { LINE = 1024 /* gsl_spmatrix_fscanf reads no longer ones */ };
-
-/* A file that is being checked. */
-struct reader {
-    const char *path;
-    FILE *file;
-    size_t line;
-    char text[LINE];
+struct entry {
+    size_t row, column, line; /* row and column counted from 1 */
+    double value;
 };
 
-static int next_line(struct reader *r)
-{
-    if (!fgets(r->text, LINE, r->file)) {
-        if (ferror(r->file)) {
-            die("cannot read %s: %s", r->path, strerror(errno));
-        }
-        return 0;
-    }
-    r->line++;
-    if (!strchr(r->text, '\n') && strlen(r->text) == LINE - 1) {
-        die("%s:%zu: the line is longer than %d characters", r->path, r->line, LINE - 1);
-    }
-    return 1;
-}
+struct entries {
+    size_t count, room;
+    struct entry *entry;
+};
 
-/* The header's words; 1 if the matrix is symmetric. */
-static int read_header(struct reader *r)
+/* 1 if the header says symmetric, 0 if general. */
+static int read_header(struct lines *l)
 {
     char word[5][21] = {"", "", "", "", ""};
-    if (!next_line(r)) {
-        die("%s is empty", r->path);
+    if (!next_line(l)) {
+        die("%s is empty", l->path);
     }
-    const int words = sscanf(r->text, "%20s %20s %20s %20s %20s", word[0], word[1], word[2], word[3], word[4]);
+    const int words = sscanf(l->text, "%20s %20s %20s %20s %20s", word[0], word[1], word[2], word[3], word[4]);
     for (int i = 0; i < 5; i++) {
         for (char *c = word[i]; *c; c++) {
-            *c = (char)tolower((unsigned char)*c);
+            *c = isprint((unsigned char)*c) ? (char)tolower((unsigned char)*c) : '?';
         }
     }
     if (words != 5 || strcmp(word[0], "%%matrixmarket") != 0 || strcmp(word[1], "matrix") != 0 ||
         strcmp(word[2], "coordinate") != 0) {
-        die("%s:1: expected a header \"%%%%MatrixMarket matrix coordinate real symmetric\"", r->path);
+        die_at(l, "expected a header \"%%%%MatrixMarket matrix coordinate real symmetric\", found \"%s %s %s %s %s\"", word[0],
+               word[1], word[2], word[3], word[4]);
     }
     if (strcmp(word[3], "real") != 0 && strcmp(word[3], "integer") != 0) {
-        die("%s:1: values are \"%s\"; only real and integer ones will do", r->path, word[3]);
+        die_at(l, "values are \"%s\"; only real and integer ones will do", word[3]);
     }
     if (strcmp(word[4], "symmetric") != 0 && strcmp(word[4], "general") != 0) {
-        die("%s:1: matrix is \"%s\"; it must be symmetric or general", r->path, word[4]);
+        die_at(l, "the matrix is \"%s\"; it must be symmetric or general", word[4]);
     }
     return strcmp(word[4], "symmetric") == 0;
 }
 
-/* Reads a count or index from *at on, which then points behind it. */
-static size_t read_count(const struct reader *r, char **at, const char *what)
+/* The line with the sizes; returns the number of entries. */
+static size_t read_sizes(struct lines *l, size_t expected)
 {
-    char *end;
-    *at += strspn(*at, " \t");
-    errno = 0;
-    const unsigned long long value = strtoull(*at, &end, 10);
-    if (!isdigit((unsigned char)**at) || errno || value > 4294967295u || !isspace((unsigned char)*end)) {
-        die("%s:%zu: expected %s, found \"%.*s\"", r->path, r->line, what, (int)strcspn(*at, " \t\r\n"), *at);
+    if (!next_data(l)) {
+        die("%s ends before the line with its sizes", l->path);
     }
-    *at = end;
-    return (size_t)value;
+    const size_t rows = next_whole(l, "the number of rows", 1, INT_MAX),
+                 columns = next_whole(l, "the number of columns", 1, INT_MAX),
+                 entries = next_whole(l, "the number of entries", 0, INT_MAX);
+    expect_end(l);
+    if (rows != expected || columns != expected) {
+        die_at(l, "%zu rows and %zu columns; the structure has %zu degrees of freedom", rows, columns, expected);
+    }
+    return entries;
 }
 
-static void expect_end(const struct reader *r, const char *at)
+static struct entry read_entry(struct lines *l, size_t rows, int symmetric)
 {
-    at += strspn(at, " \t\r\n");
-    if (*at) {
-        die("%s:%zu: \"%.*s\" is too much", r->path, r->line, (int)strcspn(at, "\r\n"), at);
+    struct entry e = {.line = l->line};
+    e.row = next_whole(l, "row", 1, rows);
+    e.column = next_whole(l, "column", 1, rows);
+    e.value = next_real(l, "value");
+    expect_end(l);
+    if (symmetric && e.column > e.row) {
+        die_at(l, "row %zu, column %zu is above the diagonal; a symmetric file holds the lower triangle", e.row, e.column);
     }
+    return e;
 }
 
-struct sizes {
-    size_t rows, entries;
-};
-
-static struct sizes read_sizes(struct reader *r)
+static int compare_places(const void *a, const void *b)
 {
-    do {
-        if (!next_line(r)) {
-            die("%s ends before the line with its sizes", r->path);
-        }
-    } while (r->text[0] == '%');
-    char *at = r->text;
-    const size_t rows = read_count(r, &at, "the number of rows"), columns = read_count(r, &at, "the number of columns"),
-                 entries = read_count(r, &at, "the number of entries");
-    expect_end(r, at);
-    if (rows != columns || rows == 0) {
-        die("%s:%zu: %zu rows and %zu columns; the matrix must be square", r->path, r->line, rows, columns);
+    const struct entry *x = a, *y = b;
+    if (x->row != y->row) {
+        return x->row < y->row ? -1 : 1;
     }
-    return (struct sizes){rows, entries};
+    if (x->column != y->column) {
+        return x->column < y->column ? -1 : 1;
+    }
+    return (x->line > y->line) - (x->line < y->line);
 }
 
-static int compare_keys(const void *a, const void *b)
+static void refuse_doubles(const struct lines *l, const struct entries *all)
 {
-    const size_t x = *(const size_t *)a, y = *(const size_t *)b;
-    return (x > y) - (x < y);
-}
-
-/* Checks one entry's line and returns a number that tells its place. */
-static size_t check_entry(const struct reader *r, size_t rows, int symmetric)
-{
-    char *at = (char *)r->text, *end;
-    const size_t i = read_count(r, &at, "a row"), j = read_count(r, &at, "a column");
-    if (i < 1 || i > rows || j < 1 || j > rows) {
-        die("%s:%zu: row %zu, column %zu of a matrix of %zu", r->path, r->line, i, j, rows);
-    }
-    if (symmetric && j > i) {
-        die("%s:%zu: row %zu, column %zu is above the diagonal; a symmetric file holds the lower triangle", r->path, r->line, i,
-            j);
-    }
-    const double value = strtod(at, &end);
-    if (end == at || !isfinite(value)) {
-        at += strspn(at, " \t");
-        die("%s:%zu: \"%.*s\" is no finite number", r->path, r->line, (int)strcspn(at, " \t\r\n"), at);
-    }
-    expect_end(r, end);
-    return (i - 1) * rows + j - 1;
-}
-
-/* Every line of entries, since what GSL would make of a bad one is less clear. */
-static void check_entries(struct reader *r, struct sizes sizes, int symmetric)
-{
-    size_t count = 0, room = 0, *place = NULL;
-    while (next_line(r)) {
-        if (count == sizes.entries) {
-            die("%s:%zu: more entries than the %zu announced", r->path, r->line, sizes.entries);
-        }
-        if (count == room) {
-            room = 2 * room + 1024;
-            place = realloc(place, room * sizeof *place);
-            if (!place) {
-                die("%s: out of memory for %zu entries", r->path, sizes.entries);
-            }
-        }
-        place[count++] = check_entry(r, sizes.rows, symmetric);
-    }
-    if (count < sizes.entries) {
-        die("%s: ends after %zu entries of %zu", r->path, count, sizes.entries);
-    }
-    if (count) {
-        qsort(place, count, sizeof *place, compare_keys);
-    }
-    for (size_t k = 1; k < count; k++) {
-        if (place[k] == place[k - 1]) {
-            die("%s: row %zu, column %zu is given twice", r->path, place[k] / sizes.rows + 1, place[k] % sizes.rows + 1);
+    for (size_t k = 1; k < all->count; k++) {
+        const struct entry *e = &all->entry[k], *before = e - 1;
+        if (e->row == before->row && e->column == before->column) {
+            die("%s:%zu: row %zu, column %zu has been given in line %zu", l->path, e->line, e->row, e->column, before->line);
         }
     }
-    free(place);
 }
 
-/* The whole matrix from its lower triangle. */
-static gsl_spmatrix *mirrored(const gsl_spmatrix *lower, const char *path)
+static struct entries read_entries(struct lines *l, size_t announced, size_t rows, int symmetric)
 {
-    gsl_spmatrix *whole = gsl_spmatrix_alloc_nzmax(lower->size1, lower->size2, 2 * lower->nz + 1, GSL_SPMATRIX_TRIPLET);
-    int failed = !whole;
-    for (size_t k = 0; !failed && k < lower->nz; k++) {
-        const size_t i = (size_t)lower->i[k], j = (size_t)lower->p[k];
-        failed = gsl_spmatrix_set(whole, i, j, lower->data[k]) || gsl_spmatrix_set(whole, j, i, lower->data[k]);
+    struct entries all = {0, 0, NULL};
+    while (next_data(l)) {
+        if (all.count == announced) {
+            die_at(l, "more entries than the %zu announced", announced);
+        }
+        all.entry = need_room(all.entry, all.count, &all.room, sizeof *all.entry);
+        all.entry[all.count++] = read_entry(l, rows, symmetric);
+    }
+    if (all.count < announced) {
+        die_at(l, "the file ends after %zu entries of %zu", all.count, announced);
+    }
+    if (all.count) {
+        qsort(all.entry, all.count, sizeof *all.entry, compare_places);
+    }
+    refuse_doubles(l, &all);
+    return all;
+}
+
+static gsl_spmatrix *make_matrix(const struct entries *all, size_t rows, int symmetric, const char *path)
+{
+    gsl_spmatrix *m = gsl_spmatrix_alloc_nzmax(rows, rows, (symmetric ? 2 : 1) * all->count + 1, GSL_SPMATRIX_TRIPLET);
+    int failed = !m;
+    for (size_t k = 0; !failed && k < all->count; k++) {
+        const struct entry *e = &all->entry[k];
+        failed = gsl_spmatrix_set(m, e->row - 1, e->column - 1, e->value) ||
+                 (symmetric && gsl_spmatrix_set(m, e->column - 1, e->row - 1, e->value));
     }
     if (failed) {
-        die("%s: out of memory for %zu entries", path, 2 * lower->nz);
+        die("%s: out of memory for %zu entries", path, all->count);
     }
-    return whole;
+    return m;
 }
 
-gsl_spmatrix *read_matrix(const char *path)
+gsl_spmatrix *read_matrix(const char *path, size_t rows)
 {
-    struct reader r = {path, fopen(path, "r"), 0, ""};
-    if (!r.file) {
-        die("cannot open %s: %s", path, strerror(errno));
-    }
-    const int symmetric = read_header(&r);
-    check_entries(&r, read_sizes(&r), symmetric);
-
-    rewind(r.file);
-    gsl_spmatrix *matrix = gsl_spmatrix_fscanf(r.file);
-    fclose(r.file);
-    if (!matrix) {
-        die("%s: GSL cannot read it", path);
-    }
-    if (!symmetric) {
-        return matrix;
-    }
-    gsl_spmatrix *whole = mirrored(matrix, path);
-    gsl_spmatrix_free(matrix);
-    return whole;
+    struct lines l = open_lines(path);
+    const int symmetric = read_header(&l);
+    const size_t announced = read_sizes(&l, rows);
+    struct entries all = read_entries(&l, announced, rows, symmetric);
+    close_lines(&l);
+    gsl_spmatrix *matrix = make_matrix(&all, rows, symmetric, path);
+    free(all.entry);
+    return matrix;
 }

@@ -15,56 +15,52 @@ static const char help[] =
     "normal force, the same for all) in a range: amplitude where the load acts, and the power that friction dissipates.\n"
     "Then it refines the limit that dissipates most, the optimum friction damper, and writes the motion there.\n"
     "\n"
+    "Without options it is a steel beam on three contacts. A structure of your own needs the first five:\n"
     "  --mass FILE          Matrix Market, symmetric (lower triangle) or general\n"
     "  --stiffness FILE     the same\n"
-    "  --dofs FILE          for each row of the matrices: row node direction x y z; direction 1, 2, 3 is x, y, z\n"
-    "  --frequencies FILE   natural frequencies in Hz from elsewhere, to be shown beside those found; \"none\"\n"
-    "  --modes COUNT        lowest modes to keep; %zu\n"
-    "  --damping RATIO      damping ratio of every mode; %g\n"
+    "  --dofs FILE          for each row of the matrices: row node direction x y z; direction 1, 2, 3 is\n"
+    "                       x, y, z, and x y z are the node's place, lengths\n"
     "  --contact X,Y,Z,DIR  a contact to ground at the node with these coordinates, sliding along DIR = x, y or z; may be\n"
     "                       given up to %d times\n"
     "  --load X,Y,Z,DIR     where and in which direction the harmonic load acts\n"
-    "  --force AMPLITUDE    of the load; %g\n"
+    "\n"
+    "  --frequencies FILE   natural frequencies in Hz from elsewhere, to be shown beside those found; \"none\"\n"
+    "  --modes COUNT        lowest modes to keep; %d, or all where there are fewer\n"
+    "  --damping RATIO      of every mode to critical damping, above 0 and below 1; %g\n"
+    "  --force AMPLITUDE    of the load, a force; 1 (%g for the beam)\n"
     "  --drive HZ           frequency of the load; 0 (the default) means the first natural frequency\n"
-    "  --limits FROM:TO:N   limits of the contacts, N of them in equal ratios; %g:%g:%zu\n"
-    "  --step FRACTION      time step times the highest natural frequency kept, in radians; %g\n"
+    "  --limits FROM:TO:N   limits of the contacts, forces, N of them in equal ratios; %g and %g times the load's, %d\n"
+    "  --step RADIANS       time step times the highest natural frequency kept, at most 1; %g (and 400 steps a period)\n"
     "  --law NAME           friction law; %s\n"
     "  --out FOLDER         where the tables go, which must exist; \"%s\"\n"
     "\n"
-    "Any consistent units will do. Without options it is a steel beam (N, mm, s, tonne) on three contacts:\n"
+    "Any consistent units will do: N, m, kg, s; or N, mm, tonne, s. Frequencies are in Hz if time is in s, else in cycles a\n"
+    "unit of time; powers in force times length over time (N mm/s = mW).\n"
+    "\n"
+    "The beam (N, mm, tonne, s):\n"
     "  --mass %s\n  --stiffness %s\n  --dofs %s\n  --frequencies %s\n"
-    "  --contact 200,0,5,z --contact 300,0,5,z --contact 400,0,5,z --load 400,20,5,z\n";
+    "  --contact %s --contact %s --contact %s --load %s\n";
 
-static struct options defaults(void)
-{
-    struct options o = {
-        .mass = BEAM "/M.mtx",
-        .stiffness = BEAM "/K.mtx",
-        .dofs = BEAM "/dofs.txt",
-        .frequencies = BEAM "/frequencies.txt",
-        .out = ".",
-        .modes = 12,
-        .damping = 0.002,
-        .contact = {{{200.0, 0.0, 5.0}, 3, "200,0,5,z"},
-                    {{300.0, 0.0, 5.0}, 3, "300,0,5,z"},
-                    {{400.0, 0.0, 5.0}, 3, "400,0,5,z"}},
-        .load = {{400.0, 20.0, 5.0}, 3, "400,20,5,z"},
-        .contacts = 3,
-        .force = 0.1,
-        .limit_from = 1e-4,
-        .limit_to = 1.0,
-        .limit_points = 33,
-        .step = 0.25,
-        .law = TRIBO_QUINN,
-    };
-    return o;
-}
+static const struct options beam = {
+    .mass = BEAM "/M.mtx",
+    .stiffness = BEAM "/K.mtx",
+    .dofs = BEAM "/dofs.txt",
+    .frequencies = BEAM "/frequencies.txt",
+    .contact = {{{200.0, 0.0, 5.0}, 3, "200,0,5,z"}, {{300.0, 0.0, 5.0}, 3, "300,0,5,z"}, {{400.0, 0.0, 5.0}, 3, "400,0,5,z"}},
+    .load = {{400.0, 20.0, 5.0}, 3, "400,20,5,z"},
+    .contacts = 3,
+    .force = 0.1,
+};
+
+/* For any structure. */
+static const struct options standard = {.out = ".", .damping = 0.002, .limit_points = 33, .step = 0.25, .law = TRIBO_QUINN};
+static const double LIMIT_FROM = 1e-3, LIMIT_TO = 10.0; /* times the load */
 
 static void print_help(void)
 {
-    const struct options d = defaults();
-    printf(help, d.modes, d.damping, (int)MAX_CONTACTS, d.force, d.limit_from, d.limit_to, d.limit_points, d.step,
-           tribo_law_name(d.law), d.out, d.mass, d.stiffness, d.dofs, d.frequencies);
+    printf(help, (int)MAX_CONTACTS, (int)DEFAULT_MODES, standard.damping, beam.force, LIMIT_FROM, LIMIT_TO,
+           (int)standard.limit_points, standard.step, tribo_law_name(standard.law), standard.out, beam.mass, beam.stiffness,
+           beam.dofs, beam.frequencies, beam.contact[0].text, beam.contact[1].text, beam.contact[2].text, beam.load.text);
 }
 
 /* Reads a number that ends with the character end, and returns what is behind that. */
@@ -118,14 +114,14 @@ static struct place read_place(const char *option, const char *text)
 
 static int read_law(const char *option, const char *text)
 {
+    char names[200] = "";
     int law;
     if (tribo_law_find(text, &law)) {
-        fprintf(stderr, "the laws are:");
         for (int i = 0; i < tribo_law_count(); i++) {
-            fprintf(stderr, " %s", tribo_law_name(i));
+            const size_t length = strlen(names);
+            snprintf(names + length, sizeof names - length, " %s", tribo_law_name(i));
         }
-        fprintf(stderr, "\n");
-        die("option %s %s: no law has this name", option, text);
+        die("option %s %s: no law has this name; there are%s", option, text, names);
     }
     return law;
 }
@@ -171,6 +167,9 @@ static void set_modes(const char *name, const char *value, struct options *o)
 static void set_damping(const char *name, const char *value, struct options *o)
 {
     o->damping = read_real(name, value, 0.0, 0);
+    if (o->damping >= 1.0) {
+        die("option %s %s: must be below 1", name, value);
+    }
 }
 
 static void add_contact(const char *name, const char *value, struct options *o)
@@ -200,8 +199,8 @@ static void set_limits(const char *name, const char *value, struct options *o)
 {
     const char *at = read_number(name, value, value, ':', &o->limit_from);
     at = read_number(name, value, at, ':', &o->limit_to);
-    o->limit_points = read_whole(name, value, at, 3);
-    if (o->limit_from <= 0.0 || o->limit_to <= o->limit_from) {
+    o->limit_points = read_whole(name, value, at, 1);
+    if (o->limit_from <= 0.0 || o->limit_to < o->limit_from || (o->limit_to == o->limit_from && o->limit_points > 1)) {
         die("option %s %s: limits must be positive and ascend", name, value);
     }
 }
@@ -243,11 +242,65 @@ static setter *find_setter(const char *name)
     return NULL;
 }
 
+/* Nothing of the beam belongs to a structure of the user's own, nor may a part of that be missing. */
+static void need_structure(const struct options *o)
+{
+    const struct {
+        const char *name;
+        int given;
+    } part[] = {{"--mass", o->mass != NULL},
+                {"--stiffness", o->stiffness != NULL},
+                {"--dofs", o->dofs != NULL},
+                {"--contact", o->contacts > 0},
+                {"--load", o->load.text != NULL}};
+    char missing[80] = "";
+    for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
+        if (!part[k].given) {
+            strcat(strcat(missing, " "), part[k].name);
+        }
+    }
+    if (missing[0]) {
+        die("a structure of your own needs also%s; see --help", missing);
+    }
+}
+
+static void take_beam(struct options *o)
+{
+    o->mass = beam.mass;
+    o->stiffness = beam.stiffness;
+    o->dofs = beam.dofs;
+    o->frequencies = o->frequencies ? o->frequencies : beam.frequencies;
+    o->force = o->force > 0.0 ? o->force : beam.force;
+    if (o->contacts == 0) {
+        memcpy(o->contact, beam.contact, sizeof o->contact);
+        o->contacts = beam.contacts;
+    }
+    if (!o->load.text) {
+        o->load = beam.load;
+    }
+}
+
+/* What has not been given. */
+static void complete(struct options *o)
+{
+    if (o->mass || o->stiffness || o->dofs) {
+        need_structure(o);
+    } else {
+        take_beam(o);
+    }
+    if (o->frequencies && strcmp(o->frequencies, "none") == 0) {
+        o->frequencies = NULL;
+    }
+    o->force = o->force > 0.0 ? o->force : 1.0;
+    if (!(o->limit_to > 0.0)) {
+        o->limit_from = LIMIT_FROM * o->force;
+        o->limit_to = LIMIT_TO * o->force;
+    }
+}
+
 struct options read_options(int argc, char **argv)
 {
-    const struct options standard = defaults();
     struct options o = standard;
-    o.contacts = 0;
     for (int i = 1; i < argc; i += 2) {
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             print_help();
@@ -259,9 +312,6 @@ struct options read_options(int argc, char **argv)
         }
         set(argv[i], argv[i + 1], &o);
     }
-    if (o.contacts == 0) {
-        memcpy(o.contact, standard.contact, sizeof o.contact);
-        o.contacts = standard.contacts;
-    }
+    complete(&o);
     return o;
 }

@@ -7,10 +7,13 @@
 #include <gsl/gsl_multifit.h>
 
 #include "../common/output.h"
+#include "linear.h"
 
 /* The motion is run in blocks of cycles, and its transient extrapolated after each from the last KEEP + 1 of them. */
 enum { BLOCK = 16, KEEP = 8, BLOCKS = 250, QUIET = 5 };
 static const double TOLERANCE = 1e-6;
+static const double NOTHING = 1e-13;                     /* so much of the motion without friction is none: less is rounding */
+static const double LEAST_STEPS = 400, MOST_STEPS = 1e5; /* a period; an amplitude is the largest of the values there */
 
 /* ------------------------------------------------------------------------------------------------------ construction */
 
@@ -50,10 +53,46 @@ static void add_load(struct damper *d, size_t ndof, size_t load)
     free(sine);
 }
 
+/* The load's frequency, and the step that goes with it. */
+static void set_drive(struct damper *d, const struct options *o)
+{
+    const double turn = 2.0 * acos(-1.0), highest = d->omega[d->modes - 1];
+    d->drive = o->drive > 0.0 ? turn * o->drive : d->omega[0];
+    if (!(d->drive > 1e-6 * highest)) {
+        die("the load's frequency, %g Hz, is next to nothing beside %g Hz of the highest mode kept%s", d->drive / turn,
+            highest / turn, o->drive > 0.0 ? "" : ": the structure can move freely; give --drive");
+    }
+    d->period = turn / d->drive;
+    const double steps = fmax(LEAST_STEPS, ceil(d->period * fmax(highest, d->drive) / o->step));
+    if (!(steps <= MOST_STEPS)) {
+        die("a period of the load would take %g steps, more than %g: keep fewer --modes, or take a larger --step", steps,
+            MOST_STEPS);
+    }
+    set_steps(d, (size_t)steps);
+}
+
+/* What motions are measured by; its square must be a number, too. */
+static void set_scale(struct damper *d)
+{
+    d->amplitude = free_amplitude(d);
+    d->power = 0.5 * d->force * d->drive * d->amplitude;
+    d->norm = free_norm(d);
+    if (!isnormal(d->amplitude * d->amplitude) || !isnormal(d->power * d->power) || !isnormal(NOTHING * d->norm * d->norm)) {
+        die("without friction the load makes an amplitude of %g: nothing to compute with; see --load, --force and --modes",
+            d->amplitude);
+    }
+}
+
 struct damper create_damper(const struct options *o, const struct structure *s)
 {
     struct damper d = {.modes = o->modes, .contacts = o->contacts, .damping = o->damping, .force = o->force};
     size_t row[MAX_CONTACTS];
+    if (d.modes > s->ndof) {
+        die("option --modes %zu: the structure has %zu degrees of freedom", d.modes, s->ndof);
+    }
+    if (d.modes == 0) {
+        d.modes = s->ndof < DEFAULT_MODES ? s->ndof : DEFAULT_MODES;
+    }
     for (size_t c = 0; c < d.contacts; c++) {
         row[c] = find_degree(s, "--contact", &o->contact[c]);
     }
@@ -75,15 +114,9 @@ struct damper create_damper(const struct options *o, const struct structure *s)
     need(tribo_system_set_damping_ratio(d.sys, d.damping), tribo_message(contacts));
     need(tribo_set_law(contacts, o->law), tribo_message(contacts));
     read_shapes(&d, s->ndof, load, row);
-    const double turn = 2.0 * acos(-1.0);
-    d.drive = o->drive > 0.0 ? turn * o->drive : d.omega[0];
-    if (!(d.drive > 0.0)) {
-        die("the first natural frequency is zero: the structure can move freely; give --drive");
-    }
-    d.period = turn / d.drive;
+    set_drive(&d, o);
+    set_scale(&d);
     add_load(&d, s->ndof, load);
-    const double fastest = fmax(d.omega[d.modes - 1], d.drive);
-    set_steps(&d, (size_t)ceil(d.period * fastest / o->step));
     return d;
 }
 
@@ -164,15 +197,15 @@ static double distance(const struct damper *d, const double *a, const double *b)
     return sqrt(sum);
 }
 
-/* Where the sequence of states y_0 ... y_KEEP+1 leads to, if each is a linear function of the one before, as it is close to a
+/* Where the sequence of states y_0 ... y_keep+1 leads to, if each is a linear function of the one before, as it is close to a
  * steady motion: reduced rank extrapolation, s = y_0 - dY (d2Y)^+ dy_0 with first and second differences (Eddy 1979, Mesina
  * 1977). Plain repetition would do too, but a mode with a damping ratio of 0.2% takes a thousand cycles. */
-static void extrapolate(const struct damper *d, double *const *y, double *to)
+static void extrapolate(const struct damper *d, double *const *y, size_t keep, double *to)
 {
     const size_t n = 2 * d->modes;
-    gsl_matrix *second = gsl_matrix_alloc(n, KEEP), *covariance = gsl_matrix_alloc(KEEP, KEEP);
-    gsl_vector *first = gsl_vector_alloc(n), *c = gsl_vector_alloc(KEEP);
-    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, KEEP);
+    gsl_matrix *second = gsl_matrix_alloc(n, keep), *covariance = gsl_matrix_alloc(keep, keep);
+    gsl_vector *first = gsl_vector_alloc(n), *c = gsl_vector_alloc(keep);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, keep);
     double unused;
     size_t rank;
     if (!second || !covariance || !first || !c || !work) {
@@ -181,7 +214,7 @@ static void extrapolate(const struct damper *d, double *const *y, double *to)
     for (size_t i = 0; i < n; i++) {
         const double weight = i < d->modes ? d->omega[i] : 1.0;
         gsl_vector_set(first, i, weight * (y[1][i] - y[0][i]));
-        for (size_t k = 0; k < KEEP; k++) {
+        for (size_t k = 0; k < keep; k++) {
             gsl_matrix_set(second, i, k, weight * (y[k + 2][i] - 2.0 * y[k + 1][i] + y[k][i]));
         }
     }
@@ -190,7 +223,7 @@ static void extrapolate(const struct damper *d, double *const *y, double *to)
     }
     for (size_t i = 0; i < n; i++) {
         to[i] = y[0][i];
-        for (size_t k = 0; k < KEEP; k++) {
+        for (size_t k = 0; k < keep; k++) {
             to[i] -= gsl_vector_get(c, k) * (y[k + 1][i] - y[k][i]);
         }
     }
@@ -203,11 +236,12 @@ static void extrapolate(const struct damper *d, double *const *y, double *to)
 
 /* Whether amplitude and dissipated power have not changed for QUIET cycles. Powers are compared with the input, since friction
  * dissipates nothing where contacts never slip. */
-static int quiet(const struct response *r)
+static int quiet(const struct damper *d, const struct response *r)
 {
     for (int k = BLOCK - QUIET; k < BLOCK; k++) {
-        if (fabs(r[k].amplitude - r[k - 1].amplitude) > TOLERANCE * r[k].amplitude ||
-            fabs(r[k].friction - r[k - 1].friction) > TOLERANCE * (r[k].friction + fabs(r[k].damped))) {
+        const double power = r[k].friction + fabs(r[k].damped);
+        if (fabs(r[k].amplitude - r[k - 1].amplitude) > fmax(TOLERANCE * r[k].amplitude, NOTHING * d->amplitude) ||
+            fabs(r[k].friction - r[k - 1].friction) > fmax(TOLERANCE * power, NOTHING * d->power)) {
             return 0;
         }
     }
@@ -223,9 +257,14 @@ static void run_block(struct damper *d, double *const *state, struct response *r
     }
 }
 
+static double unless_nothing(double x, double whole)
+{
+    return fabs(x) < NOTHING * whole ? 0.0 : x;
+}
+
 struct response find_response(struct damper *d, double limit, double *y)
 {
-    const size_t n = 2 * d->modes + 1;
+    const size_t n = 2 * d->modes + 1, keep = n - 1 < KEEP ? n - 1 : KEEP;
     double *memory = need_memory((BLOCK + 2) * n, sizeof *memory), *state[BLOCK + 2], *ahead = memory + (BLOCK + 1) * n;
     struct response r[BLOCK] = {{0}};
     tribo_context *contacts = tribo_system_context(d->sys);
@@ -239,9 +278,13 @@ struct response find_response(struct damper *d, double limit, double *y)
     while (!steady && cycles < BLOCKS * BLOCK) {
         run_block(d, state, r);
         cycles += BLOCK;
-        extrapolate(d, state + BLOCK - (KEEP + 1), ahead);
         const double last = distance(d, state[BLOCK], state[BLOCK - 1]);
-        steady = quiet(r) && distance(d, ahead, state[BLOCK]) < TOLERANCE * distance(d, state[BLOCK], NULL);
+        memcpy(ahead, state[BLOCK], n * sizeof *y);
+        if (last > NOTHING * d->norm) {
+            extrapolate(d, state + BLOCK - (keep + 1), keep, ahead);
+        }
+        steady = quiet(d, r) &&
+                 distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * distance(d, state[BLOCK], NULL), NOTHING * d->norm);
         /* contacts may begin or cease to stick on the way to where the extrapolation leads: then rather wait, longer each time */
         if (wait == 0 && last > 0.5 * change) {
             pause = 2 * pause + 1;
@@ -255,9 +298,10 @@ struct response find_response(struct damper *d, double limit, double *y)
     memcpy(y, state[0], n * sizeof *y);
     struct response last = r[BLOCK - 1];
     last.limit = limit;
-    if (fabs(last.friction) < 1e-12 * last.damped) {
-        last.friction = 0.0; /* the rest is rounding */
-    }
+    last.amplitude = unless_nothing(last.amplitude, d->amplitude);
+    last.friction = unless_nothing(last.friction, fmax(10.0 * last.damped, d->power));
+    last.damped = unless_nothing(last.damped, d->power);
+    last.input = unless_nothing(last.input, d->power);
     last.cycles = cycles;
     last.steady = steady;
     free(memory);

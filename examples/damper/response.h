@@ -13,8 +13,10 @@ struct damper {
     double *load_shape;    /* [modes] the modes where and as the load acts */
     double *contact_shape; /* [contacts][modes] the same for the contacts */
     double damping, force;
-    double drive, period; /* of the load: rad/time, time */
-    size_t steps;         /* a period */
+    double drive, period;          /* of the load: rad/time, time */
+    double amplitude, power, norm; /* of the motion without friction, to measure others by: that of the load's place, the most
+                                      that the load could put into it, and its energy norm */
+    size_t steps;                  /* a period */
 };
 
 /* The steady motion at one limit. Powers are means over a period. */

@@ -1,94 +1,62 @@
 #include "structure.h"
 
-#include <errno.h>
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "../common/output.h"
+#include "lines.h"
 #include "matrix_market.h"
 
-static FILE *open_file(const char *path)
+/* One line; rows may come in any order. */
+static struct degree read_degree(struct lines *l)
 {
-    FILE *file = fopen(path, "r");
-    if (!file) {
-        die("cannot open %s: %s", path, strerror(errno));
+    struct degree d = {.line = l->line};
+    d.row = next_whole(l, "row", 1, INT_MAX);
+    d.node = next_whole(l, "node", 0, INT_MAX);
+    d.direction = (int)next_whole(l, "direction", 1, 3);
+    for (int i = 0; i < 3; i++) {
+        d.at[i] = next_real(l, (const char *[]){"coordinate x", "coordinate y", "coordinate z"}[i]);
     }
-    return file;
+    expect_end(l);
+    return d;
 }
 
-/* The numbers of the next line that is not empty and no comment (#), at most room of them; -1 at the end of the file. */
-static int read_numbers(FILE *file, const char *path, size_t *line, double *number, int room)
+static int compare_rows(const void *a, const void *b)
 {
-    char text[1024];
-    while (fgets(text, sizeof text, file)) {
-        ++*line;
-        int count = 0;
-        char *at = text + strspn(text, " \t\r\n"), *end;
-        while (*at && *at != '#') {
-            const double value = strtod(at, &end);
-            if (end == at || !isfinite(value) || count == room) {
-                die("%s:%zu: \"%.*s\" is no finite number, or one too many (%d expected)", path, *line,
-                    (int)strcspn(at, " \t\r\n"), at, room);
-            }
-            number[count++] = value;
-            at = end + strspn(end, " \t\r\n");
-        }
-        if (count) {
-            return count;
-        }
-    }
-    if (ferror(file)) {
-        die("cannot read %s: %s", path, strerror(errno));
-    }
-    return -1;
-}
-
-static void read_degree(struct structure *s, const char *path, size_t line, const double *number)
-{
-    const double row = number[0], direction = number[2];
-    if (row != floor(row) || row < 1.0 || row > (double)s->ndof) {
-        die("%s:%zu: row %g of matrices with %zu", path, line, row, s->ndof);
-    }
-    if (direction != 1.0 && direction != 2.0 && direction != 3.0) {
-        die("%s:%zu: direction %g is not 1, 2 or 3", path, line, direction);
-    }
-    struct degree *d = &s->dof[(size_t)row - 1];
-    if (d->direction) {
-        die("%s:%zu: row %g is given twice", path, line, row);
-    }
-    d->direction = (int)direction;
-    memcpy(d->at, number + 3, sizeof d->at);
+    const struct degree *x = a, *y = b;
+    return x->row != y->row ? (x->row < y->row ? -1 : 1) : (x->line > y->line) - (x->line < y->line);
 }
 
 static void read_degrees(struct structure *s, const char *path)
 {
-    FILE *file = open_file(path);
-    double number[6];
-    int count;
-    size_t line = 0, rows = 0;
-    while ((count = read_numbers(file, path, &line, number, 6)) >= 0) {
-        if (count != 6) {
-            die("%s:%zu: %d numbers, not the six row node direction x y z", path, line, count);
-        }
-        read_degree(s, path, line, number);
-        rows++;
+    struct lines l = open_lines(path);
+    size_t room = 0;
+    while (next_data(&l)) {
+        s->dof = need_room(s->dof, s->ndof, &room, sizeof *s->dof);
+        s->dof[s->ndof++] = read_degree(&l);
     }
-    fclose(file);
-    if (rows != s->ndof) {
-        die("%s: %zu rows, but the matrices have %zu", path, rows, s->ndof);
+    close_lines(&l);
+    if (s->ndof == 0) {
+        die("%s: there is no degree of freedom in it", path);
+    }
+    qsort(s->dof, s->ndof, sizeof *s->dof, compare_rows);
+    for (size_t i = 0; i < s->ndof; i++) {
+        const struct degree *d = &s->dof[i];
+        if (d->row <= i) {
+            die("%s:%zu: row %zu has been given in line %zu", path, d->line, d->row, d[-1].line);
+        }
+        if (d->row > i + 1) {
+            die("%s:%zu: row %zu, but there is no row %zu", path, d->line, d->row, i + 1);
+        }
     }
 }
 
 struct structure read_structure(const struct options *o)
 {
-    struct structure s = {.mass = read_matrix(o->mass), .stiffness = read_matrix(o->stiffness)};
-    s.ndof = s.mass->size1;
-    if (s.stiffness->size1 != s.ndof) {
-        die("%s has %zu rows, but %s has %zu", o->mass, s.ndof, o->stiffness, s.stiffness->size1);
-    }
-    s.dof = need_memory(s.ndof, sizeof *s.dof);
+    struct structure s = {0};
     read_degrees(&s, o->dofs);
+    s.mass = read_matrix(o->mass, s.ndof);
+    s.stiffness = read_matrix(o->stiffness, s.ndof);
     return s;
 }
 
@@ -99,26 +67,33 @@ void free_structure(struct structure *s)
     free(s->dof);
 }
 
+static double distance(const struct degree *d, const double *at)
+{
+    return hypot(hypot(d->at[0] - at[0], d->at[1] - at[1]), d->at[2] - at[2]);
+}
+
 size_t find_degree(const struct structure *s, const char *option, const struct place *p)
 {
-    double nearest = HUGE_VAL, size = 0.0;
-    size_t node = 0, found = s->ndof;
+    const double origin[3] = {0.0, 0.0, 0.0};
+    double size = 0.0;
+    size_t nearest = 0, found = s->ndof;
     for (size_t i = 0; i < s->ndof; i++) {
-        const double *at = s->dof[i].at;
-        const double distance = hypot(hypot(at[0] - p->at[0], at[1] - p->at[1]), at[2] - p->at[2]);
-        size = fmax(size, hypot(hypot(at[0], at[1]), at[2]));
-        if (distance < nearest) {
-            nearest = distance;
-            node = i;
-            found = s->ndof;
-        }
-        if (distance == nearest && s->dof[i].direction == p->direction) {
-            found = i;
-        }
+        size = fmax(size, distance(&s->dof[i], origin));
+        nearest = distance(&s->dof[i], p->at) < distance(&s->dof[nearest], p->at) ? i : nearest;
     }
-    const double *at = s->dof[node].at;
-    if (nearest > 1e-6 * size) {
+    const double *at = s->dof[nearest].at;
+    if (!(distance(&s->dof[nearest], p->at) <= 1e-6 * size)) {
         die("option %s %s: no free node is there; the nearest is at %g,%g,%g", option, p->text, at[0], at[1], at[2]);
+    }
+    for (size_t i = 0; i < s->ndof; i++) {
+        if (s->dof[i].direction != p->direction || distance(&s->dof[i], p->at) > 1e-6 * size) {
+            continue;
+        }
+        if (found < s->ndof) {
+            die("option %s %s: two rows are there, %zu (node %zu) and %zu (node %zu)", option, p->text, s->dof[found].row,
+                s->dof[found].node, s->dof[i].row, s->dof[i].node);
+        }
+        found = i;
     }
     if (found == s->ndof) {
         die("option %s %s: the node there cannot move along %c", option, p->text, "xyz"[p->direction - 1]);
@@ -128,14 +103,18 @@ size_t find_degree(const struct structure *s, const char *option, const struct p
 
 size_t read_frequencies(const char *path, double *hz, size_t room)
 {
-    FILE *file = open_file(path);
-    size_t line = 0, count = 0;
-    while (count < room && read_numbers(file, path, &line, &hz[count], 1) >= 0) {
-        if (hz[count] <= 0.0) {
-            die("%s:%zu: frequency %g is not positive", path, line, hz[count]);
+    struct lines l = open_lines(path);
+    size_t count = 0;
+    while (next_data(&l)) {
+        const double value = next_real(&l, "frequency");
+        expect_end(&l);
+        if (value <= 0.0) {
+            die_at(&l, "frequency %g is not positive", value);
         }
-        count++;
+        if (count < room) {
+            hz[count++] = value;
+        }
     }
-    fclose(file);
+    close_lines(&l);
     return count;
 }

@@ -13,11 +13,12 @@ struct structure {
     gsl_spmatrix *mass, *stiffness;
     struct degree {
         double at[3];
-        int direction; /* 1, 2, 3 for x, y, z; 0 not read yet */
-    } * dof;
+        int direction;          /* 1, 2, 3 for x, y, z */
+        size_t row, node, line; /* as in the file */
+    } * dof;                    /* [ndof] in the order of the rows */
 };
 
-/* Reads matrices and degrees of freedom; ends the program, naming file and line, if anything is wrong with them. */
+/* Reads matrices and degrees of freedom; ends the program, naming file, line and value, if anything is wrong with them. */
 struct structure read_structure(const struct options *o);
 void free_structure(struct structure *s);
 

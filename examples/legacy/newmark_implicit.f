@@ -193,7 +193,7 @@ C     LESS SPRING FORCES, WITH STIFFNESS XT
    80    XJ(I,I) = XJ(I,I) + XM(I)
       RETURN
    90 CALL TRBMSG(IH, TEXT, IERR)
-      WRITE (6,*) TEXT
+      WRITE (6,*) IERR, TEXT
       STOP 1
       END
 C

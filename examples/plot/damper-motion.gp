@@ -10,7 +10,8 @@ sticks(k) = int(system("awk -F, 'NR > 1 && ($6 == 0 || $9 == 0 || $12 == 0) {n++
 set multiplot
 set xrange [0:3]
 do for [k = 1:2] {
-    left = k == 1 ? 0.08 : 0.58
+    left = k == 1 ? 0.085 : 0.58
+    unset label
     set lmargin at screen left
     set rmargin at screen left + 0.41
     set title heading(k) offset 0, -0.5
@@ -23,13 +24,14 @@ do for [k = 1:2] {
     set format x ''
     unset xlabel
     unset key
-    set ylabel 'tip displacement, mm' offset 1
+    side(text) = sprintf("set label 2 '%s' at graph -0.175, graph 0.5 center rotate", text)
+    eval side('tip displacement, mm')
     plot file(k) using 1:3 every 12 with lines linecolor '#000000'
     unset title
     set tmargin at screen 0.65
     set bmargin at screen 0.30
     set ytics autofreq
-    set ylabel 'contact velocity, mm/s' offset 1
+    eval side('contact velocity, mm/s')
     plot for [c = 1:3] file(k) using 1:(column(3 * c + 1)) every 12 with lines linestyle 10 + c
     set tmargin at screen 0.27
     set bmargin at screen 0.12
@@ -37,9 +39,10 @@ do for [k = 1:2] {
     set xlabel 'periods of the load'
     set offsets
     set yrange [0.4:3.6]
-    if (sticks(k) == 0) { set label 1 'all slip all the time' at 1.5, 2.5 center } else { unset label 1 }
-    set ylabel 'contact at'
-    set ytics ('x = 200' 1, 'x = 300' 2, 'x = 400' 3)
+    if (sticks(k) == 0) { set label 1 'all slip all the time' at 1.5, 2.5 center }
+    eval side('contact at x =')
+    set ytics ('' 1, '' 2, '' 3)
+    do for [c = 1:3] { set label 2 + c where(c) at graph -0.02, first c right textcolor rgb colour(c) }
     if (k == 1) { set key at screen 0.5, 0.015 center bottom horizontal } else { unset key }
     plot for [c = 1:3] file(k) using 1:(column(3 * c + 3) == 0 ? 1 / 0 : c) every 6 \
              with lines linecolor '#c8c8c8' linewidth 3 title (c == 1 ? 'slips' : ''), \

@@ -36,11 +36,11 @@ unset xlabel
 set lmargin at screen 0.235
 set rmargin at screen 0.475
 set tmargin at screen 0.925
-set bmargin at screen 0.80
+set bmargin at screen 0.79
 set xrange [3:5]
-set yrange [-0.002:0.012]
+set yrange [-0.002:0.0155]
 set xtics 0.5 font ',8' offset 0, 0.6
 set ytics 0.01 font ',8' offset 0.6
-set label 2 'velocity' at graph 0.97, 0.8 right font ',9'
+set label 2 'velocity' at graph 0.97, 0.86 right font ',9'
 plot file using 1:3 with lines linecolor '#d55e00' linewidth 0.7
 unset multiplot

@@ -6,4 +6,4 @@ set xrange [2.5:3.5]
 set yrange [-1.3:1.5]
 set key top right
 plot results.'/fig5.csv' using 1:10 with lines linestyle 11 title 'friction force f', \
-     results.'/fig5.csv' using 1:9 with lines linestyle 12 title 'velocity x´'
+     results.'/fig5.csv' using 1:9 with lines linestyle 12 title 'velocity x′'

@@ -10,6 +10,6 @@ set ylabel 'dissipation per cycle D'
 set ytics (0.007, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3)
 set key top left
 table = results.'/fig9-fortran.csv'
-plot table using 1:5 every ::1 with lines linecolor '#404040' linewidth 0.7 title 'exact', \
+plot number('fortran.fig9.exact') with lines linecolor '#404040' linewidth 0.7 title 'exact', \
      for [i = 1:3] table using 1:(column(word('2 3 4', i) + 0)) every ::1 with linespoints linestyle int(word('1 2 5', i)) \
          title word('coulomb velocity-limited quinn', i)

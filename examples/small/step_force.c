@@ -8,14 +8,15 @@
 
 int main(void)
 {
-    const double dt = 0.01, limit = 1.0;
+    const double dt = 0.01, limit = 1.0, inverse_mass = 1.0;
     tribo_context *contact;
-    int status = tribo_create(&contact, 1); /* R = 1: unit mass */
+    int status = tribo_create(&contact, 1);
     if (status) {
         fprintf(stderr, "%s\n", tribo_strerror(status));
         return 1;
     }
     status = tribo_set_limit(contact, &limit);
+    status = status ? status : tribo_set_operator_diagonal(contact, &inverse_mass);
 
     double x = 2.75, v = 0.0, dissipated = 0.0;
     for (int k = 0; !status && k < 1000; k++) {

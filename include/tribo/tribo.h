@@ -1,21 +1,34 @@
 /* tribo: dry friction in structural dynamics.
  *
+ *     tribo_create(&c, n);                        n contacts
+ *     tribo_set_limit(c, limit);                  mu times normal load; again whenever that changes
+ *     tribo_set_operator_diagonal(c, r);          R, here of contacts that share no body: 1/mass
+ *     tribo_set_epsilon_step(c, dt, 0.4);         how fast a contact comes to rest
+ *     tribo_balance(c, v, a, NULL, f);            for each evaluation of accelerations; bodies get J' f
+ *
+ * With small fixed steps tribo_step_force gives the force over a step, and needs no epsilon.
+ *
  * Quantities. A contact has a relative velocity v = dz/dt and a friction force f along +z. Its limit is mu times the
- * normal load, limit >= 0, so that sliding means f = -limit * sgn(v). Contact accelerations are z'' = R f + a, where
- * R = J M^-1 J' (the Delassus operator, symmetric and positive semidefinite) and a is everything but friction.
- * f_eq is the friction force that makes a contact's z'' zero. Any consistent set of units will do: forces like limit,
+ * normal load, limit >= 0, so that sliding means f = -limit * sgn(v). The velocities of contacts are v = J u, those of the bodies
+ * being u; so bodies get the forces J' f: a contact with z = x_1 - x_2 puts f on body 1 and -f on body 2. Contact accelerations
+ * are z'' = R f + a, where R = J M^-1 J' (the Delassus operator, symmetric and positive semidefinite) and a is everything but
+ * friction. f_eq is the friction force that makes a contact's z'' zero. Any consistent set of units will do: forces like limit,
  * velocities like epsilon, and R in velocity per time and force.
  *
- * Arrays hold one double a contact, contiguous, unless said otherwise; contacts are counted from 0. Outputs come
- * last, must not overlap inputs, and are untouched on error (but for TRIBO_ERR_INCONSISTENT); an output marked "or NULL" is
- * then not computed.
+ * Arrays hold one double a contact, contiguous, unless said otherwise; contacts are counted from 0. Outputs come last (but for
+ * the handle that a context is created in, which comes first), must not overlap inputs, and are untouched on error (but for
+ * TRIBO_ERR_INCONSISTENT); an output marked "or NULL" is then not computed.
  *
  * Status. Every call that can fail returns one of TRIBO_OK (0) and TRIBO_ERR_...; tribo_message tells what, which contact
  * and which value. Nothing prints, exits, aborts or keeps global state.
  *
+ * Numbers. Any finite ones. Forces beyond 1e300, and what makes accelerations beyond that, are cut to it. Short of that no call
+ * raises the floating-point exceptions invalid, divide-by-zero or overflow, at which some programs stop.
+ *
  * Threads. Functions of a const context may be called by several threads on one context (if two of them fail at the
- * same time, the message is that of one of them). Everything else wants one context a thread: tribo_clone.
- * Memory is allocated by tribo_create, tribo_clone and tribo_set_operator_... only.
+ * same time, the message is that of one of them, or, from compilers other than GCC and Clang, a mixture; it is to be read when
+ * none of them is at work). Everything else wants one context a thread: tribo_clone. Memory is allocated by tribo_create,
+ * tribo_clone and tribo_set_operator_... only.
  *
  * Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397,
  * doi:10.1115/1.1760564, "the paper" below. All functions: since 1.0, unless said otherwise.
@@ -68,7 +81,7 @@ enum {
     TRIBO_ERR_STOPPED = 60,  /* the observer ended the run */
     TRIBO_ERR_STEP = 61,     /* the step size fell below what time resolves */
     TRIBO_ERR_CALLBACK = 62, /* a function of the caller's failed */
-    TRIBO_ERR_CHATTER = 63   /* too many events in too short a time */
+    TRIBO_ERR_CHATTER = 63   /* too many events in too short a time: "central/fixed" and "moreau/fixed" step over them */
 };
 
 /* 10000 major + 100 minor + patch of the library that is running; TRIBO_VERSION is that of this header. */
@@ -105,7 +118,7 @@ TRIBO_API int tribo_law_count(void);
 TRIBO_API const char *tribo_law_name(int law);
 TRIBO_API const char *tribo_law_reference(int law);
 
-/* Number of the law called name. Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME. */
+/* Number of the law called name, in upper or lower case. Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME. */
 TRIBO_API int tribo_law_find(const char *name, int *law);
 
 /* One contact, no context: the force and its derivatives.
@@ -125,8 +138,10 @@ TRIBO_API int tribo_law_eval(int law, double v, double feq, double limit, double
 /* A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace. */
 typedef struct tribo_context tribo_context;
 
-/* A context for ncontact contacts (0 is fine): Quinn's law, limit 0, epsilon 1e-6, R = identity, consistent coupling.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_MEMORY. */
+/* A context for ncontact contacts (0 is fine): Quinn's law, limit 0, epsilon 1e-6, consistent coupling, and no operator: that
+ * must be set before tribo_balance, tribo_balance_tangent, tribo_step_force, tribo_solve_box, or TRIBO_REAL_MAX_RATE and
+ * MAX_STEP, which return TRIBO_ERR_STATE otherwise. No contacts need none. Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE,
+ * TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
 
 /* A copy with the same settings and memory, and nothing shared. */
@@ -146,6 +161,10 @@ TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char
  * coupling, sharing), so that they know whether what they have prepared still holds. 0 for NULL. */
 TRIBO_API size_t tribo_revision(const tribo_context *ctx);
 
+/* For libraries on top of this one: the operator is that of owner, a text that outlives ctx ("a tribo_system"), and cannot be
+ * changed: tribo_set_operator_... return TRIBO_ERR_UNSUPPORTED. NULL: it is the caller's again, as it is in a clone. */
+TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
+
 /* Number of contacts. */
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 
@@ -164,15 +183,19 @@ TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
 TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
 
 /* Fixes the rate at which stuck contacts relax, lambda = 2 limit R_ii/epsilon, to lambda_dt/dt, whatever limits and
- * operator are or become: epsilon_i = 2 limit_i R_ii dt/lambda_dt follows them.
+ * operator are or become: epsilon_i = 2 limit_i R_ii dt/lambda_dt follows them. Contacts that share bodies relax up to a few
+ * times as fast in the partition coupling, see TRIBO_REAL_MAX_RATE. Before there is an operator there is no epsilon either, and
+ * tribo_get_epsilon, tribo_force, tribo_force_tangent and tribo_accept return TRIBO_ERR_STATE.
  * dt         in  time step of the caller's integrator, > 0
  * lambda_dt  in  > 0; the paper takes 1 for the oscillator and 0.4 for the chain; rk4 is stable to 2.785 */
 TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);
 TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
 
-/* The operator R of z'' = R f + a. On error the old one stays.
+/* The operator R of z'' = R f + a. On error the old one stays. That of the context of a tribo_system is the system's, and cannot
+ * be changed: TRIBO_ERR_UNSUPPORTED.
  * A contact with R_ii = 0 (driven from both sides: friction cannot move it) is taken as the limit R_ii -> +0: at rest
- * it carries -limit sgn(a_i), and nothing if a_i = 0; its f_eq is then reported as -sgn(a_i) times a huge number. */
+ * it carries -limit sgn(a_i), and nothing if a_i = 0; its f_eq is then reported as -sgn(a_i) times a huge number, and its
+ * derivative by a as 0. */
 
 /* R = diag(r): contacts that share no body. r [n] in, >= 0. Never enters a solver. */
 TRIBO_API int tribo_set_operator_diagonal(tribo_context *ctx, const double *r);
@@ -286,7 +309,7 @@ TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
 enum {
     TRIBO_COUNT_STUCK = 0,          /* contacts with mode 0; 0 where tribo_get_modes has none */
     TRIBO_COUNT_RANK = 1,           /* sum of the ranks of the matrices that the last call solved with */
-    TRIBO_COUNT_ISLANDS = 2,        /* groups of coupled contacts in the operator */
+    TRIBO_COUNT_ISLANDS = 2,        /* groups of coupled contacts in the operator, and single contacts */
     TRIBO_COUNT_SOLVES = 3,         /* islands that had to be solved */
     TRIBO_COUNT_SKIPPED = 4,        /* islands that needed no solver: a single contact, or none near stick */
     TRIBO_COUNT_FACTORIZATIONS = 5, /* matrices factorized */
@@ -296,12 +319,15 @@ enum {
 };
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
 
-/* Real quantities. */
-enum {
-    TRIBO_REAL_RESIDUAL = 0, /* last balance: largest |f - law(v, feq)|/limit among the contacts near stick */
-    TRIBO_REAL_MAX_RATE = 1, /* bound on lambda, the rate at which stuck contacts relax, 1/time */
-    TRIBO_REAL_MAX_STEP = 2  /* largest step for which rk4 is stable with that rate, 2.785/lambda; HUGE_VAL if lambda = 0 */
-};
+/* Real quantities.
+ *   RESIDUAL  of the last tribo_balance: how much of its limit a contact near stick misses its balance by, at most
+ *   MAX_RATE  lambda, 1/time: stuck contacts relax no faster
+ *   MAX_STEP  2.785/lambda, up to which rk4 is stable; HUGE_VAL if lambda = 0
+ * lambda is the largest 2 limit R_ii/epsilon in the consistent coupling, and for contacts that share no body. In the partition
+ * coupling it is that times the largest eigenvalue of D^-1 R, D being the diagonal of R, and half as much for the laws that are
+ * dampers near v = 0 (VELOCITY_LIMITED, SMOOTH). An upper bound stands in for the eigenvalue: exact for two contacts, within 2%
+ * for contacts in a row, farther away where every contact feels every other one. */
+enum { TRIBO_REAL_RESIDUAL = 0, TRIBO_REAL_MAX_RATE = 1, TRIBO_REAL_MAX_STEP = 2 };
 TRIBO_API int tribo_get_real(const tribo_context *ctx, int which, double *value);
 
 #ifdef __cplusplus

@@ -46,11 +46,13 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * stiffness  [ndof][ndof] in  symmetric
  * direction  [ncontact][ndof] in  J: row i is how the velocities of the degrees of freedom make that of contact i
  * nmode      in   0, or: keep only the motion in the nmode lowest modes of (K, M); q then holds their amplitudes (modes have
- *                 modal mass 1), ndof of the system is nmode, and damping must be NULL (see tribo_system_set_damping_ratio)
+ *                 modal mass 1, and the first of their largest displacements is positive), ndof of the system is nmode, and damping must be NULL (see tribo_system_set_damping_ratio)
  * message    [size] out, or NULL: on error, the text that says what is wrong and where
  * The context starts with Quinn's law and limit 0 (all contacts open), and with R = J M^-1 J'. No load, no motion yet.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_MEMORY.
- */
+ * Modes are found to the accuracy of the stiffness's own entries, however soft beside the stiffest, and omega of rigid-body
+ * motions is 0; one of which rounding of the entries leaves less than two digits is refused (TRIBO_ERR_UNSUPPORTED).
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
+ * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
                                   const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 
@@ -96,8 +98,8 @@ TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
 TRIBO_API size_t tribo_system_ncontact(const tribo_system *sys);
 TRIBO_API size_t tribo_system_dimension(const tribo_system *sys);
 
-/* The context of the system's contacts, borrowed: set law, limits, epsilon and coupling here. Its operator is the system's. Calls
- * on the system that fail leave their message on it. NULL for NULL. */
+/* The context of the system's contacts, borrowed: set law, limits, epsilon and coupling here. Its operator is the system's, and
+ * stays (that of a copy, tribo_clone, may be changed). Calls on the system that fail leave their message on it. NULL for NULL. */
 TRIBO_API tribo_context *tribo_system_context(tribo_system *sys);
 
 /* The system for anyone's own GSL driver, with Jacobian; borrowed. Use one driver at a time. */
@@ -123,8 +125,7 @@ typedef struct tribo_driver tribo_driver;
  *               not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule (Moreau and
  *               Jean). Second order, but for contacts that reverse without sticking, and central with damping: there first order
  *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
- *               exact and event do not cover contacts whose bases move differently while they hold one and the same body together,
- *               all at rest for a moment: in rare cases the wrong one then slides.
+ *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step;
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd": explicit Runge-Kutta methods of order 3, 4, 5, 5 and 8 (Fehlberg, Cash and
@@ -159,7 +160,8 @@ TRIBO_API const char *tribo_method_name(int method);
  * On error t and y hold the last good step, always finite. (central/fixed without an observer: velocities and energy half a step
  * before.) Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (also where the motion grows without bound), TRIBO_ERR_RANGE (t1 < t),
  * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP (a step below what time resolves, or a dt that is not stable), TRIBO_ERR_CHATTER,
- * TRIBO_ERR_UNSUPPORTED (exact), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
+ * TRIBO_ERR_UNSUPPORTED and TRIBO_ERR_INDEFINITE (exact: a structure with contacts held whose motion has no closed form, or is not
+ * known to two digits), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
 /* Counts since creation. */
@@ -171,6 +173,15 @@ enum {
     TRIBO_COUNT_EVENTS = 104       /* events located */
 };
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
+
+/* How far the motion has strayed from Coulomb's law since creation, "exact", "event" and "auto": bounds, over all of the motion and not
+ * only where it was looked at. What a contact is off, the motion is off by no more than the impulse of that. */
+enum {
+    TRIBO_REAL_EXCESS = 100,  /* the largest force of a contact at rest beyond its limit */
+    TRIBO_REAL_BACKSLIP = 101 /* the largest velocity of a contact against the direction in which its force takes it to slide */
+};
+/* Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_UNSUPPORTED (other methods). */
+TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
 
 /* Has seen called after every accepted step (event 0) and at events (event 1: a contact sticks, breaks away or reverses). What
  * it answers ends the run unless 0: the advance then returns TRIBO_ERR_STOPPED. It must not change the system. NULL: no observer.

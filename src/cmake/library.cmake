@@ -1,19 +1,68 @@
 include(CheckCSourceCompiles)
+include(CheckCSourceRuns)
 include(CheckLinkerFlag)
+include(CMakePushCheckState)
 
 check_linker_flag(C "LINKER:--version-script=${CMAKE_CURRENT_SOURCE_DIR}/src/core/tribo.map" TRIBO_HAVE_VERSION_SCRIPT)
+
+# Whether functions with clones work is seen when they run: musl's loader refuses them, though they compile and link. Where a
+# cross-compiled program cannot be run, whoever knows that the target can do it (glibc, FreeBSD) says so.
 # Clang 14 leaves a global symbol of a fixed name for every static function with clones.
 if(TRIBO_SIMD AND CMAKE_C_COMPILER_ID STREQUAL "GNU")
-  check_c_source_compiles([[
-    __attribute__((target_clones("avx2", "default"))) static int one(void) { return 1; }
-    int main(void) { return one(); }]] TRIBO_HAVE_CLONES)
+  if(CMAKE_CROSSCOMPILING AND NOT CMAKE_CROSSCOMPILING_EMULATOR)
+    set(TRIBO_HAVE_CLONES OFF CACHE BOOL "When cross-compiling: the target's loader chooses among target_clones (ifunc)")
+  endif()
+  check_c_source_runs([[
+    __attribute__((target_clones("avx2", "default"))) static int zero(void) { return 0; }
+    int main(void) { return zero(); }]] TRIBO_HAVE_CLONES)
 endif()
-find_library(TRIBO_LIBM m)
-mark_as_advanced(TRIBO_LIBM)
+
+# Linking decides where the functions of math.h are, since a library of that name may be another system's (gcc -m32).
+set(math [[
+  #include <math.h>
+  int main(int count, char **argument)
+  {
+      int exponent;
+      const double x = count;
+      (void)argument;
+      return (int)(sqrt(x) + tanh(x) + log1p(x) + frexp(x, &exponent));
+  }]])
+check_c_source_compiles("${math}" TRIBO_MATH_IN_LIBC)
+if(NOT TRIBO_MATH_IN_LIBC)
+  cmake_push_check_state()
+  list(APPEND CMAKE_REQUIRED_LIBRARIES m)
+  check_c_source_compiles("${math}" TRIBO_MATH_IN_LIBM)
+  cmake_pop_check_state()
+  if(NOT TRIBO_MATH_IN_LIBM)
+    message(FATAL_ERROR "No program that calls sqrt, tanh, log1p and frexp can be linked, with -lm or without; "
+      "is there a C library for \"${CMAKE_C_COMPILER} ${CMAKE_C_FLAGS}\"?")
+  endif()
+  set(TRIBO_LIBM m)
+endif()
+
+# 32-bit x86 computes in 80 bits, and rounds when it pleases. With SSE2 results are the same bits as elsewhere.
+check_c_source_compiles([[
+  #include <float.h>
+  #if !defined(__i386__) || FLT_EVAL_METHOD == 0
+  #error
+  #endif
+  int main(void) { return 0; }]] TRIBO_X87)
+if(TRIBO_X87)
+  add_compile_options("$<$<COMPILE_LANGUAGE:C,Fortran>:-msse2;-mfpmath=sse>")
+endif()
 
 set(TRIBO_CMAKE_DIR "${CMAKE_INSTALL_LIBDIR}/cmake/tribo")
 set(TRIBO_PKGCONFIG_DIR "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 set_property(GLOBAL PROPERTY TRIBO_COMPONENTS "")
+
+# What C compilers are to find fault with. MinGW's headers are another matter: there format(printf) does not mean C99's, and
+# isfinite begins with a conversion to float.
+function(tribo_warnings target)
+  target_compile_options(${target} PRIVATE
+    "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>"
+    "$<$<AND:$<COMPILE_LANG_AND_ID:C,GNU>,$<BOOL:${MINGW}>>:-Wno-format;-Wno-float-conversion>"
+    "$<$<AND:$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>")
+endfunction()
 
 # What all the project's libraries have in common: flags, libm, soname, symbol versions, installation, export, pkg-config.
 # The caller adds what is its own by target_link_libraries, and installs its headers or modules. C and Fortran sources.
@@ -41,8 +90,16 @@ function(tribo_library target)
     "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR};${includes}>")
   # Products and sums stay apart, so that every variant of a kernel gives the same bits.
   target_compile_options(${target} PRIVATE
-    "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-ffp-contract=off;-fno-math-errno;-Wall;-Wextra;-Wpedantic;-Wconversion;-Wshadow>"
-    "$<$<AND:$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>,$<BOOL:${TRIBO_WERROR}>>:-Werror>")
+    "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-ffp-contract=off;-fno-math-errno>")
+  tribo_warnings(${target})
+  get_target_property(type ${target} TYPE)
+  if(WIN32 AND type STREQUAL "SHARED_LIBRARY")
+    if(ARG_SOURCES MATCHES "\\.f90") # which has no words for it
+      target_link_options(${target} PRIVATE "LINKER:--export-all-symbols")
+    else()
+      target_compile_definitions(${target} PRIVATE "TRIBO_API=__declspec(dllexport)")
+    endif()
+  endif()
   if(TRIBO_SIMD AND TRIBO_HAVE_CLONES)
     target_compile_definitions(${target} PRIVATE TRIBO_CLONES)
   endif()
@@ -76,7 +133,6 @@ function(tribo_pkgconfig target)
     set(libs_private "-lm")
   endif()
   # A static library has no private needs: whoever links it links those too, with or without pkg-config --static.
-  get_target_property(type ${target} TYPE)
   if(type STREQUAL "STATIC_LIBRARY")
     list(APPEND requires ${requires_private})
     string(APPEND libs " ${libs_private}")

@@ -9,7 +9,6 @@
 #include <float.h>
 
 #include "internal.h"
-#include "../real.h"
 
 static void begin(tribo_context *ctx)
 {
@@ -17,9 +16,9 @@ static void begin(tribo_context *ctx)
         ctx->op.awake[ctx->op.touched[k]] = 0;
     }
     ctx->op.touches = 0;
+    ctx->far = ctx->largest > TRIBO_ROOM * ctx->op.most;
     ctx->limit_then = ctx->limit;
     ctx->rank = 0;
-    ctx->residual = 0.0;
     ctx->balanced = 0;
     ctx->linearized = 0;
 }
@@ -30,7 +29,7 @@ static void remember(tribo_context *ctx)
     for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
         for (size_t k = 0; !ctx->op.awake[g] && k < p->island->size; k++) {
-            p->x[k] = tribo_force_of(ctx, p->member[k]);
+            p->x[k] = tribo_carried(ctx, p, k);
             p->at[k] = p->at[k] == FREE ? FREE : AWAY;
         }
     }
@@ -57,12 +56,13 @@ struct program *tribo_collect(tribo_context *ctx, size_t k)
     const size_t *member = p->member;
     size_t behind = p->island->size;
     p->count = 0;
+    p->far = ctx->far;
     for (size_t i = 0; i < p->island->size; i++) {
         if (ctx->last.state[member[i]] == NEAR) {
             p->near[p->count++] = i;
         } else {
             p->near[--behind] = i;
-            p->x[i] = tribo_force_of(ctx, member[i]);
+            p->x[i] = tribo_carried(ctx, p, i);
         }
     }
     return p;
@@ -74,9 +74,9 @@ static int solve(tribo_context *ctx, struct program *p)
     const struct island *is = p->island;
     const size_t *member = p->member;
     const struct work before = p->work;
-    for (size_t e = 0; e < p->count; e++) {
+    for (size_t e = 0; is->nullity && e < p->count; e++) {
         const size_t i = p->near[e];
-        p->unit[i] = lesser(ctx->op.diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]), DBL_MAX);
+        p->unit[i] = ctx->op.diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
     }
     ctx->solves++;
     if (!tribo_box_solve(p)) {
@@ -87,12 +87,6 @@ static int solve(tribo_context *ctx, struct program *p)
         tribo_box_share(p);
     }
     ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->near[e];
-        const double to = clamp(p->x[i] - p->gradient[i] / ctx->op.diagonal[member[i]], p->lo[i], p->hi[i]);
-        const double size = greater(ctx->limit[member[i]], 0.5 * p->hi[i] - 0.5 * p->lo[i]);
-        ctx->residual = greater(ctx->residual, size > 0.0 ? fabs(p->x[i] - to) / size : 0.0);
-    }
     ctx->rank += is->rank;
     return TRIBO_OK;
 }
@@ -109,17 +103,18 @@ static int solve_consistent(tribo_context *ctx, struct program *p, const double 
     const size_t *member = p->member;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double limit = ctx->limit[i], kappa = relaxation(ctx, i, v);
+        const double limit = ctx->bound[i], kappa = relaxation(ctx, i, v);
         p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
         p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
-        p->q[k] = a[i] + ctx->op.diagonal[i] * kappa;
+        p->q[k] = cut(a[i]) + ctx->op.diagonal[i] * kappa;
     }
     const int status = solve(ctx, p);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
+        const double beyond = quotient(p->gradient[k], ctx->op.diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
+        ctx->residual = greater(ctx->residual, fabs(p->x[k] - to) / greater(ctx->bound[i], DBL_MIN));
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
-        const double beyond = p->at[k] == FREE ? 0.0 : p->gradient[k] / ctx->op.diagonal[i];
-        ctx->feq[i] = clamp(p->x[k] + relaxation(ctx, i, v) - beyond, -DBL_MAX, DBL_MAX);
+        ctx->feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
     }
     return status;
 }
@@ -131,16 +126,17 @@ static int solve_partition(tribo_context *ctx, struct program *p, const double *
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        p->q[k] = a[i];
-        p->unit[k] = lesser(ctx->op.diagonal[i] * ctx->limit[i], DBL_MAX);
+        p->q[k] = cut(a[i]);
+        p->unit[k] = ctx->op.diagonal[i] * ctx->bound[i];
     }
     ctx->solves++;
     const int consistent = tribo_box_linear(p);
     ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        ctx->residual = greater(ctx->residual, fabs(p->gradient[k] / ctx->op.diagonal[i]) / ctx->limit[i]);
-        ctx->feq[i] = clamp(p->x[k], -DBL_MAX, DBL_MAX);
+        const double off = fabs(quotient(p->gradient[k], ctx->op.diagonal[i]));
+        ctx->residual = greater(ctx->residual, quotient(off, greater(ctx->limit[i], DBL_MIN)));
+        ctx->feq[i] = p->x[k];
     }
     ctx->rank += is->rank;
     if (consistent) {
@@ -173,13 +169,12 @@ static void feq_of_others(tribo_context *ctx, const double *a)
         struct program *p = tribo_op_program(&ctx->op, g);
         const size_t *member = p->member, size = p->island->size;
         for (size_t k = 0; k < size; k++) {
-            p->step[k] = tribo_force_of(ctx, member[k]);
+            p->step[k] = tribo_carried(ctx, p, k);
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             if (!(ctx->op.awake[g] && ctx->last.state[i] == NEAR) && ctx->limit[i] > 0.0) {
-                const double sum = a[i] + tribo_row_others(p, k, p->step);
-                ctx->feq[i] = clamp(-sum / ctx->op.diagonal[i], -DBL_MAX, DBL_MAX);
+                ctx->feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op.diagonal[i]);
             }
         }
     }
@@ -188,6 +183,7 @@ static void feq_of_others(tribo_context *ctx, const double *a)
 static int balance(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     begin(ctx);
+    ctx->residual = 0.0;
     tribo_forces_alone(ctx, v, a, wanted);
     for (size_t i = 0, k = 0; !ctx->kept && i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.kind[k] == MIXED) {
@@ -215,7 +211,8 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    int status = tribo_look(ctx, v, a);
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_look(ctx, v, a);
     if (status) {
         return status;
     }
@@ -239,18 +236,29 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
 
 /* ---------------------------------------------------------------------------------------------- step force and box */
 
-/* The box over all contacts, bounds as given; scale multiplies a. Contacts whose bounds leave no choice take no part in the
- * solver, nor do those that are pulled harder than reach, what the others could do, if it is given. */
-static int box(tribo_context *ctx, const double *a, double scale, const double *lower, const double *upper, const double *reach,
+/* Forces of contacts that share no body. */
+TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, const double *restrict r, const double *lower,
+                                 const double *upper, double *restrict f)
+{
+    for (size_t i = 0; lower && i < n; i++) {
+        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), lower[i], upper[i]);
+    }
+    for (size_t i = 0; !lower && i < n; i++) {
+        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), -upper[i], upper[i]);
+    }
+}
+
+/* The box over all contacts, with v = dt a; lower NULL: -upper. Contacts whose bounds leave no choice take no part in the solver,
+ * nor do those that are pulled harder than reach, what the others could do, if it is given. */
+static int box(tribo_context *ctx, double dt, const double *v, const double *lower, const double *upper, const double *reach,
                double *f)
 {
-    begin(ctx);
+    const double scale = ctx->op.groups ? quotient(1.0, dt) : 0.0;
     ctx->kept = 1;
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->f[i] = clamp(-(scale * a[i]) / ctx->op.diagonal[i], lower[i], upper[i]);
-    }
+    box_alone(ctx->n, dt, v, ctx->op.diagonal, lower, upper, ctx->f);
     for (size_t i = 0; ctx->op.groups > 0 && i < ctx->n; i++) {
-        ctx->last.state[i] = lower[i] < upper[i] && !(reach && fabs(scale * a[i]) > reach[i]) ? NEAR : BACK;
+        const int chooses = (lower ? lower[i] : -upper[i]) < upper[i];
+        ctx->last.state[i] = chooses && !(reach && fabs(scale * v[i]) > reach[i]) ? NEAR : BACK;
     }
     if (ctx->op.groups) {
         find_groups(ctx, 0, ctx->n);
@@ -259,18 +267,19 @@ static int box(tribo_context *ctx, const double *a, double scale, const double *
         struct program *p = tribo_collect(ctx, ctx->op.touched[g]);
         const size_t *member = p->member;
         for (size_t e = 0; e < p->count; e++) {
-            const size_t k = p->near[e];
-            p->lo[k] = lower[member[k]];
-            p->hi[k] = upper[member[k]];
-            p->q[k] = scale * a[member[k]];
+            const size_t k = p->near[e], i = member[k];
+            const double lo = lower ? lower[i] : -upper[i];
+            p->lo[k] = ctx->far ? tribo_cut(p, k, lo) : lo;
+            p->hi[k] = ctx->far ? tribo_cut(p, k, upper[i]) : upper[i];
+            p->q[k] = cut(scale * v[i]);
         }
         const int status = solve(ctx, p);
         if (status) {
             return status;
         }
         for (size_t e = 0; e < p->count; e++) {
-            const size_t k = p->near[e];
-            ctx->f[member[k]] = clamp(p->x[k], p->lo[k], p->hi[k]);
+            const size_t k = p->near[e], i = member[k];
+            ctx->f[i] = clamp(p->x[k], lower ? lower[i] : -upper[i], upper[i]);
         }
     }
     ctx->skipped += ctx->op.islands - ctx->op.touches;
@@ -287,7 +296,7 @@ static const double *reaches(tribo_context *ctx)
         struct program *p = tribo_op_program(op, g);
         const size_t *member = p->member, size = p->island->size;
         for (size_t k = 0; k < size; k++) {
-            p->step[k] = ctx->limit[member[k]];
+            p->step[k] = ctx->bound[member[k]];
         }
         for (size_t k = 0; k < size; k++) {
             tribo_row_dot(p, k, p->step, &op->reach[member[k]]);
@@ -308,17 +317,16 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
     if (dt <= 0.0) {
         return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
     }
-    int status = tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
     if (status) {
         return status;
     }
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->lower[i] = -ctx->limit[i];
-    }
-    status = box(ctx, vfree, lesser(1.0 / dt, DBL_MAX), ctx->lower, ctx->limit, ctx->op.groups ? reaches(ctx) : NULL, f);
+    begin(ctx);
+    status = box(ctx, dt, vfree, NULL, ctx->limit, ctx->op.groups ? reaches(ctx) : NULL, f);
     if (!status) {
         ctx->balanced = 1;
         ctx->holds = 1.0;
@@ -331,19 +339,24 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    int status = tribo_check_finite(ctx, "a", a, ctx->n);
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "lower", lower, ctx->n);
     status = status ? status : tribo_check_finite(ctx, "upper", upper, ctx->n);
     if (status) {
         return status;
     }
+    double most = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
         if (lower[i] > upper[i]) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE, "lower[%zu] = %g is above upper[%zu] = %g", i, lower[i], i, upper[i]);
         }
+        most = greater(most, greater(upper[i], -lower[i]));
     }
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    return box(ctx, a, 1.0, lower, upper, NULL, f);
+    begin(ctx);
+    ctx->far = most > TRIBO_ROOM * ctx->op.most;
+    return box(ctx, 1.0, a, lower, upper, NULL, f);
 }

@@ -12,29 +12,42 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "../real.h"
-
 /* What a caller's rounding may do to a must not pit redundant contacts against each other: so much of its unit the gradient of
- * one may have. */
+ * one may have; but not more than so much of the first terms, since limits that are never reached say nothing of rounding. */
 #define DISAGREEMENT 5e-13
+#define DISAGREED_TERMS 5e-9
 
-/* So much of its unit is no gradient at all, though it may be all that there is. */
-#define NOTHING 1e-30
+/* So much of the first terms is no gradient at all, though it may be all that there is. */
+#define NOTHING 1e-45
 
-/* Beyond this an x on its way overflows; limits beyond it are not reached. */
-#define FAR 1e300
+/* A bound that moves by this factor is another one. */
+#define FAR_AWAY 1e3
 
 /* Refinement ends with gradients of so much rounding, or the factor is not what it should be. */
 #define SETTLED 4.0
 
-void tribo_box_gradient(struct program *p)
+/* The gradient of i; returns the size of its terms, of which some may have underflowed. */
+static double find_gradient(struct program *p, size_t i)
+{
+    double size;
+    p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
+    return size + fabs(p->q[i]) + DBL_MIN;
+}
+
+/* first: they are the first ones of a call. */
+static void find_gradients(struct program *p, int first)
 {
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        double size;
-        p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
-        p->noise[i] = tribo_resolution(p->terms[i]) * (size + fabs(p->q[i])) + NOTHING * p->unit[i];
+        const double terms = find_gradient(p, i);
+        p->first[i] = first ? terms : p->first[i];
+        p->noise[i] = tribo_resolution(p->terms[i]) * terms + NOTHING * p->first[i];
     }
+}
+
+void tribo_box_gradient(struct program *p)
+{
+    find_gradients(p, 0);
 }
 
 void tribo_box_change(struct program *p, size_t i, signed char to)
@@ -77,14 +90,26 @@ static size_t change_all(struct program *p)
     return changes;
 }
 
-/* Contacts that are near for the first time enter the program, free unless their box is a point; those that no longer are leave
- * it. */
+/* Where the program begins with a contact that is near: where it was, unless it was not near, or its bound has gone far away, or
+ * its box is a point. */
+static signed char begin_at(const struct program *p, size_t i)
+{
+    const signed char at = p->at[i];
+    if (!(p->lo[i] < p->hi[i])) {
+        return AT_LOWER;
+    }
+    if (at == FREE || at == AWAY) {
+        return FREE;
+    }
+    return fabs(at == AT_LOWER ? p->lo[i] : p->hi[i]) <= FAR_AWAY * fabs(p->x[i]) ? at : FREE;
+}
+
+/* Contacts that are near for the first time enter the program; those that no longer are leave it. */
 static void enter(struct program *p, int keep_bounds)
 {
     for (size_t e = 0; e < p->island->size; e++) {
         const size_t i = p->near[e];
-        const signed char from = keep_bounds ? p->at[i] : FREE;
-        p->to[i] = e >= p->count ? AWAY : keep_bounds && !(p->lo[i] < p->hi[i]) ? AT_LOWER : from == AWAY ? FREE : from;
+        p->to[i] = e >= p->count ? AWAY : keep_bounds ? begin_at(p, i) : FREE;
     }
     change_all(p);
 }
@@ -113,15 +138,21 @@ static int settled(const struct program *p, double noises)
     return 1;
 }
 
-/* Takes the gradient of the independent x to zero. */
+/* Where the step takes x. */
+static double moved(const struct program *p, size_t i)
+{
+    const double x = p->x[i] + p->step[i];
+    return p->far ? tribo_cut(p, i, x) : cut(x);
+}
+
+/* Takes the gradient of the independent x, which is found, to zero. */
 static void refine(struct program *p)
 {
-    tribo_box_gradient(p);
     for (int pass = 0; pass < 4 && !settled(p, 1.0); pass++) {
         newton(p);
         for (size_t k = 0; k < p->island->rank; k++) {
             const size_t i = p->order[k];
-            p->x[i] = clamp(p->x[i] + p->step[i], -FAR, FAR);
+            p->x[i] = moved(p, i);
         }
         tribo_box_gradient(p);
     }
@@ -132,9 +163,14 @@ static int outside(double x, double lo, double hi)
     return (x > hi) - (x < lo);
 }
 
+static double disagreement(const struct program *p, size_t i)
+{
+    return p->island->nullity ? lesser(DISAGREEMENT * p->unit[i], DISAGREED_TERMS * p->first[i]) : 0.0;
+}
+
 double tribo_box_tolerance(const struct program *p, size_t i)
 {
-    return p->noise[i] + (p->island->nullity ? DISAGREEMENT * p->unit[i] : 0.0);
+    return p->noise[i] + disagreement(p, i);
 }
 
 /* Where each x wants to be, in p->to. Returns whether that is where it is. */
@@ -174,13 +210,15 @@ static void put_at_bounds(struct program *p)
 }
 
 /* x with the sets as they are; if rounding has gathered in the factor over many changes, with a new one. */
-static void solve(struct program *p)
+static void solve(struct program *p, int first)
 {
     put_at_bounds(p);
+    find_gradients(p, first);
     refine(p);
     if (!settled(p, SETTLED)) {
         tribo_factor_rebuild(p, NULL);
         put_at_bounds(p);
+        tribo_box_gradient(p);
         refine(p);
     }
 }
@@ -190,8 +228,8 @@ static void solve(struct program *p)
 static int primal_dual(struct program *p)
 {
     size_t least = SIZE_MAX;
-    for (int patience = 10; patience > 0; patience--) {
-        solve(p);
+    for (int patience = 10, first = 1; patience > 0; patience--, first = 0) {
+        solve(p, first);
         if (revise(p)) {
             return 1;
         }
@@ -213,10 +251,10 @@ size_t tribo_box_advance(struct program *p, double longest)
     size_t hit = p->island->size;
     for (size_t k = 0; k < all; k++) {
         const size_t i = p->order[k];
-        const double s = p->step[i];
-        const double room = s > 0.0 ? (p->hi[i] - p->x[i]) / s : s < 0.0 ? (p->lo[i] - p->x[i]) / s : length;
-        if (room < length) {
-            length = greater(room, 0.0);
+        const double s = p->step[i], room = s > 0.0 ? p->hi[i] - p->x[i] : p->x[i] - p->lo[i];
+        const double time = quotient(greater(room, 0.0), greater(fabs(s), DBL_MIN));
+        if (s != 0.0 && time < length) {
+            length = time;
             hit = i;
         }
     }
@@ -241,17 +279,32 @@ static int move(struct program *p, double longest)
     return 1;
 }
 
-/* A contact whose gradient is farthest beyond rounding: a dependent one, or one at a bound that should leave it. size if there is
- * none. */
+/* error [size] = what rounding leaves of doubt about the x of the free contacts. */
+static void find_doubt(const struct program *p, double *error)
+{
+    memset(error, 0, p->island->size * sizeof *error);
+    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+        const size_t i = p->order[k];
+        error[i] = p->noise[i] * p->scale[i] * p->scale[i];
+    }
+}
+
+/* A contact whose gradient is farthest beyond rounding, its own and that of the others' x: a dependent one, or one at a bound
+ * that should leave it. size if there is none. */
 static size_t worst(const struct program *p, int dependent)
 {
     const struct island *is = p->island;
     size_t found = is->size;
     double most = 1.0;
+    find_doubt(p, p->spare[0]);
     for (size_t e = 0; e < (dependent ? is->dependents : p->count); e++) {
         const size_t i = dependent ? p->order[is->rank + e] : p->near[e];
         const double pull = dependent ? fabs(p->gradient[i]) : p->lo[i] < p->hi[i] ? (double)p->at[i] * p->gradient[i] : 0.0;
-        const double excess = pull / greater(tribo_box_tolerance(p, i), DBL_MIN);
+        double doubt = 0.0;
+        if (pull > tribo_box_tolerance(p, i)) {
+            tribo_row_dot(p, i, p->spare[0], &doubt);
+        }
+        const double excess = quotient(pull, greater(tribo_box_tolerance(p, i) + doubt, DBL_MIN));
         if (excess > most) {
             most = excess;
             found = i;
@@ -272,7 +325,7 @@ static int slide(struct program *p, size_t d)
         p->step[p->order[k]] *= -1.0;
     }
     const double curvature = fabs(tribo_row_dot(p, d, p->step, &size));
-    return move(p, fabs(pull) / greater(greater(curvature, tribo_resolution(p->island->size) * size), DBL_MIN));
+    return move(p, quotient(fabs(pull), greater(greater(curvature, tribo_resolution(p->island->size) * size), DBL_MIN)));
 }
 
 /* 1 if something moved as far as a bound. */
@@ -325,9 +378,9 @@ static double violation(const struct program *p)
     double most = 0.0;
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        const double half = 0.5 * p->hi[i] - 0.5 * p->lo[i], r = p->unit[i] / half;
-        const double to = clamp(p->x[i] - p->gradient[i] / r, p->lo[i], p->hi[i]);
-        most = half > 0.0 ? greater(most, fabs(to - p->x[i]) * r / p->noise[i]) : most;
+        const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
+        const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
+        most = greater(most, quotient(fabs(off), greater(p->noise[i], DBL_MIN)));
     }
     return most;
 }
@@ -352,6 +405,11 @@ static int inside(const struct program *p)
 
 int tribo_box_solve(struct program *p)
 {
+    for (size_t e = 0; (p->far || p->island->far) && e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
+    }
+    p->island->far = p->far;
     enter(p, 1);
     return primal_dual(p) || primal(p);
 }
@@ -366,6 +424,7 @@ void tribo_box_share(struct program *p)
         return;
     }
     memcpy(split, p->x, p->island->size * sizeof *split);
+    tribo_box_gradient(p);
     refine(p);
     if (!inside(p)) {
         restore(p, split);
@@ -391,7 +450,7 @@ static int minimum_norm(struct program *p)
     const size_t vectors = tribo_null_basis(p);
     int consistent = 1;
     for (int pass = 0; pass < 3; pass++) {
-        tribo_box_gradient(p);
+        find_gradients(p, pass == 0);
         if (vectors) {
             double rounding = DBL_MIN;
             for (size_t e = 0; e < p->count; e++) {
@@ -401,7 +460,7 @@ static int minimum_norm(struct program *p)
             tribo_project(p, vectors, p->gradient);
             for (size_t e = 0; e < p->count; e++) {
                 const size_t i = p->near[e];
-                consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + DISAGREEMENT * p->unit[i];
+                consistent &= pass > 0 || fabs(p->step[i] - p->gradient[i]) <= rounding + disagreement(p, i);
             }
         } else if (pass > 0 && settled(p, 1.0)) {
             break;
@@ -410,20 +469,21 @@ static int minimum_norm(struct program *p)
         tribo_project(p, vectors, p->step);
         for (size_t e = 0; e < p->count; e++) {
             const size_t i = p->near[e];
-            p->x[i] = clamp(p->x[i] + p->step[i], -FAR, FAR);
+            p->x[i] = moved(p, i);
         }
     }
     tribo_box_gradient(p);
     /* without null vectors those that depend on others tell by themselves */
     for (size_t d = 0; d < p->island->dependents && !vectors; d++) {
         const size_t i = p->order[p->island->rank + d];
-        consistent &= fabs(p->gradient[i]) <= 16.0 * p->noise[i] + DISAGREEMENT * p->unit[i];
+        consistent &= fabs(p->gradient[i]) <= 16.0 * p->noise[i] + disagreement(p, i);
     }
     return consistent;
 }
 
 int tribo_box_linear(struct program *p)
 {
+    p->island->far = p->far;
     enter(p, 0);
     int consistent = minimum_norm(p);
     /* a factor that grew row by row may see another rank than one that has chosen among all pivots */

@@ -7,17 +7,20 @@
 TRIBO_SIMD int tribo_all_finite(const double *x, size_t n)
 {
     enum { SUMS = 8 };
-    double sum[SUMS] = {0.0};
+    double sum[SUMS] = {0.0}, all = 0.0;
     size_t i = 0;
-    for (; i + SUMS <= n; i += SUMS) {
+    for (; i < n % SUMS; i++) {
+        all += x[i] - x[i];
+    }
+    if (n < SUMS) {
+        return all == 0.0;
+    }
+    for (; i < n; i += SUMS) {
         for (size_t k = 0; k < SUMS; k++) {
             sum[k] += x[i + k] - x[i + k];
         }
     }
-    for (; i < n; i++) {
-        sum[0] += x[i] - x[i];
-    }
-    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
+    return all + (sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7]))) == 0.0;
 }
 
 int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)

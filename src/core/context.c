@@ -6,13 +6,55 @@
 #include <string.h>
 
 #include "internal.h"
-#include "../real.h"
 
 #define DEFAULT_EPSILON 1e-6
 
 double tribo_slope(double limit, double epsilon)
 {
-    return lesser(2.0 * limit / epsilon, DBL_MAX);
+    return 2.0 * quotient(limit, epsilon);
+}
+
+/* The bounds of the solver, which are the limits unless one of them is beyond what can be told apart. */
+static void find_bounds(tribo_context *ctx)
+{
+    ctx->largest = 0.0;
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->largest = greater(ctx->largest, ctx->chunk[k].largest);
+    }
+    if (ctx->largest <= ctx->op.most) {
+        ctx->bound = ctx->limit;
+        return;
+    }
+    ctx->bound = ctx->bounds;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->bound[i] = lesser(ctx->limit[i], TRIBO_FAR);
+    }
+    for (size_t g = 0; g < ctx->op.groups; g++) {
+        const struct program *p = tribo_op_program(&ctx->op, g);
+        for (size_t k = 0; k < p->island->size; k++) {
+            ctx->bound[p->member[k]] = lesser(ctx->limit[p->member[k]], tribo_most(p, k));
+        }
+    }
+}
+
+static void take_given(tribo_context *ctx)
+{
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->epsilon[i] = ctx->given[i];
+        ctx->slope[i] = tribo_slope(ctx->bound[i], ctx->given[i]);
+    }
+}
+
+/* epsilon = 2 limit R_ii time, with a slope that knows nothing of the limit. What friction cannot move does not relax. */
+static void follow_step(tribo_context *ctx)
+{
+    const double time = quotient(ctx->step, ctx->lambda_dt);
+    for (size_t i = 0; i < ctx->n; i++) {
+        const double width = greater(product(ctx->op.diagonal[i], time), DBL_MIN), slope = 1.0 / width;
+        const double limit = lesser(ctx->bound[i], 0.5 * TRIBO_FAR * lesser(slope, 1.0));
+        ctx->epsilon[i] = greater(2.0 * width * limit, DBL_MIN);
+        ctx->slope[i] = limit > 0.0 && ctx->op.diagonal[i] > TRIBO_IMMOVABLE ? slope : 0.0;
+    }
 }
 
 void tribo_refresh(tribo_context *ctx)
@@ -20,18 +62,14 @@ void tribo_refresh(tribo_context *ctx)
     ctx->op.reaches = 0;
     ctx->linearized = 0;
     ctx->revision++;
-    for (size_t i = 0; i < ctx->n; i++) {
-        const double r = ctx->op.diagonal[i];
-        if (ctx->step > 0.0) {
-            const double time = ctx->step / ctx->lambda_dt;
-            ctx->epsilon[i] = clamp(2.0 * ctx->limit[i] * (r * time), DBL_MIN, DBL_MAX);
-            ctx->slope[i] = ctx->limit[i] > 0.0 ? lesser(1.0 / (r * time), DBL_MAX) : 0.0;
-        } else {
-            ctx->epsilon[i] = ctx->given[i];
-            ctx->slope[i] = tribo_slope(ctx->limit[i], ctx->given[i]);
-        }
+    tribo_refresh_limits(ctx);
+    find_bounds(ctx);
+    if (ctx->step > 0.0 && ctx->op.diagonal) {
+        follow_step(ctx);
+    } else {
+        take_given(ctx);
     }
-    tribo_refresh_chunks(ctx);
+    tribo_refresh_widths(ctx);
 }
 
 /* Everything but the operator. One contact more than asked for, so that no array is empty. */
@@ -42,13 +80,13 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->message = tribo_message_create();
     ctx->given = malloc(m * sizeof *ctx->given);
     ctx->limit = ctx->limit_then = ctx->limits = calloc(2 * m, sizeof *ctx->limits);
+    ctx->bounds = malloc(m * sizeof *ctx->bounds);
     ctx->epsilon = malloc(m * sizeof *ctx->epsilon);
     ctx->slope = malloc(m * sizeof *ctx->slope);
     ctx->moving = calloc(m, sizeof *ctx->moving);
     ctx->feq = calloc(m, sizeof *ctx->feq);
     ctx->f = calloc(m, sizeof *ctx->f);
     ctx->v = malloc(m * sizeof *ctx->v);
-    ctx->lower = malloc(m * sizeof *ctx->lower);
     ctx->chunk = malloc(tribo_chunks(m) * sizeof *ctx->chunk);
     ctx->last.state = calloc(m + tribo_chunks(m), 1);
     ctx->spare.state = calloc(m + tribo_chunks(m), 1);
@@ -57,8 +95,8 @@ static int allocate(tribo_context *ctx, size_t n)
         ctx->last.kind = ctx->last.state + m;
         ctx->spare.kind = ctx->spare.state + m;
     }
-    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limits && ctx->epsilon &&
-           ctx->slope && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->lower && ctx->tangent;
+    return ctx->message && ctx->chunk && ctx->last.state && ctx->spare.state && ctx->given && ctx->limits && ctx->bounds &&
+           ctx->epsilon && ctx->slope && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -70,10 +108,11 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         return TRIBO_ERR_SIZE;
     }
     tribo_context *c = calloc(1, sizeof *c);
-    if (!c || !allocate(c, ncontact) || !tribo_op_diagonal(&c->op, ncontact, NULL)) {
+    if (!c || !allocate(c, ncontact)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
+    c->op.most = TRIBO_FAR;
     c->law = tribo_law(TRIBO_QUINN);
     c->kept = 1;
     c->coupling = TRIBO_CONSISTENT;
@@ -97,6 +136,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }
     *c = *ctx;
+    c->owner = NULL;
     memset(&c->op, 0, sizeof c->op);
     if (!allocate(c, n) || !tribo_op_copy(&c->op, &ctx->op, n)) {
         tribo_destroy(c);
@@ -109,6 +149,8 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         c->limit_then = c->limits + n + 1;
         tribo_copy(c->limit_then, ctx->limit_then, n);
     }
+    c->bound = ctx->bound == ctx->limit ? c->limit : c->bounds;
+    tribo_copy(c->bound, ctx->bound, n);
     tribo_copy(c->epsilon, ctx->epsilon, n);
     tribo_copy(c->slope, ctx->slope, n);
     tribo_copy(c->feq, ctx->feq, n);
@@ -130,13 +172,13 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx->message);
     free(ctx->given);
     free(ctx->limits);
+    free(ctx->bounds);
     free(ctx->epsilon);
     free(ctx->slope);
     free(ctx->moving);
     free(ctx->feq);
     free(ctx->f);
     free(ctx->v);
-    free(ctx->lower);
     free(ctx->chunk);
     free(ctx->last.state);
     free(ctx->spare.state);
@@ -147,6 +189,21 @@ void tribo_destroy(tribo_context *ctx)
 size_t tribo_revision(const tribo_context *ctx)
 {
     return ctx ? ctx->revision : 0;
+}
+
+int tribo_set_owner(tribo_context *ctx, const char *owner)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    ctx->owner = owner;
+    return TRIBO_OK;
+}
+
+int tribo_fail_without_operator(const tribo_context *ctx)
+{
+    return tribo_fail(ctx, TRIBO_ERR_STATE,
+                      "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
 }
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
@@ -247,7 +304,11 @@ int tribo_get_limit(const tribo_context *ctx, double *limit)
 
 int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
 {
-    return ctx ? copy_out(ctx, "epsilon", ctx->epsilon, epsilon) : TRIBO_ERR_NULL;
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_need_epsilon(ctx);
+    return status ? status : copy_out(ctx, "epsilon", ctx->epsilon, epsilon);
 }
 
 int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
@@ -389,6 +450,15 @@ int tribo_get_modes(const tribo_context *ctx, signed char *mode)
     return TRIBO_OK;
 }
 
+static size_t count_stuck(const tribo_context *ctx)
+{
+    size_t stuck = 0;
+    for (size_t i = 0; ctx->balanced && i < ctx->n; i++) {
+        stuck += mode_of(ctx, i) == 0;
+    }
+    return stuck;
+}
+
 int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
 {
     if (!ctx) {
@@ -397,12 +467,8 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     if (!value) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
     }
-    size_t stuck = 0;
-    for (size_t i = 0; ctx->balanced && i < ctx->n; i++) {
-        stuck += mode_of(ctx, i) == 0;
-    }
     const size_t counts[] = {
-        [TRIBO_COUNT_STUCK] = stuck,
+        [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
         [TRIBO_COUNT_RANK] = ctx->rank,
         [TRIBO_COUNT_ISLANDS] = ctx->op.islands,
         [TRIBO_COUNT_SOLVES] = ctx->solves,
@@ -420,22 +486,23 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
 }
 
 /* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
- * 2N/epsilon, or half of it for the laws that are dampers near v = 0, and a row sum bounds the eigenvalues. */
+ * 2N/epsilon, or half of it for the laws that are dampers near v = 0. The eigenvalues of that are at most the largest s_i R_ii
+ * times the largest eigenvalue of D^-1 R, for any set of contacts near stick. */
 static double max_rate(const tribo_context *ctx)
 {
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
         if (ctx->limit[i] > 0.0) {
-            rate = greater(rate, ctx->slope[i] * ctx->op.diagonal[i]);
+            rate = greater(rate, product(ctx->slope[i], ctx->op.diagonal[i]));
         }
     }
     if (!ctx->law->uses_feq) {
-        return 0.5 * rate * ctx->op.row_sum;
+        return product(0.5 * rate, ctx->op.growth);
     }
     if (!ctx->law->relaxes) {
         return 0.0;
     }
-    return ctx->coupling == TRIBO_PARTITION ? rate * ctx->op.row_sum : rate;
+    return ctx->coupling == TRIBO_PARTITION ? product(rate, ctx->op.growth) : rate;
 }
 
 int tribo_get_real(const tribo_context *ctx, int which, double *value)
@@ -446,19 +513,17 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
     if (!value) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
     }
-    switch (which) {
-    case TRIBO_REAL_RESIDUAL:
+    if (which == TRIBO_REAL_RESIDUAL) {
         *value = ctx->residual;
         return TRIBO_OK;
-    case TRIBO_REAL_MAX_RATE:
-        *value = max_rate(ctx);
-        return TRIBO_OK;
-    case TRIBO_REAL_MAX_STEP: {
-        const double rate = max_rate(ctx);
-        *value = rate > 0.0 ? 2.785 / rate : HUGE_VAL;
-        return TRIBO_OK;
     }
-    default:
+    if (which != TRIBO_REAL_MAX_RATE && which != TRIBO_REAL_MAX_STEP) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no real quantity", which);
     }
+    const int status = tribo_need_operator(ctx);
+    if (!status) {
+        const double rate = max_rate(ctx);
+        *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
+    }
+    return status;
 }

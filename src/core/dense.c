@@ -8,8 +8,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "../real.h"
-
 static double scaled(const struct program *p, size_t i, size_t j)
 {
     return p->scale[i] * p->r[i * p->island->size + j] * p->scale[j];

@@ -4,6 +4,7 @@
 #include <float.h>
 #include <math.h>
 
+#include "../real.h"
 #include "../simd.h"
 
 double tribo_resolution(size_t n)
@@ -42,12 +43,37 @@ double tribo_factor_rebuild(struct program *p, size_t *where)
     return p->island->sparse ? tribo_sparse_rebuild(p, where) : tribo_dense_rebuild(p, where);
 }
 
-void tribo_factor_solve(const struct program *p, double *step)
+static void factor_solve(const struct program *p, double *step)
 {
     if (p->island->sparse) {
         tribo_sparse_solve(p, step);
     } else {
         tribo_dense_solve(p, step);
+    }
+}
+
+static double largest_step(const struct program *p, const double *step)
+{
+    double most = 0.0;
+    for (size_t k = 0; k < p->island->rank; k++) {
+        most = greater(most, fabs(step[p->order[k]]));
+    }
+    return most;
+}
+
+void tribo_factor_solve(const struct program *p, double *step)
+{
+    if (!p->far) {
+        factor_solve(p, step);
+        return;
+    }
+    const double room = largest_step(p, step) < TRIBO_ROOM * TRIBO_FAR ? 1.0 : TRIBO_ROOM, far = room * TRIBO_FAR;
+    for (size_t k = 0; k < p->island->rank; k++) {
+        step[p->order[k]] *= room;
+    }
+    factor_solve(p, step);
+    for (size_t k = 0; k < p->island->rank; k++) {
+        step[p->order[k]] = clamp(step[p->order[k]], -far, far) / room;
     }
 }
 

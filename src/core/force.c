@@ -1,29 +1,93 @@
 /* Forces of contacts whose f_eq is known. */
-#include <float.h>
 #include <math.h>
 
 #include "internal.h"
 
-/* f_eq is read only near v = 0, and need not be finite elsewhere. */
+/* f_eq as laws read it: where it does not matter it need not be finite, nor even be set. */
+TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const double *restrict band, const double *restrict feq,
+                                  double *restrict used)
+{
+    for (size_t i = 0; band && i < n; i++) {
+        used[i] = fabs(v[i]) <= band[i] ? feq[i] : 0.0;
+    }
+    for (size_t i = 0; !band && i < n; i++) {
+        used[i] = v[i] == 0.0 ? feq[i] : 0.0;
+    }
+}
+
+/* The same for the n contacts from i on. */
+static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
+{
+    if (ctx->law->uses_feq) {
+        select_feq(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, feq + i, used);
+    } else {
+        memset(used, 0, n * sizeof *used);
+    }
+}
+
+TRIBO_SIMD static void cut_all(size_t n, double *x)
+{
+    for (size_t i = 0; i < n; i++) {
+        x[i] = cut(x[i]);
+    }
+}
+
 static int check(const tribo_context *ctx, const double *v, const double *feq)
 {
-    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
-    if (status || !ctx->law->uses_feq) {
+    int status = tribo_need_epsilon(ctx);
+    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
+    if (status) {
         return status;
     }
-    if (!feq && ctx->n) {
+    if (!feq && ctx->n && ctx->law->uses_feq) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
     }
-    int bad = 0;
-    for (size_t i = 0; i < ctx->n; i++) {
-        bad |= !(fabs(feq[i]) <= DBL_MAX) & (fabs(v[i]) <= tribo_band(ctx, i));
-    }
-    for (size_t i = 0; bad && i < ctx->n; i++) {
-        if (!isfinite(feq[i]) && fabs(v[i]) <= tribo_band(ctx, i)) {
-            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i, feq[i]);
+    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
+        double used[TRIBO_CHUNK];
+        const size_t n = tribo_chunk_size(ctx, i);
+        used_feq(ctx, i, n, v, feq, used);
+        for (size_t k = 0; !tribo_all_finite(used, n); k++) {
+            if (!isfinite(used[k])) {
+                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i + k, used[k]);
+            }
         }
     }
     return TRIBO_OK;
+}
+
+static void hand_out(size_t n, const struct tangent *d, double *df_dv, double *df_dfeq, double *df_dlimit)
+{
+    for (size_t k = 0; df_dv && k < n; k++) {
+        df_dv[k] = d[k].dv;
+    }
+    for (size_t k = 0; df_dfeq && k < n; k++) {
+        df_dfeq[k] = d[k].dfeq;
+    }
+    for (size_t k = 0; df_dlimit && k < n; k++) {
+        df_dlimit[k] = d[k].dlimit;
+    }
+}
+
+/* Each output may be NULL. */
+static void evaluate(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
+                     double *df_dlimit)
+{
+    const struct contacts all = tribo_contacts(ctx);
+    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
+        double used[TRIBO_CHUNK];
+        struct tangent d[TRIBO_CHUNK];
+        const size_t n = tribo_chunk_size(ctx, i);
+        const struct contacts c = tribo_contacts_from(&all, i);
+        used_feq(ctx, i, n, v, feq, used);
+        cut_all(n, used);
+        if (f) {
+            ctx->law->force(&c, n, v + i, used, f + i);
+        }
+        if (df_dv || df_dfeq || df_dlimit) {
+            ctx->law->tangent(&c, n, v + i, used, d);
+            hand_out(n, d, df_dv ? df_dv + i : NULL, df_dfeq ? df_dfeq + i : NULL, df_dlimit ? df_dlimit + i : NULL);
+        }
+    }
 }
 
 int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
@@ -38,8 +102,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    const struct contacts c = tribo_contacts(ctx);
-    ctx->law->force(&c, ctx->n, v, ctx->law->uses_feq ? feq : v, f);
+    evaluate(ctx, v, feq, f, NULL, NULL, NULL);
     return TRIBO_OK;
 }
 
@@ -50,29 +113,10 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
         return TRIBO_ERR_NULL;
     }
     const int status = check(ctx, v, feq);
-    if (status) {
-        return status;
+    if (!status) {
+        evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
     }
-    const struct contacts all = tribo_contacts(ctx);
-    feq = ctx->law->uses_feq ? feq : v;
-    for (size_t i = 0; i < ctx->n; i++) {
-        const struct contacts c = tribo_contacts_from(&all, i);
-        struct tangent d;
-        ctx->law->tangent(&c, 1, v + i, feq + i, &d);
-        if (f) {
-            ctx->law->force(&c, 1, v + i, feq + i, f + i);
-        }
-        if (df_dv) {
-            df_dv[i] = d.dv;
-        }
-        if (df_dfeq) {
-            df_dfeq[i] = d.dfeq;
-        }
-        if (df_dlimit) {
-            df_dlimit[i] = d.dlimit;
-        }
-    }
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_accept(tribo_context *ctx, const double *v, const double *feq)

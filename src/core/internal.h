@@ -2,6 +2,7 @@
 #ifndef TRIBO_INTERNAL_H
 #define TRIBO_INTERNAL_H
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <string.h>
@@ -10,15 +11,21 @@
 
 #include "island.h"
 #include "law.h"
+#include "../compiler.h"
+#include "../real.h"
 
 #define TRIBO_ALONE SIZE_MAX
 
+/* R_ii = 0 is taken as this: the limit R_ii -> +0. */
+#define TRIBO_IMMOVABLE DBL_MIN
+
 /* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. */
 struct op {
-    double *diagonal;     /* [n] R_ii, at least DBL_MIN, which is the limit R_ii -> +0 */
-    double row_sum;       /* max over i of sum_j |R_ij|/R_ii */
+    double *diagonal;     /* [n] R_ii, at least TRIBO_IMMOVABLE; NULL: there is no operator yet */
+    double growth;        /* at least the largest eigenvalue of D^-1 R, D being the diagonal */
     size_t islands;       /* groups and single contacts */
     size_t groups;        /* of two contacts and more */
+    double most;          /* the smallest tribo_most of their contacts; TRIBO_FAR if there is no group */
     struct island *group; /* [groups] */
     size_t *group_of;     /* [n] TRIBO_ALONE if contact i is */
     unsigned char *awake; /* [groups] solved for in the last call */
@@ -41,8 +48,8 @@ struct message;
 
 /* What of a chunk's contacts changes with settings only. */
 struct chunk {
-    double widest; /* epsilon; negative if all are open */
-    double limit;  /* of all, or NaN if they differ */
+    double widest;         /* epsilon; negative if all are open */
+    double least, largest; /* limit */
 };
 
 static inline size_t tribo_chunks(size_t n)
@@ -63,11 +70,15 @@ struct look {
 
 struct tribo_context {
     size_t n;
+    const char *owner; /* of the operator; NULL: the caller */
     const struct law *law;
     int coupling, sharing;
     double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
     double *given;          /* [n] epsilon as given */
     double *limit, *epsilon, *slope;
+    double *bound;         /* [n] limits as the solver takes them: the same array, or, if one is beyond op.most, bounds */
+    double *bounds;        /* [n] */
+    double largest;        /* limit */
     double *limit_then;    /* [n] limits of the last balance: the same array, or the other of limits */
     double *limits;        /* [2][n + 1] */
     unsigned char *moving; /* [n] reversal memory */
@@ -78,9 +89,9 @@ struct tribo_context {
     double *feq, *f;         /* [n] of the last balance */
     double *v;               /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
     struct tangent *tangent; /* [n] */
-    double *lower;           /* [n] workspace of tribo_step_force */
     int balanced;            /* forces are those of a tribo_balance or tribo_step_force, and modes follow from it */
     int linearized;          /* tangent is that of the last balance */
+    int far;                 /* a limit or a bound of the last call is so large that solutions may be beyond op.most */
     double holds;            /* a contact holds if |f| is less than this part of the limit */
     double residual;
     size_t rank, solves, reused, skipped, marks;
@@ -90,7 +101,7 @@ struct tribo_context {
 
 /* message.c: keeps the text for tribo_message and returns status. */
 int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)
-#if defined(__GNUC__)
+#if defined(TRIBO_GNU_C)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
@@ -110,6 +121,19 @@ int tribo_check_finite(const tribo_context *ctx, const char *name, const double 
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
+/* TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
+int tribo_fail_without_operator(const tribo_context *ctx); /* context.c */
+
+static inline int tribo_need_operator(const tribo_context *ctx)
+{
+    return ctx->op.diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
+}
+
+static inline int tribo_need_epsilon(const tribo_context *ctx)
+{
+    return ctx->step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
+}
+
 /* islands.c */
 struct rows;
 
@@ -121,9 +145,9 @@ struct flaw {
 
 /* The operator of rows that are symmetric and finite, with sorted columns; a status. */
 int tribo_op_create(struct op *op, const struct rows *a, struct flaw *flaw);
-int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* 1s if r is NULL; 1, or 0 if out of memory */
+int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* r NULL: not set yet; 1, or 0 if out of memory */
 int tribo_op_copy(struct op *to, const struct op *from, size_t n);
-void tribo_op_free(struct op *op);
+void tribo_op_free(struct op *op); /* what is left is no operator */
 
 /* Views of group k in op's program. */
 struct program *tribo_op_program(struct op *op, size_t k);
@@ -131,8 +155,9 @@ struct program *tribo_op_program(struct op *op, size_t k);
 /* What group k keeps will soon be looked at: groups may be far from each other. */
 void tribo_op_expect(const struct op *op, size_t k);
 
-/* look.c: what depends on settings, brought up to date. */
-void tribo_refresh_chunks(tribo_context *ctx);
+/* look.c: limits of the chunks, and then their epsilon, brought up to date with settings. */
+void tribo_refresh_limits(tribo_context *ctx);
+void tribo_refresh_widths(tribo_context *ctx);
 
 /* Checks v and a, and finds who is near stick; a status, and on failure all is as after the last call. */
 int tribo_look(tribo_context *ctx, const double *v, const double *a);
@@ -151,6 +176,13 @@ static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 {
     const int state = ctx->kept ? NEAR : ctx->last.state[i];
     return state == NEAR ? ctx->f[i] : state == FORTH ? -ctx->limit_then[i] : ctx->limit_then[i];
+}
+
+/* The force of the contact at place k of a group as the solver takes it. */
+static inline double tribo_carried(const tribo_context *ctx, const struct program *p, size_t k)
+{
+    const double f = tribo_force_of(ctx, p->member[k]);
+    return ctx->far ? tribo_cut(p, k, f) : f;
 }
 
 /* balance.c: the contacts of group k in the program's order, those near stick first. */

@@ -8,7 +8,10 @@
 #ifndef TRIBO_ISLAND_H
 #define TRIBO_ISLAND_H
 
+#include <float.h>
 #include <stddef.h>
+
+#include "../real.h"
 
 /* Where a contact is: at the lower or upper end of its box, inside and free to move, or not in the program at all. */
 enum { AT_LOWER = -1, FREE = 0, AT_UPPER = 1, AWAY = 2 };
@@ -28,6 +31,9 @@ struct sparse;
 struct island {
     size_t size;
     size_t kept;           /* into the store: what the program below says is kept */
+    double lightest;       /* the smallest scale, that of the largest diagonal entry */
+    size_t terms;          /* entries of the fullest row */
+    int far;               /* what program.far was in the last call */
     struct sparse *sparse; /* R and its factor, if they are sparse */
     size_t nullity;        /* size - rank of R: redundant contacts */
     size_t rank;           /* now: free contacts in the factor, independent of each other, */
@@ -52,10 +58,12 @@ struct program {
     double *r;       /* [size][size], if dense */
     double *l;       /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
     /* the program: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
+    int far;             /* solutions may be as large as they can be told apart */
     size_t *near, count; /* near[0 .. count): the contacts in the program, ascending; near[count .. size): the others */
     double *q, *lo, *hi;
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
-    double *unit;             /* R_ii times the limit, or half the box: what gradients are compared with */
+    double *first;            /* the size of the terms of the gradient that the call began with */
+    double *unit;             /* R_ii times the limit, or half the box; of islands with redundant contacts */
     signed char *to;          /* workspace */
     double *step, *spare[2];  /* workspace, [size] */
     double *row;              /* the same, zero between calls */
@@ -64,6 +72,23 @@ struct program {
     size_t *held;             /* workspace, [redundant] */
     struct work work;
 };
+
+/* The largest force that is told apart at place i: the accelerations that such forces make add up to a number. |R_ij| is at most
+ * 2/(scale_i scale_j). */
+static inline double tribo_most(const struct program *p, size_t i)
+{
+    const double each = DBL_MAX / 6.0 / (double)p->island->terms;
+    return lesser(each * lesser(p->scale[i] * p->island->lightest, 1.0), TRIBO_FAR);
+}
+
+/* What an ill-conditioned factor makes of a number is a number if this part of it is less than TRIBO_FAR. */
+#define TRIBO_ROOM 0x1p-64
+
+static inline double tribo_cut(const struct program *p, size_t i, double force)
+{
+    const double most = tribo_most(p, i);
+    return clamp(force, -most, most);
+}
 
 /* Rounding of a sum of n terms of size 1 leaves about this; what is smaller counts as zero. */
 double tribo_resolution(size_t n);

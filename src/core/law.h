@@ -28,6 +28,7 @@ struct law {
     int sticks_in_band; /* reads f_eq where |v| <= epsilon; otherwise where v = 0 */
     int relaxes;        /* inside the band f = clamp(f_eq) - slope v, otherwise clamp(f_eq) */
     int remembers;      /* uses the reversal memory */
+    /* f_eq is finite, also where it does not matter, and TRIBO_FAR at most; v is any finite number */
     void (*force)(const struct contacts *c, size_t n, const double *v, const double *feq, double *f);
     void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, struct tangent *d);
 };
@@ -40,6 +41,12 @@ const struct law *tribo_law(int id); /* NULL if there is none */
 static inline double sign(double x)
 {
     return (double)((x > 0.0) - (x < 0.0));
+}
+
+/* -limit sgn v, for v != 0. */
+static inline double sliding(double v, double limit)
+{
+    return copysign(limit, -v);
 }
 
 /* Defines force_all and tangent_all from the law's functions of one contact. */

@@ -4,8 +4,7 @@
 static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)epsilon, (void)slope, (void)moving;
-    const double held = clamp(feq, -limit, limit);
-    return v > 0.0 ? -limit : v < 0.0 ? limit : held;
+    return v != 0.0 ? sliding(v, limit) : clamp(feq, -limit, limit);
 }
 
 static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,

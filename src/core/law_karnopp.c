@@ -4,8 +4,7 @@
 static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)slope, (void)moving;
-    const double held = clamp(feq, -limit, limit);
-    return v > epsilon ? -limit : v < -epsilon ? limit : held;
+    return fabs(v) > epsilon ? sliding(v, limit) : clamp(feq, -limit, limit);
 }
 
 static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,

@@ -4,21 +4,25 @@
 
 #include "law.h"
 
-/* Outside the band the last line says what the middle one says there up to rounding. */
+/* Outside the band the middle line would say what the last one says up to rounding, but slope v may overflow there. */
 static inline double quinn_force(double v, double feq, double limit, double epsilon, double slope)
 {
-    const double f = clamp(clamp(feq, -limit, limit) - slope * v, -limit, limit);
-    return v > epsilon ? -limit : v < -epsilon ? limit : f;
+    const int inside = fabs(v) <= epsilon;
+    const double f = clamp(clamp(feq, -limit, limit) - slope * (inside ? v : 0.0), -limit, limit);
+    return inside ? f : sliding(v, limit);
 }
 
 static inline struct tangent quinn_tangent(double v, double feq, double limit, double epsilon, double slope, double follows)
 {
+    if (fabs(v) > epsilon) {
+        return (struct tangent){0.0, 0.0, -sign(v)};
+    }
     const double x = clamp(feq, -limit, limit) - slope * v;
-    if (fabs(v) > epsilon || fabs(x) > limit) {
-        return (struct tangent){0.0, 0.0, fabs(v) > epsilon ? -sign(v) : sign(x)};
+    if (fabs(x) > limit) {
+        return (struct tangent){0.0, 0.0, sign(x)};
     }
     const int held = fabs(feq) < limit;
-    return (struct tangent){-slope, held ? 1.0 : 0.0, (held ? 0.0 : sign(feq)) - (1.0 - follows) * 2.0 * v / epsilon};
+    return (struct tangent){-slope, held ? 1.0 : 0.0, (held ? 0.0 : sign(feq)) - (1.0 - follows) * 2.0 * quotient(v, epsilon)};
 }
 
 #endif

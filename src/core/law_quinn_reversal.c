@@ -27,30 +27,35 @@ static void crossing(double r, double *g, double *dg)
     }
 }
 
+static int reverses(double v, double feq, double limit, double epsilon, unsigned char moving)
+{
+    return moving && fabs(v) <= epsilon && fabs(feq) > limit && limit > 0.0;
+}
+
 static double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
-    if (!moving || fabs(v) > epsilon || !(fabs(feq) > limit)) {
+    if (!reverses(v, feq, limit, epsilon, moving)) {
         return quinn_force(v, feq, limit, epsilon, slope);
     }
     double g, dg;
-    crossing(fabs(feq) / limit, &g, &dg);
+    crossing(quotient(fabs(feq), limit), &g, &dg);
     return clamp(sign(feq) * g * limit - slope * v, -limit, limit);
 }
 
 static struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
                               double follows)
 {
-    if (!moving || fabs(v) > epsilon || !(fabs(feq) > limit) || !(limit > 0.0)) {
+    if (!reverses(v, feq, limit, epsilon, moving)) {
         return quinn_tangent(v, feq, limit, epsilon, slope, follows);
     }
     double g, dg;
-    const double r = fabs(feq) / limit;
+    const double r = quotient(fabs(feq), limit);
     crossing(r, &g, &dg);
     const double x = sign(feq) * g * limit - slope * v;
     if (fabs(x) > limit) {
         return (struct tangent){0.0, 0.0, sign(x)};
     }
-    return (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * 2.0 * v / epsilon};
+    return (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * 2.0 * quotient(v, epsilon)};
 }
 
 TRIBO_LAW_LOOPS

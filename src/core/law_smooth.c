@@ -4,16 +4,15 @@
 static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)feq, (void)slope, (void)moving;
-    return -limit * tanh(v / epsilon);
+    return -limit * tanh(quotient(v, epsilon));
 }
 
 static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
                                      double follows)
 {
     (void)feq, (void)limit, (void)moving;
-    const double x = v / epsilon, t = tanh(x), cosh_2 = (1.0 - t) * (1.0 + t);
-    const double spread = cosh_2 > 0.0 ? x * cosh_2 : 0.0;
-    return (struct tangent){-0.5 * slope * cosh_2, 0.0, -t + follows * spread};
+    const double x = quotient(v, epsilon), t = tanh(x), cosh_2 = (1.0 - t) * (1.0 + t);
+    return (struct tangent){-0.5 * slope * cosh_2, 0.0, -t + follows * x * cosh_2};
 }
 
 TRIBO_LAW_LOOPS

@@ -4,8 +4,9 @@
 static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)feq, (void)moving;
-    const double f = clamp(-0.5 * slope * v, -limit, limit);
-    return v > epsilon ? -limit : v < -epsilon ? limit : f;
+    const int inside = fabs(v) <= epsilon;
+    const double f = clamp(-0.5 * slope * (inside ? v : 0.0), -limit, limit);
+    return inside ? f : sliding(v, limit);
 }
 
 static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
@@ -15,7 +16,7 @@ static inline struct tangent tangent(double v, double feq, double limit, double 
     if (fabs(v) > epsilon) {
         return (struct tangent){0.0, 0.0, -sign(v)};
     }
-    return (struct tangent){-0.5 * slope, 0.0, -(1.0 - follows) * v / epsilon};
+    return (struct tangent){-0.5 * slope, 0.0, -(1.0 - follows) * quotient(v, epsilon)};
 }
 
 TRIBO_LAW_LOOPS

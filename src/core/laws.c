@@ -32,13 +32,30 @@ const char *tribo_law_reference(int law)
     return l ? l->reference : NULL;
 }
 
+/* Without locales, of which names know nothing. */
+static char lower(char c)
+{
+    static const char upper_case[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ", lower_case[] = "abcdefghijklmnopqrstuvwxyz";
+    const char *found = c ? strchr(upper_case, c) : NULL;
+    return found ? lower_case[found - upper_case] : c;
+}
+
+static int same_name(const char *x, const char *y)
+{
+    while (*x && lower(*x) == lower(*y)) {
+        x++;
+        y++;
+    }
+    return !*x && !*y;
+}
+
 int tribo_law_find(const char *name, int *law)
 {
     if (!name || !law) {
         return TRIBO_ERR_NULL;
     }
     for (int i = 0; i < tribo_law_count(); i++) {
-        if (strcmp(laws[i]->name, name) == 0) {
+        if (same_name(laws[i]->name, name)) {
             *law = i;
             return TRIBO_OK;
         }
@@ -56,8 +73,11 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     if (!f) {
         return TRIBO_ERR_NULL;
     }
+    if (!isfinite(v) || !isfinite(limit) || !isfinite(epsilon)) {
+        return TRIBO_ERR_NOT_FINITE;
+    }
     const int needs_feq = l->uses_feq && fabs(v) <= epsilon;
-    if (!isfinite(v) || !isfinite(limit) || !isfinite(epsilon) || (needs_feq && !isfinite(feq))) {
+    if (needs_feq && !isfinite(feq)) {
         return TRIBO_ERR_NOT_FINITE;
     }
     if (limit < 0.0) {
@@ -66,12 +86,12 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     if (epsilon <= 0.0) {
         return TRIBO_ERR_NOT_POSITIVE;
     }
-    const double slope = tribo_slope(limit, epsilon);
+    const double slope = tribo_slope(lesser(limit, TRIBO_FAR), epsilon), read = needs_feq ? cut(feq) : 0.0;
     const unsigned char moving = 1;
     const struct contacts c = {&limit, &epsilon, &slope, &moving, 0.0};
     struct tangent d;
-    l->force(&c, 1, &v, &feq, f);
-    l->tangent(&c, 1, &v, &feq, &d);
+    l->force(&c, 1, &v, &read, f);
+    l->tangent(&c, 1, &v, &read, &d);
     if (df_dv) {
         *df_dv = d.dv;
     }

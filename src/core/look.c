@@ -1,10 +1,7 @@
 /* What a call learns of all contacts before it solves for any. In a large scene most slide, of which the direction is all that
  * there is to know, and reading and writing memory is all that they cost: so every array is passed over as seldom as can be, in
  * chunks that stay in the first-level cache. What a call learns takes the last call's place once v and a are found good. */
-#include <float.h>
-
 #include "internal.h"
-#include "../real.h"
 
 /* Whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
 TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
@@ -46,12 +43,26 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
 }
 
 /* f_eq of contacts that share no body. */
-TRIBO_SIMD static void feq_alone(size_t n, const double *restrict r, const double *restrict limit, const double *restrict a,
-                                 double *restrict feq)
+TRIBO_SIMD static void feq_alone(size_t n, const double *restrict r, const double *restrict a, double *restrict feq)
 {
     for (size_t i = 0; i < n; i++) {
-        const double x = clamp(-a[i] / r[i], -DBL_MAX, DBL_MAX);
-        feq[i] = limit[i] > 0.0 ? x : 0.0;
+        feq[i] = quotient(-a[i], r[i]);
+    }
+}
+
+TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, double *restrict feq)
+{
+    for (size_t i = 0; i < n; i++) {
+        feq[i] = limit[i] > 0.0 ? feq[i] : 0.0;
+    }
+}
+
+/* The same for chunk k, which begins with contact i; 0 for open ones. */
+static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, const double *a)
+{
+    feq_alone(n, ctx->op.diagonal + i, a + i, ctx->feq + i);
+    if (ctx->chunk[k].least == 0.0) {
+        no_feq_if_open(n, ctx->limit + i, ctx->feq + i);
     }
 }
 
@@ -77,11 +88,32 @@ static void expect(const tribo_context *ctx, const double *x, size_t i, int writ
     }
 }
 
-TRIBO_SIMD static struct chunk chunk_of(size_t n, const double *restrict limit, const double *restrict epsilon)
+enum { LANES = 4 }; /* side by side, since one would have to be found in order */
+
+TRIBO_SIMD static void find_limits(size_t n, const double *limit, struct chunk *chunk)
 {
-    enum { LANES = 4 }; /* side by side, since one would have to be found in order */
+    double least[LANES], largest[LANES];
+    size_t i = 0;
+    for (size_t k = 0; k < LANES; k++) {
+        least[k] = largest[k] = limit[0];
+    }
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            least[k] = lesser(least[k], limit[i + k]);
+            largest[k] = greater(largest[k], limit[i + k]);
+        }
+    }
+    for (; i < n; i++) {
+        least[0] = lesser(least[0], limit[i]);
+        largest[0] = greater(largest[0], limit[i]);
+    }
+    chunk->least = lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
+    chunk->largest = greater(greater(largest[0], largest[1]), greater(largest[2], largest[3]));
+}
+
+TRIBO_SIMD static double widest_of(size_t n, const double *restrict limit, const double *restrict epsilon)
+{
     double widest[LANES] = {-1.0, -1.0, -1.0, -1.0};
-    int64_t differ = 0;
     size_t i = 0;
     for (; i + LANES <= n; i += LANES) {
         for (size_t k = 0; k < LANES; k++) {
@@ -92,16 +124,20 @@ TRIBO_SIMD static struct chunk chunk_of(size_t n, const double *restrict limit, 
     for (; i < n; i++) {
         widest[0] = limit[i] > 0.0 ? greater(widest[0], epsilon[i]) : widest[0];
     }
-    for (i = 0; i < n; i++) {
-        differ |= limit[i] != limit[0] ? -1 : 0;
-    }
-    return (struct chunk){greater(greater(widest[0], widest[1]), greater(widest[2], widest[3])), differ ? NAN : limit[0]};
+    return greater(greater(widest[0], widest[1]), greater(widest[2], widest[3]));
 }
 
-void tribo_refresh_chunks(tribo_context *ctx)
+void tribo_refresh_limits(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        ctx->chunk[k] = chunk_of(tribo_chunk_size(ctx, i), ctx->limit + i, ctx->epsilon + i);
+        find_limits(tribo_chunk_size(ctx, i), ctx->limit + i, &ctx->chunk[k]);
+    }
+}
+
+void tribo_refresh_widths(tribo_context *ctx)
+{
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        ctx->chunk[k].widest = widest_of(tribo_chunk_size(ctx, i), ctx->limit + i, ctx->epsilon + i);
     }
 }
 
@@ -164,24 +200,19 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
     return TRIBO_OK;
 }
 
-/* Contacts from i on, as if they were alone. */
-static void apply_law(tribo_context *ctx, const struct contacts *all, size_t i, size_t n, const double *v, const double *a)
-{
-    const struct contacts c = tribo_contacts_from(all, i);
-    feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
-    ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
-}
-
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     const struct contacts all = tribo_contacts(ctx);
     const int some = ctx->op.islands > ctx->op.groups;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        if (ctx->kept || (some && ctx->last.kind[k] != SLIDES)) {
-            apply_law(ctx, &all, i, n, v, a);
-        } else if (wanted) {
-            feq_alone(n, ctx->op.diagonal + i, ctx->limit + i, a + i, ctx->feq + i);
+        const int asked = ctx->kept || (some && ctx->last.kind[k] != SLIDES);
+        if (wanted || (asked && ctx->law->uses_feq)) {
+            find_feq(ctx, k, i, n, a);
+        }
+        if (asked) {
+            const struct contacts c = tribo_contacts_from(&all, i);
+            ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
         }
     }
 }
@@ -198,10 +229,10 @@ void tribo_forces(const tribo_context *ctx, double *f)
         expect(ctx, f, i, 1);
         if (ctx->last.kind[k] == KEPT) {
             tribo_copy(f + i, ctx->f + i, n);
-        } else if (isnan(ctx->chunk[k].limit)) {
+        } else if (ctx->chunk[k].least < ctx->chunk[k].largest) {
             slide(n, state + i, ctx->limit + i, f + i);
         } else {
-            slide_alike(n, state + i, ctx->chunk[k].limit, f + i);
+            slide_alike(n, state + i, ctx->chunk[k].largest, f + i);
         }
         for (size_t j = i, near; ctx->last.kind[k] == MIXED && (near = tribo_next_near(state, &j, i + n)) > 0; j += near) {
             tribo_copy(f + j, ctx->f + j, near);

@@ -1,5 +1,6 @@
 /* The text of the last failure on a context. Calls on a const context may fail in several threads at once: the flag lets one
- * of them write. */
+ * of them write. Where the compiler has no atomic operations two may write at once, and the text is a mixture, which ends all the
+ * same. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@ struct message {
     char text[240];
 };
 
-#if defined(__GNUC__)
+#if defined(TRIBO_GNU_C)
 #define TAKE(flag) (!__atomic_test_and_set(&(flag), __ATOMIC_ACQUIRE))
 #define RELEASE(flag) __atomic_clear(&(flag), __ATOMIC_RELEASE)
 #else

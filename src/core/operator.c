@@ -8,7 +8,6 @@
 
 #include "internal.h"
 #include "rows.h"
-#include "../real.h"
 
 /* Entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
 #define ASYMMETRY 1e-10
@@ -35,11 +34,11 @@ static int symmetrize(const tribo_context *ctx, const struct rows *a, double *di
             if (!isfinite(x)) {
                 return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "r of contacts %zu, %zu is %g", i, j, x);
             }
-            if (fabs(x - y) > ASYMMETRY * greater(size, greater(fabs(x), fabs(y)))) {
+            if (fabs(0.5 * x - 0.5 * y) > 0.5 * ASYMMETRY * greater(size, greater(fabs(x), fabs(y)))) {
                 return tribo_fail(ctx, TRIBO_ERR_NOT_SYMMETRIC, "r of contacts %zu, %zu is %g one way and %g the other", i, j, x,
                                   y);
             }
-            if (fabs(x) > (1.0 + ASYMMETRY) * size) {
+            if (fabs(x) - size > ASYMMETRY * size) {
                 return tribo_fail(ctx, TRIBO_ERR_INDEFINITE,
                                   "r of contacts %zu, %zu is %g, more than the root of their diagonal entries' product, %g", i, j,
                                   x, size);
@@ -73,12 +72,23 @@ static int install(tribo_context *ctx, struct op *op)
     return TRIBO_OK;
 }
 
-int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
+/* Whether the caller may change the operator. */
+static int check_owner(const tribo_context *ctx)
 {
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = tribo_check_nonnegative(ctx, "r", r, ctx->n);
+    if (!ctx->owner) {
+        return TRIBO_OK;
+    }
+    return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the operator is that of %s: set that of a copy (tribo_clone) instead",
+                      ctx->owner);
+}
+
+int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
+{
+    int status = check_owner(ctx);
+    status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
     struct op op;
     if (status) {
         return status;
@@ -111,8 +121,9 @@ static int install_rows(tribo_context *ctx, struct rows *a)
 
 int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
+    const int status = check_owner(ctx);
+    if (status) {
+        return status;
     }
     const size_t n = ctx->n;
     if (!r && n) {
@@ -191,10 +202,8 @@ static int check_duplicates(const tribo_context *ctx, const struct rows *t)
 
 int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = check_rows(ctx, ctx->n, ctx->n, rowptr, col, val);
+    int status = check_owner(ctx);
+    status = status ? status : check_rows(ctx, ctx->n, ctx->n, rowptr, col, val);
     if (status) {
         return status;
     }
@@ -231,14 +240,15 @@ static int read_direction(const tribo_context *ctx, size_t ndof, const size_t *r
 int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr, const size_t *col,
                             const double *val)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
+    int status = check_owner(ctx);
+    if (status) {
+        return status;
     }
     if (ndof >= SIZE_MAX / 64) {
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
     struct rows t, a;
-    int status = tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
+    status = tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
     status = status ? status : read_direction(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
@@ -331,8 +341,9 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                 int (*apply)(size_t ndof, const double *force, double *acceleration, void *data), void *data,
                                 const size_t *rowptr, const size_t *col, const double *val)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
+    int status = check_owner(ctx);
+    if (status) {
+        return status;
     }
     if (!apply) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "apply is NULL");
@@ -341,7 +352,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
     struct rows t, a;
-    int status = read_direction(ctx, ndof, rowptr, col, val, &t);
+    status = read_direction(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }

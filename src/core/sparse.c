@@ -336,6 +336,9 @@ static int modify(struct sparse *s, size_t k, double alpha)
         }
         const double before = 1.0 / s->d[j], after = before + alpha * x * x;
         good = after > TRIBO_SPARSE_ZERO;
+        if (!good) {
+            continue;
+        }
         const double beta = alpha * x / after;
         alpha *= before / after;
         s->d[j] = 1.0 / after;
@@ -366,7 +369,7 @@ static int enter(struct program *p, size_t k)
     }
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
         const size_t j = s->column_of[t], slot = s->slot[t];
-        const double x = s->l[slot] == 0.0 ? 0.0 : s->l[slot] / s->d[j];
+        const double x = s->l[slot] / (s->d[j] == 0.0 ? 1.0 : s->d[j]); /* where d is 0 l is, too */
         for (size_t q = slot + 1; x != 0.0 && q < s->column[j + 1]; q++) {
             s->w[s->row_of[q]] -= s->l[q] * x;
         }
@@ -467,7 +470,7 @@ static int well_conditioned(struct sparse *s)
 {
     const size_t size = s->r.n;
     struct island island = {.size = size, .sparse = s};
-    double smallest = 1.0, *scale = malloc(size * sizeof *scale);
+    double least = 1.0, most = 1.0, *scale = malloc(size * sizeof *scale); /* of 1/pivot, which is 0 where there is none */
     struct program p = {.island = &island, .scale = scale, .at = calloc(size, 1), .order = malloc(size * sizeof *p.order)};
     const int memory = scale && p.at && p.order;
     if (memory) {
@@ -477,13 +480,14 @@ static int well_conditioned(struct sparse *s)
         }
         tribo_sparse_rebuild(&p, NULL);
         for (size_t k = 0; k < size; k++) {
-            smallest = lesser(smallest, s->d[k] > 0.0 ? 1.0 / s->d[k] : 0.0);
+            least = lesser(least, s->d[k]);
+            most = greater(most, s->d[k]);
         }
     }
     free(scale);
     free(p.at);
     free(p.order);
-    return memory ? smallest > TRIBO_DOUBTFUL : -1;
+    return memory ? least > 0.0 && most * TRIBO_DOUBTFUL < 1.0 : -1;
 }
 
 int tribo_sparse_create(struct sparse **s, const struct rows *r)

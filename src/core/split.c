@@ -6,6 +6,7 @@
  * at a bound do not move. */
 #include "island.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -102,10 +103,24 @@ static void aim(struct program *p, size_t vectors)
     }
 }
 
+/* Of the free x: scaled, since their squares may overflow. */
+static double norm(const struct program *p)
+{
+    double most = DBL_MIN, sum = 0.0;
+    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+        most = greater(most, fabs(p->x[p->order[k]]));
+    }
+    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+        const double part = p->x[p->order[k]] / most;
+        sum += part * part;
+    }
+    return most * sqrt(sum);
+}
+
 /* Lets one of the held contacts go, if its x then moves off its bound. */
 static int release(struct program *p, size_t vectors, size_t *held)
 {
-    const double noise = tribo_resolution(p->island->size) * sqrt(dot(p, p->x, p->x));
+    const double noise = tribo_resolution(p->island->size) * norm(p);
     for (size_t tried = 0; tried < *held; tried++) {
         const size_t i = p->held[0], others = *held - 1;
         memmove(p->held, p->held + 1, others * sizeof *p->held);

@@ -58,7 +58,7 @@ const char *tribo_strerror(int status)
     case TRIBO_ERR_CALLBACK:
         return "a function of the caller's failed";
     case TRIBO_ERR_CHATTER:
-        return "too many events in too short a time";
+        return "too many events in too short a time: \"central/fixed\" and \"moreau/fixed\" step over them";
     default:
         return "not a tribo status";
     }

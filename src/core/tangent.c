@@ -21,7 +21,7 @@ static double own_rate(const tribo_context *ctx, const struct program *p, size_t
     /* the bound of a relaxing law moves with v while it is not at the other limit */
     const double kappa = ctx->slope[i] * ctx->v[i];
     const int moves =
-        ctx->law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && fabs(kappa) < 2.0 * ctx->limit[i];
+        ctx->law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->limit[i];
     return moves ? -ctx->slope[i] : 0.0;
 }
 
@@ -56,18 +56,24 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
                           double *df)
 {
     const int partition = ctx->coupling == TRIBO_PARTITION;
+    p->far = 1; /* derivatives may be anything */
     const size_t *member = p->member, size = p->island->size;
     double *rhs = p->noise;
     for (size_t k = 0; k < size; k++) {
         const size_t i = member[k];
-        df[k] = p->at[k] == FREE ? 0.0 : dv[k] != 0.0 ? own_rate(ctx, p, k, i) * dv[k] : 0.0;
-        rhs[k] = da[k] + (!partition && ctx->law->relaxes && dv[k] != 0.0 ? ctx->op.diagonal[i] * ctx->slope[i] * dv[k] : 0.0);
+        const double r = ctx->op.diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
+                     pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
+        df[k] = p->at[k] == FREE ? 0.0 : clamp(product(own_rate(ctx, p, k, i), dv[k]), -most, most);
+        rhs[k] = clamp(da[k], -pull, pull);
+        if (!partition && ctx->law->relaxes) {
+            rhs[k] += r * clamp(product(ctx->slope[i], dv[k]), -most, most);
+        }
     }
     follow(p, vectors, rhs, df);
     if (partition) {
         for (size_t k = 0; k < size; k++) {
             const struct tangent *d = &ctx->tangent[member[k]];
-            df[k] = p->at[k] == FREE ? d->dfeq * df[k] + (dv[k] != 0.0 ? d->dv * dv[k] : 0.0) : df[k];
+            df[k] = p->at[k] == FREE ? d->dfeq * df[k] + product(d->dv, dv[k]) : df[k];
         }
     } else if (ctx->law->remembers) {
         /* the forces so far are those that f_eq balances; the law itself has another derivative where f_eq is beyond the limit */
@@ -75,20 +81,20 @@ static void group_product(const tribo_context *ctx, struct program *p, size_t ve
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             const struct tangent *d = &ctx->tangent[i];
-            const double dfeq =
-                ctx->last.state[i] == NEAR ? -(da[k] + tribo_row_others(p, k, p->step)) / ctx->op.diagonal[i] : 0.0;
-            df[k] = d->dfeq * dfeq + (dv[k] != 0.0 ? d->dv * dv[k] : 0.0);
+            const double r = ctx->op.diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
+            df[k] = product(d->dv, dv[k]) - (ctx->last.state[i] == NEAR ? d->dfeq * quotient(sum, r) : 0.0);
         }
     }
 }
 
-/* Contacts for which nothing was solved. */
+/* Contacts for which nothing was solved. Where friction moves nothing, the force jumps as a changes its sign. */
 static double alone(const tribo_context *ctx, size_t i, double dv, double da)
 {
     const struct tangent *d = &ctx->tangent[i];
+    const double r = ctx->op.diagonal[i];
     const int balanced = !ctx->op.groups || ctx->op.group_of[i] == TRIBO_ALONE;
-    const double by_v = dv != 0.0 ? d->dv * dv : 0.0;
-    return by_v - (balanced && ctx->limit[i] > 0.0 && da != 0.0 ? d->dfeq / ctx->op.diagonal[i] * da : 0.0);
+    const int follows = balanced && ctx->limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
+    return product(d->dv, dv) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
 }
 
 static void touched_columns(tribo_context *ctx, struct program *p, double *df_dv, double *df_da)

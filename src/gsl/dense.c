@@ -1,4 +1,5 @@
 #include "dense.h"
+#include "../simd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +11,64 @@
 #include <gsl/gsl_permute_vector.h>
 
 #include "tribo/tribo.h"
+
+double tribo_dot(const double *x, const double *y, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += x[i] * y[i];
+    }
+    return sum;
+}
+
+void tribo_add(double *to, double factor, const double *x, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        to[i] += factor * x[i];
+    }
+}
+
+int tribo_dense_finite(const double *x, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += 0.0 * x[i];
+    }
+    return sum == 0.0;
+}
+
+/* c += f[0] b + f[1] (b + n) + ..., four rows of b of length n. */
+TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, size_t n, const double *f)
+{
+    const double f0 = f[0], f1 = f[1], f2 = f[2], f3 = f[3];
+    for (size_t j = 0; j < n; j++) {
+        c[j] = (((c[j] + f0 * b[j]) + f1 * b[n + j]) + f2 * b[2 * n + j]) + f3 * b[3 * n + j];
+    }
+}
+
+void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
+{
+    for (size_t i = 0; i < rows; i++) {
+        const double *row = a + i * inner;
+        size_t k = 0;
+        for (; k + 4 <= inner; k += 4) {
+            const double f[] = {factor * row[k], factor * row[k + 1], factor * row[k + 2], factor * row[k + 3]};
+            add_four(c + i * cols, b + k * cols, cols, f);
+        }
+        for (; k < inner; k++) {
+            tribo_add(c + i * cols, factor * row[k], b + k * cols, cols);
+        }
+    }
+}
+
+void tribo_transpose(size_t rows, size_t cols, const double *a, double *to)
+{
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < cols; j++) {
+            to[j * rows + i] = a[i * cols + j];
+        }
+    }
+}
 
 void tribo_cholesky_free(struct cholesky *c)
 {
@@ -90,41 +149,65 @@ void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
     }
 }
 
-size_t tribo_independent_rows(double *a, size_t n, const unsigned char *last, size_t *order)
+static void exchange_rows(double *a, size_t cols, size_t i, size_t j)
 {
-    /* a Cholesky factorization of a scaled to a diagonal of ones, with the largest pivot next, of rows that are not to be last if
-     * there is one */
-    const double least = 1e-12 * (double)(n + 1);
-    size_t rank = 0;
+    for (size_t k = 0; i != j && k < cols; k++) {
+        const double x = a[i * cols + k];
+        a[i * cols + k] = a[j * cols + k];
+        a[j * cols + k] = x;
+    }
+}
+
+/* Row i -= factor times row k, columns first to cols - 1. */
+static void subtract_row(double *a, size_t cols, size_t first, size_t i, double factor, size_t k)
+{
+    double *restrict to = a + i * cols;
+    const double *restrict from = a + k * cols;
+    for (size_t j = first; factor != 0.0 && j < cols; j++) {
+        to[j] -= factor * from[j];
+    }
+}
+
+double tribo_lu_create(double *a, size_t n, size_t *pivot)
+{
+    double least = HUGE_VAL;
+    for (size_t k = 0; k < n; k++) {
+        pivot[k] = k;
+        for (size_t i = k + 1; i < n; i++) {
+            pivot[k] = fabs(a[i * n + k]) > fabs(a[pivot[k] * n + k]) ? i : pivot[k];
+        }
+        exchange_rows(a, n, k, pivot[k]);
+        const double size = fabs(a[k * n + k]);
+        least = size < least ? size : least;
+        if (!(size > 0.0)) {
+            return 0.0;
+        }
+        for (size_t i = k + 1; i < n; i++) {
+            a[i * n + k] /= a[k * n + k];
+            subtract_row(a, n, k + 1, i, a[i * n + k], k);
+        }
+    }
+    return least;
+}
+
+void tribo_lu_solve(const double *lu, size_t n, const size_t *pivot, double *x, size_t cols)
+{
+    for (size_t k = 0; k < n; k++) {
+        exchange_rows(x, cols, k, pivot[k]);
+    }
     for (size_t i = 0; i < n; i++) {
-        order[i] = i;
-        const double d = a[i * n + i] > 0.0 ? 1.0 / sqrt(a[i * n + i]) : 0.0;
-        for (size_t j = 0; j < n; j++) {
-            a[i * n + j] *= d;
-            a[j * n + i] *= d;
+        for (size_t k = 0; k < i; k++) {
+            subtract_row(x, cols, 0, i, lu[i * n + k], k);
         }
     }
-    for (; rank < n; rank++) {
-        size_t best = n;
-        for (size_t k = rank; k < n; k++) {
-            const size_t i = order[k], b = best < n ? order[best] : i;
-            const int better = last[i] != last[b] ? last[i] < last[b] : a[i * n + i] > a[b * n + b];
-            best = a[i * n + i] > least && (best == n || better) ? k : best;
+    for (size_t i = n; i-- > 0;) {
+        for (size_t k = i + 1; k < n; k++) {
+            subtract_row(x, cols, 0, i, lu[i * n + k], k);
         }
-        if (best == n) {
-            break;
-        }
-        const size_t p = order[best];
-        order[best] = order[rank];
-        order[rank] = p;
-        for (size_t k = rank + 1; k < n; k++) {
-            const double factor = a[order[k] * n + p] / a[p * n + p];
-            for (size_t l = rank + 1; l < n; l++) {
-                a[order[k] * n + order[l]] -= factor * a[p * n + order[l]];
-            }
+        for (size_t j = 0; j < cols; j++) {
+            x[i * cols + j] /= lu[i * n + i];
         }
     }
-    return rank;
 }
 
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
@@ -132,14 +215,16 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
     if (n == 0) {
         return 1;
     }
-    gsl_eigen_symmv_workspace *work = gsl_eigen_symmv_alloc(n);
-    if (!work) {
+    /* gsl_eigen_symmv_alloc would abort if there were no memory */
+    double *memory = malloc(4 * n * sizeof *memory);
+    if (!memory) {
         return 0;
     }
+    gsl_eigen_symmv_workspace work = {n, memory, memory + n, memory + 2 * n, memory + 3 * n};
     gsl_matrix_view m = gsl_matrix_view_array(a, n, n), v = gsl_matrix_view_array(vectors, n, n);
     gsl_vector_view e = gsl_vector_view_array(values, n);
-    gsl_eigen_symmv(&m.matrix, &e.vector, &v.matrix, work);
+    gsl_eigen_symmv(&m.matrix, &e.vector, &v.matrix, &work);
     gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_ASC);
-    gsl_eigen_symmv_free(work);
+    free(memory);
     return 1;
 }

@@ -1,8 +1,17 @@
-/* Dense symmetric positive definite matrices, in factors that never make GSL's error handler speak. */
+/* Dense matrices, in factors that never make GSL's error handler speak. */
 #ifndef TRIBO_DENSE_H
 #define TRIBO_DENSE_H
 
 #include "matrix.h"
+
+/* x'y; to += factor x; 1 if no x is an infinity or a NaN. All [n]. */
+double tribo_dot(const double *x, const double *y, size_t n);
+void tribo_add(double *to, double factor, const double *x, size_t n);
+int tribo_dense_finite(const double *x, size_t n);
+
+/* c [rows][cols] += factor a b, a [rows][inner], b [inner][cols]; to [cols][rows] = the transpose of a [rows][cols]. */
+void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
+void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
 /* A^-1 = S S', S = P' L^-T D^-1/2 from P A P' = L D L', with L in the lower triangle of factor. A diagonal A has only root. */
 struct cholesky {
@@ -20,9 +29,12 @@ void tribo_cholesky_free(struct cholesky *c);
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols);
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols);
 
-/* Order [n] names n rows of a semidefinite a [n][n]: first independent ones, which are rather taken where last is 0. Returns how
- * many they are. Overwrites a. */
-size_t tribo_independent_rows(double *a, size_t n, const unsigned char *last, size_t *order);
+/* L U of a [n][n] with its rows exchanged (row k with row pivot[k] >= k, one after the other), in place. Returns the smallest
+ * pivot's size: 0 if a is singular, or holds a NaN, and then there are no factors. */
+double tribo_lu_create(double *a, size_t n, size_t *pivot);
+
+/* x [n][cols] = A^-1 x. */
+void tribo_lu_solve(const double *lu, size_t n, const size_t *pivot, double *x, size_t cols);
 
 /* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. 0 if out of
  * memory. */

@@ -104,6 +104,7 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     d->reltol = reltol;
     d->state = work;
     d->slope = work + dimension;
+    d->excess = d->backslip = NAN;
     status = m->create(d);
     if (status) {
         tribo_driver_destroy(d);
@@ -208,6 +209,22 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
     }
 }
 
+int tribo_driver_real(const tribo_driver *drv, int which, double *value)
+{
+    if (!drv || !value) {
+        return TRIBO_ERR_NULL;
+    }
+    if (which != TRIBO_REAL_EXCESS && which != TRIBO_REAL_BACKSLIP) {
+        return TRIBO_ERR_RANGE;
+    }
+    const double found = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
+    if (isnan(found)) {
+        return TRIBO_ERR_UNSUPPORTED;
+    }
+    *value = found;
+    return TRIBO_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------------------- states */
 
 /* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
@@ -227,21 +244,28 @@ TRIBO_SIMD static int all_finite(const double *x, size_t n)
     return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
 }
 
+int tribo_driver_check(tribo_driver *drv, const double *y)
+{
+    if (all_finite(y, tribo_system_dimension(drv->sys))) {
+        return TRIBO_OK;
+    }
+    size_t i = 0;
+    while (isfinite(y[i])) {
+        i++;
+    }
+    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
+                             "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", i, y[i],
+                             drv->time, drv->dt);
+}
+
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
 {
-    const size_t dimension = tribo_system_dimension(drv->sys);
-    if (!all_finite(y, dimension)) {
-        size_t i = 0;
-        while (isfinite(y[i])) {
-            i++;
-        }
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
-                                 "y[%zu] = %g after t = %.17g: the motion grew without bound, or dt = %g is too long", i, y[i],
-                                 drv->time, drv->dt);
+    const int status = tribo_driver_check(drv, y);
+    if (!status) {
+        drv->time = t;
+        memcpy(drv->state, y, tribo_system_dimension(drv->sys) * sizeof *y);
     }
-    drv->time = t;
-    memcpy(drv->state, y, dimension * sizeof *y);
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
@@ -355,6 +379,7 @@ static int provide(tribo_driver *drv, int which)
 static int create_choice(tribo_driver *drv)
 {
     drv->own = calloc(1, sizeof(struct choice));
+    drv->excess = drv->backslip = 0.0;
     return drv->own ? provide(drv, choose(drv)) : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
 }
 
@@ -384,6 +409,8 @@ static int delegate(tribo_driver *drv, int which, double *t, double t1, double *
     drv->steps += inner->steps - steps;
     drv->rejected += inner->rejected - rejected;
     drv->events += inner->events - events;
+    drv->excess = greater(drv->excess, inner->excess);
+    drv->backslip = greater(drv->backslip, inner->backslip);
     const int kept = tribo_driver_keep(drv, *t, y), refused = which == EXACT && status == TRIBO_ERR_UNSUPPORTED;
     if (status && !refused) {
         tribo_driver_fail(drv, status, "%s", inner->message);

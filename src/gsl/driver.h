@@ -29,6 +29,7 @@ struct tribo_driver {
     size_t revision;       /* of the system when the last advance ended */
     int knows;             /* what the method keeps is about time, state and revision */
     size_t steps, rejected, evaluations, jacobians, events;
+    double excess, backslip; /* largest so far; NaN for methods that do not know them */
     int (*seen)(double t, const double *y, int event, void *data);
     void *data;
     char message[240];
@@ -40,6 +41,9 @@ int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
+
+/* TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
+int tribo_driver_check(tribo_driver *drv, const double *y);
 
 /* Every state that a method has found goes through this before anything is built on it: if a value of it is not finite, it fails
  * with TRIBO_ERR_NOT_FINITE and nobody sees the state. Otherwise the state is kept as the last good one, to which

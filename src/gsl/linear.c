@@ -1,6 +1,5 @@
 /* Linear structures from their matrices: as they are if the mass matrix is diagonal, solved for the accelerations if not, or
  * reduced to their lowest modes. */
-#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -9,6 +8,7 @@
 
 #include <gsl/gsl_blas.h>
 
+#include "normal_modes.h"
 #include "system.h"
 
 /* What a caller gives, and where the text of an error goes. */
@@ -149,21 +149,16 @@ static int build_diagonal(struct model *m, tribo_system **sys)
     return status;
 }
 
-/* a = M^-1 a. */
-static int solve_matrix(const struct cholesky *c, struct matrix *a)
+/* solved = M^-1 a; zeroed if out of memory. */
+static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct matrix *solved)
 {
     double *x = tribo_matrix_to_dense(a);
     if (x) {
         tribo_half_solve(c, x, a->cols);
         tribo_half_solve_back(c, x, a->cols);
     }
-    struct matrix solved;
-    const int done = x && tribo_matrix_from_dense(&solved, a->rows, a->cols, x);
+    const int done = x && tribo_matrix_from_dense(solved, a->rows, a->cols, x);
     free(x);
-    if (done) {
-        tribo_matrix_free(a);
-        *a = solved;
-    }
     return done;
 }
 
@@ -175,8 +170,8 @@ static int build_solved(struct model *m, tribo_system **sys)
         return status;
     }
     double *z = transposed_direction(m), *x = transposed_direction(m);
-    struct matrix b = {0};
-    int done = z && x && solve_matrix(&c, &m->stiffness) && (!m->damping.rows || solve_matrix(&c, &m->damping));
+    struct matrix b = {0}, ak = {0}, ac = {0};
+    int done = z && x && solve_matrix(&c, &m->stiffness, &ak) && (!m->damping.rows || solve_matrix(&c, &m->damping, &ac));
     if (done && m->ncontact) {
         tribo_half_solve(&c, z, m->ncontact);
         memcpy(x, z, m->ndof * m->ncontact * sizeof *x);
@@ -186,70 +181,71 @@ static int build_solved(struct model *m, tribo_system **sys)
     free(x);
     if (!done) {
         free(z);
+        tribo_matrix_free(&ak);
+        tribo_matrix_free(&ac);
         tribo_cholesky_free(&c);
         return no_memory(m);
     }
-    status = tribo_system_build(sys, m->ndof, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
-    m->stiffness = m->damping = m->direction = (struct matrix){0};
+    status = tribo_system_build(sys, m->ndof, m->ncontact, &ak, &ac, &m->direction, &b);
+    m->direction = (struct matrix){0};
     if (status) {
         free(z);
         tribo_cholesky_free(&c);
         return no_memory(m);
     }
     give_mass(m, *sys, &c);
+    (*sys)->elastic = m->stiffness;
+    (*sys)->viscous = m->damping;
+    m->stiffness = m->damping = (struct matrix){0};
     status = set_operator(m, *sys, z, m->ndof);
     free(z);
     return status;
 }
 
-static void transpose(double *a, size_t n)
+/* What to say of modes that were not found. */
+static int modes_failed(const struct model *m, int status, const struct doubt *doubt)
 {
-    for (size_t i = 0; i < n; i++) {
-        for (size_t j = 0; j < i; j++) {
-            const double x = a[i * n + j];
-            a[i * n + j] = a[j * n + i];
-            a[j * n + i] = x;
-        }
+    switch (status) {
+    case TRIBO_ERR_MEMORY:
+        return no_memory(m);
+    case TRIBO_ERR_NOT_FINITE:
+        return fail(m, status, "stiffness over mass overflows");
+    case TRIBO_ERR_UNSUPPORTED:
+        return fail(
+            m, status,
+            "omega^2 = %g of mode %zu is hardly more than rounding of the stiffness, which comes to %g: make the stiffest "
+            "parts softer, or rigid",
+            doubt->omega2, doubt->mode, doubt->noise);
+    default:
+        return fail(m, status, "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes", doubt->omega2,
+                    doubt->mode);
     }
 }
 
 /* The lowest nmode modes: modes [ndof][nmode] with modal mass 1, and omega [nmode]. */
 static int find_modes(const struct model *m, double *modes, double *omega)
 {
-    const size_t n = m->ndof;
+    const struct matrix whole = {0};
     struct cholesky c;
-    int status = factorize_mass(m, &c);
-    if (status) {
-        return status;
-    }
-    double *k = tribo_matrix_to_dense(&m->stiffness), *vectors = malloc(n * n * sizeof *vectors),
-           *values = malloc(n * sizeof *values);
-    int done = k && vectors && values;
-    if (done) {
-        tribo_half_solve(&c, k, n);
-        transpose(k, n);
-        tribo_half_solve(&c, k, n);
-        done = tribo_symmetric_eigen(k, n, values, vectors);
-    }
-    status = done ? TRIBO_OK : no_memory(m);
-    const double noise = done ? 4.0 * DBL_EPSILON * (double)n * fabs(values[n - 1]) : 0.0;
-    for (size_t j = 0; !status && j < m->nmode; j++) {
-        if (values[j] < -noise) {
-            status =
-                fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu", values[j], j);
-        }
-        omega[j] = values[j] > noise ? sqrt(values[j]) : 0.0;
-    }
+    struct doubt doubt = {0};
+    double *phi = malloc(m->nmode * m->ndof * sizeof *phi);
+    int status = phi ? factorize_mass(m, &c) : no_memory(m);
     if (!status) {
-        tribo_half_solve_back(&c, vectors, n);
-        for (size_t i = 0; i < n; i++) {
-            memcpy(modes + i * m->nmode, vectors + i * n, m->nmode * sizeof *modes);
+        status = tribo_normal_modes(&m->stiffness, &whole, &c, m->nmode, omega, phi, &doubt);
+        status = status ? modes_failed(m, status, &doubt) : TRIBO_OK;
+        tribo_cholesky_free(&c);
+    }
+    for (size_t j = 0; !status && j < m->nmode; j++) {
+        if (omega[j] < 0.0) {
+            status =
+                fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu", omega[j], j);
+        }
+        omega[j] = sqrt(fabs(omega[j]));
+        for (size_t i = 0; i < m->ndof; i++) {
+            modes[i * m->nmode + j] = phi[j * m->ndof + i];
         }
     }
-    free(k);
-    free(vectors);
-    free(values);
-    tribo_cholesky_free(&c);
+    free(phi);
     return status;
 }
 

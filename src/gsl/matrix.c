@@ -2,6 +2,7 @@
 #include "../real.h"
 #include "../simd.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -117,6 +118,18 @@ int tribo_matrix_identity(struct matrix *a, size_t n)
     return speed_up(a);
 }
 
+int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
+{
+    const size_t entries = from->first[from->rows];
+    if (!create(a, from->rows, from->cols, entries)) {
+        return 0;
+    }
+    memcpy(a->first, from->first, (from->rows + 1) * sizeof *a->first);
+    memcpy(a->col, from->col, entries * sizeof *a->col);
+    memcpy(a->val, from->val, entries * sizeof *a->val);
+    return speed_up(a);
+}
+
 /* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
 static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t *order_in, size_t *order_out, size_t *start)
 {
@@ -229,6 +242,104 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
     }
 }
 
+/* A sum and what was rounded off it. */
+struct sum {
+    double high, low;
+};
+
+/* sum += x y (Ogita, Rump and Oishi 2005, SIAM J. Sci. Comput. 26, 1955, doi:10.1137/030601818). */
+static void add_product(struct sum *sum, double x, double y)
+{
+    const double product = x * y, high = sum->high + product, part = high - sum->high;
+    sum->low += ((sum->high - (high - part)) + (product - part)) + fma(x, y, -product);
+    sum->high = high;
+}
+
+double tribo_matrix_form(const struct matrix *a, const double *x, const double *y)
+{
+    struct sum all = {0.0, 0.0};
+    for (size_t i = 0; i < a->rows; i++) {
+        struct sum row = {0.0, 0.0};
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            add_product(&row, a->val[k], y[a->col[k]]);
+        }
+        add_product(&all, x[i], row.high);
+        add_product(&all, x[i], row.low);
+    }
+    return all.high + all.low;
+}
+
+void tribo_matrix_roots(const struct matrix *a, double *root)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        root[i] = sqrt(fabs(tribo_matrix_get(a, i, i)));
+    }
+}
+
+double tribo_matrix_noise(const struct matrix *a, const double *root, const double *x, const double *y)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < a->rows; i++) {
+        double row = 0.0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            row += greater(fabs(a->val[k]), root[i] * root[a->col[k]]) * fabs(y[a->col[k]]);
+        }
+        sum += row * fabs(x[i]);
+    }
+    return DBL_EPSILON * sum;
+}
+
+/* The entries of a row, of which the identity has one. */
+static size_t row_begin(const struct matrix *a, size_t i)
+{
+    return a->rows ? a->first[i] : i;
+}
+
+static size_t row_end(const struct matrix *a, size_t i)
+{
+    return a->rows ? a->first[i + 1] : i + 1;
+}
+
+/* to += row i of A Z. */
+static void add_row(const struct matrix *a, const struct matrix *z, size_t i, double *to)
+{
+    for (size_t k = row_begin(a, i); k < row_end(a, i); k++) {
+        const size_t j = a->rows ? a->col[k] : i;
+        const double x = a->rows ? a->val[k] : 1.0;
+        for (size_t e = row_begin(z, j); e < row_end(z, j); e++) {
+            to[z->rows ? z->col[e] : j] += z->rows ? x * z->val[e] : x;
+        }
+    }
+}
+
+int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to)
+{
+    const size_t n = z->rows ? z->rows : a->rows, m = z->rows ? z->cols : n;
+    double *row = malloc((m + 1) * sizeof *row);
+    if (!row) {
+        return 0;
+    }
+    memset(to, 0, m * m * sizeof *to);
+    for (size_t i = 0; i < n; i++) {
+        memset(row, 0, m * sizeof *row);
+        add_row(a, z, i, row);
+        for (size_t e = row_begin(z, i); e < row_end(z, i); e++) {
+            double *at = to + (z->rows ? z->col[e] : i) * m;
+            const double x = z->rows ? z->val[e] : 1.0;
+            for (size_t j = 0; j < m; j++) {
+                at[j] += x * row[j];
+            }
+        }
+    }
+    for (size_t i = 0; i < m; i++) {
+        for (size_t j = 0; j < i; j++) {
+            to[i * m + j] = to[j * m + i] = 0.5 * (to[i * m + j] + to[j * m + i]);
+        }
+    }
+    free(row);
+    return 1;
+}
+
 double *tribo_matrix_to_dense(const struct matrix *a)
 {
     double *dense = calloc(a->rows * a->cols + 1, sizeof *dense);
@@ -300,4 +411,17 @@ int tribo_matrix_is_diagonal(const struct matrix *a)
         }
     }
     return 1;
+}
+
+double tribo_matrix_row_sum(const struct matrix *a)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < a->rows; i++) {
+        double sum = 0.0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            sum += fabs(a->val[k]);
+        }
+        most = sum > most ? sum : most;
+    }
+    return most;
 }

@@ -22,10 +22,24 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
                                const double *v);
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
 int tribo_matrix_identity(struct matrix *a, size_t n);
+int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
 void tribo_matrix_free(struct matrix *a);
 
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
+
+/* x'Ay, rounded only at the end: a form may be far smaller than its terms. */
+double tribo_matrix_form(const struct matrix *a, const double *x, const double *y);
+
+/* What rounding of the entries of a square A may do to x'Ay: an entry is known to DBL_EPSILON of itself, or of the geometric mean
+ * of its two diagonal entries, since it may have come out of sums of that size. root [rows] has the roots of the diagonal, of
+ * absolute values, as tribo_matrix_roots finds them. */
+void tribo_matrix_roots(const struct matrix *a, double *root);
+double tribo_matrix_noise(const struct matrix *a, const double *root, const double *x, const double *y);
+
+/* to [z->cols][z->cols] = Z'AZ of a symmetric A, exactly symmetric. Of a and z, one that has no rows is the identity. 0 if out of
+ * memory. */
+int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to);
 
 /* The entries [rows][cols], or NULL if out of memory; the caller frees them. */
 double *tribo_matrix_to_dense(const struct matrix *a);
@@ -39,6 +53,8 @@ int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *
 
 /* 1 if no entry is off the diagonal. */
 int tribo_matrix_is_diagonal(const struct matrix *a);
+/* The largest sum of a row's absolute values: no eigenvalue is larger. 0 without rows. */
+double tribo_matrix_row_sum(const struct matrix *a);
 double tribo_matrix_get(const struct matrix *a, size_t i, size_t j);
 
 #endif

@@ -203,7 +203,7 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
     return TRIBO_OK;
 }
 
-int tribo_system_fastest(const tribo_system *sys, double *omega)
+int tribo_system_top_frequency(const tribo_system *sys, double *omega)
 {
     double square;
     const int status = tribo_system_highest(sys, 1.0, 0.0, &square);

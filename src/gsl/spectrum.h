@@ -9,6 +9,6 @@
 int tribo_system_highest(const tribo_system *sys, double stiffness, double damping, double *value);
 
 /* A bound on the frequencies of structure and loads. */
-int tribo_system_fastest(const tribo_system *sys, double *omega);
+int tribo_system_top_frequency(const tribo_system *sys, double *omega);
 
 #endif

@@ -155,7 +155,7 @@ static int prepare(struct adaptive *a, tribo_driver *drv)
     const size_t revision = tribo_system_revision(sys);
     if (!a->prepared || a->structure != sys->revision) {
         double fastest;
-        const int status = tribo_system_fastest(sys, &fastest);
+        const int status = tribo_system_top_frequency(sys, &fastest);
         if (status) {
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
         }

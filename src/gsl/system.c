@@ -78,6 +78,8 @@ void tribo_system_destroy(tribo_system *sys)
     }
     free(sys->table);
     free_table(&sys->limits);
+    tribo_matrix_free(&sys->elastic);
+    tribo_matrix_free(&sys->viscous);
     tribo_matrix_free(&sys->metric);
     tribo_cholesky_free(&sys->factor);
     free(sys->modes);
@@ -104,6 +106,9 @@ size_t tribo_system_dimension(const tribo_system *sys)
 
 tribo_context *tribo_system_context(tribo_system *sys)
 {
+    if (sys) {
+        tribo_set_owner(sys->contacts, "a tribo_system");
+    }
     return sys ? sys->contacts : NULL;
 }
 
@@ -237,6 +242,15 @@ void tribo_system_loads(const tribo_system *sys, int moves_base, int order, doub
     }
 }
 
+double tribo_system_fastest(const tribo_system *sys)
+{
+    double most = greater(sqrt(tribo_matrix_row_sum(&sys->stiffness)), tribo_matrix_row_sum(&sys->damping));
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        most = greater(most, fabs(sys->harmonic[s].omega));
+    }
+    return most;
+}
+
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
 {
     const struct matrix *a = &sys->direction;
@@ -253,14 +267,14 @@ double tribo_system_weight(const tribo_system *sys, size_t i)
     return sys->loads_accelerate && sys->metric.rows ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
 }
 
-void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x)
+void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
     for (size_t i = 0; i < sys->ncontact; i++) {
         const size_t first = j->first[i], count = j->first[i + 1] - first;
-        if (mode[i] == 0 && count == 1) {
+        if (!loose[i] && count == 1) {
             x[j->col[first]] = base[i] / j->val[first];
-        } else if (mode[i] == 0 && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
+        } else if (!loose[i] && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
             x[j->col[first + 1]] = (base[i] - j->val[first] * x[j->col[first]]) / j->val[first + 1];
         }
     }

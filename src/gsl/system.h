@@ -41,6 +41,10 @@ struct tribo_system {
     size_t ours, seen;   /* of the context's revision: how much the table added, and where it left it */
     double time;         /* that cos_t and sin_t belong to; NaN: none yet */
 
+    /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: W AK and W AC are
+     * K and C to rounding of every entry. */
+    struct matrix elastic, viscous;
+
     /* The metric W, in which AK is symmetric: the mass matrix, but for chain and reduced systems. No rows: the identity. */
     struct matrix metric;
     struct cholesky factor; /* of W */
@@ -82,15 +86,18 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 /* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
 double tribo_system_next_kink(const tribo_system *sys, double t);
 
+/* A bound on the frequencies: neither an exponent of the structure, held or not, nor a load is faster. */
+double tribo_system_fastest(const tribo_system *sys);
+
 /* R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
 /* w_i such that W B_i = w_i J_i'. */
 double tribo_system_weight(const tribo_system *sys, size_t i);
 
-/* Takes the last bits of rounding out of J_i x = base_i for contacts at rest (mode 0) that have one degree of freedom, or the
+/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0) and have one degree of freedom, or the
  * difference of two. */
-void tribo_system_snap(const tribo_system *sys, const signed char *mode, const double *base, double *x);
+void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);

@@ -223,8 +223,8 @@ static void run_touch(void *contacts)
     s->f[0] = sum[0] + sum[1] + (sum[2] + sum[3]);
 }
 
-/* The scene of issue 4: the part of the time of a scene with all islands active that it takes if one in a hundred is, or none, or
- * if the memory is only touched. */
+/* The part of the time of a scene with all islands active that it takes if one in a hundred is, or none, or if the memory is only
+ * touched. */
 static double measure_part(const struct options *o, const char *name, size_t stride, enum change change, void (*run_job)(void *))
 {
     const size_t n = o->quick ? 20000 : 100000;

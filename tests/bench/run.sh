@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds the bench, with SUNDIALS, Siconos and CHOLMOD where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev, g++,
-# libsuitesparse-dev), runs it, draws a picture a system, and prints tables: what issue 3 wanted against what is, and the fastest method
-# for each error; then the same for what a call of tribo_balance costs, and issue 4.
+# libsuitesparse-dev), runs it, draws a picture a system, and prints tables: run times aimed at and measured, and the fastest method
+# for each error; then what a call of tribo_balance costs.
 # Arguments go to the bench: `sh tests/bench/run.sh --quick`. Everything is left in build/bench/results.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."

@@ -1,4 +1,4 @@
-# From the bench's tables, in Markdown: run times that issue 3 asks for and what they are, and the fastest method for each error.
+# From the bench's tables, in Markdown: run times aimed at and measured, and the fastest method for each error.
 # A method reaches an error if all its finer settings do, too. Times are in units of plain rk4 + Quinn at dt = 0.01.
 BEGIN {
     FS = ","
@@ -71,13 +71,13 @@ function wanted_row(text, list, pattern, most,    i, want, line, here) {
 }
 
 END {
-    print "\n## Wanted / here; * is not reached\n"
+    print "\n## Aim / measured; * is not reached\n"
     print "| | oscillator 7a | 7b | chain n = 32 | belt |\n|---|---|---|---|---|"
     wanted_row("exact, error <= 1e-11", wanted["exact"], "^tribo exact$", 1e-11)
     wanted_row("event, error <= 1e-9", wanted["event"], "^tribo event$", 1e-9)
     wanted_row("central or moreau, error <= 1e-4", wanted["fixed"], "^tribo (central|moreau)/fixed$", 1e-4)
 
-    print "\n## Best of other tools: what issue 3 says / here\n"
+    print "\n## Best of other tools: elsewhere / here\n"
     print "| error | oscillator 7a | 7b | chain n = 32 | belt |\n|---|---|---|---|---|"
     for (l = 1; l <= levels; l++) {
         split(today[level[l]], want, " ")

@@ -34,7 +34,8 @@ program errors
   implicit none
 
   integer, parameter :: n = 3
-  character(len=*), parameter :: none = 'the context has not been created, or has been destroyed'
+  character(len=*), parameter :: none = 'the context has not been created, or has been destroyed', &
+    laws = ': there are coulomb, velocity-limited, smooth, karnopp, quinn, quinn-reversal'
   integer :: stat = blank_integer
   character(len=200) :: msg = ''
   real(dp) :: nan, inf
@@ -194,9 +195,13 @@ contains
 
     law = blank_integer
     call tribo_law_find('quin', law, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "quin"')
+    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "quin"' // laws)
+    call tribo_law_find('VELOCITY-limited  ', law, stat)
+    call require(stat == TRIBO_OK .and. law == TRIBO_VELOCITY_LIMITED, 'names in upper case, with blanks')
+    stat = blank_integer
+    law = blank_integer
     call tribo_law_find('', law, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called ""')
+    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called ""' // laws)
     call require(untouched(law), 'tribo_law_find: law')
     f = blank
     df_dv = blank
@@ -227,8 +232,10 @@ contains
     call make(c)
     call c%set_law(6, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'law = 6 is none of the 6 laws')
-    call c%set_law('Quinn', stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "Quinn"')
+    call c%set_law('Quin', stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "Quin"' // laws)
+    call c%set_law(repeat('x', 500), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "' // repeat('x', 40) // '"' // laws)
     call c%set_coupling(2, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
     call c%set_sharing(-1, stat, msg)
@@ -388,6 +395,15 @@ contains
     real(dp), parameter :: v(n) = [0.1_dp, 0.2_dp, 0.3_dp]
     real(dp) :: bad(n), x(n), y(n), z(n), w(n), q(n, n), p(n, n)
 
+    call c%create(n)
+    x = blank
+    call c%balance(v, v, f=x, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, &
+      'no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first')
+    call c%step_force(1.0_dp, v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, &
+      'no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first')
+    call require(all(untouched(x)), 'no operator: outputs')
     call make(c)
     bad = [0.0_dp, nan, 0.0_dp]
     x = blank

@@ -341,8 +341,12 @@ C     Every routine that takes a handle, with one that is none.
    20    FORMAT ('IH = ', I11,
      1           ' is no handle: it was never given, or has been delet',
      2           'ed')
+         IERR = 0
          CALL TRBMSG(IH, TEXT, IERR)
          CALL EXPECT('TRBMSG', IERR .EQ. 1)
+         IERR = 42
+         CALL TRBMSG(IH, TEXT, IERR)
+         CALL EXPECT('TRBMSG leaves IERR alone', IERR .EQ. 42)
          CALL SQUEEZ(SAYS)
          CALL EXPECT('text of no handle', TEXT .EQ. SAYS)
          CALL TRBCPY(IH, IH2, IERR)
@@ -514,6 +518,11 @@ C     Values
       CALL WANTED('TRBLIM', IH, IERR, 3, 'limit(3) = -1 is negative')
       CALL TRBLM1(IH, -2D0, IERR)
       CALL WANTED('TRBLM1', IH, IERR, 3, 'limit = -2 is negative')
+      CALL TRBMSG(IH, SAYS, IERR)
+      CALL EXPECT('TRBMSG leaves IERR alone', IERR .EQ. 3)
+      IERR = 0
+      CALL TRBMSG(IH, SAYS, IERR)
+      CALL EXPECT('TRBMSG after all', IERR .EQ. 0)
       CALL TRBEPS(IH, N, NEG, IERR)
       CALL WANTED('TRBEPS', IH, IERR, 4,
      1            'epsilon(3) = -1 is not positive')
@@ -528,7 +537,13 @@ C     Values
       CALL WANTED('TRBLAW', IH, IERR, 5, 'law = 6 is none of the 6 laws'
      1            )
       CALL TRBNAM(IH, 'quin', IERR)
-      CALL WANTED('TRBNAM', IH, IERR, 7, 'no law is called "quin"')
+      CALL WANTED('TRBNAM', IH, IERR, 7, 'no law is called "quin": th'//
+     1'ere are coulomb, velocity-limited, smooth, karnopp, quinn, quin'
+     2//'n-reversal')
+      CALL TRBNAM(IH, 'KARNOPP   ', IERR)
+      CALL TRBGLW(IH, J, IERR)
+      CALL EXPECT('upper case', IERR .EQ. 0 .AND. J .EQ. 3)
+      J = -777
       CALL TRBCPL(IH, 2, IERR)
       CALL WANTED('TRBCPL', IH, IERR, 5,
      1'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
@@ -595,6 +610,14 @@ C     Values
      1            'which = -1 is no real quantity')
       CALL TRBSTF(IH, N, 0D0, X, Y, IERR)
       CALL WANTED('TRBSTF', IH, IERR, 4, 'dt = 0 is not positive')
+      CALL TRBBAL(IH, N, X, X, Y, Z, IERR)
+      CALL WANTED('TRBBAL', IH, IERR, 8, 'no operator: call tribo_set'//
+     1'_operator_diagonal or another tribo_set_operator_... first')
+      CALL TRBSTP(IH, 1D0, 1D0, IERR)
+      CALL TRBGEP(IH, N, Y, IERR)
+      CALL WANTED('TRBGEP', IH, IERR, 8, 'no operator: call tribo_set'//
+     1'_operator_diagonal or another tribo_set_operator_... first')
+      CALL TRBOPD(IH, N, VAL, IERR)
       CALL TRBBOX(IH, N, X, VAL, X, Y, IERR)
       CALL WANTED('TRBBOX', IH, IERR, 5,
      1            'lower(1) = 1 is above upper(1) = 0')

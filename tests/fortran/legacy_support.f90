@@ -90,6 +90,7 @@ subroutine wanted(label, ih, ierr, icode, text)
   character(len=400) :: full
   integer :: idle
   external :: trbmsg
+  idle = 0
   call trbmsg(ih, found, idle)
   write (full, '(2a,i0,3a)') label, ': status ', ierr, ' "', trim(found), '"'
   call require(ierr == icode .and. found == text, trim(full))

@@ -395,11 +395,15 @@ contains
     call c%set_limit(0.25_dp)
     call b%get_limit(limit)
     call require(abs(limit(1) - 0.25_dp) <= 0, 'two names of one context')
+    call c%set_operator([2.0_dp], stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, &
+      'the operator is that of a tribo_system: set that of a copy (tribo_clone) instead')
     call b%destroy()
     call use_up(s)
     call c%get_limit(limit)
     call require(abs(limit(1) - 0.25_dp) <= 0, 'a borrowed context is not destroyed')
     copy = c
+    call copy%set_operator([2.0_dp])
     call c%set_limit(0.125_dp)
     call copy%get_limit(limit)
     call require(abs(limit(1) - 0.25_dp) <= 0, 'a copy of a borrowed context')

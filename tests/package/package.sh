@@ -34,6 +34,24 @@ consume() {
     done
 }
 
+# bits <folder> <cmake option>...: builds the core and the consumer bits.c without a warning; what that prints is in <folder>/bits.
+bits() {
+    folder=$1
+    shift
+    rm -rf "$folder"
+    "$CMAKE" -S "$here/consumer" -B "$folder" -DTRIBO_SOURCE="$ROOT" -DBUILD_SHARED_LIBS=ON -DCMAKE_BUILD_TYPE=Release \
+        -DTRIBO_WERROR=ON -DCONSUMERS="bits.c C tribo" "$@"
+    "$CMAKE" --build "$folder" --parallel 2
+    if [ -e "$folder/bits.c.run" ]; then
+        "$folder/bits.c.run" >"$folder/bits"
+    else
+        command -v wine || exit 77
+        export WINEPATH="$folder/tribo/src" WINEPREFIX="$folder/wine" WINEDEBUG=-all
+        wine "$folder/bits.c.run.exe" | tr -d '\r' >"$folder/bits"
+    fi
+    [ -s "$folder/bits" ]
+}
+
 # compile <source> <language> <output> <flag>...: strictly, since headers must not bring warnings into other people's code.
 compile() {
     source=$here/consumer/$1 language=$2 output=$3
@@ -44,6 +62,63 @@ compile() {
     CXX) "${CXX:-c++}" -std=c++98 $strict "$source" -o "$output" "$@" ;;
     Fortran) "$FC" $strict "$source" -o "$output" "$@" ;;
     esac
+}
+
+# page <page>: writes its programs, a block in C to user.c, one in Fortran to user.f if it begins in column 7, else to user.f90;
+# its CMake to user.cmake, and its lines for the shell to lines.
+page() {
+    awk 'BEGIN { name["c"] = "user.c"; name["cmake"] = "user.cmake"; name["sh"] = "lines" }
+         /^```/ { kind = substr($0, 4); on = !on; first = on; next }
+         first { file = kind != "fortran" ? name[kind] : /^      / ? "user.f" : "user.f90"; first = 0
+                 if (file && !(file in seen)) printf "" > file
+                 seen[file] = 1 }
+         on && file { print > file }' "$ROOT/$1"
+}
+
+# line <file> <beginning>: runs the one line of the file that begins so, as it stands there.
+line() {
+    [ "$(grep -c -e "^$2" "$1")" = 1 ] || {
+        say "not one line begins with: $2"
+        exit 1
+    }
+    eval "$(grep -e "^$2" "$1")"
+}
+
+# rests <command>...: the program's answer is that of the pages.
+rests() {
+    "$@" | tr -s ' ' >out
+    grep -q '^rests at -0\.0200 m, held by -2\.00[0-9] N$' out || {
+        cat out
+        say "the result is another one"
+        exit 1
+    }
+}
+
+# follow <folder>: compiles and runs the programs in README.md and fortran/README.md by the lines beside them, as they stand there but
+# for the folder that stands for any, and the version of the compiler.
+follow() {
+    modules=$(basename "$1"/include/tribo/gfortran-*[0-9])
+    for page in fortran/README.md README.md; do
+        page $page
+        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e '/^cc /p' -e '/^gfortran /p' lines >compile.lines
+        while read -r compile; do
+            rm -f a.out
+            eval "$compile"
+            rests ./a.out
+        done <compile.lines
+        [ "$(wc -l <compile.lines)" -ge 3 ] || {
+            say "$page: too few lines compile something"
+            exit 1
+        }
+    done
+    printf '%s\n' 'cmake_minimum_required(VERSION 3.22)' 'project(user C Fortran)' 'add_executable(user user.c)' >CMakeLists.user
+    rm -rf user
+    mkdir user
+    cat CMakeLists.user user.cmake >user/CMakeLists.txt
+    cp user.c user
+    "$CMAKE" -S user -B user/build
+    "$CMAKE" --build user/build
+    rests user/build/user
 }
 
 case $step in
@@ -69,39 +144,41 @@ pkgconfig) # <source> <language> <component>
     "$program"
     ;;
 
-pages) # The programs in README.md and fortran/README.md, compiled by the lines beside them as they stand there. Only the
-    # folder is found by the environment, as if it were one that compilers know.
-    export LIBRARY_PATH="$WORK/elsewhere/lib" LD_LIBRARY_PATH="$WORK/elsewhere/lib"
-    export PKG_CONFIG_PATH="$WORK/elsewhere/lib/pkgconfig"
-    rm -rf "$WORK/pages"
-    mkdir -p "$WORK/pages"
-    cd "$WORK/pages"
-    modules=$(basename "$WORK"/elsewhere/include/tribo/gfortran-*[0-9])
-    for page in fortran/README.md README.md; do
-        # A block in C is user.c; one in Fortran is user.f if it begins in column 7, else user.f90.
-        awk '/^```/ { kind = on ? "" : substr($0, 4); on = !on; first = 1; next }
-             first { file = kind == "c" ? "user.c" : kind != "fortran" ? "" : /^      / ? "user.f" : "user.f90"; first = 0
-                     if (file) printf "" > file }
-             on && file { print > file }' "$ROOT/$page"
-        awk '/^```/ { on = $0 == "```sh"; next } on && /^(cc|gfortran) /' "$ROOT/$page" |
-            sed -e "s,/opt/tribo,$WORK/elsewhere,g" -e "s,tribo/gfortran-12,tribo/$modules,g" >lines
-        count=0
-        while read -r line; do
-            rm -f a.out
-            eval "$line"
-            ./a.out | tr -s ' ' >out
-            grep -q '^rests at -0\.0200 m, held by -2\.00[0-9] N$' out || {
-                cat out
-                say "$page: $line: the result is another one"
-                exit 1
-            }
-            count=$((count + 1))
-        done <lines
-        [ $count -ge 3 ] || {
-            say "$page: only $count compile lines were found"
-            exit 1
-        }
+pages) # usual | elsewhere: installs as README.md says, into /usr/local as root or elsewhere, and follows the pages. The rest of the
+    # environment is bare, as a newcomer's.
+    mkdir -p "$WORK/clone"
+    cd "$WORK/clone"
+    for entry in "$ROOT"/*; do
+        [ "${entry##*/}" = build ] || ln -sfn "$entry" .
     done
+    page README.md
+    grep '^cmake' lines >install.lines
+    CMAKE_BUILD_PARALLEL_LEVEL=2 line install.lines 'cmake -S'
+    case $1 in
+    usual)
+        unshare --map-root-user --mount true || exit 77
+        unshare --map-root-user --mount sh "$0" root
+        ;;
+    elsewhere)
+        export HOME="$WORK/home"
+        line install.lines 'cmake --install build --prefix'
+        line lines export
+        follow "$HOME/tribo"
+        ;;
+    esac
+    ;;
+
+root) # The part of "pages usual" that is root's: in a name space of its own, where what it writes vanishes with it.
+    cd "$WORK/clone"
+    mkdir -p layers
+    mount -t tmpfs tmpfs layers || exit 77
+    for folder in /usr/local /opt /etc /var/cache; do
+        mkdir -p "layers$folder/upper" "layers$folder/work"
+        mount -t overlay overlay -o "lowerdir=$folder,upperdir=layers$folder/upper,workdir=layers$folder/work" $folder || exit 77
+    done
+    line install.lines 'cmake --install build &&'
+    "$CMAKE" --install build --prefix /opt/tribo >/dev/null # as the page for Fortran has it
+    follow /opt/tribo
     ;;
 
 subdirectory) # <cmake option>... <consumer>...
@@ -114,6 +191,21 @@ subdirectory) # <cmake option>... <consumer>...
         esac
     done
     consume subdirectory -DTRIBO_SOURCE="$ROOT" -DCONSUMERS="${consumers#;}" "$@"
+    ;;
+
+foreign) # "<compiler> <flag>..." <cmake option>...: the core for another machine or C library gives the same bits as here. Skipped
+    # where the compiler, or what runs its programs, is missing.
+    compiler=${1%% *} flags=${1#"${1%% *}"}
+    shift
+    mkdir -p "$WORK"
+    echo 'int main(void) { return 0; }' >"$WORK/probe.c"
+    $compiler $flags "$WORK/probe.c" -o "$WORK/probe" || exit 77
+    bits "$WORK/here"
+    bits "$WORK/there" -DCMAKE_C_COMPILER="$compiler" -DCMAKE_C_FLAGS="$flags" "$@"
+    cmp "$WORK/here/bits" "$WORK/there/bits" || {
+        say "the results differ"
+        exit 1
+    }
     ;;
 
 refused) # <name> <message> -S <folder> <cmake option>...

@@ -1,4 +1,6 @@
 /* Forces of coupled contacts: the consistent balance, the paper's partition, and the step force, against their equations. */
+#include <string.h>
+
 #include "problem.h"
 
 /* Forces found, with what comes along. */
@@ -455,12 +457,13 @@ TEST(modes)
 /* The smooth law never reaches its limit; where it gives less than N tanh(1) the contact counts as stuck. */
 TEST(modes_of_the_smooth_law)
 {
-    const double v[] = {0.5, -0.99, 1.01, -7.0}, rest[] = {0.0, 0.0, 0.0, 0.0};
+    const double v[] = {0.5, -0.99, 1.01, -7.0}, rest[] = {0.0, 0.0, 0.0, 0.0}, unit[] = {1.0, 1.0, 1.0, 1.0};
     const signed char want[] = {0, 0, 1, -1};
     signed char mode[4];
     tribo_context *c;
     assert_ok(tribo_create(&c, 4));
     assert_ok(tribo_set_law(c, TRIBO_SMOOTH));
+    assert_ok(tribo_set_operator_diagonal(c, unit));
     assert_ok(tribo_set_limit_all(c, 2.0));
     assert_ok(tribo_set_epsilon_all(c, 1.0));
     assert_ok(tribo_balance(c, v, rest, NULL, NULL));
@@ -562,9 +565,77 @@ TEST(rates)
     tribo_destroy(c);
 }
 
+/* Operators of the belt of the paper, of stacks of bodies, and of bodies that many contacts join, all of full rank; and how close
+ * to the edge of stability the largest step is. */
+static struct problem scene_of(int which, double *tight)
+{
+    const size_t sizes[] = {2, 2, 3, 6, 24, 7};
+    struct problem p = {.n = sizes[which]};
+    *tight = which < 2 ? 1.001 : which < 5 ? 1.03 : 1.1;
+    for (size_t i = 0; i < p.n; i++) {
+        p.limit[i] = p.epsilon[i] = 1.0;
+        p.r[i * p.n + i] = which == 1 ? 1.0 + 0.5 * (double)i : i ? 2.0 : 1.0;
+        for (size_t j = 0; j < i; j++) {
+            const double all = which == 5 ? 0.4 + 0.01 * (double)(i * j % 7) : 0.0;
+            p.r[i * p.n + j] = p.r[j * p.n + i] = which < 5 && j + 1 == i ? -1.0 : all;
+        }
+    }
+    return p;
+}
+
+/* Largest |v| after many steps of rk4 from random velocities in the band; nothing else pulls. */
+static double after_steps(struct random *g, tribo_context *c, const struct problem *p, double dt)
+{
+    static const double part[4] = {0.0, 0.5, 0.5, 1.0}, weight[4] = {1.0, 2.0, 2.0, 1.0};
+    double v[LARGEST], at[LARGEST], f[LARGEST], rate[LARGEST], sum[LARGEST], most = 0.0;
+    for (size_t i = 0; i < p->n; i++) {
+        v[i] = uniform(g, -0.3, 0.3);
+    }
+    for (int step = 0; step < 4000; step++) {
+        memset(sum, 0, sizeof sum);
+        for (size_t stage = 0; stage < 4; stage++) {
+            for (size_t i = 0; i < p->n; i++) {
+                at[i] = v[i] + (stage ? part[stage] * dt * rate[i] : 0.0);
+            }
+            assert_ok(tribo_balance(c, at, p->a, NULL, f));
+            for (size_t i = 0; i < p->n; i++) {
+                rate[i] = (double)acceleration(p, i, f);
+                sum[i] += weight[stage] * rate[i];
+            }
+        }
+        for (size_t i = 0; i < p->n; i++) {
+            v[i] += dt / 6.0 * sum[i];
+        }
+    }
+    for (size_t i = 0; i < p->n; i++) {
+        most = fmax(most, fabs(v[i]));
+    }
+    return most;
+}
+
+/* The largest step is one at which contacts come to rest, and not much too small. */
+TEST(largest_steps)
+{
+    const int laws[] = {TRIBO_QUINN, TRIBO_QUINN, TRIBO_VELOCITY_LIMITED, TRIBO_SMOOTH};
+    struct random g = random_of(_i);
+    double tight;
+    const struct problem p = scene_of(_i / 4, &tight);
+    tribo_context *c = problem_context(&p, laws[_i % 4], _i % 4 == 1 ? TRIBO_PARTITION : TRIBO_CONSISTENT);
+    assert_ok(tribo_set_epsilon_step(c, 1.0, 1.0));
+    if (_i % 4 == 0) {
+        tight = 1.001;
+    }
+    const double dt = real_of(c, TRIBO_REAL_MAX_STEP), rest = after_steps(&g, c, &p, 0.99 * dt),
+                 moves = after_steps(&g, c, &p, 1.01 * tight * dt);
+    require(rest < 1e-3, "|v| is %g at %g", rest, 0.99 * dt);
+    require(moves > 1e-3, "|v| is %g at %g", moves, 1.01 * tight * dt);
+    tribo_destroy(c);
+}
+
 TEST_MAIN("balance", {consistent_fixed_point, 300}, {consistent_extreme_scales, 60}, {consistent_after_other_problems, 60},
           {consistent_after_large_forces, 1}, {consistent_reversal, 100}, {laws_without_feq, 40}, {coulomb_at_rest, 200},
           {partition_equations, 100}, {partition_is_consistent_unsaturated, 40}, {partition_redundant_in_range, 1},
           {partition_redundant_outside, 1}, {partition_in_range_with_a_zero, 1}, {partition_random_in_range, 100},
           {partition_least_squares, 100}, {step_force, 150}, {step_force_uncoupled, 1}, {diagonal_never_solves, 24},
-          {immovable_contacts, 1}, {modes, 40}, {modes_of_the_smooth_law, 1}, {counts, 2}, {updates, 1}, {rates, 20})
+          {immovable_contacts, 1}, {modes, 40}, {modes_of_the_smooth_law, 1}, {counts, 2}, {updates, 1}, {rates, 20},
+          {largest_steps, 24})

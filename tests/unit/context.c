@@ -18,8 +18,7 @@ TEST(defaults)
     size_t n = 0;
     int law = -1, coupling = -1;
     double x[3];
-    const double zero[3] = {0}, epsilon[3] = {1e-6, 1e-6, 1e-6}, v[3] = {0}, a[3] = {1.0, -2.0, 3.0};
-    const double feq[3] = {-1.0, 2.0, -3.0};
+    const double zero[3] = {0}, epsilon[3] = {1e-6, 1e-6, 1e-6};
     assert_ok(tribo_get_ncontact(c, &n));
     assert_ok(tribo_get_law(c, &law));
     assert_ok(tribo_get_coupling(c, &coupling));
@@ -31,12 +30,95 @@ TEST(defaults)
     assert_all_exact(x, zero, 3);
     assert_ok(tribo_get_epsilon(c, x));
     assert_all_exact(x, epsilon, 3);
-    /* R is the identity: f_eq = -a */
-    assert_ok(tribo_set_limit_all(c, 9.0));
-    assert_ok(tribo_balance(c, v, a, x, NULL));
-    assert_all_exact(x, feq, 3);
     tribo_destroy(c);
     tribo_destroy(NULL);
+}
+
+/* Calls on c that need an operator, or an epsilon that follows one, write nothing and tell what is missing. */
+static void check_missing(tribo_context *c, int epsilon)
+{
+    const double v[2] = {0}, a[2] = {1.0, -2.0};
+    double f[2], square[4];
+    stain(f, sizeof f);
+    for (int call = 0; call < (epsilon ? 4 : 6); call++) {
+        tribo_set_message(c, 0, "-");
+        const int status = epsilon ? (call == 0   ? tribo_get_epsilon(c, f)
+                                      : call == 1 ? tribo_force(c, v, a, f)
+                                      : call == 2 ? tribo_force_tangent(c, v, a, f, NULL, NULL, NULL)
+                                                  : tribo_accept(c, v, a))
+                                   : (call == 0   ? tribo_balance(c, v, a, NULL, f)
+                                      : call == 1 ? tribo_balance_tangent(c, v, a, f, f, square, square)
+                                      : call == 2 ? tribo_step_force(c, 0.1, a, f)
+                                      : call == 3 ? tribo_solve_box(c, a, v, v, f)
+                                      : call == 4 ? tribo_get_real(c, TRIBO_REAL_MAX_RATE, f)
+                                                  : tribo_get_real(c, TRIBO_REAL_MAX_STEP, f));
+        require(status == TRIBO_ERR_STATE, "call %d: %d", call, status);
+        assert_says(tribo_message(c), "no operator: call tribo_set_operator_diagonal");
+    }
+    ck_assert(stained(f, sizeof f));
+}
+
+/* There is no operator before one is set: what needs none works, what needs one says so, in a copy too. */
+TEST(no_operator)
+{
+    const double r[2] = {0.5, 2.0}, v[2] = {0}, a[2] = {1.0, -2.0}, want[2] = {-2.0, 1.0}, width[2] = {0.09, 0.36};
+    double f[2];
+    tribo_context *c = create(2), *copy;
+    assert_ok(tribo_set_limit_all(c, 9.0));
+    assert_ok(tribo_set_law(c, TRIBO_QUINN_REVERSAL));
+    check_missing(c, 0);
+    assert_ok(tribo_force(c, v, a, f));
+    assert_all_exact(f, a, 2);
+    assert_ok(tribo_accept(c, v, a));
+    assert_ok(tribo_get_real(c, TRIBO_REAL_RESIDUAL, f));
+    ck_assert_uint_eq(count_of(c, TRIBO_COUNT_ISLANDS), 0);
+    assert_ok(tribo_set_epsilon_step(c, 0.01, 1.0));
+    check_missing(c, 1);
+    assert_ok(tribo_clone(c, &copy));
+    check_missing(copy, 0);
+    check_missing(copy, 1);
+    for (int which = 0; which < 2; which++) { /* epsilon follows once there is something to follow */
+        tribo_context *d = which ? copy : c;
+        assert_ok(tribo_set_operator_diagonal(d, r));
+        assert_ok(tribo_get_epsilon(d, f));
+        assert_all_close(f, width, 2, DBL_EPSILON);
+        assert_ok(tribo_balance(d, v, a, NULL, f));
+        assert_all_exact(f, want, 2);
+        tribo_destroy(d);
+    }
+}
+
+/* An operator that belongs to someone else stays; that of a copy is the caller's. */
+TEST(owned_operator)
+{
+    const double r[1] = {0.5}, other[1] = {2.0}, v[1] = {0}, a[1] = {1.0};
+    const size_t rowptr[2] = {0, 1}, col[1] = {0};
+    tribo_context *c = create(1), *copy;
+    double f;
+    assert_status(tribo_set_owner(NULL, "a system"), TRIBO_ERR_NULL);
+    assert_ok(tribo_set_limit_all(c, 9.0));
+    assert_ok(tribo_set_operator_diagonal(c, r));
+    assert_ok(tribo_set_owner(c, "a system"));
+    const int statuses[] = {tribo_set_operator_diagonal(c, other), tribo_set_operator_dense(c, other),
+                            tribo_set_operator_csr(c, rowptr, col, other),
+                            tribo_set_operator_mass(c, 1, other, rowptr, col, other),
+                            tribo_set_operator_callback(c, 1, NULL, NULL, rowptr, col, other)};
+    for (size_t k = 0; k < COUNT(statuses); k++) {
+        ck_assert_int_eq(statuses[k], TRIBO_ERR_UNSUPPORTED);
+    }
+    assert_says(tribo_message(c), "the operator is that of a system");
+    assert_says(tribo_message(c), "tribo_clone");
+    assert_ok(tribo_balance(c, v, a, NULL, &f));
+    assert_exact(f, -2.0);
+    assert_ok(tribo_clone(c, &copy));
+    for (int which = 0; which < 2; which++) {
+        tribo_context *d = which ? c : copy;
+        assert_ok(which ? tribo_set_owner(c, NULL) : TRIBO_OK);
+        assert_ok(tribo_set_operator_diagonal(d, other));
+        assert_ok(tribo_balance(d, v, a, NULL, &f));
+        assert_exact(f, -0.5);
+        tribo_destroy(d);
+    }
 }
 
 TEST(settings)
@@ -111,8 +193,9 @@ TEST(epsilon_step_without_division)
 {
     tribo_context *c = create(3);
     const double limit[3] = {1.0, 1e-300, 0.0}, v[3] = {0.002, 0.0, 0.0}, feq[3] = {0.5, 1e-301, 5.0};
-    const double want[3] = {0.3, 1e-301, 0.0};
+    const double want[3] = {0.3, 1e-301, 0.0}, unit[3] = {1.0, 1.0, 1.0};
     double f[3];
+    assert_ok(tribo_set_operator_diagonal(c, unit));
     assert_ok(tribo_set_epsilon_step(c, 0.01, 1.0));
     assert_ok(tribo_set_limit(c, limit));
     assert_ok(tribo_force(c, v, feq, f));
@@ -124,14 +207,12 @@ TEST(epsilon_step_without_division)
 TEST(open_contacts)
 {
     struct random g = random_of(_i);
-    const double coupled[4] = {2.0, 1.0, 1.0, 2.0}, limit[2] = {0.0, 1.0};
+    const double coupled[4] = {2.0, 1.0, 1.0, 2.0}, alone[2] = {1.0, 1.0}, limit[2] = {0.0, 1.0};
     tribo_context *c = create(2);
     assert_ok(tribo_set_law(c, _i % 6));
     assert_ok(tribo_set_coupling(c, _i / 6 % 2));
     assert_ok(tribo_set_limit(c, limit));
-    if (_i / 12) {
-        assert_ok(tribo_set_operator_dense(c, coupled));
-    }
+    assert_ok(_i / 12 ? tribo_set_operator_dense(c, coupled) : tribo_set_operator_diagonal(c, alone));
     for (int k = 0; k < 50; k++) {
         const double v[2] = {uniform(&g, -1e-6, 1e-6) * (double)(k % 2), 0.0}, a[2] = {uniform(&g, -9, 9), 0.25};
         double feq[2], f[2];
@@ -173,6 +254,8 @@ TEST(no_contacts)
     tribo_context *c = create(0), *copy = NULL;
     const size_t rowptr[1] = {0};
     size_t n = 9;
+    assert_ok(tribo_balance(c, NULL, NULL, NULL, NULL)); /* nor an operator */
+    assert_ok(tribo_step_force(c, 0.1, NULL, NULL));
     assert_ok(tribo_set_limit(c, NULL));
     assert_ok(tribo_set_epsilon(c, NULL));
     assert_ok(tribo_set_epsilon_step(c, 0.1, 1.0));
@@ -337,6 +420,7 @@ TEST(texts_of_statuses)
     for (size_t i = 0; i < COUNT(odd); i++) {
         ck_assert_str_eq(tribo_strerror(odd[i]), unknown);
     }
+    assert_says(tribo_strerror(TRIBO_ERR_CHATTER), "central/fixed");
     for (int status = -300; status < 300; status++) {
         require(strlen(tribo_strerror(status)) > 3, "status %d", status);
     }
@@ -401,6 +485,6 @@ TEST(revisions)
     tribo_destroy(c);
 }
 
-TEST_MAIN("context", {defaults, 1}, {settings, 1}, {epsilon_step, 1}, {epsilon_step_without_division, 1}, {open_contacts, 24},
-          {opening_contacts, 1}, {no_contacts, 1}, {no_feq, 2}, {clones, 1}, {versions, 1}, {texts_of_statuses, 1}, {messages, 1},
-          {revisions, 1})
+TEST_MAIN("context", {defaults, 1}, {no_operator, 1}, {owned_operator, 1}, {settings, 1}, {epsilon_step, 1},
+          {epsilon_step_without_division, 1}, {open_contacts, 24}, {opening_contacts, 1}, {no_contacts, 1}, {no_feq, 2},
+          {clones, 1}, {versions, 1}, {texts_of_statuses, 1}, {messages, 1}, {revisions, 1})

@@ -377,6 +377,57 @@ TEST(extreme_limits_and_masses)
     tribo_destroy(c);
 }
 
+/* A limit that no force comes near, as for contacts that are never to slide, changes nothing, however large it is; nor does it
+ * matter that the contacts slid before it was set. */
+TEST(limits_that_are_never_reached)
+{
+    const double far[] = {1e6, 1e12, 1e30, 1e31, 1e100, 1e299, 1e300, DBL_MAX};
+    struct random g = random_of(_i);
+    const struct recipe recipe = recipe_regular(&g, 12);
+    struct problem p = problem_create(&g, &recipe);
+    double slides[LARGEST], want[LARGEST], feq[LARGEST], f[LARGEST];
+    for (size_t i = 0; i < p.n; i++) {
+        p.v[i] = 0.0;
+        slides[i] = 9.0 * p.a[i];
+        p.limit[i] = 1.0;
+    }
+    for (size_t k = 0; k < COUNT(far); k++) {
+        tribo_context *c = problem_context(&p, TRIBO_QUINN, _i % 2);
+        assert_ok(tribo_step_force(c, 1e-3, slides, f));
+        assert_ok(tribo_balance(c, p.v, slides, NULL, f));
+        assert_ok(tribo_set_limit_all(c, far[k]));
+        for (int call = 0; call < 3; call++) {
+            assert_ok(call == 1 ? tribo_step_force(c, 1.0, p.a, f) : tribo_balance(c, p.v, p.a, feq, f));
+            for (size_t i = 0; i < p.n; i++) {
+                assert_close((double)acceleration(&p, i, f), 0.0, 8.0 * p.r[i * p.n + i] * balancing_noise(&p, i, f));
+            }
+            assert_all_close(f, k + (size_t)call > 0 ? want : f, p.n, 1e-9);
+            memcpy(want, f, sizeof want);
+        }
+        tribo_destroy(c);
+    }
+}
+
+/* Nor does it hide that nothing balances what redundant contacts are asked for. */
+TEST(far_limits_of_redundant_contacts)
+{
+    const double far[] = {1.0, 1e6, 1e12, 1e30, 1e300, DBL_MAX}, r[] = {2.0, 2.0, 2.0, 2.0}, rest[] = {0.0, 0.0};
+    const double together[] = {0.5, 0.5}, apart[] = {0.5, 0.6};
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_coupling(c, TRIBO_PARTITION));
+    for (size_t k = 0; k < COUNT(far); k++) {
+        double f[2];
+        assert_ok(tribo_set_limit_all(c, far[k]));
+        assert_ok(tribo_balance(c, rest, together, NULL, f));
+        assert_close(f[0], -0.125, 1e-15);
+        assert_close(f[1], -0.125, 1e-15);
+        assert_status(tribo_balance(c, rest, apart, NULL, f), TRIBO_ERR_INCONSISTENT);
+    }
+    tribo_destroy(c);
+}
+
 /* R = V diag(1 ... 1e-14) V' with V a reflection. The residual is still rounding. */
 TEST(ill_conditioned)
 {
@@ -1020,8 +1071,8 @@ TEST(product_of_tangents)
 
 TEST_MAIN("coupled", {gauss_seidel_agrees, 60}, {fixed_point_after_many_changes, 60}, {identical_contacts_share, 100},
           {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {one_after_the_other, 300},
-          {extreme_limits_and_masses, 200}, {ill_conditioned, 60}, {one_change_is_one_update, 4}, {mostly_sliding, 24},
-          {sleeping_islands, 2}, {sliding_singles, 6}, {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3},
-          {outside_the_range_and_sparse, 1}, {shares_after_sliding, 1}, {beyond_all_numbers, 2},
-          {first_call_of_a_sparse_group, 1}, {tangents_of_open_contacts, 1}, {consistent_mass, 40}, {callback_fails, 1},
-          {product_of_tangents, 120})
+          {limits_that_are_never_reached, 20}, {far_limits_of_redundant_contacts, 1}, {extreme_limits_and_masses, 200},
+          {ill_conditioned, 60}, {one_change_is_one_update, 4}, {mostly_sliding, 24}, {sleeping_islands, 2}, {sliding_singles, 6},
+          {long_chain, 2}, {redundant_and_sparse, 2}, {sparse_clone, 3}, {outside_the_range_and_sparse, 1},
+          {shares_after_sliding, 1}, {beyond_all_numbers, 2}, {first_call_of_a_sparse_group, 1}, {tangents_of_open_contacts, 1},
+          {consistent_mass, 40}, {callback_fails, 1}, {product_of_tangents, 120})

@@ -103,6 +103,7 @@ TEST(no_context)
         tribo_set_epsilon_all(null, 1.0),
         tribo_set_epsilon_step(null, 1.0, 1.0),
         tribo_get_epsilon(null, out.f),
+        tribo_set_owner(null, "nobody"),
         tribo_set_operator_diagonal(null, good),
         tribo_set_operator_dense(null, good),
         tribo_set_operator_csr(null, rowptr, rowptr, good),

@@ -5,6 +5,9 @@
 
 #define STEP 1e-6
 
+/* Three values. */
+#define THREE(x, y, z) ((const double[]){x, y, z})
+
 struct tangent {
     double f[LARGEST], dv[LARGEST * LARGEST], da[LARGEST * LARGEST];
 };
@@ -143,4 +146,30 @@ TEST(uncoupled)
     tribo_destroy(c);
 }
 
-TEST_MAIN("tangents", {tangents, 24}, {optional_outputs, 6}, {uncoupled, 60})
+/* Where friction moves nothing its force jumps as a changes its sign, and has no derivative but by v. */
+TEST(immovable)
+{
+    const double r[] = {2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}, none[] = {0.0, 0.0, 0.0}, da[] = {1.0, 1e10, -1.0};
+    for (int law = 0; law < tribo_law_count(); law++) {
+        double f[3], dv[9], by_a[9];
+        tribo_context *c;
+        assert_ok(tribo_create(&c, 3));
+        assert_ok(tribo_set_law(c, law));
+        assert_ok(tribo_set_limit_all(c, 1.0));
+        assert_ok(_i ? tribo_set_operator_diagonal(c, THREE(2.0, 0.0, 1.0)) : tribo_set_operator_dense(c, r));
+        assert_ok(tribo_balance_tangent(c, none, none, NULL, f, dv, by_a));
+        assert_exact(f[1], 0.0);
+        for (size_t k = 0; k < 3; k++) {
+            assert_exact(by_a[3 + k], 0.0);
+            assert_exact(by_a[3 * k + 1], 0.0);
+            assert_exact(dv[3 * k + 1], k == 1 ? dv[4] : 0.0);
+        }
+        assert_ok(tribo_tangent_product(c, NULL, da, f));
+        assert_exact(f[1], 0.0);
+        assert_exact(f[0], by_a[0]);
+        assert_exact(f[2], -by_a[8]);
+        tribo_destroy(c);
+    }
+}
+
+TEST_MAIN("tangents", {tangents, 24}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2})

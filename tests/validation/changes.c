@@ -92,6 +92,11 @@ static int possible(const char *method, size_t change)
     return strcmp(method, "exact") || (!strstr(changes[change].name, "table") && changes[change].before == nothing);
 }
 
+static int chooses_steps(const char *method)
+{
+    return !strchr(method, '/') && strcmp(method, "exact") && strcmp(method, "event") && strcmp(method, "auto");
+}
+
 static tribo_driver *start(const char *method, tribo_system *sys)
 {
     tribo_driver *drv = driver_create(sys, method, 0.02, 1e-6);
@@ -127,8 +132,8 @@ TEST(like_a_new_driver)
         tribo_driver *other = start(method, sys[1]);
         t[1] = CHANGE;
         driver_advance(other, &t[1], END, y[1]);
-        /* Newton's method ends where it may */
-        const double tolerance = strstr(method, "imp") || strstr(method, "bdf") ? 1e-7 : 1e-11;
+        /* what the context remembers decides about last bits, and these now and then about an adaptive step */
+        const double tolerance = chooses_steps(method) ? 1e-7 : 1e-11;
         const char *off = differences(changes[k].name, y[0], y[1], dimension, tolerance);
         require(!off, "%s: %s", method, off);
         tribo_driver_destroy(drv);

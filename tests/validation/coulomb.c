@@ -36,7 +36,8 @@ static tribo_system *fig_11(void)
     return sys;
 }
 
-/* design/equations.md; the fourth is explained in reference.c. 15 - sqrt(205) and -3/4 are where the free oscillator rests. */
+/* From two event-driven integrations that agree, of order 8, with tolerances of 1e-13; the third: see reference.c. 15 - sqrt(205)
+ * and -3/4 are where the free oscillator rests. */
 const struct reference references[REFERENCES] = {
     {"oscillator 7a", fig_7a, {0.0, 0.0}, 49.0 * 4.0 * PI, 50.0 * 4.0 * PI, {7.18924625072}, 1},
     {"oscillator 7b", fig_7b, {0.0, 0.0}, 49.0 * PI, 50.0 * PI, {1.763834207376}, 1},

@@ -1,5 +1,5 @@
-/* The printed and reference values of Quinn (2004) and of design/equations.md, with rk4 in fixed steps, and how fast they are
- * met. The reference values are those of an event-driven integration, eps = 0; errors seen in an independent implementation stand
+/* The printed values of Quinn (2004), and reference values, with rk4 in fixed steps, and how fast they are met. The reference
+ * values are those of an event-driven integration, eps = 0; errors seen in an independent implementation stand
  * beside them, to two digits: hence the 1.05. */
 #include <stdlib.h>
 
@@ -72,8 +72,8 @@ static double error_of(int law, double alpha, double omega, double x0, double dt
     return fabs(dissipation(oscillator(law, alpha, omega), omega, cycles, x0, dt, width) / want - 1.0);
 }
 
-/* The table of equations.md, Quinn -> with the memory bit. The reference value of the third line, D of cycle 20, was computed in
- * 40 digits from the closed form of the motion between events; the others of that program agree with equations.md. */
+/* Errors of Quinn's law, and with the memory bit. The reference value of the third line, D of cycle 20, is computed in 40 digits
+ * from the closed form of the motion between events; the others of that program agree with the event-driven integration. */
 static const struct {
     double alpha, omega, x0, width, want, quinn[3], reversal[3];
 } reversals[] = {

@@ -25,7 +25,7 @@ TEST(orders)
             error[0], error[COUNT(dt) - 1]);
 }
 
-/* What design/equations.md saw with other codes, to two digits; the first lines are settings for errors of 1e-4. */
+/* Errors seen with other codes, to two digits; the first lines are settings for errors of 1e-4. */
 static const struct {
     int reference, method;
     double dt, error;

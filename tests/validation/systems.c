@@ -1,4 +1,4 @@
-/* The reference systems' equations of motion, as equations.md writes them; sizes, and errors of everything about systems. */
+/* The reference systems' equations of motion, as the paper writes them; sizes, and errors of everything about systems. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,7 +90,8 @@ TEST(chain_equations)
     tribo_system_destroy(sys);
 }
 
-/* Eq. 7: v = (x1' - U, x2' - x1'), and R and a as in equations.md give f_eq of the partition where both are near stick. */
+/* Eq. 7: v = (x1' - U, x2' - x1'), and R = [[1, -1], [-1, 2]] and a = (-x1 - U', x1 - kappa x2) give f_eq of the partition where
+ * both are near stick. */
 TEST(belt_equations)
 {
     struct random g = random_of(_i);
@@ -269,6 +270,27 @@ TEST(state_errors)
     tribo_system_destroy(sys);
 }
 
+/* The operator of a system's context is the system's; that of a copy is not. */
+TEST(operator_of_a_system)
+{
+    const double twice = 2.0, y[3] = {0.1, 0.0, 0.0}, v = 0.0, a = -0.1;
+    double before, after;
+    tribo_system *sys = oscillator(TRIBO_QUINN, 0.0, 1.0);
+    tribo_context *copy;
+    assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, &before));
+    REFUSED(TRIBO_ERR_UNSUPPORTED, "the operator is that of a tribo_system",
+            tribo_set_operator_diagonal(tribo_system_context(sys), &twice));
+    assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, &after));
+    assert_exact(after, before);
+    assert_exact(after, 0.1);
+    assert_ok(tribo_clone(tribo_system_context(sys), &copy));
+    assert_ok(tribo_set_operator_diagonal(copy, &twice));
+    assert_ok(tribo_balance(copy, &v, &a, NULL, &after));
+    assert_exact(after, 0.05);
+    tribo_destroy(copy);
+    tribo_system_destroy(sys);
+}
+
 /* What only reduced systems have. */
 TEST(unreduced)
 {
@@ -299,5 +321,5 @@ TEST(reduced)
 }
 
 TEST_MAIN("systems", {oscillator_equations, 2}, {chain_equations, 2}, {belt_equations, 2}, {long_chain, 1}, {sizes, 1},
-          {acceptance, 1}, {creation_errors, 1}, {load_errors, 1}, {loads_add_up, 2}, {state_errors, 1}, {unreduced, 1},
-          {reduced, 1})
+          {acceptance, 1}, {creation_errors, 1}, {load_errors, 1}, {loads_add_up, 2}, {state_errors, 1},
+          {operator_of_a_system, 1}, {unreduced, 1}, {reduced, 1})

@@ -1,4 +1,4 @@
-#include "roots.h"
+#include "quintic.h"
 #include "../real.h"
 
 #include <math.h>
@@ -15,19 +15,19 @@ static void bernstein(const struct sample *a, const struct sample *b, double h, 
 }
 
 /* The function differs from the quintic by at most bend h^6/6! s^3 (1-s)^3, which in Bernstein's basis of degree 6 is the middle
- * element alone, 20 s^3 (1-s)^3: raised to that degree, the quintic needs coefficients that are positive, the middle one by this
- * much. */
-int tribo_positive(const struct sample *a, const struct sample *b, double h, double bend, double noise)
+ * element alone, 20 s^3 (1-s)^3. So the least of the coefficients of the quintic, raised to that degree, with the middle one less
+ * by this much, is a lower bound. */
+double tribo_quintic_least(const struct sample *a, const struct sample *b, double h, double bend)
 {
     double c[6];
     bernstein(a, b, h, c);
     const double h_3 = h * h * h, doubt = bend * h_3 * h_3 / 14400.0;
-    const double low =
+    const double least =
         lesser(lesser(c[0] + 5.0 * c[1], 2.0 * c[1] + 4.0 * c[2]), lesser(4.0 * c[3] + 2.0 * c[4], 5.0 * c[4] + c[5])) / 6.0;
-    return lesser(lesser(low, lesser(c[0], c[5])), 0.5 * (c[2] + c[3]) - doubt) >= -noise;
+    return lesser(lesser(least, lesser(c[0], c[5])), 0.5 * (c[2] + c[3]) - doubt);
 }
 
-double tribo_root_guess(const struct sample *a, const struct sample *b, double h)
+double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
 {
     const double d = h * a->d, e = h * h * a->e;
     const double rise = b->g - a->g - d - 0.5 * e, tilt = h * b->d - d - e, curve = h * h * b->e - e;

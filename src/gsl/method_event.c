@@ -4,26 +4,25 @@
  *
  * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can
  * have, what the series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials
- * cannot skip a zero (roots.h). */
+ * cannot skip a zero (first_zero.h). */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "driver.h"
-#include "modes.h"
-#include "search.h"
+#include "events.h"
 #include "../real.h"
 #include "../simd.h"
 
 struct event {
+    tribo_driver *drv;
     tribo_system *sys;
-    struct modes modes;
-    struct search search;
+    struct events events;
     size_t order;
     double tolerance; /* relative */
     double fastest;   /* bound on the frequencies of the motion */
     size_t revision;
-    double tau;            /* where look() was */
+    double tau, length;    /* where go() was; that of the step, and what bounds hold for */
     double *q, *u;         /* [order + 1][ndof] coefficients of the powers of time */
     double *watch;         /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
     double *d;             /* [order + 1] dissipated energy */
@@ -63,19 +62,22 @@ static void add_harmonics(const struct event *e, int moves_base, size_t k, doubl
     }
 }
 
-/* The k-th coefficient of f for the contacts that do not hold: sliding ones follow their limit, others keep their force. */
+/* The k-th coefficient of f for the contacts that do not hold: those that slide follow their limit, and so do those that are just
+ * at it; others keep their force. */
 static void given_forces(struct event *e, size_t k)
 {
-    const struct modes *m = &e->modes;
+    const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        const double limit = k == 0 ? m->limit[i] : m->limit_rate[i], kept = k == 0 && !m->holds[i] ? m->force[i] : 0.0;
-        e->given[i] = m->mode[i] == 0 ? kept : m->mode[i] == 2 ? 0.0 : -m->mode[i] * limit;
+        const double limit = k == 0 ? m->limit[i] : m->limit_rate[i];
+        const double kept = k == 0 ? m->force[i] : m->tied[i] ? (m->force[i] > 0.0 ? limit : -limit) : 0.0;
+        e->given[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? kept : -m->slip[i] * limit;
     }
 }
 
 /* The k-th coefficients of accelerations and of what is watched. Returns a status. */
 static int expand_forces(struct event *e, size_t k)
 {
+    const struct stick_slip *m = &e->events.stick_slip;
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     const double *q = e->q + k * n, *u = e->u + k * n;
@@ -97,20 +99,21 @@ static int expand_forces(struct event *e, size_t k)
         e->a[i] = -e->base[i];
     }
     tribo_matrix_multiply_add(&sys->direction, 1.0, acc, e->a);
-    const int status = tribo_modes_balance(&e->modes, e->a, e->held);
+    const int status = tribo_stick_slip_balance(&e->events.stick_slip, e->a, e->held);
     if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(e->modes.hold));
+        return tribo_system_fail(sys, status, "%s", tribo_message(e->events.stick_slip.hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
     memset(watch, 0, c * sizeof *watch);
     add_harmonics(e, 1, k, -1.0, watch);
     tribo_matrix_multiply_add(&sys->direction, 1.0, u, watch);
     for (size_t i = 0; i < c; i++) {
-        const double force = e->held[i] + (k < 2 ? e->given[i] : 0.0);
-        watch[i] = e->modes.mode[i] == 0 ? force : k == 0 && e->modes.rested[i] ? 0.0 : watch[i];
+        const double force = k == 0 ? m->force[i] : e->held[i] + (k < 2 ? e->given[i] : 0.0);
+        const double v = k == 0 && m->rested[i] ? 0.0 : watch[i];
+        watch[i] = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : v;
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
-    return tribo_modes_hold(&e->modes, sys, e->base, acc);
+    return tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
 }
 
 /* Coefficients of the motion from (t, y) on. Returns a status. */
@@ -138,10 +141,10 @@ static int expand(struct event *e, double t, const double *y)
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
         for (size_t i = 0; i < c; i++) {
-            const signed char mode = e->modes.mode[i];
-            if (mode == 1 || mode == -1) {
-                const double rate = k ? e->modes.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
-                power -= mode * (e->modes.limit[i] * e->watch[k * c + i] + rate);
+            const signed char slip = e->events.stick_slip.slip[i];
+            if (slip == 1 || slip == -1) {
+                const double rate = k ? e->events.stick_slip.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
+                power -= slip * (e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate);
             }
         }
         e->d[k + 1] = -sys->power * power / (double)(k + 1);
@@ -158,19 +161,28 @@ static double largest(const double *x, size_t n)
     return most;
 }
 
-/* The step on which the last two terms of everything stay below the tolerance. */
-static double step_length(const struct event *e, const tribo_driver *drv)
+/* The error that a step may have in something of this size: not less than its rounding. */
+static double wanted(const tribo_driver *drv, double size)
 {
+    return greater(drv->abstol + drv->reltol * size, DBL_EPSILON * size);
+}
+
+/* The step on which the last two terms of everything stay below the tolerance. */
+static double step_length(const struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_driver *drv = e->drv;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
-    const double q = drv->abstol + drv->reltol * largest(e->q, n), u = drv->abstol + drv->reltol * largest(e->u, n);
-    const double d = drv->abstol + drv->reltol * fabs(e->d[0]);
-    double h = 0.5 * (double)(e->order + 1) / e->fastest;
+    const double q = wanted(drv, largest(e->q, n)), u = wanted(drv, largest(e->u, n)), d = wanted(drv, fabs(e->d[0]));
+    const double most = e->fastest > 0.0 ? 0.5 * (double)(e->order + 1) / e->fastest : HUGE_VAL;
+    double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(largest(e->q + k * n, n) / q, greater(largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
-            /* forces of contacts at rest to the same part of their limit */
-            const double scale = e->modes.mode[i] == 0 ? e->tolerance * e->modes.limit[i] : u;
-            term = greater(term, fabs(e->watch[k * c + i]) / scale);
+            /* forces of contacts at rest to the same part of their limit, or of what it becomes */
+            const double limit = m->limit[i] + (m->limit_rate[i] != 0.0 ? fabs(m->limit_rate[i]) * lesser(most, DBL_MAX) : 0.0);
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? e->tolerance * limit : u;
+            term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
         }
         h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
     }
@@ -179,7 +191,7 @@ static double step_length(const struct event *e, const tribo_driver *drv)
 
 /* --------------------------------------------------------------------------------------------------------- guards */
 
-static void look(void *motion, double tau)
+static void go(void *motion, double tau)
 {
     ((struct event *)motion)->tau = tau;
 }
@@ -188,12 +200,12 @@ static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct event *e = motion;
     const size_t c = e->sys->ncontact;
-    const double *watch = g->watch, s = e->tau;
+    const double *output = g->output, s = e->tau;
     double v0 = 0.0, v1 = 0.0, v2 = 0.0;
     for (size_t k = e->order + 1; k-- > 0;) {
         v2 = v2 * s + v1;
         v1 = v1 * s + v0;
-        v0 = v0 * s + watch[k * c];
+        v0 = v0 * s + output[k * c];
     }
     return (struct sample){g->offset + g->ramp * s + g->side * v0, g->ramp + g->side * v1, 2.0 * g->side * v2};
 }
@@ -218,26 +230,51 @@ TRIBO_SIMD static void find_bounds(size_t c, size_t order, double h, const doubl
     }
 }
 
-static void set_guards(struct event *e, double h)
+static double bound(void *motion, double tau)
 {
-    const struct modes *m = &e->modes;
-    struct search *s = &e->search;
-    s->guards = 0;
+    struct event *e = motion;
+    struct first_zero *s = &e->events.search;
+    (void)tau;
+    for (size_t k = 0; k < s->guards; k++) {
+        struct guard *g = &s->guard[k];
+        g->size = e->size[g->contact] + fabs(g->offset) + fabs(g->ramp) * e->length;
+        g->bend = e->bend[g->contact];
+    }
+    return HUGE_VAL;
+}
+
+/* What the velocity of contact i, or of those that hold it, is the sum of, over [0, h]. */
+static double parts_of_velocity(const struct event *e, size_t i, double h)
+{
+    const struct matrix *j = &e->sys->direction;
+    double size = 0.0, power = 1.0, lever = 0.0;
+    for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
+        lever += fabs(j->val[d]);
+    }
+    for (size_t k = 0; k <= e->order; k++) {
+        size += lever * largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
+        power *= h;
+    }
+    return size;
+}
+
+static void set_guards(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const double h = e->length;
+    tribo_events_clear_guards(&e->events);
     find_bounds(m->contacts, e->order, h, e->watch, e->size, e->bend);
     for (size_t i = 0; i < m->contacts; i++) {
-        struct guard g = {.contact = i, .watch = e->watch + i, .side = m->mode[i], .size = e->size[i], .bend = e->bend[i]};
-        if (m->mode[i] == 1 || m->mode[i] == -1) {
-            g.from_zero = m->rested[i];
-            s->guard[s->guards++] = g;
-        } else if (m->mode[i] == 0 && e->size[i] >= lesser(m->limit[i], m->limit[i] + m->limit_rate[i] * h)) {
+        struct guard g = {.output = e->watch + i};
+        if (m->slip[i] == 1 || m->slip[i] == -1) {
+            tribo_events_guard_slip(&e->events, i, g);
+        } else if (tribo_stick_slip_may_part(m, i)) {
+            e->size[i] = parts_of_velocity(e, i, h);
+            tribo_events_guard_part(&e->events, i, g);
+        } else if (m->slip[i] == 0 && e->size[i] >= lesser(m->limit[i], m->limit[i] + m->limit_rate[i] * h)) {
             g.offset = m->limit[i];
             g.ramp = m->limit_rate[i];
-            g.size += m->limit[i] + fabs(m->limit_rate[i]) * h;
-            for (int side = -1; side <= 1; side += 2) {
-                g.side = side;
-                g.from_zero = m->weak[i] && side * m->force[i] < 0.0;
-                s->guard[s->guards++] = g;
-            }
+            tribo_events_guard_stick(&e->events, i, g);
         }
     }
 }
@@ -248,13 +285,15 @@ static void destroy(tribo_driver *drv)
 {
     struct event *e = drv->own;
     if (e) {
-        tribo_modes_free(&e->modes);
+        tribo_events_free(&e->events);
         free(e->q);
         free(e->cosine);
-        free(e->search.guard);
         free(e);
     }
 }
+
+static int begin(void *motion, double t, const double *y, double end, double *reach);
+static void state(void *motion, double tau, const double *from, double *to);
 
 static int create(tribo_driver *drv)
 {
@@ -262,20 +301,22 @@ static int create(tribo_driver *drv)
     const size_t n = sys->ndof, c = sys->ncontact;
     struct event *e = calloc(1, sizeof *e);
     drv->own = e;
-    int status = e ? tribo_modes_create(&e->modes, sys) : TRIBO_ERR_MEMORY;
+    if (!e) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+    }
+    const int status = tribo_events_create(&e->events, drv);
     if (status) {
-        return tribo_system_fail(sys, status, "out of memory for method event");
+        return status;
     }
     /* the more digits are wanted, the more terms pay */
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
     double *work = malloc((terms * (2 * n + c + 1) + n + 6 * c + 1) * sizeof *work);
-    e->search.guard = malloc((2 * c + 1) * sizeof *e->search.guard);
-    if (!work || !e->search.guard) {
-        free(work);
+    if (!work) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
+    e->drv = drv;
     e->sys = sys;
     e->q = work;
     e->u = e->q + terms * n;
@@ -288,27 +329,16 @@ static int create(tribo_driver *drv)
     e->held = e->given + c;
     e->size = e->held + c;
     e->bend = e->size + c;
-    e->search.look = look;
-    e->search.read = read_guard;
-    e->search.motion = e;
+    e->events.search.go = go;
+    e->events.search.read = read_guard;
+    e->events.search.bound = bound;
+    e->events.search.motion = e->events.motion = e;
+    e->events.begin = begin;
+    e->events.state = state;
     return TRIBO_OK;
 }
 
-static double row_sum(const struct matrix *a)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < a->rows; i++) {
-        double sum = 0.0;
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            sum += fabs(a->val[k]);
-        }
-        most = greater(most, sum);
-    }
-    return most;
-}
-
-/* A bound on the frequencies: no exponent of the structure, held or not, and no load is faster. And room for the harmonics, which
- * may have become more. */
+/* Room for the harmonics, which may have become more, and the highest frequency. */
 static int prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
@@ -322,62 +352,47 @@ static int prepare(struct event *e)
     }
     e->cosine = more;
     e->sine = more + room;
-    e->fastest = greater(sqrt(row_sum(&sys->stiffness)), sys->damping.rows ? row_sum(&sys->damping) : 0.0);
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        e->fastest = greater(e->fastest, fabs(sys->harmonic[s].omega));
-    }
+    e->fastest = tribo_system_fastest(sys);
     e->revision = sys->revision;
     return TRIBO_OK;
 }
 
-/* State and energy at tau. */
-static void move_to(const struct event *e, double tau, double *y)
+static void state(void *motion, double tau, const double *from, double *to)
 {
+    const struct event *e = motion;
     const size_t n = e->sys->ndof;
-    memset(y, 0, (2 * n + 1) * sizeof *y);
+    (void)from;
+    memset(to, 0, (2 * n + 1) * sizeof *to);
     for (size_t k = e->order + 1; k-- > 0;) {
         for (size_t i = 0; i < n; i++) {
-            y[i] = y[i] * tau + e->q[k * n + i];
-            y[n + i] = y[n + i] * tau + e->u[k * n + i];
+            to[i] = to[i] * tau + e->q[k * n + i];
+            to[n + i] = to[n + i] * tau + e->u[k * n + i];
         }
-        y[2 * n] = y[2 * n] * tau + e->d[k];
+        to[2 * n] = to[2 * n] * tau + e->d[k];
     }
+}
+
+static int begin(void *motion, double t, const double *y, double end, double *reach)
+{
+    struct event *e = motion;
+    const int status = expand(e, t, y);
+    if (status) {
+        return status;
+    }
+    const double length = step_length(e);
+    *reach = lesser(length, end - t);
+    /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
+    e->length = e->fastest > 0.0 ? greater(*reach, lesser(length, 1.0 / e->fastest)) : *reach;
+    set_guards(e);
+    return TRIBO_OK;
 }
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct event *e = drv->own;
-    tribo_system *sys = drv->sys;
-    int status = prepare(e);
-    status = status ? status : tribo_modes_start(&e->modes, sys, *t, y, continues);
-    if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
-    }
-    const double shortest = 1.0 / greater(e->fastest, 1.0 / (t1 - *t));
-    while (!status && *t < t1) {
-        status = expand(e, *t, y);
-        if (status) {
-            return tribo_driver_fail(drv, status, "at t = %.17g: %s", *t, tribo_message(sys->contacts));
-        }
-        const double end = lesser(t1, tribo_system_next_kink(sys, *t)), length = step_length(e, drv),
-                     h = lesser(length, end - *t);
-        if (!(*t + h > *t)) {
-            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
-        }
-        double when = h;
-        /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
-        set_guards(e, e->fastest > 0.0 ? greater(h, lesser(length, 1.0 / e->fastest)) : h);
-        const struct guard *event = tribo_search(&e->search, h, &when);
-        when = event ? lesser(when, h) : h;
-        move_to(e, when, y);
-        *t = when < end - *t ? *t + when : end;
-        drv->steps++;
-        status = tribo_modes_proceed(&e->modes, drv, &e->search, event, *t, y, shortest);
-        if (!status) {
-            status = tribo_driver_accept(drv, *t, y, event != NULL);
-        }
-    }
-    return status;
+    const int status = prepare(e);
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts))
+                  : tribo_events_advance(&e->events, drv, t, t1, y, continues);
 }
 
-const struct method tribo_method_event = {"event", 1, create, destroy, advance, NULL};
+const struct method tribo_method_event = {"event", WITH_TOLERANCES, create, destroy, advance, NULL};

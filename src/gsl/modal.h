@@ -5,14 +5,14 @@
  * are sums of damped complex exponentials, eta = Re(r z), z_p' = lambda_p z_p, and so are the velocities of the sliding contacts
  * and the forces of the held ones. All of it depends on which contacts are held, and not on where the others slide to: it is kept
  * for sets that come back. */
-#ifndef TRIBO_HELD_H
-#define TRIBO_HELD_H
+#ifndef TRIBO_MODAL_H
+#define TRIBO_MODAL_H
 
 #include "system.h"
 
 /* What a contact's velocity (sliding) or force (held) is made of: Re(sum c_p z_p) + Re(sum response_h e^{i Omega_h t}) + constant
  * + ramp t. */
-struct watch {
+struct output {
     size_t contact;
     double *cr, *ci;          /* [exponents] c_p */
     double *size;             /* [exponents] |c_p| */
@@ -23,7 +23,7 @@ struct watch {
     double ramp;     /* from belts of constant speed */
 };
 
-struct held {
+struct modal {
     signed char *key; /* [ncontact] 1: the contact rests, 2: and holds */
     size_t rest;      /* contacts at rest that hold; others depend on them */
 
@@ -44,20 +44,21 @@ struct held {
     double *gr, *gi, *xr, *xi; /* [harmonics][modes] forcing and response of eta */
     double *yr, *yi;           /* [harmonics][moving] velocities from the belts that hold */
     double *y0;                /* [moving] the same from belts of constant speed */
+    double *drag;              /* [modes] forcing by damping, from belts of constant speed */
     double *ramp;              /* [modes] forcing per unit of time, from belts of constant speed */
     int any_resonant;
     unsigned char *resonant; /* [harmonics][modes] the response is not in x, since it would be close to infinite */
 
-    size_t watches, sliding; /* the first ones watch sliding contacts, the others held ones */
-    struct watch *watch;
+    size_t outputs, sliding; /* the first ones are of sliding contacts, the others of held ones */
+    struct output *output;
     double fastest; /* largest |lambda| */
     void *memory;   /* all arrays */
     size_t bytes;
 };
 
-/* For the contacts whose mode is 0, those of them that hold being marked (see modes.h). Returns a status; its message is on the
+/* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h). Returns a status; its message is on the
  * system's context. */
-int tribo_held_create(struct held **held, tribo_system *sys, const signed char *mode, const unsigned char *holds);
-void tribo_held_free(struct held *h);
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds);
+void tribo_modal_free(struct modal *h);
 
 #endif

@@ -1,16 +1,14 @@
 /* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
- * form from the modes of the structure with its contacts at rest held (held.h); no event can be skipped (roots.h), since the
- * sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
- * strays from a quintic; and at an event the contacts at rest are decided about anew (modes.h). The energy integral is closed
- * too: a sliding force is constant, so that it dissipates its size times the distance slid. */
+ * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (first_zero.h), since
+ * the sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
+ * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is
+ * closed too: a sliding force is constant, so that it dissipates its size times the distance slid. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "driver.h"
-#include "held.h"
-#include "modes.h"
-#include "search.h"
+#include "events.h"
+#include "modal.h"
 #include "../real.h"
 
 /* Decompositions are dropped when they take more than this. */
@@ -21,13 +19,13 @@
 
 struct exact {
     tribo_system *sys;
-    struct modes modes;
-    struct held **held;
+    struct events events;
+    struct modal **held;
     size_t helds, room, bytes, revision;
 
     /* the phase: it began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics +
      * Re(r z) */
-    const struct held *h;
+    const struct modal *h;
     double t0, tau;                          /* tau: where w is */
     double fastest;                          /* exponent or harmonic */
     double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
@@ -38,8 +36,7 @@ struct exact {
     double *cos_t, *sin_t, *cos_0, *sin_0;   /* [harmonics] at t0 + tau, at t0 */
     double *now, *work;                      /* [modes] eta and eta' at tau; workspace */
     double *dq;                              /* [ndof] */
-    double slowest, shown;                   /* 1/length of the advance; when the observer looks next */
-    struct search search;
+    double longest;                          /* so long do the bounds of the guards hold */
 };
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
@@ -47,17 +44,17 @@ struct exact {
 static void drop_helds(struct exact *x)
 {
     for (size_t i = 0; i < x->helds; i++) {
-        tribo_held_free(x->held[i]);
+        tribo_modal_free(x->held[i]);
     }
     x->helds = 0;
     x->bytes = 0;
     x->h = NULL;
 }
 
-static int rests_like(const struct held *h, const struct modes *m, size_t n)
+static int rests_like(const struct modal *h, const struct stick_slip *m, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
-        if (h->key[i] != (m->mode[i] == 0) + m->holds[i]) {
+        if (h->key[i] != (m->slip[i] == 0) + m->holds[i]) {
             return 0;
         }
     }
@@ -65,12 +62,12 @@ static int rests_like(const struct held *h, const struct modes *m, size_t n)
 }
 
 /* Sets x->h to the structure with the contacts of mode 0 held. Those used last are looked at first. */
-static int find_held(struct exact *x, tribo_driver *drv)
+static int find_held(struct exact *x)
 {
-    tribo_system *sys = drv->sys;
+    tribo_system *sys = x->sys;
     for (size_t i = x->helds; i-- > 0;) {
-        struct held *h = x->held[i];
-        if (rests_like(h, &x->modes, sys->ncontact)) {
+        struct modal *h = x->held[i];
+        if (rests_like(h, &x->events.stick_slip, sys->ncontact)) {
             memmove(x->held + i, x->held + i + 1, (x->helds - 1 - i) * sizeof *x->held);
             x->held[x->helds - 1] = h;
             x->h = h;
@@ -82,17 +79,17 @@ static int find_held(struct exact *x, tribo_driver *drv)
     }
     if (x->helds == x->room) {
         const size_t room = 2 * x->room + 16;
-        struct held **more = realloc(x->held, room * sizeof *more);
+        struct modal **more = realloc(x->held, room * sizeof *more);
         if (!more) {
-            return tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
         }
         x->held = more;
         x->room = room;
     }
-    struct held *h;
-    const int status = tribo_held_create(&h, sys, x->modes.mode, x->modes.holds);
+    struct modal *h;
+    const int status = tribo_modal_create(&h, sys, x->events.stick_slip.slip, x->events.stick_slip.holds);
     if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+        return status;
     }
     x->held[x->helds++] = h;
     x->bytes += h->bytes;
@@ -136,9 +133,9 @@ static void ramp_up(double dr, double di, double tau, double *re, double *im)
 /* Adds what a resonant harmonic does to an exponent, from nothing at t0 on: z' = lambda z - (i/nu) Re(g e^{i Omega t}). */
 static void add_resonance(struct exact *x, const tribo_system *sys, size_t p, size_t s, double tau)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const double omega = sys->harmonic[s].omega, nu = h->li[p];
-    const double c0 = cos(omega * x->t0), s0 = sin(omega * x->t0);
+    const double c0 = x->cos_0[s], s0 = x->sin_0[s];
     const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
     const double e = exp(h->lr[p] * tau), er = e * cos(nu * tau), ei = e * sin(nu * tau);
     double zr = 0.0, zi = 0.0;
@@ -166,7 +163,7 @@ static void add_resonance(struct exact *x, const tribo_system *sys, size_t p, si
 
 static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         for (size_t p = 0; p < h->exponents; p++) {
             if (h->resonant[s * h->modes + h->owner[p]]) {
@@ -177,7 +174,7 @@ static void for_resonances(struct exact *x, const tribo_system *sys, double tau)
 }
 
 /* e^{lambda delta} of an exponent. */
-static void grow(const struct held *h, size_t p, double delta, double *re, double *im)
+static void grow(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
     const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0;
     *re = size * cos(h->li[p] * delta);
@@ -185,19 +182,19 @@ static void grow(const struct held *h, size_t p, double delta, double *re, doubl
 }
 
 /* The same where |lambda delta| is tiny. */
-static void grow_little(const struct held *h, size_t p, double delta, double *re, double *im)
+static void grow_little(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
     const double x = h->lr[p] * delta, y = h->li[p] * delta;
     *re = 1.0 + x + 0.5 * (x * x - y * y);
     *im = y + x * y;
 }
 
-/* z and its derivatives, and the harmonics, at t0 + tau: from t0, or, if that is close, from the last look. */
-static void look(void *motion, double tau)
+/* z and its derivatives, and the harmonics, at t0 + tau: from t0, or, if that is close, from where it was. */
+static void go(void *motion, double tau)
 {
     struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const double delta = tau - x->tau;
     const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -207,9 +204,10 @@ static void look(void *motion, double tau)
             x->cos_t[s] = c * ct - turn * st;
             x->sin_t[s] = c * st + turn * ct;
         } else {
-            const double phase = omega * (x->t0 + tau);
-            x->cos_t[s] = cos(phase);
-            x->sin_t[s] = sin(phase);
+            /* from t0, since what rounding leaves of a late time must not tremble within a phase */
+            const double c = cos(omega * tau), d = sin(omega * tau);
+            x->cos_t[s] = c * x->cos_0[s] - d * x->sin_0[s];
+            x->sin_t[s] = d * x->cos_0[s] + c * x->sin_0[s];
         }
     }
     for (size_t p = 0; p < h->exponents; p++) {
@@ -229,12 +227,12 @@ static void look(void *motion, double tau)
     x->tau = tau;
 }
 
-/* A guard where look() was. */
+/* A guard where go() was. */
 static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct exact *x = motion;
     const tribo_system *sys = x->sys;
-    const struct watch *w = g->watch;
+    const struct output *w = g->output;
     double v0 = g->start + g->ramp * x->tau, v1 = g->ramp, v2 = 0.0;
     for (size_t p = 0; p < x->h->exponents; p++) {
         v0 += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
@@ -257,12 +255,12 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
     const struct matrix *j = &sys->direction;
     double energy = 0.0;
     for (size_t k = 0; k < x->h->sliding; k++) {
-        const size_t i = x->h->watch[k].contact;
+        const size_t i = x->h->output[k].contact;
         double way = 0.0;
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        for (size_t e = j->first[i]; x->events.stick_slip.slip[i] && e < j->first[i + 1]; e++) {
             way += j->val[e] * x->dq[j->col[e]];
         }
-        energy -= x->modes.force[i] * way;
+        energy -= x->events.stick_slip.force[i] * way;
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
@@ -270,16 +268,16 @@ static double dissipated(const struct exact *x, const tribo_system *sys, double 
             const double c = w->cosine[e], d = w->sine[e];
             const double way =
                 w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
-            energy += x->modes.mode[w->index[e]] ? x->modes.force[w->index[e]] * way : 0.0;
+            energy += x->events.stick_slip.slip[w->index[e]] ? x->events.stick_slip.force[w->index[e]] * way : 0.0;
         }
     }
     return sys->power * energy;
 }
 
-/* eta (into now) and eta' (into work) where look() was. */
+/* eta (into now) and eta' (into work) where go() was. */
 static void amplitudes(struct exact *x, const tribo_system *sys)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t m = h->modes, e = h->exponents;
     for (size_t k = 0; k < m; k++) {
         const double start = h->drifts[k] ? x->drift[k] + x->drift_rate[k] * x->tau : 0.0;
@@ -308,11 +306,13 @@ static void amplitudes(struct exact *x, const tribo_system *sys)
 }
 
 /* The state at t0 + tau. from is the state at t0; to may be the same. */
-static void move_to(struct exact *x, const tribo_system *sys, double tau, const double *from, double *to)
+static void move_to(void *motion, double tau, const double *from, double *to)
 {
-    const struct held *h = x->h;
+    struct exact *x = motion;
+    const tribo_system *sys = x->sys;
+    const struct modal *h = x->h;
     const size_t n = sys->ndof;
-    look(x, tau);
+    go(x, tau);
     amplitudes(x, sys);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
@@ -343,10 +343,49 @@ static void move_to(struct exact *x, const tribo_system *sys, double tau, const 
 
 /* ------------------------------------------------------------------------------------------------------------- phases */
 
+/* J_i q, less what harmonics of the base have moved it by. */
+static double offset(const tribo_system *sys, size_t i, const double *q)
+{
+    const struct matrix *j = &sys->direction;
+    double sum = 0.0;
+    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        sum += j->val[e] * q[j->col[e]];
+    }
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        for (size_t e = 0; w->moves_base && w->omega != 0.0 && e < w->count; e++) {
+            sum -= w->index[e] == i ? (w->cosine[e] * w->sin_t - w->sine[e] * w->cos_t) / w->omega : 0.0;
+        }
+    }
+    return sum;
+}
+
+/* now = the constant part of the right-hand side at t0: by forces that slide, by where contacts hold, by constant loads. The
+ * stiffness of the whole has no part in it: what it makes of a rigid-body displacement would be its rounding. */
+static void find_constant(struct exact *x, const tribo_system *sys, const double *y)
+{
+    const struct modal *h = x->h;
+    const size_t m = h->modes;
+    memcpy(x->now, h->drag, m * sizeof *x->now);
+    for (size_t o = 0; o < h->outputs; o++) {
+        const struct output *out = &h->output[o];
+        const double push = o < h->sliding ? x->events.stick_slip.force[out->contact] : -offset(sys, out->contact, y);
+        const double weight = tribo_system_weight(sys, out->contact);
+        for (size_t k = 0; k < m; k++) {
+            x->now[k] += weight * push * out->on_rate[k];
+        }
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        for (size_t k = 0; sys->harmonic[s].omega == 0.0 && k < m; k++) {
+            x->now[k] += h->gr[s * m + k];
+        }
+    }
+}
+
 /* Amplitudes of eta at t0, split into what the right-hand side makes of it and exponentials. */
 static void split_motion(struct exact *x, tribo_system *sys, const double *y)
 {
-    const struct held *h = x->h;
+    const struct modal *h = x->h;
     const size_t n = sys->ndof, m = h->modes;
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -355,23 +394,17 @@ static void split_motion(struct exact *x, tribo_system *sys, const double *y)
     }
     for (size_t k = 0; k < m; k++) {
         const double *psi = h->psi + k * h->moving;
-        double q = 0.0, u = 0.0, a = 0.0;
+        double q = 0.0, u = 0.0;
         for (size_t i = 0; i < h->moving; i++) {
             q += psi[i] * y[h->dof[i]];
             u += psi[i] * y[n + h->dof[i]];
-            a += psi[i] * x->modes.acceleration[h->dof[i]];
         }
         x->eta[k] = q;
         x->rate[k] = u;
-        x->now[k] = a;
     }
+    find_constant(x, sys, y);
     for (size_t k = 0; k < m; k++) {
-        /* the constant part of the right-hand side is what the present acceleration leaves */
-        const double damping = h->coupling ? dot(h->coupling + k * m, x->rate, m) : h->damping[k] * x->rate[k];
-        double force = x->now[k] + damping + h->omega2[k] * x->eta[k];
-        for (size_t s = 0; s < h->harmonics; s++) {
-            force -= sys->harmonic[s].omega != 0.0 ? h->gr[s * m + k] * x->cos_0[s] - h->gi[s * m + k] * x->sin_0[s] : 0.0;
-        }
+        const double force = x->now[k];
         x->off[k] = x->vel[k] = x->acc[k] = 0.0;
         if (h->drifts[k]) {
             x->acc[k] = force;
@@ -411,72 +444,122 @@ static void split_motion(struct exact *x, tribo_system *sys, const double *y)
     }
 }
 
-/* How long the bounds of this phase hold: for good, unless something grows. */
-static double bound_motion(struct exact *x, double longest)
+/* How long the bounds of a phase can hold: for good, unless something grows. */
+static double longest_phase(const struct modal *h, double longest)
 {
-    const struct held *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
         longest = h->lr[p] > 0.0 ? lesser(longest, 1.0 / h->lr[p]) : longest;
     }
-    longest = h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
+    return h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
+}
+
+/* Bounds of the exponents from tau on. */
+static void bound_exponents(struct exact *x, double tau)
+{
+    const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double lambda = h->size[p];
-        x->growth[p] = sqrt(x->zr[p] * x->zr[p] + x->zi[p] * x->zi[p]) * (h->lr[p] > 0.0 ? exp(h->lr[p] * longest) : 1.0);
+        const double lambda = h->size[p], time = h->lr[p] > 0.0 ? x->longest : tau;
+        x->growth[p] = hypot(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
         x->growth6[p] = x->growth[p];
         for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
             const size_t at = s * h->modes + h->owner[p];
             if (h->resonant[at]) {
                 const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
                 /* the frequencies are within RESONANCE of each other */
-                x->growth[p] += force * longest;
-                x->growth6[p] += force * (longest + 6.1 / lambda);
+                x->growth[p] += force * x->longest;
+                x->growth6[p] += force * (x->longest + 6.1 / lambda);
             }
         }
     }
-    return longest;
 }
 
-/* Guards of a watch, for a phase that lasts no longer than longest. now is what it watches at t0. */
-static void add_guards(struct exact *x, const struct watch *w, int slides, double now, double longest)
+/* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */
+static void bound_guard(const struct exact *x, struct guard *g)
 {
-    const struct held *h = x->h;
-    const size_t i = w->contact;
-    double start = now, bend = 0.0, size = fabs(now), ramp = w->ramp;
+    const struct modal *h = x->h;
+    const struct output *w = g->output;
+    g->bend = 0.0;
+    g->size = fabs(g->offset) + fabs(g->start) + fabs(g->ramp) * x->longest;
     for (size_t p = 0; p < h->exponents; p++) {
-        start -= w->cr[p] * x->zr[p] - w->ci[p] * x->zi[p];
-        bend += w->bend[p] * x->growth6[p];
-        size += w->size[p] * x->growth[p];
+        g->bend += w->bend[p] * x->growth6[p];
+        g->size += w->size[p] * x->growth[p];
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        start -= w->rr[s] * x->cos_0[s] - w->ri[s] * x->sin_0[s];
-        size += w->wave[s];
-        bend += w->wave_bend[s];
-    }
-    for (size_t k = 0; k < h->modes; k++) {
-        ramp += w->on_rate[k] * (slides ? x->acc[k] : x->vel[k]);
-    }
-    const double range = size - fabs(now) + fabs(start) + fabs(ramp) * longest, limit = x->modes.limit[i];
-    struct guard g = {
-        .contact = i, .watch = w, .side = x->modes.mode[i], .start = start, .ramp = ramp, .size = size, .bend = bend};
-    if (slides) {
-        g.from_zero = x->modes.rested[i];
-        x->search.guard[x->search.guards++] = g;
-        return;
-    }
-    /* far from the limit for the whole phase: nothing to guard */
-    g.offset = limit;
-    g.size += limit;
-    for (int side = -1; side <= 1 && range >= limit; side += 2) {
-        g.side = side;
-        g.from_zero = x->modes.weak[i] && side * x->modes.force[i] < 0.0;
-        x->search.guard[x->search.guards++] = g;
+        g->size += w->wave[s];
+        g->bend += w->wave_bend[s];
     }
 }
 
-/* Starts a phase at (t, y) with modes, forces and accelerations as decided. Returns how long its bounds hold. */
-static double begin_phase(struct exact *x, tribo_system *sys, double t, const double *y, double longest)
+/* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on.
+ */
+static double bound(void *motion, double tau)
 {
-    const struct held *h = x->h;
+    struct exact *x = motion;
+    double decay = 0.0;
+    for (size_t p = 0; p < x->h->exponents; p++) {
+        decay = greater(decay, -x->h->lr[p]);
+    }
+    bound_exponents(x, tau);
+    for (size_t k = 0; k < x->events.search.guards; k++) {
+        bound_guard(x, &x->events.search.guard[k]);
+    }
+    return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
+}
+
+/* Guards of an output. now is its value at t0. */
+static void add_guards(struct exact *x, const struct output *w, int of_velocity, double now)
+{
+    const struct modal *h = x->h;
+    const size_t i = w->contact;
+    struct guard g = {.output = w, .start = now, .ramp = w->ramp};
+    for (size_t p = 0; p < h->exponents; p++) {
+        g.start -= w->cr[p] * x->zr[p] - w->ci[p] * x->zi[p];
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        g.start -= w->rr[s] * x->cos_0[s] - w->ri[s] * x->sin_0[s];
+    }
+    for (size_t k = 0; k < h->modes; k++) {
+        g.ramp += w->on_rate[k] * (of_velocity ? x->acc[k] : x->vel[k]);
+    }
+    if (of_velocity && x->events.stick_slip.slip[i] == 0) {
+        tribo_events_guard_part(&x->events, i, g);
+    } else if (of_velocity) {
+        tribo_events_guard_slip(&x->events, i, g);
+    } else {
+        bound_guard(x, &g);
+        g.offset = x->events.stick_slip.limit[i];
+        /* nothing to guard if it is far from the limit for the whole phase */
+        if (g.size >= g.offset) {
+            tribo_events_guard_stick(&x->events, i, g);
+        }
+    }
+}
+
+static void set_guards(struct exact *x, const double *y)
+{
+    const struct modal *h = x->h;
+    const struct stick_slip *m = &x->events.stick_slip;
+    tribo_events_clear_guards(&x->events);
+    for (size_t k = 0; k < h->outputs; k++) {
+        const struct output *w = &h->output[k];
+        const size_t i = w->contact;
+        const int of_velocity = k < h->sliding;
+        if (m->slip[i] != 2) {
+            const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+            add_guards(x, w, of_velocity, of_velocity ? v : m->force[i]);
+        }
+    }
+}
+
+static int begin(void *motion, double t, const double *y, double end, double *reach)
+{
+    struct exact *x = motion;
+    tribo_system *sys = x->sys;
+    const int status = find_held(x);
+    if (status) {
+        return status;
+    }
+    const struct modal *h = x->h;
     x->t0 = t;
     split_motion(x, sys, y);
     x->tau = 0.0;
@@ -488,17 +571,10 @@ static double begin_phase(struct exact *x, tribo_system *sys, double t, const do
     }
     memcpy(x->wr, x->zr, h->exponents * sizeof *x->wr);
     memcpy(x->wi, x->zi, h->exponents * sizeof *x->wi);
-    longest = bound_motion(x, longest);
-    x->search.guards = 0;
-    for (size_t k = 0; k < h->watches; k++) {
-        const struct watch *w = &h->watch[k];
-        if (x->modes.mode[w->contact] != 2) {
-            const int slides = k < h->sliding;
-            const double v = x->modes.rested[w->contact] ? 0.0 : tribo_modes_velocity(&x->modes, sys, w->contact, y);
-            add_guards(x, w, slides, slides ? v : x->modes.force[w->contact], longest);
-        }
-    }
-    return longest;
+    *reach = x->longest = longest_phase(h, end - t);
+    bound_exponents(x, 0.0);
+    set_guards(x, y);
+    return TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
@@ -509,37 +585,38 @@ static void destroy(tribo_driver *drv)
     if (x) {
         drop_helds(x);
         free(x->held);
-        tribo_modes_free(&x->modes);
+        tribo_events_free(&x->events);
         free(x->eta);
         free(x->cos_t);
-        free(x->search.guard);
         free(x);
     }
 }
 
 static int create(tribo_driver *drv)
 {
-    const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
+    const size_t n = drv->sys->ndof;
     struct exact *x = calloc(1, sizeof *x);
     drv->own = x;
     if (!x) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
-    x->search.look = look;
-    x->search.read = read_guard;
-    x->search.motion = x;
-    const int status = tribo_modes_create(&x->modes, drv->sys);
+    const int status = tribo_events_create(&x->events, drv);
     if (status) {
         return status;
     }
+    x->events.search.go = go;
+    x->events.search.read = read_guard;
+    x->events.search.bound = bound;
+    x->events.search.motion = x->events.motion = x;
+    x->events.begin = begin;
+    x->events.state = move_to;
+    x->events.shows_between = 1;
     double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
                                 &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
     double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
     double *work = malloc((10 * n + 20 * n + 1) * sizeof *work);
-    x->search.guard = malloc((2 * c + 1) * sizeof *x->search.guard);
-    if (!work || !x->search.guard) {
-        free(work);
+    if (!work) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     for (size_t k = 0; k < 10; k++) {
@@ -567,18 +644,6 @@ static int prepare(struct exact *x, tribo_system *sys)
     return TRIBO_OK;
 }
 
-/* Shows the observer the motion in steps of dt, up to tau. */
-static int show(struct exact *x, tribo_driver *drv, double tau, const double *y)
-{
-    int status = TRIBO_OK;
-    while (drv->seen && !status && x->shown < x->t0 + tau) {
-        move_to(x, drv->sys, x->shown - x->t0, y, drv->slope);
-        status = tribo_driver_accept(drv, x->shown, drv->slope, 0);
-        x->shown += drv->dt;
-    }
-    return status;
-}
-
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct exact *x = drv->own;
@@ -587,34 +652,9 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                  "method exact takes harmonic loads only; method event takes tables too");
     }
-    int status = prepare(x, sys);
-    status = status ? status : tribo_modes_start(&x->modes, sys, *t, y, continues);
-    if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
-    }
-    status = find_held(x, drv);
-    x->slowest = 1.0 / (t1 - *t);
-    x->shown = *t + drv->dt;
-    while (!status && *t < t1) {
-        double longest = begin_phase(x, sys, *t, y, t1 - *t), when = 0.0;
-        const struct guard *event = tribo_search(&x->search, longest, &when);
-        when = event ? lesser(when, longest) : longest;
-        status = show(x, drv, when, y);
-        if (status) {
-            break;
-        }
-        move_to(x, sys, when, y, y);
-        *t = !event && longest == t1 - *t ? t1 : lesser(*t + when, t1);
-        drv->steps++;
-        status = tribo_modes_proceed(&x->modes, drv, &x->search, event, *t, y, 1.0 / greater(x->h->fastest, x->slowest));
-        status = status ? status : find_held(x, drv);
-        if (!status && (event || *t >= t1)) {
-            status = tribo_driver_accept(drv, *t, y, event != NULL);
-        }
-    }
-    sys->evaluations += x->search.looks;
-    x->search.looks = 0;
-    return status;
+    const int status = prepare(x, sys);
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts))
+                  : tribo_events_advance(&x->events, drv, t, t1, y, continues);
 }
 
-const struct method tribo_method_exact = {"exact", 0, create, destroy, advance, NULL};
+const struct method tribo_method_exact = {"exact", WITHOUT_TOLERANCES, create, destroy, advance, NULL};

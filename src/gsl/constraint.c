@@ -1,0 +1,504 @@
+#include "constraint.h"
+#include "../real.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An entry that is so much smaller than what it is the sum of is rounding. */
+#define ROUNDING (16.0 * DBL_EPSILON)
+
+/* What the constraints are made from. */
+struct source {
+    const struct matrix *direction, *mass;
+    const size_t *row;
+    size_t count;
+    const unsigned char *last;
+    size_t *parent; /* [cols] degrees of freedom that rows join form trees */
+    size_t *place;  /* [cols] where a degree of freedom is listed in its tie, plus 1 */
+    size_t *member; /* [count] the tie of a row */
+    size_t *number; /* [cols] of a tie, plus 1, at the root of its tree */
+};
+
+/* Gaussian elimination in a tie, of rows that stay where they are: order and slot say who is whose pivot. */
+struct elimination {
+    struct tie *tie;
+    const unsigned char *last;
+    double *entry, *size; /* [rows][touched] what is left, and what it is the sum of; multipliers in columns of pivots */
+    double *weight;       /* [touched] 1/sqrt(mass) */
+    double *scale;        /* [rows] 1/largest weighted entry */
+    size_t *order;        /* [rows] */
+    size_t *slot;         /* [touched] columns, those of pivots first */
+    size_t *best;         /* [rows] column of the largest entry of a row, touched if there is none */
+    double zero;          /* an entry so much smaller than its size counts as none */
+};
+
+void tribo_constraints_free(struct constraints *c)
+{
+    free(c->order);
+    free(c->tie);
+    free(c->memory[0]);
+    free(c->memory[1]);
+    free(c->work);
+    memset(c, 0, sizeof *c);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ the ties */
+
+static size_t root_of(const struct source *s, size_t dof)
+{
+    while (s->parent[dof] != dof) {
+        dof = s->parent[dof] = s->parent[s->parent[dof]];
+    }
+    return dof;
+}
+
+/* First entry of a row of the list that is not zero; where the row ends if there is none. */
+static size_t first_entry(const struct source *s, size_t p)
+{
+    const struct matrix *j = s->direction;
+    size_t k = j->first[s->row[p]];
+    while (k < j->first[s->row[p] + 1] && j->val[k] == 0.0) {
+        k++;
+    }
+    return k;
+}
+
+/* Joins the degrees of freedom of every row. */
+static void join(const struct source *s)
+{
+    const struct matrix *j = s->direction;
+    for (size_t d = 0; d < j->cols; d++) {
+        s->parent[d] = d;
+    }
+    for (size_t p = 0; p < s->count; p++) {
+        const size_t first = first_entry(s, p);
+        for (size_t k = first; k < j->first[s->row[p] + 1]; k++) {
+            if (j->val[k] != 0.0) {
+                s->parent[root_of(s, j->col[k])] = root_of(s, j->col[first]);
+            }
+        }
+    }
+}
+
+/* Numbers the ties, and counts their rows and degrees of freedom. A row without entries is a tie of its own. */
+static void count_ties(const struct source *s, struct constraints *c)
+{
+    const struct matrix *j = s->direction;
+    for (size_t p = 0; p < s->count; p++) {
+        const size_t first = first_entry(s, p), end = j->first[s->row[p] + 1];
+        size_t *number = first < end ? &s->number[root_of(s, j->col[first])] : NULL;
+        s->member[p] = number && *number ? *number - 1 : c->ties++;
+        if (number) {
+            *number = s->member[p] + 1;
+        }
+        struct tie *tie = &c->tie[s->member[p]];
+        tie->rows++;
+        for (size_t k = first; k < end; k++) {
+            if (j->val[k] != 0.0 && s->place[j->col[k]] == 0) {
+                s->place[j->col[k]] = ++tie->touched;
+            }
+        }
+    }
+}
+
+/* Gives the ties their memory, and lists their rows and degrees of freedom. */
+static int list_ties(const struct source *s, struct constraints *c)
+{
+    const struct matrix *j = s->direction;
+    size_t indices = 1, entries = 1;
+    for (size_t k = 0; k < c->ties; k++) {
+        indices += c->tie[k].rows + c->tie[k].touched;
+        entries += c->tie[k].rows * c->tie[k].touched;
+    }
+    size_t *index = c->memory[0] = malloc(indices * sizeof *index);
+    double *entry = c->memory[1] = malloc(entries * sizeof *entry);
+    if (!index || !entry) {
+        return 0;
+    }
+    for (size_t k = 0; k < c->ties; k++) {
+        struct tie *tie = &c->tie[k];
+        tie->order = index;
+        tie->dof = index + tie->rows;
+        tie->entry = entry;
+        index += tie->rows + tie->touched;
+        entry += tie->rows * tie->touched;
+        tie->rows = 0;
+    }
+    for (size_t p = 0; p < s->count; p++) {
+        struct tie *tie = &c->tie[s->member[p]];
+        tie->order[tie->rows++] = p;
+        for (size_t k = j->first[s->row[p]]; k < j->first[s->row[p] + 1]; k++) {
+            if (j->val[k] != 0.0) {
+                tie->dof[s->place[j->col[k]] - 1] = j->col[k];
+            }
+        }
+    }
+    return 1;
+}
+
+static int find_ties(struct source *s, struct constraints *c)
+{
+    const size_t n = s->direction->cols;
+    s->parent = calloc(3 * n + s->count + 1, sizeof *s->parent);
+    if (!s->parent) {
+        return 0;
+    }
+    s->place = s->parent + n;
+    s->number = s->place + n;
+    s->member = s->number + n;
+    join(s);
+    count_ties(s, c);
+    return list_ties(s, c);
+}
+
+/* --------------------------------------------------------------------------------------------------------- elimination */
+
+static double weighted(const struct elimination *e, size_t i, size_t column)
+{
+    return fabs(e->entry[i * e->tie->touched + column]) * e->weight[column];
+}
+
+/* Finds the pivot that row i would have among the slots from first on. */
+static void find_best(struct elimination *e, size_t i, size_t first)
+{
+    const size_t t = e->tie->touched;
+    double most = 0.0;
+    e->best[i] = t;
+    for (size_t l = first; l < t; l++) {
+        const size_t k = e->slot[l];
+        if (fabs(e->entry[i * t + k]) > e->zero * e->size[i * t + k] && weighted(e, i, k) > most) {
+            most = weighted(e, i, k);
+            e->best[i] = k;
+        }
+    }
+}
+
+/* When row i must wait for others. */
+static unsigned char last_of(const struct elimination *e, size_t i)
+{
+    return e->last ? e->last[e->tie->order[i]] : 0;
+}
+
+/* The row with the next pivot; as many as there are rows if there is none. */
+static size_t find_pivot(const struct elimination *e)
+{
+    const struct tie *tie = e->tie;
+    size_t found = tie->rows;
+    double most = 0.0;
+    for (size_t p = tie->rank; p < tie->rows; p++) {
+        const size_t i = e->order[p];
+        if (e->best[i] == tie->touched) {
+            continue;
+        }
+        const double pivot = e->scale[i] * weighted(e, i, e->best[i]);
+        const int wait = found < tie->rows ? last_of(e, i) - last_of(e, found) : 0;
+        if (found == tie->rows || wait < 0 || (wait == 0 && pivot > most)) {
+            found = i;
+            most = pivot;
+        }
+    }
+    return found;
+}
+
+/* Brings x, which stands somewhere from place at on, to that place. */
+static void bring(size_t *list, size_t at, size_t x)
+{
+    size_t from = at;
+    while (list[from] != x) {
+        from++;
+    }
+    list[from] = list[at];
+    list[at] = x;
+}
+
+/* Takes pivot row p out of row i. */
+static void eliminate(struct elimination *e, size_t p, size_t i)
+{
+    const size_t t = e->tie->touched, first = e->tie->rank, pivot = e->slot[first];
+    double *row = e->entry + i * t, *size = e->size + i * t;
+    const double *from = e->entry + p * t, *from_size = e->size + p * t;
+    const double factor = row[pivot] / from[pivot];
+    row[pivot] = factor;
+    for (size_t l = first + 1; l < t; l++) {
+        const size_t k = e->slot[l];
+        if (from[k] != 0.0) {
+            row[k] -= factor * from[k];
+            size[k] += fabs(factor) * from_size[k];
+            row[k] = fabs(row[k]) > ROUNDING * size[k] ? row[k] : 0.0;
+        }
+    }
+}
+
+static void eliminate_all(struct elimination *e)
+{
+    struct tie *tie = e->tie;
+    for (size_t i = 0; i < tie->rows; i++) {
+        find_best(e, i, 0);
+    }
+    for (size_t p = find_pivot(e); p < tie->rows; p = find_pivot(e)) {
+        const size_t pivot = e->best[p];
+        bring(e->order, tie->rank, p);
+        bring(e->slot, tie->rank, pivot);
+        for (size_t k = tie->rank + 1; k < tie->rows; k++) {
+            const size_t i = e->order[k];
+            if (e->entry[i * tie->touched + pivot] != 0.0) {
+                eliminate(e, p, i);
+                find_best(e, i, tie->rank + 1);
+            }
+        }
+        tie->rank++;
+    }
+}
+
+/* list [n] in another order. work [n] */
+static void permute(size_t *list, size_t n, const size_t *order, size_t *work)
+{
+    for (size_t k = 0; k < n; k++) {
+        work[k] = list[order[k]];
+    }
+    memcpy(list, work, n * sizeof *list);
+}
+
+/* Keeps the rows in their order, with columns in theirs. */
+static void arrange(const struct elimination *e)
+{
+    const struct tie *tie = e->tie;
+    const size_t t = tie->touched;
+    for (size_t p = 0; p < tie->rows; p++) {
+        for (size_t l = 0; l < t; l++) {
+            tie->entry[p * t + l] = e->entry[e->order[p] * t + e->slot[l]];
+        }
+    }
+    permute(tie->order, tie->rows, e->order, e->best);
+    memcpy(e->order, e->slot, t * sizeof *e->order);
+    permute(tie->dof, t, e->order, e->slot);
+}
+
+/* U^-1 from the left to what independent rows have beside the slaves. size [touched] */
+static void solve_rest(const struct tie *tie, double *size)
+{
+    const size_t t = tie->touched, s = tie->rank;
+    for (size_t p = s; p-- > 0;) {
+        double *row = tie->entry + p * t;
+        for (size_t l = s; l < t; l++) {
+            size[l] = fabs(row[l]);
+        }
+        for (size_t q = p + 1; q < s; q++) {
+            for (size_t l = s; row[q] != 0.0 && l < t; l++) {
+                const double term = row[q] * tie->entry[q * t + l];
+                row[l] -= term;
+                size[l] += fabs(term);
+            }
+        }
+        for (size_t l = s; l < t; l++) {
+            row[l] = fabs(row[l]) > ROUNDING * size[l] ? row[l] / row[p] : 0.0;
+        }
+    }
+}
+
+/* Begins with a tie: its entries, and what goes with them. */
+static void fill(struct elimination *e, const struct source *s)
+{
+    const struct tie *tie = e->tie;
+    const struct matrix *j = s->direction;
+    const size_t t = tie->touched;
+    memset(e->entry, 0, tie->rows * t * sizeof *e->entry);
+    memset(e->size, 0, tie->rows * t * sizeof *e->size);
+    for (size_t l = 0; l < t; l++) {
+        e->slot[l] = l;
+        e->weight[l] = s->mass->rows ? 1.0 / sqrt(tribo_matrix_get(s->mass, tie->dof[l], tie->dof[l])) : 1.0;
+    }
+    for (size_t p = 0; p < tie->rows; p++) {
+        const size_t row = s->row[tie->order[p]];
+        double most = 0.0;
+        e->order[p] = p;
+        for (size_t k = j->first[row]; k < j->first[row + 1]; k++) {
+            if (j->val[k] != 0.0) {
+                const size_t l = s->place[j->col[k]] - 1;
+                e->entry[p * t + l] = j->val[k];
+                e->size[p * t + l] = fabs(j->val[k]);
+                most = greater(most, weighted(e, p, l));
+            }
+        }
+        e->scale[p] = 1.0 / most;
+    }
+}
+
+static int eliminate_ties(const struct source *s, struct constraints *c)
+{
+    size_t rows = 0, touched = 0, area = 0;
+    for (size_t k = 0; k < c->ties; k++) {
+        const struct tie *tie = &c->tie[k];
+        rows = tie->rows > rows ? tie->rows : rows;
+        touched = tie->touched > touched ? tie->touched : touched;
+        area = tie->rows * tie->touched > area ? tie->rows * tie->touched : area;
+    }
+    double *numbers = malloc((2 * area + touched + rows + 1) * sizeof *numbers);
+    size_t *indices = malloc((3 * (rows + touched) + 1) * sizeof *indices);
+    for (size_t k = 0; numbers && indices && k < c->ties; k++) {
+        struct tie *tie = &c->tie[k];
+        const double zero = s->last ? sqrt(4.0 * (double)(tie->rows + 4) * DBL_EPSILON) : ROUNDING;
+        struct elimination e = {tie,
+                                s->last,
+                                numbers,
+                                numbers + area,
+                                numbers + 2 * area,
+                                numbers + 2 * area + touched,
+                                indices,
+                                indices + rows + touched,
+                                indices + 2 * (rows + touched),
+                                zero};
+        fill(&e, s);
+        eliminate_all(&e);
+        arrange(&e);
+        solve_rest(tie, e.weight);
+        c->rank += tie->rank;
+    }
+    const int done = numbers && indices;
+    free(numbers);
+    free(indices);
+    return done;
+}
+
+/* Lists the independent rows of all ties, and then the others. */
+static void list_order(struct constraints *c)
+{
+    size_t independent = 0, other = c->rank;
+    for (size_t k = 0; k < c->ties; k++) {
+        for (size_t p = 0; p < c->tie[k].rows; p++) {
+            c->order[p < c->tie[k].rank ? independent++ : other++] = c->tie[k].order[p];
+        }
+    }
+}
+
+int tribo_constraints_create(struct constraints *c, const struct matrix *direction, const struct matrix *mass, const size_t *row,
+                             size_t count, const unsigned char *last)
+{
+    struct source s = {direction, mass, row, count, last, NULL, NULL, NULL, NULL};
+    memset(c, 0, sizeof *c);
+    c->count = count;
+    c->order = malloc((count + 1) * sizeof *c->order);
+    c->tie = calloc(count + 1, sizeof *c->tie);
+    c->work = malloc((count + 1) * sizeof *c->work);
+    const int done = c->order && c->tie && c->work && find_ties(&s, c) && eliminate_ties(&s, c);
+    free(s.parent);
+    if (done) {
+        list_order(c);
+    }
+    return done;
+}
+
+/* ----------------------------------------------------------------------------------------------- displacements, forces */
+
+/* Numbers the degrees of freedom that are no slaves; those get ndof. Returns how many they are. */
+static size_t number_masters(const struct constraints *c, size_t ndof, size_t *number)
+{
+    size_t masters = 0;
+    memset(number, 0, ndof * sizeof *number);
+    for (size_t k = 0; k < c->ties; k++) {
+        for (size_t p = 0; p < c->tie[k].rank; p++) {
+            number[c->tie[k].dof[p]] = ndof;
+        }
+    }
+    for (size_t d = 0; d < ndof; d++) {
+        number[d] = number[d] ? ndof : masters++;
+    }
+    return masters;
+}
+
+/* A matrix under construction. */
+struct list {
+    size_t count, *i, *j;
+    double *v;
+};
+
+static void put(struct list *l, size_t i, size_t j, double v)
+{
+    l->i[l->count] = i;
+    l->j[l->count] = j;
+    l->v[l->count++] = v;
+}
+
+static void put_slaves(struct list *l, const struct tie *tie, const size_t *number)
+{
+    for (size_t p = 0; p < tie->rank; p++) {
+        for (size_t k = tie->rank; k < tie->touched; k++) {
+            if (tie->entry[p * tie->touched + k] != 0.0) {
+                put(l, tie->dof[p], number[tie->dof[k]], -tie->entry[p * tie->touched + k]);
+            }
+        }
+    }
+}
+
+int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct matrix *z)
+{
+    size_t room = ndof + 1;
+    for (size_t k = 0; k < c->ties; k++) {
+        room += c->tie[k].rank * (c->tie[k].touched - c->tie[k].rank);
+    }
+    size_t *number = malloc((ndof + 2 * room) * sizeof *number);
+    double *v = malloc(room * sizeof *v);
+    int done = number && v;
+    if (done) {
+        struct list l = {0, number + ndof, number + ndof + room, v};
+        const size_t masters = number_masters(c, ndof, number);
+        for (size_t d = 0; d < ndof; d++) {
+            if (number[d] < ndof) {
+                put(&l, d, number[d], 1.0);
+            }
+        }
+        for (size_t k = 0; k < c->ties; k++) {
+            put_slaves(&l, &c->tie[k], number);
+        }
+        done = tribo_matrix_from_triplets(z, ndof, masters, l.count, l.i, l.j, l.v);
+    }
+    free(number);
+    free(v);
+    return done;
+}
+
+void tribo_constraints_follow(const struct constraints *c, const double *b, double *q)
+{
+    for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
+        const size_t t = tie->touched, s = tie->rank;
+        double *x = c->work;
+        for (size_t p = 0; p < s; p++) {
+            x[p] = b[tie->order[p]];
+            for (size_t k = 0; k < p; k++) {
+                x[p] -= tie->entry[p * t + k] * x[k];
+            }
+        }
+        for (size_t p = s; p-- > 0;) {
+            for (size_t k = p + 1; k < s; k++) {
+                x[p] -= tie->entry[p * t + k] * x[k];
+            }
+            x[p] /= tie->entry[p * t + p];
+            q[tie->dof[p]] += x[p];
+        }
+    }
+}
+
+void tribo_constraints_react(const struct constraints *c, const double *force, double *f)
+{
+    for (const struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
+        const size_t t = tie->touched, s = tie->rank;
+        double *x = c->work;
+        for (size_t p = 0; p < s; p++) {
+            x[p] = force[tie->dof[p]];
+        }
+        for (size_t p = 0; p < s; p++) {
+            x[p] /= tie->entry[p * t + p];
+            for (size_t k = p + 1; k < s; k++) {
+                x[k] -= tie->entry[p * t + k] * x[p];
+            }
+        }
+        for (size_t p = s; p-- > 0;) {
+            for (size_t k = 0; k < p; k++) {
+                x[k] -= tie->entry[p * t + k] * x[p];
+            }
+            f[tie->order[p]] = x[p];
+        }
+    }
+}

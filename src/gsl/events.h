@@ -1,0 +1,43 @@
+/* The loop over events that the methods "exact" and "event" share. A method knows the motion while contacts do what they do, a phase;
+ * here it is found out when that ends, what comes then, and whether all of it kept to Coulomb's law. */
+#ifndef TRIBO_EVENTS_H
+#define TRIBO_EVENTS_H
+
+#include "stick_slip.h"
+
+#define TRIBO_SUSPECTS 8
+
+struct events {
+    struct stick_slip stick_slip;
+    struct first_zero search;
+    double *next; /* [dimension] */
+
+    /* the method's own */
+    void *motion;
+    /* Begins a phase at (t, y) that lasts until end, or for as long as *reach becomes, and sets its guards. Returns a status, its
+     * message on the system's context. */
+    int (*begin)(void *motion, double t, const double *y, double end, double *reach);
+    /* The state at tau into the phase that began with `from`. */
+    void (*state)(void *motion, double tau, const double *from, double *to);
+    int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
+
+    double credit, paid;            /* how many more events there may be, as of when */
+    size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
+    size_t suspects;
+};
+
+/* The method sets its own, and search.go, .read, .bound and .motion. */
+int tribo_events_create(struct events *e, tribo_driver *drv);
+void tribo_events_free(struct events *e);
+
+/* As advance of struct method. */
+int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double t1, double *y, int continues);
+
+/* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest, or
+ * two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or force is side * value. */
+void tribo_events_clear_guards(struct events *e);
+void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard);
+void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard);
+void tribo_events_guard_part(struct events *e, size_t i, struct guard guard);
+
+#endif

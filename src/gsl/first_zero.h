@@ -1,0 +1,40 @@
+/* The first of many functions to fall to zero. */
+#ifndef TRIBO_FIRST_ZERO_H
+#define TRIBO_FIRST_ZERO_H
+
+#include <stddef.h>
+
+#include "quintic.h"
+
+/* What must not fall below zero while a contact does what it does: side times its velocity (slides), or what is left between
+ * side times its force and the limit. */
+struct guard {
+    size_t contact;
+    int slides;
+    double side;
+    const void *output;          /* the motion's own */
+    double offset, start, ramp;  /* the motion's own */
+    double size, bend;           /* bounds, from where the search is on, of its parts together and of its sixth derivative */
+    double allowance;            /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
+    double lowest;               /* below zero by this much at most, so far */
+    struct sample left, right, middle; /* with the allowance added */
+};
+
+/* Guards, and the motion that they are about, which starts at time 0. */
+struct first_zero {
+    size_t guards;
+    struct guard *guard;
+    void (*go)(void *motion, double tau);
+    struct sample (*read)(const void *motion, const struct guard *guard); /* the guard where go went */
+    /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */
+    double (*bound)(void *motion, double tau);
+    void *motion;
+    double resolution; /* times closer than this are the same */
+    size_t looks;
+};
+
+/* The guard that is first to meet zero, and when; *first is NULL if none does before longest. Guards start at zero or above.
+ * 1, or 0 if this takes too many looks. */
+int tribo_first_zero(struct first_zero *s, double longest, const struct guard **first, double *when);
+
+#endif

@@ -1,0 +1,384 @@
+#include "modal_build.h"
+#include "../real.h"
+#include "normal_modes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Damping that two modes share is none beside so much more of their own. */
+#define NEGLIGIBLE 1e-9
+
+/* A mode may have so much of another one. */
+#define IMPURITY 1e-14
+
+/* Damping that is not more than so many times the rounding of its terms is none. */
+#define ROUNDING 8.0
+
+/* ------------------------------------------------------------------------------------------------------------ memory */
+
+/* Zeroed memory that belongs to a list. NULL if there is none left. */
+static void *take(void **list, size_t *bytes, size_t count, size_t size)
+{
+    void **block = calloc(1, sizeof *block + (count + 1) * size);
+    if (!block) {
+        return NULL;
+    }
+    *block = *list;
+    *list = block;
+    *bytes += (count + 1) * size;
+    return block + 1;
+}
+
+static void give_back(void *list)
+{
+    while (list) {
+        void *next = *(void **)list;
+        free(list);
+        list = next;
+    }
+}
+
+double *tribo_modal_keep(struct build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, sizeof(double));
+}
+
+size_t *tribo_modal_keep_indices(struct build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, sizeof(size_t));
+}
+
+unsigned char *tribo_modal_keep_bytes(struct build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, 1);
+}
+
+struct output *tribo_modal_keep_outputs(struct build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->output);
+}
+
+double *tribo_modal_scratch(struct build *b, size_t count)
+{
+    size_t ignored = 0;
+    return take(&b->scratch, &ignored, count, sizeof(double));
+}
+
+size_t *tribo_modal_scratch_indices(struct build *b, size_t count)
+{
+    size_t ignored = 0;
+    return take(&b->scratch, &ignored, count, sizeof(size_t));
+}
+
+void tribo_modal_free(struct modal *h)
+{
+    if (h) {
+        give_back(h->memory);
+        free(h);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------- the contacts that hold */
+
+static int list_rest(struct build *b, const unsigned char *holds)
+{
+    b->rest = tribo_modal_scratch_indices(b, b->sys->ncontact);
+    for (size_t i = 0; b->rest && i < b->sys->ncontact; i++) {
+        if (holds[i]) {
+            b->rest[b->h->rest++] = i;
+        }
+    }
+    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->metric, b->rest, b->h->rest, NULL)) {
+        return 0;
+    }
+    if (b->ties.rank < b->h->rest) {
+        b->status =
+            tribo_system_fail(b->sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
+                              b->rest[b->ties.order[b->ties.rank]]);
+        return 0;
+    }
+    return 1;
+}
+
+void tribo_modal_add_mass(const struct build *b, double factor, const double *x, double *to)
+{
+    if (b->sys->metric.rows) {
+        tribo_matrix_multiply_add(&b->sys->metric, factor, x, to);
+    } else {
+        tribo_add(to, factor, x, b->n);
+    }
+}
+
+void tribo_modal_hold(const struct build *b, const double *force, double *f)
+{
+    tribo_constraints_react(&b->ties, force, f);
+    for (size_t p = 0; p < b->h->rest; p++) {
+        f[p] /= tribo_system_weight(b->sys, b->rest[p]);
+    }
+}
+
+void tribo_modal_react(const struct build *b, double *force, double *f)
+{
+    for (size_t k = 0; k < b->h->modes; k++) {
+        tribo_add(force, -tribo_dot(b->phi + k * b->n, force, b->n), b->psi + k * b->n, b->n);
+    }
+    tribo_modal_hold(b, force, f);
+}
+
+/* ------------------------------------------------------------------------------------------------- modes of vibration */
+
+/* K or C: as given, or W times what accelerates. */
+static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
+                                         struct matrix *own)
+{
+    if (given->rows || !sys->metric.rows) {
+        return given->rows ? given : accelerates;
+    }
+    double *mass = malloc(sys->ndof * sizeof *mass);
+    for (size_t d = 0; mass && d < sys->ndof; d++) {
+        mass[d] = tribo_matrix_get(&sys->metric, d, d);
+    }
+    int done = mass && tribo_matrix_copy(own, accelerates);
+    done = done && tribo_matrix_scale_rows(own, mass);
+    free(mass);
+    return done ? own : NULL;
+}
+
+static int find_forces(struct build *b)
+{
+    const tribo_system *sys = b->sys;
+    b->stiffness = force_matrix(sys, &sys->elastic, &sys->stiffness, &b->own_stiffness);
+    b->damping = sys->damping.rows ? force_matrix(sys, &sys->viscous, &sys->damping, &b->own_damping) : NULL;
+    return b->stiffness && (b->damping || !sys->damping.rows);
+}
+
+/* Factor of Z'WZ. Returns a status. */
+static int factorize_mass(struct build *b, const struct matrix *z, struct cholesky *c)
+{
+    const size_t m = z->cols;
+    double *mass = tribo_modal_scratch(b, m * m), pivot = 0.0;
+    struct matrix w = {0};
+    size_t where = 0;
+    int status = TRIBO_ERR_MEMORY;
+    if (mass && tribo_matrix_congruent(&b->sys->metric, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
+        status = tribo_cholesky_create(c, &w, &where, &pivot);
+    }
+    tribo_matrix_free(&w);
+    if (status == TRIBO_ERR_INDEFINITE) {
+        tribo_system_fail(b->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
+    }
+    return status;
+}
+
+/* What to say of modes that were not found. */
+static int modes_failed(const struct build *b, int status, const struct doubt *doubt)
+{
+    switch (status) {
+    case TRIBO_ERR_NOT_FINITE:
+        return tribo_system_fail(b->sys, status, "stiffness over mass overflows");
+    case TRIBO_ERR_UNSUPPORTED:
+        return tribo_system_fail(b->sys, status,
+                                 "with contacts at rest held, omega^2 = %g of mode %zu is hardly more than rounding of the "
+                                 "stiffness, which comes to %g: make the stiffest parts softer, or rigid",
+                                 doubt->omega2, doubt->mode, doubt->noise);
+    case TRIBO_ERR_NO_CONVERGENCE:
+        return tribo_system_fail(b->sys, status,
+                                 "with contacts at rest held, omega^2 = %g of mode %zu does not come out pure: take method event",
+                                 doubt->omega2, doubt->mode);
+    default:
+        return status;
+    }
+}
+
+static int find_modes(struct build *b)
+{
+    struct matrix z = {0};
+    struct cholesky own = {0};
+    struct doubt doubt = {0};
+    const int held = b->h->rest > 0;
+    int status = !held || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    b->h->modes = b->n - b->h->rest;
+    b->h->omega2 = tribo_modal_keep(b, b->h->modes);
+    b->phi = tribo_modal_scratch(b, b->h->modes * b->n);
+    status = status || (b->h->omega2 && b->phi) ? status : TRIBO_ERR_MEMORY;
+    if (!status && b->h->modes > 0) {
+        status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
+        status = status ? status
+                        : modes_failed(b,
+                                       tribo_normal_modes(b->stiffness, &z, held ? &own : &b->sys->factor, b->h->modes,
+                                                          b->h->omega2, b->phi, &doubt),
+                                       &doubt);
+    }
+    tribo_matrix_free(&z);
+    tribo_cholesky_free(&own);
+    b->status = status;
+    return !status;
+}
+
+/* W phi, K phi and C phi. */
+static int multiply_modes(struct build *b)
+{
+    const size_t n = b->n, m = b->h->modes;
+    b->psi = tribo_modal_scratch(b, m * n);
+    b->k_phi = tribo_modal_scratch(b, m * n);
+    b->c_phi = b->damping ? tribo_modal_scratch(b, m * n) : NULL;
+    if (!b->psi || !b->k_phi || (b->damping && !b->c_phi)) {
+        return 0;
+    }
+    for (size_t k = 0; k < m; k++) {
+        const double *phi = b->phi + k * n;
+        tribo_modal_add_mass(b, 1.0, phi, b->psi + k * n);
+        tribo_matrix_multiply_add(b->stiffness, 1.0, phi, b->k_phi + k * n);
+        if (b->damping) {
+            tribo_matrix_multiply_add(b->damping, 1.0, phi, b->c_phi + k * n);
+        }
+    }
+    return 1;
+}
+
+/* 1 if the modes share damping c [modes][modes] that is neither negligible beside their own nor rounding. */
+static int damping_couples(const struct build *b, const double *c, const double *root)
+{
+    const size_t n = b->n, m = b->h->modes;
+    for (size_t k = 0; k < m; k++) {
+        for (size_t l = 0; l < m; l++) {
+            const double shared = fabs(c[k * m + l]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
+            const double impure = IMPURITY * greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
+            if (k != l && shared > greater(NEGLIGIBLE * own, impure) &&
+                shared > ROUNDING * tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + l * n)) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* Damping of the modes, each by itself, or coupled. */
+static int find_damping(struct build *b)
+{
+    struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes;
+    h->damping = tribo_modal_keep(b, m);
+    double *c = b->damping ? tribo_modal_scratch(b, m * m) : NULL, *root = tribo_modal_scratch(b, n);
+    if (!h->damping || !root || (b->damping && !c)) {
+        return 0;
+    }
+    if (!b->damping) {
+        return 1;
+    }
+    tribo_matrix_roots(b->damping, root);
+    double most = 0.0;
+    for (size_t k = 0; k < m; k++) {
+        for (size_t l = 0; l < m; l++) {
+            c[k * m + l] = tribo_dot(b->phi + k * n, b->c_phi + l * n, n);
+        }
+        most = greater(most, fabs(c[k * m + k]));
+    }
+    for (size_t k = 0; k < m; k++) {
+        const double own = c[k * m + k], noise = tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + k * n);
+        h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
+    }
+    if (damping_couples(b, c, root)) {
+        h->coupling = tribo_modal_keep(b, m * m);
+        if (!h->coupling) {
+            return 0;
+        }
+        memcpy(h->coupling, c, m * m * sizeof *c);
+    }
+    return 1;
+}
+
+static int find_drifts(struct build *b)
+{
+    struct modal *h = b->h;
+    h->drifts = tribo_modal_keep_bytes(b, h->modes);
+    for (size_t k = 0; h->drifts && k < h->modes; k++) {
+        h->drifts[k] = h->omega2[k] == 0.0 && h->damping[k] == 0.0;
+    }
+    return h->drifts != NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------------- structures */
+
+/* Keeps modes and belt velocities for the degrees of freedom that move. */
+static int compress(struct build *b)
+{
+    struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes, s = h->harmonics;
+    h->dof = tribo_modal_keep_indices(b, n);
+    for (size_t d = 0; h->dof && d < n; d++) {
+        int moves = b->y0[d] != 0.0;
+        for (size_t k = 0; k < m; k++) {
+            moves |= b->phi[k * n + d] != 0.0 || b->psi[k * n + d] != 0.0;
+        }
+        for (size_t w = 0; w < s; w++) {
+            moves |= b->yr[w * n + d] != 0.0 || b->yi[w * n + d] != 0.0;
+        }
+        if (moves) {
+            h->dof[h->moving++] = d;
+        }
+    }
+    h->phi = tribo_modal_keep(b, m * h->moving);
+    h->psi = tribo_modal_keep(b, m * h->moving);
+    h->yr = tribo_modal_keep(b, s * h->moving);
+    h->yi = tribo_modal_keep(b, s * h->moving);
+    h->y0 = tribo_modal_keep(b, h->moving);
+    if (!h->dof || !h->phi || !h->psi || !h->yr || !h->yi || !h->y0) {
+        return 0;
+    }
+    for (size_t i = 0; i < h->moving; i++) {
+        const size_t d = h->dof[i];
+        for (size_t k = 0; k < m; k++) {
+            h->phi[k * h->moving + i] = b->phi[k * n + d];
+            h->psi[k * h->moving + i] = b->psi[k * n + d];
+        }
+        for (size_t w = 0; w < s; w++) {
+            h->yr[w * h->moving + i] = b->yr[w * n + d];
+            h->yi[w * h->moving + i] = b->yi[w * n + d];
+        }
+        h->y0[i] = b->y0[d];
+    }
+    return 1;
+}
+
+static int build(struct build *b, const signed char *mode, const unsigned char *holds)
+{
+    struct modal *h = b->h;
+    h->key = take(&h->memory, &h->bytes, b->sys->ncontact, 1);
+    for (size_t i = 0; h->key && i < b->sys->ncontact; i++) {
+        h->key[i] = (signed char)((mode[i] == 0) + holds[i]);
+    }
+    if (!h->key || !list_rest(b, holds) || !find_forces(b) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
+        !find_drifts(b)) {
+        return b->status ? b->status : TRIBO_ERR_MEMORY;
+    }
+    const int status = tribo_modal_exponents(b);
+    if (status) {
+        return status;
+    }
+    h->size = tribo_modal_keep(b, h->exponents);
+    for (size_t p = 0; h->size && p < h->exponents; p++) {
+        h->size[p] = hypot(h->lr[p], h->li[p]);
+        h->fastest = greater(h->fastest, h->size[p]);
+    }
+    const int done = h->size && tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b);
+    return done ? TRIBO_OK : b->status ? b->status : TRIBO_ERR_MEMORY;
+}
+
+int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *mode, const unsigned char *holds)
+{
+    struct build b = {.sys = sys, .n = sys->ndof, .h = calloc(1, sizeof *b.h)};
+    int status = b.h ? build(&b, mode, holds) : TRIBO_ERR_MEMORY;
+    give_back(b.scratch);
+    tribo_constraints_free(&b.ties);
+    tribo_matrix_free(&b.own_stiffness);
+    tribo_matrix_free(&b.own_damping);
+    if (status) {
+        tribo_modal_free(b.h);
+        return status == TRIBO_ERR_MEMORY ? tribo_system_fail(sys, status, "out of memory for the modes of a held structure")
+                                          : status;
+    }
+    *modal = b.h;
+    return TRIBO_OK;
+}

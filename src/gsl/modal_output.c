@@ -1,0 +1,287 @@
+/* What the motion in the modes means for contacts. */
+#include "modal_build.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "../real.h"
+
+/* Bases that part from each other by no more than this part of their motion go together. */
+#define NO_MOTION 1e-14
+
+/* Adds what a contact gets from position (eta) and velocity (eta') amplitudes of mode k. */
+static void output_mode(const struct build *b, struct output *w, size_t k, double position, double velocity)
+{
+    const struct modal *h = b->h;
+    const size_t m = h->modes;
+    for (size_t p = 0; p < h->exponents; p++) {
+        if (h->owner && h->owner[p] != k) {
+            continue;
+        }
+        const double rr = h->owner ? 1.0 : h->rr[k * h->exponents + p], ri = h->owner ? 0.0 : h->ri[k * h->exponents + p];
+        const double fr = position + velocity * h->lr[p], fi = velocity * h->li[p];
+        w->cr[p] += fr * rr - fi * ri;
+        w->ci[p] += fr * ri + fi * rr;
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double omega = b->sys->harmonic[s].omega, xr = h->xr[s * m + k], xi = h->xi[s * m + k];
+        w->rr[s] += position * xr - velocity * omega * xi;
+        w->ri[s] += position * xi + velocity * omega * xr;
+    }
+}
+
+static int create_output(struct build *b, struct output *w, size_t contact)
+{
+    const size_t p = b->h->exponents, s = b->h->harmonics, m = b->h->modes;
+    double *x = tribo_modal_keep(b, 4 * p + 4 * s + m);
+    if (!x) {
+        return 0;
+    }
+    double *y = x + 4 * p;
+    *w = (struct output){contact, x, x + p, x + 2 * p, x + 3 * p, y, y + s, y + 2 * s, y + 3 * s, y + 4 * s, 0.0};
+    return 1;
+}
+
+static double sixth_power(double x)
+{
+    return x * x * x * x * x * x;
+}
+
+static void finish_output(const struct build *b, struct output *w)
+{
+    for (size_t p = 0; p < b->h->exponents; p++) {
+        w->size[p] = hypot(w->cr[p], w->ci[p]);
+        w->bend[p] = w->size[p] * sixth_power(b->h->size[p]);
+    }
+    for (size_t s = 0; s < b->h->harmonics; s++) {
+        w->wave[s] = hypot(w->rr[s], w->ri[s]);
+        w->wave_bend[s] = w->wave[s] * sixth_power(b->sys->harmonic[s].omega);
+    }
+}
+
+/* The largest |x| + |y|. */
+static double largest(const double *x, const double *y, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = greater(most, fabs(x[i]) + fabs(y[i]));
+    }
+    return most;
+}
+
+/* What the belts make of v_i = J_i q' - b_i, in all harmonics; what is only rounding of their motion is left out. Returns whether
+ * there is anything. */
+static int output_belts(const struct build *b, struct output *w, size_t i)
+{
+    const struct matrix *j = &b->sys->direction;
+    int any = 0;
+    for (size_t s = 0; s < b->h->harmonics; s++) {
+        const struct harmonic *wave = &b->sys->harmonic[s];
+        const double *yr = b->yr + s * b->n, *yi = b->yi + s * b->n, most = largest(yr, yi, b->n);
+        double re = 0.0, im = 0.0, size = 0.0;
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            re += j->val[e] * yr[j->col[e]];
+            im += j->val[e] * yi[j->col[e]];
+            size += fabs(j->val[e]) * most;
+        }
+        for (size_t e = 0; wave->moves_base && wave->omega != 0.0 && e < wave->count; e++) {
+            re -= wave->index[e] == i ? wave->cosine[e] : 0.0;
+            im += wave->index[e] == i ? wave->sine[e] : 0.0;
+        }
+        if (fabs(re) + fabs(im) > NO_MOTION * size) {
+            w->rr[s] += re;
+            w->ri[s] += im;
+            any = 1;
+        }
+    }
+    return any;
+}
+
+/* v_i = J_i q' - b_i. */
+static int output_sliding(struct build *b, struct output *w, size_t i)
+{
+    if (!create_output(b, w, i)) {
+        return 0;
+    }
+    const struct matrix *j = &b->sys->direction;
+    for (size_t k = 0; k < b->h->modes; k++) {
+        double shape = 0.0;
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            shape += j->val[e] * b->phi[k * b->n + j->col[e]];
+        }
+        w->on_rate[k] = shape;
+        output_mode(b, w, k, 0.0, shape);
+    }
+    output_belts(b, w, i);
+    finish_output(b, w);
+    return 1;
+}
+
+/* The same of a contact that rests by itself: the modes do not move it, but its base may part from those that hold. */
+static int output_parting(struct build *b, struct output *all, size_t *used, size_t i)
+{
+    struct output *w = &all[*used];
+    if (!create_output(b, w, i)) {
+        return 0;
+    }
+    *used += output_belts(b, w, i) != 0;
+    finish_output(b, w);
+    return 1;
+}
+
+/* What the held contacts carry, J_I'f = K q + C q' + W q'' - W load: by modes, by harmonics, and per unit of time. */
+struct holding {
+    double *by_q, *by_u;     /* [modes][rest] */
+    double *wave_r, *wave_i; /* [harmonics][rest] */
+    double *ramp;            /* [rest] */
+    double *force[2], *load; /* [ndof] workspace */
+};
+
+/* Mode k, with K phi_k = omega_k^2 W phi_k + J_I'f, and so with damping. */
+static void hold_mode(const struct build *b, struct holding *f, size_t k)
+{
+    const struct modal *h = b->h;
+    const size_t n = b->n, s = h->rest;
+    const double *psi = b->psi + k * n;
+    memcpy(f->load, b->k_phi + k * n, n * sizeof *f->load);
+    tribo_add(f->load, -h->omega2[k], psi, n);
+    tribo_modal_hold(b, f->load, f->by_q + k * s);
+    if (b->damping) {
+        memcpy(f->load, b->c_phi + k * n, n * sizeof *f->load);
+        for (size_t l = 0; h->coupling && l < h->modes; l++) {
+            tribo_add(f->load, -h->coupling[l * h->modes + k], b->psi + l * n, n);
+        }
+        tribo_add(f->load, h->coupling ? 0.0 : -h->damping[k], psi, n);
+        tribo_modal_hold(b, f->load, f->by_u + k * s);
+    }
+}
+
+/* A harmonic load. */
+static void hold_load(const struct build *b, struct holding *f, const struct harmonic *wave)
+{
+    for (int part = 0; part < 2; part++) {
+        memset(f->load, 0, b->n * sizeof *f->load);
+        for (size_t e = 0; e < wave->count; e++) {
+            f->load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
+        }
+        tribo_modal_add_mass(b, 1.0, f->load, f->force[part]);
+    }
+}
+
+/* Belts that move y [2][ndof], displaced by y/(i Omega), accelerated by i Omega y. */
+static void hold_motion(const struct build *b, struct holding *f, double omega, const double *const *y)
+{
+    for (int part = 0; part < 2; part++) {
+        const double turn = part ? 1.0 : -1.0;
+        if (b->damping) {
+            tribo_matrix_multiply_add(b->damping, 1.0, y[part], f->force[part]);
+        }
+        tribo_matrix_multiply_add(b->stiffness, turn / omega, y[part], f->force[1 - part]);
+        tribo_modal_add_mass(b, -turn * omega, y[part], f->force[1 - part]);
+    }
+}
+
+static void hold_harmonic(const struct build *b, struct holding *f, size_t w)
+{
+    const struct harmonic *wave = &b->sys->harmonic[w];
+    const size_t n = b->n, s = b->h->rest;
+    const double *const y[] = {b->yr + w * n, b->yi + w * n};
+    memset(f->force[0], 0, n * sizeof **f->force);
+    memset(f->force[1], 0, n * sizeof **f->force);
+    if (wave->moves_base) {
+        hold_motion(b, f, wave->omega, y);
+    } else {
+        hold_load(b, f, wave);
+    }
+    tribo_modal_react(b, f->force[0], f->wave_r + w * s);
+    tribo_modal_react(b, f->force[1], f->wave_i + w * s);
+}
+
+static int find_holding(struct build *b, struct holding *f)
+{
+    const struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes, s = h->rest;
+    double **const all[] = {&f->by_q, &f->by_u, &f->wave_r, &f->wave_i, &f->ramp, &f->force[0], &f->force[1], &f->load};
+    const size_t count[] = {m * s, m * s, h->harmonics * s, h->harmonics * s, s, n, n, n};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        *all[k] = tribo_modal_scratch(b, count[k]);
+        if (!*all[k]) {
+            return 0;
+        }
+    }
+    for (size_t k = 0; k < m; k++) {
+        hold_mode(b, f, k);
+    }
+    for (size_t w = 0; w < h->harmonics; w++) {
+        if (b->sys->harmonic[w].omega != 0.0) {
+            hold_harmonic(b, f, w);
+        }
+    }
+    memset(f->load, 0, n * sizeof *f->load);
+    tribo_matrix_multiply_add(b->stiffness, 1.0, b->y0, f->load);
+    tribo_modal_react(b, f->load, f->ramp);
+    return 1;
+}
+
+/* 1 if what contact p of those that hold carries changes at all. */
+static int changes(const struct modal *h, const struct holding *f, size_t p)
+{
+    int found = f->ramp[p] != 0.0;
+    for (size_t k = 0; k < h->modes; k++) {
+        found |= f->by_q[k * h->rest + p] != 0.0 || f->by_u[k * h->rest + p] != 0.0;
+    }
+    for (size_t w = 0; w < h->harmonics; w++) {
+        found |= f->wave_r[w * h->rest + p] != 0.0 || f->wave_i[w * h->rest + p] != 0.0;
+    }
+    return found;
+}
+
+/* Outputs of those contacts that hold and do not always carry the same. */
+static int output_held(struct build *b, struct output *all, size_t *used)
+{
+    struct modal *h = b->h;
+    struct holding f;
+    if (!find_holding(b, &f)) {
+        return 0;
+    }
+    for (size_t p = 0; p < h->rest; p++) {
+        if (!changes(h, &f, p)) {
+            continue;
+        }
+        struct output *output = &all[(*used)++];
+        if (!create_output(b, output, b->rest[p])) {
+            return 0;
+        }
+        output->ramp = f.ramp[p];
+        for (size_t k = 0; k < h->modes; k++) {
+            output->on_rate[k] = f.by_q[k * h->rest + p];
+            output_mode(b, output, k, f.by_q[k * h->rest + p], f.by_u[k * h->rest + p]);
+        }
+        for (size_t w = 0; w < h->harmonics; w++) {
+            output->rr[w] += f.wave_r[w * h->rest + p];
+            output->ri[w] += f.wave_i[w * h->rest + p];
+        }
+        finish_output(b, output);
+    }
+    return 1;
+}
+
+int tribo_modal_outputs(struct build *b)
+{
+    struct modal *h = b->h;
+    const size_t c = b->sys->ncontact;
+    h->output = tribo_modal_keep_outputs(b, c);
+    if (!h->output) {
+        return 0;
+    }
+    for (size_t i = 0; i < c; i++) {
+        const int done = h->key[i] == 0   ? output_sliding(b, &h->output[h->outputs++], i)
+                         : h->key[i] == 1 ? output_parting(b, h->output, &h->outputs, i)
+                                          : 1;
+        if (!done) {
+            return 0;
+        }
+    }
+    h->sliding = h->outputs;
+    return output_held(b, h->output, &h->outputs);
+}

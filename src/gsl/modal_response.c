@@ -1,0 +1,166 @@
+/* Harmonics: what they do to the modes, and the response to that. */
+#include "modal_build.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor. */
+#define RESONANCE 1e-3
+
+/* A response larger than one over this would leave too few digits. */
+#define UNDAMPED 1e-9
+
+/* y [ndof] = velocities from the b [rest] of the contacts that hold, in which the modes have no part. */
+static void belt_velocities(const struct build *b, const double *x, double *y)
+{
+    tribo_constraints_follow(&b->ties, x, y);
+    for (size_t k = 0; k < b->h->modes; k++) {
+        tribo_add(y, -tribo_dot(b->psi + k * b->n, y, b->n), b->phi + k * b->n, b->n);
+    }
+}
+
+/* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
+void tribo_modal_base_part(const struct build *b, const struct harmonic *w, int part, double *x)
+{
+    for (size_t p = 0; p < b->h->rest; p++) {
+        x[p] = 0.0;
+        for (size_t i = 0; i < w->count; i++) {
+            if (w->index[i] == b->rest[p]) {
+                x[p] = part ? -w->sine[i] : w->cosine[i];
+            }
+        }
+    }
+}
+
+/* Forcing of eta by each harmonic, and what the held contacts are moved by. */
+int tribo_modal_forcing(struct build *b)
+{
+    struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes, count = b->sys->harmonics;
+    h->harmonics = count;
+    h->gr = tribo_modal_keep(b, count * m);
+    h->gi = tribo_modal_keep(b, count * m);
+    h->ramp = tribo_modal_keep(b, m);
+    h->drag = tribo_modal_keep(b, m);
+    b->yr = tribo_modal_scratch(b, count * n);
+    b->yi = tribo_modal_scratch(b, count * n);
+    b->y0 = tribo_modal_scratch(b, n);
+    double *x = tribo_modal_scratch(b, h->rest), *pull = tribo_modal_scratch(b, n), *drag = tribo_modal_scratch(b, n);
+    if (!h->gr || !h->gi || !h->ramp || !h->drag || !b->yr || !b->yi || !b->y0 || !x || !pull || !drag) {
+        return 0;
+    }
+    for (size_t w = 0; w < count; w++) {
+        const struct harmonic *wave = &b->sys->harmonic[w];
+        double *g[] = {h->gr + w * m, h->gi + w * m}, *y[] = {b->yr + w * n, b->yi + w * n};
+        for (int part = 0; !wave->moves_base && part < 2; part++) {
+            for (size_t k = 0; k < m; k++) {
+                for (size_t i = 0; i < wave->count; i++) {
+                    g[part][k] += (part ? -wave->sine[i] : wave->cosine[i]) * b->psi[k * n + wave->index[i]];
+                }
+            }
+        }
+        for (int part = 0; wave->moves_base && part < 2; part++) {
+            tribo_modal_base_part(b, wave, part, x);
+            belt_velocities(b, x, y[part]);
+        }
+        for (int part = 0; wave->moves_base && part < 2; part++) {
+            if (wave->omega == 0.0) {
+                if (part == 0) {
+                    tribo_add(b->y0, 1.0, y[0], n);
+                }
+                memset(y[part], 0, n * sizeof **y);
+                continue;
+            }
+            /* -K y/(i Omega) - C y; 1/i turns the real part into minus the imaginary one */
+            memset(pull, 0, n * sizeof *pull);
+            memset(drag, 0, n * sizeof *drag);
+            tribo_matrix_multiply_add(b->stiffness, (part ? -1.0 : 1.0) / wave->omega, y[part], pull);
+            if (b->damping) {
+                tribo_matrix_multiply_add(b->damping, -1.0, y[part], drag);
+            }
+            for (size_t k = 0; k < m; k++) {
+                g[1 - part][k] += tribo_dot(b->phi + k * n, pull, n);
+                g[part][k] += tribo_dot(b->phi + k * n, drag, n);
+            }
+        }
+    }
+    memset(pull, 0, n * sizeof *pull);
+    memset(drag, 0, n * sizeof *drag);
+    tribo_matrix_multiply_add(b->stiffness, -1.0, b->y0, pull);
+    if (b->damping) {
+        tribo_matrix_multiply_add(b->damping, -1.0, b->y0, drag);
+    }
+    for (size_t k = 0; k < m; k++) {
+        h->ramp[k] = tribo_dot(b->phi + k * n, pull, n);
+        h->drag[k] = tribo_dot(b->phi + k * n, drag, n);
+    }
+    return 1;
+}
+
+/* Response of modes of which each has damping of its own. */
+static void respond_alone(struct build *b, size_t w)
+{
+    struct modal *h = b->h;
+    const double omega = b->sys->harmonic[w].omega;
+    for (size_t k = 0; k < h->modes; k++) {
+        const size_t at = w * h->modes + k;
+        const double gr = h->gr[at], gi = h->gi[at];
+        const double re = h->omega2[k] - omega * omega, im = omega * h->damping[k], square = re * re + im * im;
+        h->resonant[at] = sqrt(square) < RESONANCE * fabs(h->omega2[k]) && (gr != 0.0 || gi != 0.0);
+        h->any_resonant |= h->resonant[at];
+        if (!h->resonant[at] && (gr != 0.0 || gi != 0.0)) {
+            h->xr[at] = (gr * re + gi * im) / square;
+            h->xi[at] = (gi * re - gr * im) / square;
+        }
+    }
+}
+
+/* Response of modes that damping couples: real and imaginary parts are the unknowns. a [2 modes][2 modes], x [2 modes]. */
+static int respond_together(struct build *b, size_t w, double *a, double *x, size_t *pivot)
+{
+    struct modal *h = b->h;
+    const size_t m = h->modes, size = 2 * m;
+    const double omega = b->sys->harmonic[w].omega;
+    memset(a, 0, size * size * sizeof *a);
+    for (size_t k = 0; k < m; k++) {
+        a[k * size + k] = a[(m + k) * size + m + k] = h->omega2[k] - omega * omega;
+        for (size_t l = 0; l < m; l++) {
+            a[k * size + m + l] = -omega * h->coupling[k * m + l];
+            a[(m + k) * size + l] = omega * h->coupling[k * m + l];
+        }
+    }
+    memcpy(x, h->gr + w * m, m * sizeof *x);
+    memcpy(x + m, h->gi + w * m, m * sizeof *x);
+    if (!(tribo_lu_create(a, size, pivot) > UNDAMPED * omega * omega)) {
+        b->status = tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED,
+                                      "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
+                                      "others: take method event",
+                                      omega);
+        return 0;
+    }
+    tribo_lu_solve(a, size, pivot, x, 1);
+    memcpy(h->xr + w * m, x, m * sizeof *x);
+    memcpy(h->xi + w * m, x + m, m * sizeof *x);
+    return 1;
+}
+
+/* Response of eta to the harmonics, (diag(omega^2) - Omega^2 + i Omega C~) x = g. */
+int tribo_modal_response(struct build *b)
+{
+    struct modal *h = b->h;
+    const size_t m = h->modes, count = h->harmonics, size = h->coupling ? 2 * m : 0;
+    h->xr = tribo_modal_keep(b, count * m);
+    h->xi = tribo_modal_keep(b, count * m);
+    h->resonant = tribo_modal_keep_bytes(b, count * m);
+    double *a = tribo_modal_scratch(b, size * size), *x = tribo_modal_scratch(b, size);
+    size_t *pivot = tribo_modal_scratch_indices(b, size);
+    int done = h->xr && h->xi && h->resonant && a && x && pivot;
+    for (size_t w = 0; done && w < count; w++) {
+        if (b->sys->harmonic[w].omega != 0.0 && h->coupling) {
+            done = respond_together(b, w, a, x, pivot);
+        } else if (b->sys->harmonic[w].omega != 0.0) {
+            respond_alone(b, w);
+        }
+    }
+    return done;
+}

@@ -1,0 +1,555 @@
+/* How it is decided. Contacts without velocity are at rest for now, and
+ *
+ *     repeat
+ *         forces from the problem with bounds, min 1/2 f'Rf + a'f, |f| <= limit for those at rest
+ *         those of them slide whose force is at the limit, and whose acceleration is more than rounding
+ *         if others are just at their limit: the same problem a moment later tells whether they slide
+ *     until none does
+ *
+ * At last an independent set of those at rest is chosen to hold. */
+#include "constraint.h"
+#include "stick_slip.h"
+#include "../real.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Accelerations, and velocities, are known to this part of what they are the sum of. */
+#define NOISE 2e-14
+#define VELOCITY_NOISE 2e-14
+
+/* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
+#define ALLOWED 8.0
+
+/* The moment later, in parts of one over the highest frequency. What has changed by then is far above noise, as a rule, and
+ * nearly linear in time. */
+#define LOOK_AHEAD 1e-4
+
+/* A force this close to the limit might be taken beyond it by rounding, or in a moment. */
+#define CLOSE 0.1
+
+/* A contact that is close to its limit, but not at it, does not reach it in a moment: its bounds are wider by this part. */
+#define WIDER 0.02
+
+int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
+{
+    const size_t c = sys->ncontact + 1, n = sys->ndof;
+    memset(m, 0, sizeof *m);
+    m->contacts = sys->ncontact;
+    m->doubt = 1.0;
+    int status = tribo_clone(sys->contacts, &m->box);
+    status = status ? status : tribo_clone(sys->contacts, &m->hold);
+    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force, &m->allowance, &m->base, &m->noise, &m->diagonal, &m->seen, &m->parting, &m->excess,
+                                   &m->v,     &m->a,          &m->gain,  &m->lo,        &m->hi,   &m->f,     &m->still};
+    double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
+    const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
+    double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
+    m->slip = calloc(6, c);
+    m->at = malloc(c * sizeof *m->at);
+    m->last = malloc(c);
+    m->limit = work;
+    if (status || !work || !m->slip || !m->at || !m->last) {
+        tribo_stick_slip_free(m);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stick and slip of %zu contacts", sys->ncontact);
+    }
+    for (size_t k = 0; k < contact_arrays; k++) {
+        *by_contact[k] = work + k * c;
+    }
+    for (size_t k = 0; k < dof_arrays; k++) {
+        *by_dof[k] = work + contact_arrays * c + k * n;
+    }
+    m->tied = m->slip + c;
+    m->before = m->slip + 2 * c;
+    m->loose = m->slip + 3 * c;
+    m->holds = (unsigned char *)m->slip + 4 * c;
+    m->rested = (unsigned char *)m->slip + 5 * c;
+    m->simple = 1;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->diagonal[i] = tribo_system_delassus(sys, i, i);
+        m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
+    }
+    size_t islands;
+    tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
+    m->uncoupled = islands == sys->ncontact;
+    /* a contact that has reached its limit stays there while others take over */
+    tribo_set_sharing(m->box, TRIBO_SHARE_LAST);
+    tribo_set_law(m->hold, TRIBO_COULOMB);
+    tribo_set_coupling(m->hold, TRIBO_PARTITION);
+    return TRIBO_OK;
+}
+
+void tribo_stick_slip_free(struct stick_slip *m)
+{
+    tribo_destroy(m->box);
+    tribo_destroy(m->hold);
+    free(m->limit);
+    free(m->slip);
+    free(m->at);
+    free(m->last);
+    memset(m, 0, sizeof *m);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- rounding */
+
+/* y += |a| |x| */
+static void add_sizes(const struct matrix *a, const double *x, double *y)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            y[i] += fabs(a->val[k] * x[a->col[k]]);
+        }
+    }
+}
+
+/* y += amplitudes of the order-th derivatives of loads, or of b. */
+static void add_amplitudes(const tribo_system *sys, int moves_base, int order, double *y)
+{
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        const double rate = order ? fabs(w->omega) : 1.0;
+        for (size_t k = 0; w->moves_base == moves_base && k < w->count; k++) {
+            y[w->index[k]] += rate * (fabs(w->cosine[k]) + fabs(w->sine[k]));
+        }
+    }
+}
+
+/* What of the velocities may be rounding, as far as the state tells, and the phase before. */
+static void find_noise(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    memset(m->noise, 0, sys->ncontact * sizeof *m->noise);
+    add_amplitudes(sys, 1, 0, m->noise);
+    add_sizes(&sys->direction, y + sys->ndof, m->noise);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->noise[i] = VELOCITY_NOISE * greater(m->noise[i], m->seen[i]);
+        m->seen[i] = 0.0;
+    }
+}
+
+/* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are the
+ * sum of. */
+static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    if (m->sized) {
+        return;
+    }
+    m->sized = 1;
+    memset(m->size, 0, sys->ndof * sizeof *m->size);
+    tribo_system_tables(sys, 0, 1.0, m->size);
+    for (size_t d = 0; d < sys->ndof; d++) {
+        m->size[d] = fabs(m->size[d]);
+    }
+    add_amplitudes(sys, 0, 0, m->size);
+    add_sizes(&sys->stiffness, y, m->size);
+    if (sys->damping.rows) {
+        add_sizes(&sys->damping, y + sys->ndof, m->size);
+    }
+    add_sizes(&sys->response, m->force, m->size);
+    memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
+    add_amplitudes(sys, 1, 1, m->gain);
+    add_sizes(&sys->direction, m->size, m->gain);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->gain[i] *= NOISE * m->doubt;
+        m->allowance[i] = m->diagonal[i] > 0.0 ? ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- contacts that hold */
+
+int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
+{
+    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
+        f[i] = m->holds[i] ? -a[i] / m->diagonal[i] : 0.0;
+    }
+    return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
+}
+
+/* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
+ * there. */
+static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t rest)
+{
+    struct constraints c;
+    for (size_t p = 0; p < rest; p++) {
+        const signed char tied = m->tied[m->at[p]];
+        m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
+    }
+    const int done = tribo_constraints_create(&c, &sys->direction, &sys->metric, m->at, rest, m->last);
+    for (size_t k = done ? c.rank : rest; k < rest; k++) {
+        m->holds[m->at[c.order[k]]] = 0;
+    }
+    tribo_constraints_free(&c);
+    return done;
+}
+
+/* Which of the contacts at rest hold. */
+static int find_holds(struct stick_slip *m, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    size_t rest = 0, changes = 0;
+    for (size_t i = 0; i < c; i++) {
+        const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
+        changes += now != m->before[i];
+        m->before[i] = now;
+        m->at[rest] = i;
+        rest += m->slip[i] == 0 && m->diagonal[i] > 0.0;
+    }
+    if (changes == 0 && !m->fresh) {
+        return TRIBO_OK;
+    }
+    m->fresh = 0;
+    for (size_t i = 0; i < c; i++) {
+        m->holds[i] = m->slip[i] == 0 && m->diagonal[i] > 0.0;
+    }
+    m->dependents = 0;
+    if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+    }
+    for (size_t i = 0; i < c; i++) {
+        m->dependents += m->slip[i] == 0 && !m->holds[i];
+        m->loose[i] = !m->holds[i];
+        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+    }
+    return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
+}
+
+/* 1 if J x - base is more than the rounding of x for a contact that holds. */
+static int moves(struct stick_slip *m, const tribo_system *sys, const double *base, const double *x)
+{
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; i < m->contacts; i++) {
+        double sum = -base[i], size = fabs(base[i]);
+        for (size_t k = m->holds[i] ? j->first[i] : j->first[i + 1]; k < j->first[i + 1]; k++) {
+            sum += j->val[k] * x[j->col[k]];
+            size += fabs(j->val[k] * x[j->col[k]]);
+        }
+        if (m->holds[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* First the last bits of simple contacts; then, if there is more, x -= B_I R_II^-1 (J_I x - base), twice, since the first time
+ * leaves rounding of what it takes away. */
+int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
+{
+    tribo_system_snap(sys, m->loose, base, x);
+    if (m->simple || !moves(m, sys, base, x)) {
+        return TRIBO_OK;
+    }
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < m->contacts; i++) {
+            m->lo[i] = -base[i];
+        }
+        tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->lo);
+        const int status = tribo_stick_slip_balance(m, m->lo, m->f);
+        if (status) {
+            return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+        }
+        tribo_matrix_multiply_add(&sys->response, 1.0, m->f, x);
+    }
+    tribo_system_snap(sys, m->loose, base, x);
+    return TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ who is at rest */
+
+int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
+{
+    return m->base_moves && m->slip[i] == 0 && !m->holds[i];
+}
+
+double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    double v = -m->base[i];
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        v += j->val[k] * y[sys->ndof + j->col[k]];
+    }
+    return v;
+}
+
+static signed char slip_of(const struct stick_slip *m, size_t i, double v)
+{
+    return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? 0 : v > 0.0 ? 1 : -1);
+}
+
+/* Brings limits, and with them which contacts are open, up to the time set. */
+static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    if (sys->limits.knots) {
+        tribo_system_limits(sys, m->limit, m->limit_rate);
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->limit[i] == 0.0 && m->limit_rate[i] == 0.0) {
+            m->slip[i] = 2;
+        } else if (m->slip[i] == 2) {
+            m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
+        }
+    }
+}
+
+/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds. But where bases part, a contact that rests by
+ * itself goes with them. */
+static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
+{
+    int status = TRIBO_OK;
+    for (size_t found = 1; !status && found;) {
+        status = find_holds(m, sys);
+        status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
+        found = 0;
+        for (size_t i = 0; !status && i < sys->ncontact; i++) {
+            if ((m->slip[i] == 1 || m->slip[i] == -1) &&
+                m->slip[i] != slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y))) {
+                m->slip[i] = 0;
+                found++;
+            }
+        }
+    }
+    for (size_t i = 0; !status && m->dependents && i < sys->ncontact; i++) {
+        if (m->slip[i] == 0 && !m->holds[i]) {
+            m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
+        }
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->rested[i] = m->slip[i] == 0;
+    }
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- forces */
+
+/* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
+static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+{
+    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
+        /* one that friction cannot move takes all that it can of any pull */
+        const double pull = m->diagonal[i] > 0.0 ? a[i] / m->diagonal[i] : a[i] != 0.0 ? copysign(HUGE_VAL, a[i]) : 0.0;
+        f[i] = clamp(-pull, m->lo[i], m->hi[i]);
+    }
+    const int status = m->uncoupled ? TRIBO_OK : tribo_solve_box(m->box, a, m->lo, m->hi, f);
+    return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
+}
+
+/* Forces and accelerations, with contacts at rest as they are marked. */
+static int find_forces(struct stick_slip *m, tribo_system *sys)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double limit = m->slip[i] == 2 ? 0.0 : m->limit[i];
+        m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
+        m->hi[i] = m->slip[i] == 1 ? -limit : limit;
+    }
+    const int status = solve(m, sys, m->a, m->force);
+    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
+    return status;
+}
+
+/* to = J acceleration - order-th derivative of b. */
+static void contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
+{
+    memset(to, 0, sys->ncontact * sizeof *to);
+    tribo_system_loads(sys, 1, order, -1.0, to);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
+}
+
+/* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
+ * than rounding, slides. */
+static int breaks_away(struct stick_slip *m, size_t i, signed char direction, double acceleration)
+{
+    if (direction * acceleration <= m->gain[i]) {
+        return 0;
+    }
+    m->slip[i] = direction;
+    m->tied[i] = 0;
+    return 1;
+}
+
+/* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
+static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
+{
+    size_t close = 0, changes = 0;
+    *ties = 0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->tied[i] = 0;
+        close += m->slip[i] == 0 && fabs(m->force[i]) >= (1.0 - CLOSE) * m->limit[i];
+    }
+    if (close == 0) {
+        return 0;
+    }
+    find_gains(m, sys, y);
+    contact_accelerations(sys, m->acceleration, 1, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double room = m->limit[i] - fabs(m->force[i]);
+        const double within = i == m->reached ? CLOSE * m->limit[i] : m->allowance[i] / ALLOWED;
+        if (m->slip[i] == 0 && room <= within) {
+            const signed char direction = m->force[i] > 0.0 ? -1 : 1;
+            m->tied[i] = 1;
+            changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            *ties += m->tied[i] != 0;
+        }
+    }
+    return changes;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- look ahead */
+
+static double limit_ahead(const struct stick_slip *m, size_t i)
+{
+    return m->slip[i] == 2 ? 0.0 : greater(m->limit[i] + m->horizon * m->limit_rate[i], 0.0);
+}
+
+static void set_bounds_ahead(struct stick_slip *m)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        const double limit = limit_ahead(m, i), now = m->limit[i], wider = WIDER * now;
+        if (m->slip[i] != 0) {
+            m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
+            continue;
+        }
+        m->hi[i] = limit + (!m->tied[i] && now - m->force[i] < wider ? wider : 0.0);
+        m->lo[i] = -limit - (!m->tied[i] && now + m->force[i] < wider ? wider : 0.0);
+    }
+}
+
+/* rate = the rate of q'' while the forces of contacts at rest are what they are. */
+static void find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
+    tribo_system_loads(sys, 0, 1, 1.0, m->rate);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->rate);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, m->acceleration, m->rate);
+    }
+}
+
+/* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
+static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
+{
+    find_gains(m, sys, y);
+    find_rate(m, sys, y);
+    contact_accelerations(sys, m->rate, 2, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = m->a[i] + m->horizon * m->v[i];
+    }
+    set_bounds_ahead(m);
+    const int status = solve(m, sys, m->v, m->f);
+    if (status) {
+        return status;
+    }
+    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, m->rate);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
+        if (m->slip[i] == 0 && m->limit[i] > 0.0 && room >= 0.0) {
+            const signed char direction = m->f[i] > 0.0 ? -1 : 1;
+            const int leaves = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            *changes += (size_t)leaves;
+            m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ overload */
+
+/* f = the forces that hold all contacts at rest where they are, the others having theirs. */
+static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
+{
+    int status = find_holds(m, sys);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = m->holds[i] ? 0.0 : m->force[i];
+    }
+    memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
+    contact_accelerations(sys, m->rate, 1, m->v);
+    status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
+    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
+}
+
+/* Of a light body between heavy ones the acceleration may be nothing but rounding, also where a contact on it lets go, or goes back
+ * inside its limit. Then the forces tell that it takes to hold all that are at rest: if they go beyond the limits, the contact
+ * that is most overloaded slides; and otherwise these are the forces. */
+static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
+{
+    const int status = find_holding_forces(m, sys);
+    size_t worst = sys->ncontact;
+    double most = 1.0;
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        const double excess = fabs(m->f[i]) - m->limit[i];
+        if (m->tied[i] && m->holds[i] && excess > most * m->allowance[i]) {
+            worst = i;
+            most = excess / m->allowance[i];
+        }
+    }
+    if (worst < sys->ncontact) {
+        m->slip[worst] = m->f[worst] > 0.0 ? -1 : 1;
+        m->tied[worst] = 0;
+        *changes = 1;
+        return status;
+    }
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->limit[i], m->limit[i]) : m->force[i];
+        m->excess[i] = m->holds[i] ? fabs(m->f[i] - m->force[i]) : 0.0;
+    }
+    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ decision */
+
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    tribo_system_set_time(sys, t);
+    memset(m->base, 0, sys->ncontact * sizeof *m->base);
+    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    memset(m->tied, 0, sys->ncontact);
+    find_noise(m, sys, y);
+    update_limits(m, sys, y);
+    int status = find_resting(m, sys, y);
+    if (!status) {
+        tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
+        m->sized = 0;
+        memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
+        memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
+    }
+    for (size_t changes = 1; !status && changes;) {
+        size_t ties;
+        status = find_forces(m, sys);
+        changes = status ? 0 : let_slide(m, sys, y, &ties);
+        if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
+            status = look_ahead(m, sys, y, &changes);
+        }
+        if (!status && !changes && ties) {
+            status = relieve(m, sys, &changes);
+        }
+    }
+    m->reached = m->contacts;
+    return status ? status : find_holds(m, sys);
+}
+
+int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
+{
+    tribo_system_set_time(sys, t);
+    tribo_system_limits(sys, m->limit, m->limit_rate);
+    memset(m->base, 0, sys->ncontact * sizeof *m->base);
+    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    find_noise(m, sys, y);
+    for (size_t i = 0; !continues && i < sys->ncontact; i++) {
+        m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+    }
+    m->fresh = 1;
+    m->doubt = 1.0;
+    m->reached = m->contacts;
+    m->base_moves = 0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        m->base_moves |= sys->harmonic[k].moves_base && sys->harmonic[k].count > 0;
+    }
+    const double most = tribo_system_fastest(sys);
+    m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);
+    return tribo_stick_slip_decide(m, sys, t, y);
+}

@@ -1,0 +1,74 @@
+/* Coulomb's law itself, for the event-located drivers: which contacts stick at an instant, and which way the others slide.
+ *
+ * What counts is the law just after that instant, and the least change there may decide: contacts of equal limits reach them
+ * together and let go one after another, each by a higher power of time. No finite number of derivatives decides that. So
+ * what rounding hides is left undecided here, and such a contact holds; but the whole motion until the next event is looked over
+ * (first_zero.h), and what goes beyond the law by more than is allowed for is an event of its own, at which the forces tell. */
+#ifndef TRIBO_STICK_SLIP_H
+#define TRIBO_STICK_SLIP_H
+
+#include "driver.h"
+#include "first_zero.h"
+
+struct stick_slip {
+    tribo_context *box;  /* a clone of the system's context, for problems with bounds */
+    tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */
+    size_t contacts;
+    int uncoupled;  /* R is diagonal */
+    int base_moves;
+    int simple;     /* no contact has more than one degree of freedom */
+    double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
+    size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
+    double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
+    signed char *slip;          /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
+    unsigned char *holds;       /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
+                                   by themselves, and keep their forces */
+    signed char *loose;         /* [ncontact] 1: it does not hold */
+    size_t dependents;          /* how many rest by themselves */
+    unsigned char *rested;      /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
+    double *limit, *limit_rate; /* [ncontact] */
+    double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
+    double *acceleration;       /* [ndof] and q'' */
+    double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
+    double *excess;             /* [ncontact] and by how much they do where this begins */
+    double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
+    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding */
+    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known */
+    double *diagonal;           /* [ncontact] R_ii */
+    double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
+    double *gain, *lo, *hi, *f; /* [ncontact] workspace: what accelerations of contacts may be rounding; bounds, forces */
+    double *free, *rate, *size; /* [ndof] workspace: q'' without friction, its rate, the sizes of its parts */
+    int sized;                  /* size is that of now */
+    signed char *tied;          /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    signed char *before;        /* [ncontact] what find_holds saw last */
+    int fresh;                  /* it saw nothing yet */
+    double *still;              /* [ncontact] zeros */
+    size_t *at;                 /* [ncontact] workspace of find_holds, */
+    unsigned char *last;        /* [ncontact] and this */
+};
+
+/* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
+int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
+void tribo_stick_slip_free(struct stick_slip *m);
+
+/* Takes limits from the system, and, unless it continues, from the state who is at rest: contacts whose velocity is zero to
+ * rounding. Decides. */
+int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
+
+/* Decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out of their velocities in y. Sets slip, holds, force, acceleration and
+ * allowance. */
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
+
+/* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
+int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
+
+/* Takes what is not zero in J x - base for the contacts at rest out of x [ndof]. */
+int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
+
+/* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
+int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i);
+
+/* v_i in a state, at the time that was last decided for. */
+double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
+
+#endif

@@ -1,0 +1,520 @@
+/* friction_damper from outside: damaged files and wrong options, each of which must end it with status 1 and one line that names
+ * file, line and value; and structures as small as can be. Works in the current folder. TRIBO_CASES: how many random damages of
+ * each kind. */
+#define _POSIX_C_SOURCE 200809L
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "support.h"
+
+/* ---------------------------------------------------------------------------------------------------------- the program */
+
+#if defined(__SANITIZE_ADDRESS__)
+#define BOUND_MEMORY 0 /* it reserves terabytes */
+#else
+#define BOUND_MEMORY 1
+#endif
+enum { MOST_SECONDS = 60, MOST_MEGABYTES = 256, TEXT = 8192, MOST_WORDS = 64 };
+
+struct outcome {
+    int status; /* -1 if a signal ended it */
+    char out[TEXT], err[TEXT];
+};
+
+static void read_text(const char *path, char *text)
+{
+    FILE *file = fopen(path, "r");
+    require(file, "there is no %s", path);
+    text[fread(text, 1, TEXT - 1, file)] = '\0';
+    fclose(file);
+}
+
+static void write_bytes(const char *path, const char *bytes, size_t length)
+{
+    FILE *file = fopen(path, "w");
+    require(file && fwrite(bytes, 1, length, file) == length && fclose(file) == 0, "cannot write %s", path);
+}
+
+static void write_text(const char *path, const char *text)
+{
+    write_bytes(path, text, strlen(text));
+}
+
+/* In the child: a hang, or greed for memory, ends it by a signal or an error. */
+static void become(char *const *argument)
+{
+    const struct rlimit seconds = {MOST_SECONDS, MOST_SECONDS},
+                        bytes = {(rlim_t)MOST_MEGABYTES << 20, (rlim_t)MOST_MEGABYTES << 20};
+    setrlimit(RLIMIT_CPU, &seconds);
+    if (BOUND_MEMORY) {
+        setrlimit(RLIMIT_AS, &bytes);
+    }
+    if (freopen("out", "w", stdout) && freopen("err", "w", stderr)) {
+        execv(DAMPER, argument);
+    }
+    _exit(99);
+}
+
+/* Options are parted by single blanks. */
+static struct outcome run(const char *options)
+{
+    static struct outcome o;
+    static char text[TEXT];
+    char *argument[MOST_WORDS] = {"friction_damper"};
+    int count = 1, status;
+    snprintf(text, sizeof text, "%s", options);
+    for (char *word = text; word && count < MOST_WORDS - 1; count++) {
+        char *blank = strchr(word, ' ');
+        if (blank) {
+            *blank++ = '\0';
+        }
+        argument[count] = word;
+        word = blank;
+    }
+    const pid_t child = fork();
+    if (child == 0) {
+        become(argument);
+    }
+    require(child > 0 && waitpid(child, &status, 0) == child, "no child");
+    o.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    read_text("out", o.out);
+    read_text("err", o.err);
+    return o;
+}
+
+/* Status 1, and one line on stderr that prints. */
+static void assert_ends(const struct outcome *o, const char *what)
+{
+    const size_t length = strlen(o->err);
+    require(o->status == 1, "%s: status %d, %s", what, o->status, o->err);
+    require(strncmp(o->err, "friction_damper: ", 17) == 0 && strcspn(o->err, "\n") + 1 == length, "%s: %s", what, o->err);
+    for (size_t i = 0; i + 1 < length; i++) {
+        require(o->err[i] >= ' ' && o->err[i] <= '~', "%s: %s", what, o->err);
+    }
+}
+
+static void assert_refused(const char *options, const char *what, const char *part)
+{
+    const struct outcome o = run(options);
+    assert_ends(&o, what);
+    require(says(o.err, part), "%s: \"%s\" is not in %s", what, part, o.err);
+}
+
+static int has_no_number(const char *text)
+{
+    return says(text, " nan") || says(text, " -nan") || says(text, " inf") || says(text, " -inf");
+}
+
+/* Status 0, nothing on stderr, and no number that is none. */
+static struct outcome assert_runs(const char *options)
+{
+    const struct outcome o = run(options);
+    require(o.status == 0 && !*o.err, "%s: status %d, %s", options, o.status, o.err);
+    require(!has_no_number(o.out), "%s: %s", options, o.out);
+    return o;
+}
+
+static double value_of(const char *key)
+{
+    char text[TEXT];
+    read_text("values-damper.txt", text);
+    const char *at = strstr(text, key);
+    require(at && at[strlen(key)] == ' ', "no value %s", key);
+    return strtod(at + strlen(key), NULL);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- structures */
+
+#define OWN "--mass M.mtx --stiffness K.mtx --dofs dofs.txt"
+#define CHAIN OWN " --frequencies hz.txt --contact 2,0,0,x --load 4,0,0,x --modes 2 --step 1 --limits 0.1:0.1:1"
+
+enum { MASS, STIFFNESS, DOFS, FREQUENCIES, FILES };
+static const char *const FILE_NAME[FILES] = {"M.mtx", "K.mtx", "dofs.txt", "hz.txt"};
+
+struct text {
+    char byte[TEXT];
+    size_t length;
+};
+
+static void add(struct text *t, const char *line)
+{
+    t->length += (size_t)snprintf(t->byte + t->length, TEXT - t->length, "%s\n", line);
+}
+
+/* Four masses in a row, held at one end. */
+static void make_chain(struct text *file)
+{
+    static const char *const lines[FILES][11] = {
+        {"%%MatrixMarket matrix coordinate real symmetric", "% masses, kg", "4 4 4", "1 1 2.0", "2 2 2", "3 3 2.0", "4 4 2.0e0"},
+        {"%%MatrixMarket matrix coordinate real symmetric", "% stiffness, N/m", "4 4 7", "1 1 400", "2 1 -200", "2 2 400",
+         "3 2 -200.0", "3 3 400", "4 3 -2e2", "4 4 200.0"},
+        {"# row node direction x y z", "1 11 1 1 0 0", "2 12 1 2.0 0 0", "3 13 1 3 0 0", "4 14 1 4 0 0.0"},
+        {"# Hz", "0.5527", "1.5915", "2.4384", "2.9912"},
+    };
+    for (int f = 0; f < FILES; f++) {
+        file[f].length = 0;
+        for (int i = 0; lines[f][i]; i++) {
+            add(&file[f], lines[f][i]);
+        }
+    }
+}
+
+static void write_files(const struct text *file)
+{
+    for (int f = 0; f < FILES; f++) {
+        write_bytes(FILE_NAME[f], file[f].byte, file[f].length);
+    }
+}
+
+static void write_chain(void)
+{
+    struct text file[FILES];
+    make_chain(file);
+    write_files(file);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- damage */
+
+static int lines_of(const struct text *t)
+{
+    int lines = 0;
+    for (size_t i = 0; i < t->length; i++) {
+        lines += t->byte[i] == '\n';
+    }
+    return lines;
+}
+
+/* Where a line begins; lines and words are counted from 1. */
+static size_t line_at(const struct text *t, int line)
+{
+    size_t at = 0;
+    for (; line > 1; line--) {
+        at += strcspn(t->byte + at, "\n") + 1;
+    }
+    return at;
+}
+
+static int words_in(const struct text *t, int line)
+{
+    int words = 1;
+    for (const char *c = t->byte + line_at(t, line); *c != '\n'; c++) {
+        words += *c == ' ';
+    }
+    return words;
+}
+
+static void replace(struct text *t, size_t at, size_t length, const char *with, size_t with_length)
+{
+    memmove(t->byte + at + with_length, t->byte + at + length, t->length - at - length);
+    memcpy(t->byte + at, with, with_length);
+    t->length += with_length - length;
+    t->byte[t->length] = '\0';
+}
+
+static void replace_word(struct text *t, int line, int word, const char *with)
+{
+    size_t at = line_at(t, line);
+    for (; word > 1; word--) {
+        at += strcspn(t->byte + at, " ") + 1;
+    }
+    replace(t, at, strcspn(t->byte + at, " \n"), with, strlen(with));
+}
+
+static int first_data(int f)
+{
+    return f == MASS || f == STIFFNESS ? 3 : 2;
+}
+
+static int is_whole(int f, int line, int word)
+{
+    return f == DOFS ? word <= 3 : f != FREQUENCIES && (line == 3 || word <= 2);
+}
+
+/* A word that is no number, or none that may stand there: the message names file, line and word. */
+static void damage_word(struct text *file, struct random *r)
+{
+    static const char *const word[] = {"nan",
+                                       "-inf",
+                                       "1e999",
+                                       "1..2",
+                                       "0x",
+                                       "--3",
+                                       "1d5",
+                                       "12a",
+                                       "1,5",
+                                       "\"",
+                                       "+",
+                                       "e5",
+                                       "1e-",
+                                       "\033[",
+                                       "\377",
+                                       "1e99999999",
+                                       "0/0",
+                                       "1\0012",
+                                       /* whole numbers only */ "-1",
+                                       "1.5",
+                                       "4294967296",
+                                       "1e300",
+                                       "1e19",
+                                       "0x1p70"};
+    enum { WHOLE = 6 };
+    const int f = (int)below(r, FILES), line = first_data(f) + (int)below(r, (size_t)(lines_of(&file[f]) - first_data(f) + 1)),
+              at = 1 + (int)below(r, (size_t)words_in(&file[f], line));
+    const char *with = word[below(r, COUNT(word) - (is_whole(f, line, at) ? 0 : WHOLE))];
+    char place[40], shown[40], what[100];
+    snprintf(place, sizeof place, "%s:%d: ", FILE_NAME[f], line);
+    snprintf(shown, sizeof shown, "\"%s\"", with);
+    for (char *c = shown; *c; c++) {
+        *c = *c < ' ' || *c > '~' ? '?' : *c;
+    }
+    snprintf(what, sizeof what, "%s word %d is %s", place, at, shown);
+    replace_word(&file[f], line, at, with);
+    write_files(file);
+    assert_refused(CHAIN, what, place);
+    assert_refused(CHAIN, what, shown);
+}
+
+/* A file that ends too early. Only that of frequencies may end after any line. */
+static void damage_end(struct text *file, struct random *r)
+{
+    const int f = (int)below(r, FILES);
+    char what[100];
+    file[f].length = below(r, file[f].length);
+    if (f == FREQUENCIES && (file[f].length == 0 || file[f].byte[file[f].length - 1] == '\n')) {
+        return;
+    }
+    write_files(file);
+    snprintf(what, sizeof what, "%s ends after %zu bytes", FILE_NAME[f], file[f].length);
+    assert_refused(CHAIN, what, f == DOFS ? "" : FILE_NAME[f]);
+}
+
+static void damage_header(struct text *file, struct random *r)
+{
+    static const char *const word[] = {"%%matrixmarket_", "%MatrixMarket", "vector", "array",          "complex", "pattern",
+                                       "hermitian",       "double",        "x",      "skew-symmetric", "\001",    ""};
+    const int f = below(r, 2) ? MASS : STIFFNESS, at = 1 + (int)below(r, 5);
+    char place[40], what[100];
+    const char *with = word[below(r, COUNT(word))];
+    replace_word(&file[f], 1, at, with);
+    write_files(file);
+    snprintf(place, sizeof place, "%s:1: ", FILE_NAME[f]);
+    snprintf(what, sizeof what, "%s word %d is \"%s\"", place, at, with);
+    assert_refused(CHAIN, what, place);
+}
+
+/* A head that lies about what follows. */
+static void damage_sizes(struct text *file, struct random *r)
+{
+    static const char *const number[] = {"0", "1", "3", "5", "100000", "2000000000", "2147483647", "2147483648", "1e18"};
+    const int f = below(r, 2) ? MASS : STIFFNESS, at = 1 + (int)below(r, 3);
+    const char *with = number[below(r, COUNT(number))];
+    char place[40], what[100];
+    replace_word(&file[f], 3, at, with);
+    if (below(r, 2) && at < 3) {
+        replace_word(&file[f], 3, 3 - at, with); /* square all the same */
+    }
+    write_files(file);
+    snprintf(place, sizeof place, "%s:", FILE_NAME[f]);
+    snprintf(what, sizeof what, "%s size %d is %s", place, at, with);
+    assert_refused(CHAIN, what, place);
+}
+
+/* A line less than announced, or one twice, announced or not. */
+static void damage_lines(struct text *file, struct random *r)
+{
+    const int f = (int)below(r, FREQUENCIES),
+              line = first_data(f) + 1 + (int)below(r, (size_t)(lines_of(&file[f]) - first_data(f))), twice = (int)below(r, 2),
+              announced = twice && below(r, 2);
+    const size_t from = line_at(&file[f], line), to = line_at(&file[f], line + 1);
+    char copy[TEXT], what[100], place[40] = "", count[20];
+    memcpy(copy, file[f].byte + from, to - from);
+    replace(&file[f], from, twice ? 0 : to - from, copy, twice ? to - from : 0);
+    if (f != DOFS && announced) {
+        snprintf(count, sizeof count, "%d", lines_of(&file[f]) - 3);
+        replace_word(&file[f], 3, 3, count);
+    }
+    if (twice) {
+        snprintf(place, sizeof place, "%s:%d: ", FILE_NAME[f], f == DOFS || announced ? line + 1 : lines_of(&file[f]));
+    }
+    write_files(file);
+    snprintf(what, sizeof what, "%s line %d %s%s", FILE_NAME[f], line, twice ? "twice" : "missing",
+             announced ? ", announced" : "");
+    assert_refused(CHAIN, what, place);
+}
+
+/* Any bytes: whatever that means, it is neither a crash nor a hang, nor a result that is no number. */
+static void damage_bytes(struct text *file, struct random *r)
+{
+    char what[200] = "";
+    for (size_t k = 1 + below(r, 4); k > 0; k--) {
+        const int f = (int)below(r, FILES);
+        const size_t at = below(r, file[f].length), length = strlen(what);
+        file[f].byte[at] = below(r, 2) ? "0123456789+-.eE \n"[below(r, 17)] : (char)below(r, 256);
+        snprintf(what + length, sizeof what - length, "%s[%zu] = %d ", FILE_NAME[f], at, file[f].byte[at]);
+    }
+    write_files(file);
+    const struct outcome o = run(CHAIN);
+    if (o.status) {
+        assert_ends(&o, what);
+    }
+    require(!has_no_number(o.out), "%s: %s", what, o.out);
+}
+
+TEST(damage)
+{
+    static void (*const kind[])(struct text *, struct random *) = {damage_word,  damage_end,   damage_header,
+                                                                   damage_sizes, damage_lines, damage_bytes};
+    struct random r = random_of(_i);
+    for (int k = setting("TRIBO_CASES", 100); k > 0; k--) {
+        struct text file[FILES];
+        make_chain(file);
+        kind[_i](file, &r);
+    }
+}
+END_TEST
+
+/* Files that look different, and say the same. */
+TEST(the_same)
+{
+    static const char *const end[] = {"\r\n", " \t\n", "\n\n", "\n% nothing\n", "\n# nothing\n"};
+    write_chain();
+    const struct outcome plain = assert_runs(CHAIN);
+    for (size_t k = 0; k < COUNT(end); k++) {
+        struct text file[FILES];
+        make_chain(file);
+        for (int f = 0; f < FILES; f++) {
+            for (int line = lines_of(&file[f]); line > 0; line--) {
+                replace(&file[f], line_at(&file[f], line + 1) - 1, 1, end[k], strlen(end[k]));
+            }
+        }
+        write_files(file);
+        const struct outcome o = assert_runs(CHAIN);
+        require(strcmp(o.out, plain.out) == 0, "%zu: %s\nnot\n%s", k, o.out, plain.out);
+    }
+}
+END_TEST
+
+/* What is no text, or not there. */
+TEST(no_files)
+{
+    static char zeros[100], wide[100000];
+    memset(wide, '1', sizeof wide);
+    for (int f = 0; f < FILES; f++) {
+        write_chain();
+        write_bytes(FILE_NAME[f], zeros, sizeof zeros);
+        assert_refused(CHAIN, "zeros", FILE_NAME[f]);
+        write_bytes(FILE_NAME[f], wide, sizeof wide);
+        assert_refused(CHAIN, "a line without an end", FILE_NAME[f]);
+        remove(FILE_NAME[f]);
+        assert_refused(CHAIN, "no file", FILE_NAME[f]);
+        if (f != FREQUENCIES) {
+            write_text(FILE_NAME[f], "");
+            assert_refused(CHAIN, "an empty file", FILE_NAME[f]);
+        }
+    }
+    write_chain();
+    assert_refused(CHAIN " --mass /dev/zero", "endless", "/dev/zero:1: ");
+    assert_refused(CHAIN " --dofs /", "a folder", "/:1: cannot be read");
+    assert_refused(CHAIN " --out nowhere", "no folder", "nowhere/");
+}
+END_TEST
+
+/* ------------------------------------------------------------------------------------------------------------- options */
+
+TEST(options)
+{
+    static const struct {
+        const char *option, *values; /* parted by blanks */
+    } bad[] = {
+        {"--modes", "0 -1 1.5 5 1e9 nan x 1e300 2x"},
+        {"--damping", "0 -1 1 2 nan inf 0,1"},
+        {"--force", "0 -1 nan inf 1N 1e999"},
+        {"--drive", "-1 nan inf 5Hz"},
+        {"--limits", "1 1:2 1:2:0 1:2:1.5 2:1:3 1:1:2 0:1:3 -1:1:3 nan:1:3 1:inf:3 1:2:3:4 1:2:1e300 :: 1;2;3"},
+        {"--step", "0 -1 1.1 nan 1/4"},
+        {"--law", "quin Quinn 4"},
+        {"--contact", "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x"},
+        {"--load", "2,0,0 2,0,0,w 2,0,0,y 2,0,0.1,x nan,0,0,x"},
+    };
+    write_chain();
+    for (size_t k = 0; k < COUNT(bad); k++) {
+        char line[TEXT], option[100], values[200];
+        snprintf(values, sizeof values, "%s", bad[k].values);
+        for (char *value = strtok(values, " "); value; value = strtok(NULL, " ")) {
+            snprintf(option, sizeof option, "%s %s", bad[k].option, value);
+            snprintf(line, sizeof line, "%s %s", CHAIN, option);
+            assert_refused(line, option, option);
+        }
+    }
+    /* what only the structure can tell: too much work, or nothing to work with */
+    assert_refused(CHAIN " --step 1e-300", "step", "--step");
+    assert_refused(CHAIN " --drive 1e-9", "drive", "1e-09 Hz");
+    assert_refused(CHAIN " --drive 1e200", "drive", "without friction");
+    assert_refused(CHAIN " --force 1e-300", "force", "--force");
+    assert_refused(CHAIN " --force 1e300", "force", "--force");
+    assert_refused(CHAIN " --nonsense 1", "no option", "\"--nonsense\"");
+    assert_refused(CHAIN " --modes", "no value", "--modes");
+    assert_runs("--help");
+}
+END_TEST
+
+/* Of a structure of one's own every part is asked for, and none is the beam's. */
+TEST(own_structure)
+{
+    write_chain();
+    assert_refused("--mass M.mtx", "mass", " needs also --stiffness --dofs --contact --load;");
+    assert_refused("--stiffness K.mtx --load 4,0,0,x", "stiffness", " needs also --mass --dofs --contact;");
+    assert_refused("--dofs dofs.txt", "dofs", " needs also --mass --stiffness --contact --load;");
+    assert_refused(OWN " --contact 2,0,0,x", "load", " needs also --load;");
+    assert_refused(OWN " --load 2,0,0,x", "contact", " needs also --contact;");
+    const struct outcome o = assert_runs(OWN " --contact 2,0,0,x --load 4,0,0,x --limits 0.1:0.1:1");
+    require(!says(o.out, "given"), "the beam's frequencies: %s", o.out);
+    require(says(o.out, "\n     4 "), "not all four modes: %s", o.out);
+}
+END_TEST
+
+/* ---------------------------------------------------------------------------------------------------------- small ones */
+
+/* One mass: without friction the amplitude is F/(2 zeta k), and friction dissipates most at pi F/8, where it has half of that.
+ * Held in its only place it does not move, and that is found at once. */
+TEST(one_mass)
+{
+    const double force = 3.0, free_amplitude = force / (2.0 * 0.002 * 200.0);
+    write_text("M.mtx", "%%MatrixMarket matrix coordinate real general\n1 1 1\n1 1 2\n");
+    write_text("K.mtx", "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 200\n");
+    write_text("dofs.txt", "1 1 2 0 0 0\n");
+    const struct outcome o = assert_runs(OWN " --contact 0,0,0,y --load 0,0,0,y --force 3");
+    require(!says(o.out, "not steady"), "%s", o.out);
+    assert_close(value_of("damper.free"), free_amplitude, 1e-3 * free_amplitude);
+    assert_close(value_of("damper.best.limit"), PI * force / 8.0, 5e-3 * force);
+    assert_close(value_of("damper.best.amplitude"), 0.5 * free_amplitude, 1e-2 * free_amplitude);
+    assert_exact(value_of("damper.stuck"), 0.0);
+    assert_exact(value_of("damper.stuck.analytic"), 0.0);
+}
+END_TEST
+
+/* More contacts than modes, and few limits. */
+TEST(few)
+{
+    for (int modes = 1; modes <= 4; modes++) {
+        for (int limits = 1; limits <= 4; limits++) {
+            char line[TEXT];
+            snprintf(line, sizeof line,
+                     OWN " --contact 1,0,0,x --contact 2,0,0,x --contact 3,0,0,x --load 4,0,0,x --modes %d --limits 0.05:%g:%d",
+                     modes, limits == 1 ? 0.05 : 0.2, limits);
+            write_chain();
+            const struct outcome o = assert_runs(line);
+            require(!says(o.out, "not steady"), "%s: %s", line, o.out);
+            const double free_amplitude = value_of("damper.free.analytic"), held = value_of("damper.stuck.analytic");
+            assert_close(value_of("damper.free"), free_amplitude, 1e-3 * free_amplitude);
+            assert_close(value_of("damper.stuck"), held, 1e-3 * held + 1e-12 * free_amplitude);
+        }
+    }
+}
+END_TEST
+
+TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {own_structure, 1}, {one_mass, 1}, {few, 1})
