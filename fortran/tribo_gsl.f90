@@ -78,6 +78,7 @@ module tribo_gsl
     generic :: count => count_short, count_long
     procedure :: real => driver_real
     procedure :: set_observer
+    procedure :: set_max_step
     procedure :: message => driver_message
     procedure, private :: assign_driver
     generic :: assignment(=) => assign_driver
@@ -345,6 +346,13 @@ module tribo_gsl
       type(c_funptr), value :: seen
       integer(c_int) :: status
     end function c_set_observer
+
+    function c_set_max_step(drv, h) result(status) bind(c, name='tribo_driver_set_max_step')
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: drv
+      real(c_double), value :: h
+      integer(c_int) :: status
+    end function c_set_max_step
 
     function c_driver_message(drv) result(s) bind(c, name='tribo_driver_message')
       import :: c_ptr
@@ -637,7 +645,8 @@ contains
   end subroutine add_load_table
 
   !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside, instead of
-  !> what the context says. Without knots it ends.
+  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends: limits are again those that
+  !> the context had before.
   subroutine set_limit_table(this, time, limit, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: time(:), limit(:,:)
@@ -817,19 +826,22 @@ contains
 
   ! -------------------------------------------------------------------------------------------------------------------- drivers
 
-  !> An integrator for a system. Methods: see tribo_method_name.
+  !> An integrator for a system. Methods, in any case of letters: see tribo_method_name.
   !>   Coulomb's law itself, epsilon to 0:
   !>   exact      the motion in closed form between events, to 12 digits; linear systems with harmonic loads. dt: how often an
   !>              observer sees the motion between events
   !>   event      high-order steps between events, with the tolerances; any system
-  !>   central/fixed, moreau/fixed   fixed steps of dt in the step form, by central differences (explicit, dt below 2/omega_max)
-  !>              and by the implicit midpoint rule (Moreau and Jean); second order
-  !>   auto       exact if the system is linear, harmonic and small, else event
+  !>   central/fixed, moreau/fixed   fixed steps of dt in the step form, by central differences (explicit; a dt that is not stable
+  !>              is refused) and by the implicit midpoint rule (Moreau and Jean); second order
+  !>   auto       exact where it can do the system and that is small, else event
   !>   The law, coupling and epsilon of the context:
   !>   rk4/fixed  the classical Runge-Kutta method in steps of dt, as in the paper
-  !>   rk2, rk4, rkf45, rkck, rk8pd, rk1imp, rk2imp, rk4imp, bsimp, msadams, msbdf   GSL's steppers, adaptive from dt on: error of
-  !>              a step below abstol + reltol*abs(y)
-  !> dt > 0: step, or first step. abstol, reltol >= 0, where absent 0; abstol > 0 for adaptive methods and event.
+  !>   rk2, rk4, rkf45, rkck, rk8pd   explicit Runge-Kutta methods, adaptive from dt on
+  !>   rk1imp, rk2imp, rk4imp, msbdf  implicit ones, adaptive: Euler's, those of Gauss, backward differences; for small epsilon:
+  !>              msbdf
+  !> dt > 0: step, or first step. abstol, reltol >= 0, where absent 0; abstol > 0 for adaptive methods and event. Adaptive: the
+  !> error of a step is below abstol + reltol times the largest displacement, velocity, or the energy, and for velocities of
+  !> contacts below epsilon/1000 at least. See also set_max_step.
   subroutine create(this, sys, method, dt, abstol, reltol, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     class(tribo_system), intent(inout) :: sys
@@ -862,7 +874,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine create
 
-  !> Name of the method; for auto, of the one it chose. Empty for a driver that has not been created.
+  !> Name of the method; for auto, of the one at work. Empty for a driver that has not been created.
   function method(this) result(text)
     class(tribo_driver), intent(in) :: this
     character(len=:), allocatable :: text
@@ -888,7 +900,8 @@ contains
     call to_text(c_method_name(int(method, c_int)), text)
   end function tribo_method_name
 
-  !> Integrates from t to t1 >= t; y may be changed between calls. On error t and y hold the last good step.
+  !> Integrates from t to t1 >= t; y, the system and its context's settings may be changed between calls. On error t and y hold the
+  !> last good step.
   subroutine advance(this, t, t1, y, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     real(dp), intent(inout) :: t, y(:)
@@ -1005,6 +1018,24 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine set_observer
+
+  !> The largest step h > 0 of an adaptive method; by default 0.1 over the highest frequency of structure and loads, since while all
+  !> contacts rest no estimate sees how long a step is. An infinite h: none.
+  subroutine set_max_step(this, h, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: h
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(held_driver), pointer :: held
+    type(work) :: w
+
+    call find_driver(this, held, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_set_max_step(held%drv, h)
+      if (w%status /= TRIBO_OK) w%status = c_copy_message(w%ctx, w%status, c_driver_message(held%drv))
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine set_max_step
 
   !> What the last call that failed on the driver or its system found; empty before any.
   function driver_message(this) result(text)

@@ -157,6 +157,10 @@ TRIBO_API const char *tribo_message(const tribo_context *ctx);
 /* For libraries on top of this one: makes text the message of ctx, and returns status. */
 TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
 
+/* For libraries on top of this one: another number after every call that sets something of ctx (law, limits, epsilon, operator,
+ * coupling, sharing), so that they know whether what they have prepared still holds. 0 for NULL. */
+TRIBO_API size_t tribo_revision(const tribo_context *ctx);
+
 /* For libraries on top of this one: the operator is that of owner, a text that outlives ctx ("a tribo_system"), and cannot be
  * changed: tribo_set_operator_... return TRIBO_ERR_UNSUPPORTED. NULL: it is the caller's again, as it is in a clone. */
 TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);

@@ -61,6 +61,7 @@ void tribo_refresh(tribo_context *ctx)
 {
     ctx->op.reaches = 0;
     ctx->linearized = 0;
+    ctx->revision++;
     tribo_refresh_limits(ctx);
     find_bounds(ctx);
     if (ctx->step > 0.0 && ctx->op.diagonal) {
@@ -185,6 +186,11 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx);
 }
 
+size_t tribo_revision(const tribo_context *ctx)
+{
+    return ctx ? ctx->revision : 0;
+}
+
 int tribo_set_owner(tribo_context *ctx, const char *owner)
 {
     if (!ctx) {
@@ -223,6 +229,7 @@ int tribo_set_law(tribo_context *ctx, int law)
     }
     ctx->law = l;
     ctx->linearized = 0;
+    ctx->revision++;
     memset(ctx->moving, 0, ctx->n);
     return TRIBO_OK;
 }
@@ -375,6 +382,7 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
     }
     ctx->coupling = coupling;
     ctx->linearized = 0;
+    ctx->revision++;
     return TRIBO_OK;
 }
 
@@ -400,6 +408,7 @@ int tribo_set_sharing(tribo_context *ctx, int sharing)
     }
     ctx->sharing = sharing;
     ctx->linearized = 0;
+    ctx->revision++;
     return TRIBO_OK;
 }
 

@@ -95,6 +95,7 @@ struct tribo_context {
     double holds;            /* a contact holds if |f| is less than this part of the limit */
     double residual;
     size_t rank, solves, reused, skipped, marks;
+    size_t revision; /* counts changes of settings and operator */
     struct message *message;
 };
 

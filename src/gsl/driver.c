@@ -1,4 +1,5 @@
-/* Integration in time: a method by name, and the loop over its steps. */
+/* Integration in time: a method by name, and what is around it. */
+#include <float.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -6,12 +7,15 @@
 #include <string.h>
 
 #include "driver.h"
+#include "../real.h"
+#include "../simd.h"
+
+static const struct method automatic;
 
 static const struct method *const methods[] = {
-    &tribo_method_rk4_fixed, &tribo_method_rk2,   &tribo_method_rk4,           &tribo_method_rkf45,
-    &tribo_method_rkck,      &tribo_method_rk8pd, &tribo_method_rk1imp,        &tribo_method_rk2imp,
-    &tribo_method_rk4imp,    &tribo_method_bsimp, &tribo_method_msadams,       &tribo_method_msbdf,
-    &tribo_method_exact,     &tribo_method_event, &tribo_method_central_fixed, &tribo_method_moreau_fixed,
+    &tribo_method_rk4_fixed, &tribo_method_rk2,    &tribo_method_rk4,           &tribo_method_rkf45,        &tribo_method_rkck,
+    &tribo_method_rk8pd,     &tribo_method_rk1imp, &tribo_method_rk2imp,        &tribo_method_rk4imp,       &tribo_method_msbdf,
+    &tribo_method_exact,     &tribo_method_event,  &tribo_method_central_fixed, &tribo_method_moreau_fixed, &automatic,
 };
 
 int tribo_method_count(void)
@@ -24,21 +28,38 @@ const char *tribo_method_name(int method)
     return method >= 0 && method < tribo_method_count() ? methods[method]->name : NULL;
 }
 
-/* Exact pays while modes are found in no time and the right-hand side is harmonic. */
-static const struct method *automatic(const tribo_system *sys)
+static int lower(char c)
 {
-    const int small = sys->ndof <= 200 && !sys->tables && !sys->limits.knots;
-    return small ? &tribo_method_exact : &tribo_method_event;
+    return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
 }
 
-static const struct method *find(const tribo_system *sys, const char *name)
+static int same_name(const char *a, const char *b)
+{
+    while (*a && lower(*a) == lower(*b)) {
+        a++;
+        b++;
+    }
+    return lower(*a) == lower(*b);
+}
+
+static const struct method *find(const char *name)
 {
     for (int i = 0; i < tribo_method_count(); i++) {
-        if (strcmp(methods[i]->name, name) == 0) {
+        if (same_name(methods[i]->name, name)) {
             return methods[i];
         }
     }
-    return strcmp(name, "auto") == 0 ? automatic(sys) : NULL;
+    return NULL;
+}
+
+static int unknown(const tribo_system *sys, const char *name)
+{
+    char list[200] = "";
+    for (int i = 0; i < tribo_method_count(); i++) {
+        const size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
+    }
+    return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%.20s\" is unknown; there are %s", name, list);
 }
 
 static int check_parameters(const tribo_system *sys, const struct method *method, double dt, double abstol, double reltol)
@@ -47,7 +68,7 @@ static int check_parameters(const tribo_system *sys, const struct method *method
         const char *name;
         double value;
         int positive;
-    } all[] = {{"dt", dt, 1}, {"abstol", abstol, method->adaptive}, {"reltol", reltol, 0}};
+    } all[] = {{"dt", dt, 1}, {"abstol", abstol, method->adaptive != 0}, {"reltol", reltol, 0}};
     for (size_t i = 0; i < 3; i++) {
         if (!isfinite(all[i].value)) {
             return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", all[i].name, all[i].value);
@@ -62,18 +83,8 @@ static int check_parameters(const tribo_system *sys, const struct method *method
     return TRIBO_OK;
 }
 
-int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol, double reltol)
+static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!drv || !method) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
-    }
-    const struct method *m = find(sys, method);
-    if (!m) {
-        return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%s\" is unknown", method);
-    }
     int status = check_parameters(sys, m, dt, abstol, reltol);
     if (status) {
         return status;
@@ -87,13 +98,12 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equations", dimension);
     }
     d->sys = sys;
-    d->method = m;
+    d->method = d->at_work = m;
     d->dt = dt;
     d->abstol = abstol;
     d->reltol = reltol;
     d->state = work;
     d->slope = work + dimension;
-    d->time = NAN;
     d->excess = d->backslip = NAN;
     status = m->create(d);
     if (status) {
@@ -102,6 +112,18 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     }
     *drv = d;
     return TRIBO_OK;
+}
+
+int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol, double reltol)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!drv || !method) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
+    }
+    const struct method *m = find(method);
+    return m ? create(drv, sys, m, dt, abstol, reltol) : unknown(sys, method);
 }
 
 void tribo_driver_destroy(tribo_driver *drv)
@@ -116,7 +138,7 @@ void tribo_driver_destroy(tribo_driver *drv)
 
 const char *tribo_driver_method(const tribo_driver *drv)
 {
-    return drv ? drv->method->name : NULL;
+    return drv ? drv->at_work->name : NULL;
 }
 
 const char *tribo_driver_message(const tribo_driver *drv)
@@ -140,6 +162,24 @@ int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const dou
     }
     drv->seen = seen;
     drv->data = data;
+    return TRIBO_OK;
+}
+
+int tribo_driver_set_max_step(tribo_driver *drv, double h)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    if (drv->method->adaptive != WITH_LARGEST_STEP) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s has no largest step", drv->method->name);
+    }
+    if (isnan(h)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "h = %g is not a number", h);
+    }
+    if (h <= 0.0) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_POSITIVE, "h = %g is not positive", h);
+    }
+    drv->max_step = h;
     return TRIBO_OK;
 }
 
@@ -185,43 +225,86 @@ int tribo_driver_real(const tribo_driver *drv, int which, double *value)
     return TRIBO_OK;
 }
 
-int tribo_driver_tell(tribo_driver *drv, double t, const double *y, int event)
+/* ------------------------------------------------------------------------------------------------------------- states */
+
+/* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
+TRIBO_SIMD static int all_finite(const double *x, size_t n)
 {
-    const int answer = drv->seen ? drv->seen(t, y, event, drv->data) : 0;
+    enum { SUMS = 8 };
+    double sum[SUMS] = {0.0};
+    size_t i = 0;
+    for (; i + SUMS <= n; i += SUMS) {
+        for (size_t k = 0; k < SUMS; k++) {
+            sum[k] += x[i + k] - x[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        sum[0] += x[i] - x[i];
+    }
+    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
+}
+
+int tribo_driver_check(tribo_driver *drv, const double *y)
+{
+    if (all_finite(y, tribo_system_dimension(drv->sys))) {
+        return TRIBO_OK;
+    }
+    size_t i = 0;
+    while (isfinite(y[i])) {
+        i++;
+    }
+    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
+                             "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", i, y[i],
+                             drv->time, drv->dt);
+}
+
+int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
+{
+    const int status = tribo_driver_check(drv, y);
+    if (!status) {
+        drv->time = t;
+        memcpy(drv->state, y, tribo_system_dimension(drv->sys) * sizeof *y);
+    }
+    return status;
+}
+
+int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
+{
+    const int status = tribo_driver_keep(drv, t, y);
+    if (status || !drv->seen) {
+        return status;
+    }
+    const int answer = drv->seen(t, y, event, drv->data);
     return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
 }
 
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
                              int (*step)(tribo_driver *, double, double, double *))
 {
-    const size_t bytes = tribo_system_dimension(drv->sys) * sizeof *y;
-    const double begin = *t, whole = (t1 - begin) / drv->dt;
+    const double begin = *t, whole = (t1 - begin) / drv->dt, resolution = DBL_EPSILON * greater(fabs(begin), fabs(t1));
+    if (drv->dt < 16.0 * resolution) {
+        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "from t = %.17g to %.17g, dt = %g is hardly more than time resolves, %g",
+                                 begin, t1, drv->dt, resolution);
+    }
     /* a rest that is only rounding is spread over the steps */
-    const double steps = fabs(whole - round(whole)) < 1e-6 && whole > 0.5 ? round(whole) : ceil(whole);
+    const double rest = greater(1e-6, 4.0 * resolution / drv->dt);
+    const double steps = fabs(whole - round(whole)) < rest && whole > 0.5 ? round(whole) : ceil(whole);
     const double h = whole > steps ? (t1 - begin) / steps : drv->dt;
-    for (double k = 1.0; k <= steps; k++) {
+    int status = TRIBO_OK;
+    for (double k = 1.0; k <= steps && !status; k++) {
         const double next = k < steps ? begin + k * h : t1;
-        memcpy(drv->state, y, bytes);
-        int status = step(drv, *t, next, y);
-        if (status) {
-            memcpy(y, drv->state, bytes);
-            return status;
-        }
-        *t = next;
-        drv->steps++;
-        status = tribo_driver_tell(drv, *t, y, 0);
-        if (status) {
-            return status;
+        status = step(drv, *t, next, y);
+        if (!status) {
+            *t = next;
+            status = tribo_driver_accept(drv, *t, y, 0);
+            drv->steps += !status || status == TRIBO_ERR_STOPPED;
         }
     }
-    return TRIBO_OK;
+    return status;
 }
 
-int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
+static int check_times(tribo_driver *drv, const double *t, double t1, const double *y)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
-    }
     if (!t || !y) {
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
     }
@@ -235,13 +318,119 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     if (t1 < *t) {
         return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
     }
-    const size_t bytes = tribo_system_dimension(drv->sys) * sizeof *y;
-    const int continues = *t == drv->time && memcmp(y, drv->state, bytes) == 0;
-    const size_t evaluations = drv->sys->evaluations, jacobians = drv->sys->jacobians;
-    const int result = *t < t1 ? drv->method->advance(drv, t, t1, y, continues) : TRIBO_OK;
-    drv->evaluations += drv->sys->evaluations - evaluations;
-    drv->jacobians += drv->sys->jacobians - jacobians;
+    return TRIBO_OK;
+}
+
+int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_times(drv, t, t1, y);
+    if (status || t1 == *t) {
+        return status;
+    }
+    tribo_system *sys = drv->sys;
+    const size_t bytes = tribo_system_dimension(sys) * sizeof *y, evaluations = sys->evaluations, jacobians = sys->jacobians;
+    const int continues =
+        drv->knows && *t == drv->time && drv->revision == tribo_system_revision(sys) && memcmp(y, drv->state, bytes) == 0;
     drv->time = *t;
     memcpy(drv->state, y, bytes);
-    return result;
+    status = drv->method->advance(drv, t, t1, y, continues);
+    status = status ? status : tribo_driver_keep(drv, *t, y);
+    *t = drv->time;
+    memcpy(y, drv->state, bytes);
+    drv->knows = status == TRIBO_OK || status == TRIBO_ERR_STOPPED;
+    drv->revision = tribo_system_revision(sys);
+    drv->evaluations += sys->evaluations - evaluations;
+    drv->jacobians += sys->jacobians - jacobians;
+    return status;
 }
+
+/* ------------------------------------------------------------------------------------------------------ method "auto" */
+
+enum { EVENT, EXACT };
+
+/* Two drivers, made when they are needed. */
+struct choice {
+    tribo_driver *inner[2];
+    int refused;     /* exact cannot do the system */
+    size_t revision; /* as it was then */
+};
+
+/* Exact pays while modes are found in no time. */
+static int choose(const tribo_driver *drv)
+{
+    const tribo_system *sys = drv->sys;
+    const struct choice *c = drv->own;
+    const int refused = c->refused && c->revision == tribo_system_revision(sys);
+    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !refused ? EXACT : EVENT;
+}
+
+/* Makes sure that there is the driver. The message of a failure is on the system's context. */
+static int provide(tribo_driver *drv, int which)
+{
+    static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
+    struct choice *c = drv->own;
+    drv->at_work = of[which];
+    return c->inner[which] ? TRIBO_OK : create(&c->inner[which], drv->sys, of[which], drv->dt, drv->abstol, drv->reltol);
+}
+
+static int create_choice(tribo_driver *drv)
+{
+    drv->own = calloc(1, sizeof(struct choice));
+    drv->excess = drv->backslip = 0.0;
+    return drv->own ? provide(drv, choose(drv)) : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
+}
+
+static void destroy_choice(tribo_driver *drv)
+{
+    struct choice *c = drv->own;
+    if (c) {
+        tribo_driver_destroy(c->inner[EXACT]);
+        tribo_driver_destroy(c->inner[EVENT]);
+        free(c);
+    }
+}
+
+/* The advance by one of the two, which sees for itself whether it continues. */
+static int delegate(tribo_driver *drv, int which, double *t, double t1, double *y)
+{
+    const struct choice *c = drv->own;
+    int status = provide(drv, which);
+    if (status) {
+        return tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_message(drv->sys->contacts));
+    }
+    tribo_driver *inner = c->inner[which];
+    const size_t steps = inner->steps, rejected = inner->rejected, events = inner->events;
+    inner->seen = drv->seen;
+    inner->data = drv->data;
+    status = tribo_driver_advance(inner, t, t1, y);
+    drv->steps += inner->steps - steps;
+    drv->rejected += inner->rejected - rejected;
+    drv->events += inner->events - events;
+    drv->excess = greater(drv->excess, inner->excess);
+    drv->backslip = greater(drv->backslip, inner->backslip);
+    const int kept = tribo_driver_keep(drv, *t, y), refused = which == EXACT && status == TRIBO_ERR_UNSUPPORTED;
+    if (status && !refused) {
+        tribo_driver_fail(drv, status, "%s", inner->message);
+    }
+    return status ? status : kept;
+}
+
+static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    struct choice *c = drv->own;
+    (void)continues;
+    if (choose(drv) == EXACT) {
+        const int status = delegate(drv, EXACT, t, t1, y);
+        if (status != TRIBO_ERR_UNSUPPORTED) {
+            return status;
+        }
+        c->refused = 1;
+        c->revision = tribo_system_revision(drv->sys);
+    }
+    return delegate(drv, EVENT, t, t1, y);
+}
+
+static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL};

@@ -4,24 +4,30 @@
 
 #include "system.h"
 
+/* What a method wants to be told: no tolerances, tolerances, or these and a largest step. */
+enum { WITHOUT_TOLERANCES, WITH_TOLERANCES, WITH_LARGEST_STEP };
+
 struct method {
     const char *name;
-    int adaptive; /* needs tolerances */
+    int adaptive; /* one of these */
     int (*create)(tribo_driver *drv);
     void (*destroy)(tribo_driver *drv); /* also after a create that failed */
-    /* From *t to t1 > *t. continues: (t, y) is where the last advance ended. Returns a status; t and y hold the last good step.
-     */
+    /* From *t to t1 > *t. continues: (t, y) is where the method's last advance ended well, and nothing has been changed since.
+     * Returns a status; if it fails, t and y may be anything, since the driver goes back to the state accepted last. */
     int (*advance)(tribo_driver *drv, double *t, double t1, double *y, int continues);
     const void *with; /* the method's own */
 };
 
 struct tribo_driver {
     tribo_system *sys;
-    const struct method *method;
+    const struct method *method, *at_work; /* the latter is what tribo_driver_method names */
     double dt, abstol, reltol;
+    double max_step;       /* 0: what the system suggests */
     void *own;             /* the method's own */
-    double *state, *slope; /* [dimension] where the last advance ended; workspace */
-    double time;
+    double *state, *slope; /* [dimension] the state accepted last; workspace */
+    double time;           /* of the state accepted last */
+    size_t revision;       /* of the system when the last advance ended */
+    int knows;             /* what the method keeps is about time, state and revision */
     size_t steps, rejected, evaluations, jacobians, events;
     double excess, backslip; /* largest so far; NaN for methods that do not know them */
     int (*seen)(double t, const double *y, int event, void *data);
@@ -36,16 +42,24 @@ int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
 #endif
     ;
 
-/* Steps of drv->dt to t1, the last one shorter where it must be. step takes y from t to next; if it fails, y is what it was
- * before. */
+/* TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
+int tribo_driver_check(tribo_driver *drv, const double *y);
+
+/* Every state that a method has found goes through this before anything is built on it: if a value of it is not finite, it fails
+ * with TRIBO_ERR_NOT_FINITE and nobody sees the state. Otherwise the state is kept as the last good one, to which
+ * tribo_driver_advance goes back on any failure, and the observer is told, who may end the run (TRIBO_ERR_STOPPED).
+ * event: 0 for a step, 1 for an event. */
+int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event);
+
+/* The same without telling the observer. */
+int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
+
+/* Steps of drv->dt to t1, the last one shorter where it must be. step takes y from t to next. */
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
                              int (*step)(tribo_driver *, double, double, double *));
 
-/* Tells the observer; TRIBO_OK or TRIBO_ERR_STOPPED. */
-int tribo_driver_tell(tribo_driver *drv, double t, const double *y, int event);
-
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
     tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck, tribo_method_rk8pd,
-    tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_bsimp, tribo_method_msadams, tribo_method_msbdf;
+    tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_msbdf;
 
 #endif

@@ -92,9 +92,9 @@ static int give_up(struct events *e, tribo_driver *drv, double t)
     for (size_t k = 0, used = 0; k < e->suspects; k++) {
         used += (size_t)snprintf(text + used, sizeof text - used, "%scontact %zu", k ? ", " : "", e->suspect[k]);
     }
-    return tribo_driver_fail(drv, TRIBO_ERR_CHATTER,
-                             "events make no headway at t = %.17g (%s): take central/fixed or moreau/fixed, or limits that differ", t,
-                             text);
+    return tribo_driver_fail(
+        drv, TRIBO_ERR_CHATTER,
+        "events make no headway at t = %.17g (%s): take central/fixed or moreau/fixed, or limits that differ", t, text);
 }
 
 static void suspect(struct events *e, size_t contact)
@@ -151,33 +151,20 @@ static int on_context(tribo_driver *drv, int status)
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 
-static int all_finite(const double *x, size_t n)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += x[i] - x[i];
-    }
-    return sum == 0.0;
-}
-
-static int grows(tribo_driver *drv, double t)
-{
-    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "the motion grows without bound after t = %.17g", t);
-}
-
 /* Shows the observer the motion between t and t + tau at begin + k dt. */
 static int show_between(struct events *e, tribo_driver *drv, double begin, double *shown, double t, double tau, const double *y)
 {
     int status = TRIBO_OK;
     for (double at; e->shows_between && drv->seen && !status && (at = begin + *shown * drv->dt) < t + tau; *shown += 1.0) {
         e->state(e->motion, at - t, y, drv->slope);
-        status = tribo_driver_tell(drv, at, drv->slope, 0);
+        status = tribo_driver_accept(drv, at, drv->slope, 0);
     }
     return status;
 }
 
 /* One phase, from (t, y) to its end and the decision there. */
-static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y, double fastest)
+static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
+                 double fastest)
 {
     tribo_system *sys = drv->sys;
     const size_t dimension = tribo_system_dimension(sys);
@@ -194,11 +181,11 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     e->search.resolution = greater(0.5 * DBL_EPSILON * fabs(*t), DBL_EPSILON * DBL_EPSILON * reach);
     if (!tribo_first_zero(&e->search, reach, &event, &when)) {
         e->state(e->motion, reach, y, e->next);
-        if (!all_finite(e->next, dimension)) {
-            return grows(drv, *t);
-        }
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "from t = %.17g on the motion is too fast to be followed (%zu looks)", *t,
-                                 e->search.looks);
+        status = tribo_driver_check(drv, e->next);
+        return status ? status
+                      : tribo_driver_fail(drv, TRIBO_ERR_STEP,
+                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu looks", *t,
+                                          e->search.looks);
     }
     when = event ? lesser(when, reach) : reach;
     status = show_between(e, drv, begin, shown, *t, when, y);
@@ -206,8 +193,9 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         return status;
     }
     e->state(e->motion, when, y, e->next);
-    if (!all_finite(e->next, dimension)) {
-        return grows(drv, *t);
+    status = tribo_driver_check(drv, e->next);
+    if (status) {
+        return status;
     }
     memcpy(y, e->next, dimension * sizeof *y);
     *t = !event && reach == end - *t ? end : lesser(*t + when, end);
@@ -223,8 +211,9 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         }
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
-    if (!status && (event || *t >= t1 || !e->shows_between)) {
-        status = tribo_driver_tell(drv, *t, y, event != NULL);
+    if (!status) {
+        const int shown_now = event || *t >= t1 || !e->shows_between;
+        status = shown_now ? tribo_driver_accept(drv, *t, y, event != NULL) : tribo_driver_keep(drv, *t, y);
     }
     return status;
 }

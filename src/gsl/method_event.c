@@ -395,4 +395,4 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
                   : tribo_events_advance(&e->events, drv, t, t1, y, continues);
 }
 
-const struct method tribo_method_event = {"event", 1, create, destroy, advance, NULL};
+const struct method tribo_method_event = {"event", WITH_TOLERANCES, create, destroy, advance, NULL};

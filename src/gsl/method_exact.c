@@ -1,8 +1,8 @@
 /* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
- * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (first_zero.h), since the
- * sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
- * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is closed
- * too: a sliding force is constant, so that it dissipates its size times the distance slid. */
+ * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (first_zero.h), since
+ * the sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
+ * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is
+ * closed too: a sliding force is constant, so that it dissipates its size times the distance slid. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -490,7 +490,8 @@ static void bound_guard(const struct exact *x, struct guard *g)
     }
 }
 
-/* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on. */
+/* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on.
+ */
 static double bound(void *motion, double tau)
 {
     struct exact *x = motion;
@@ -656,4 +657,4 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
                   : tribo_events_advance(&x->events, drv, t, t1, y, continues);
 }
 
-const struct method tribo_method_exact = {"exact", 0, create, destroy, advance, NULL};
+const struct method tribo_method_exact = {"exact", WITHOUT_TOLERANCES, create, destroy, advance, NULL};

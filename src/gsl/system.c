@@ -15,7 +15,7 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
 {
     tribo_system *s = calloc(1, sizeof *s);
     int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
-    double *work = status ? NULL : calloc(5 * (ncontact + 1) + ndof, sizeof *work);
+    double *work = status ? NULL : calloc(6 * (ncontact + 1) + ndof, sizeof *work);
     if (!work) {
         tribo_system_destroy(s);
         tribo_matrix_free(stiffness);
@@ -38,7 +38,8 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     s->f = work + 2 * (ncontact + 1);
     s->feq = work + 3 * (ncontact + 1);
     s->dv_dt = work + 4 * (ncontact + 1);
-    s->acceleration = work + 5 * (ncontact + 1);
+    s->given_limit = work + 5 * (ncontact + 1);
+    s->acceleration = work + 6 * (ncontact + 1);
     s->odeiv2 = (gsl_odeiv2_system){right_hand_side, jacobian, 2 * ndof + 1, s};
     *sys = s;
     return TRIBO_OK;
@@ -141,11 +142,24 @@ static double look_up(const struct table *table, size_t columns, size_t i, doubl
     return order ? slope : v[0] + slope * (t - table->time[k]);
 }
 
-void tribo_system_set_time(tribo_system *sys, double t)
+size_t tribo_system_revision(const tribo_system *sys)
 {
-    if (t == sys->time) {
-        return;
-    }
+    return sys->revision + tribo_revision(sys->contacts) - sys->ours;
+}
+
+/* Makes the limits of the context those of the table, at the time set. */
+static void follow_limits(tribo_system *sys)
+{
+    const size_t before = tribo_revision(sys->contacts);
+    sys->limits.at = knot_at(&sys->limits, sys->time);
+    tribo_system_limits(sys, sys->v, sys->a);
+    tribo_set_limit(sys->contacts, sys->v);
+    sys->seen = tribo_revision(sys->contacts);
+    sys->ours += sys->seen - before;
+}
+
+static void set_loads(tribo_system *sys, double t)
+{
     for (size_t k = 0; k < sys->harmonics; k++) {
         struct harmonic *h = &sys->harmonic[k];
         h->cos_t = cos(h->omega * t);
@@ -155,10 +169,16 @@ void tribo_system_set_time(tribo_system *sys, double t)
         sys->table[k].at = knot_at(&sys->table[k], t);
     }
     sys->time = t;
-    if (sys->limits.knots) {
-        sys->limits.at = knot_at(&sys->limits, t);
-        tribo_system_limits(sys, sys->v, sys->a);
-        tribo_set_limit(sys->contacts, sys->v);
+}
+
+void tribo_system_set_time(tribo_system *sys, double t)
+{
+    const int moves = t != sys->time;
+    if (moves) {
+        set_loads(sys, t);
+    }
+    if (sys->limits.knots && (moves || sys->seen != tribo_revision(sys->contacts))) {
+        follow_limits(sys);
     }
 }
 
@@ -217,7 +237,7 @@ void tribo_system_loads(const tribo_system *sys, int moves_base, int order, doub
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
-    if (!moves_base) {
+    if (!moves_base && sys->tables) {
         tribo_system_tables(sys, order, factor, to);
     }
 }
@@ -282,8 +302,10 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     }
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
-    tribo_system_loads(sys, 1, 0, -1.0, v);
-    tribo_system_loads(sys, 1, 1, -1.0, a);
+    if (sys->base_harmonics) {
+        tribo_system_loads(sys, 1, 0, -1.0, v);
+        tribo_system_loads(sys, 1, 1, -1.0, a);
+    }
     tribo_matrix_multiply_add(&sys->direction, 1.0, y + n, v);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
 }
@@ -588,6 +610,7 @@ static int add_harmonic(tribo_system *sys, int moves_base, double omega, const d
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
     }
     sys->harmonic[sys->harmonics++] = h;
+    sys->base_harmonics += (size_t)moves_base;
     sys->revision++;
     sys->time = NAN;
     return TRIBO_OK;
@@ -662,6 +685,7 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
     }
     tribo_system_accelerate(sys, pattern, t.pattern);
     sys->table[sys->tables++] = t;
+    sys->revision++;
     sys->time = NAN;
     return TRIBO_OK;
 }
@@ -688,8 +712,14 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
             return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
         }
     }
+    if (!sys->limits.knots && knots) {
+        tribo_get_limit(sys->contacts, sys->given_limit);
+    } else if (sys->limits.knots && !knots) {
+        tribo_set_limit(sys->contacts, sys->given_limit);
+    }
     free_table(&sys->limits);
     sys->limits = t;
+    sys->revision++;
     sys->time = NAN;
     return TRIBO_OK;
 }

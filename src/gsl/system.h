@@ -31,12 +31,14 @@ struct tribo_system {
     double power;                                          /* dissipated power is -power * f.v */
     tribo_context *contacts;
 
-    size_t harmonics;
+    size_t harmonics, base_harmonics; /* the latter are those that move the base */
     struct harmonic *harmonic;
     size_t tables;
     struct table *table;
     struct table limits; /* knots 0: the limits are those of the context */
-    size_t revision;     /* counts changes of harmonics and damping */
+    double *given_limit; /* [ncontact] those that it had before the table */
+    size_t revision;     /* counts changes of loads, tables and damping */
+    size_t ours, seen;   /* of the context's revision: how much the table added, and where it left it */
     double time;         /* that cos_t and sin_t belong to; NaN: none yet */
 
     /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: W AK and W AC are
@@ -64,6 +66,9 @@ struct tribo_system {
  * all zeros: no rows. */
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
                        struct matrix *direction, struct matrix *response);
+
+/* Counts all changes that a caller can make: of loads, tables and damping, and of the context's settings. */
+size_t tribo_system_revision(const tribo_system *sys);
 
 /* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
 void tribo_system_set_time(tribo_system *sys, double t);

@@ -15,6 +15,7 @@ TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 TRIBO_API void tribo_destroy(tribo_context *ctx);
 TRIBO_API const char *tribo_message(const tribo_context *ctx);
 TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
+TRIBO_API size_t tribo_revision(const tribo_context *ctx);
 TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 TRIBO_API int tribo_set_law(tribo_context *ctx, int law);

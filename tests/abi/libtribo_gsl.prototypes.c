@@ -32,7 +32,9 @@ TRIBO_API int tribo_method_count(void);
 TRIBO_API const char *tribo_method_name(int method);
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
+TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
 TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data),
                                         void *data);
+TRIBO_API int tribo_driver_set_max_step(tribo_driver *drv, double h);
 TRIBO_API const char *tribo_driver_message(const tribo_driver *drv);
 TRIBO_API void tribo_driver_destroy(tribo_driver *drv);

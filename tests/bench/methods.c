@@ -1,4 +1,4 @@
-/* The drivers of libtribo_gsl, GSL's steppers among them. */
+/* The drivers of libtribo_gsl. */
 #include "methods.h"
 
 #include <math.h>
@@ -127,17 +127,15 @@ static const struct method all[] = {
     {"tribo", "rk4/fixed", "quinn-reversal", STEP, 2.6, NULL, run, 0.0, 0},
     {"tribo", "rk4/fixed", "smooth", STEP, 2.6, NULL, run, 0.0, 0},
     {"tribo", "rk4/fixed", "velocity-limited", STEP, 2.6, NULL, run, 0.0, 0},
-    {"gsl", "rkf45", "quinn", TOLERANCE, 0.0, NULL, run, 0.0, 0},
-    {"gsl", "rk8pd", "quinn", TOLERANCE, 0.0, NULL, run, 0.0, 0},
-    {"gsl", "msbdf", "quinn", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
-    {"gsl", "msadams", "quinn", TOLERANCE, 0.0, NULL, run, 0.0, 0},
-    {"gsl", "bsimp", "quinn", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
-    {"gsl", "rk4imp", "quinn", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
-    {"gsl", "rkf45", "quinn-reversal", TOLERANCE, 0.0, NULL, run, 0.0, 0},
-    {"gsl", "msbdf", "quinn-reversal", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
-    {"gsl", "rkf45", "smooth", TOLERANCE, 0.0, NULL, run, 0.0, 0},
-    {"gsl", "msbdf", "smooth", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
-    {"gsl", "rkf45", "velocity-limited", TOLERANCE, 0.0, NULL, run, 0.0, 0},
-    {"gsl", "msbdf", "velocity-limited", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
+    {"tribo", "rkf45", "quinn", TOLERANCE, 0.0, NULL, run, 0.0, 0},
+    {"tribo", "rk8pd", "quinn", TOLERANCE, 0.0, NULL, run, 0.0, 0},
+    {"tribo", "msbdf", "quinn", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
+    {"tribo", "rk4imp", "quinn", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
+    {"tribo", "rkf45", "quinn-reversal", TOLERANCE, 0.0, NULL, run, 0.0, 0},
+    {"tribo", "msbdf", "quinn-reversal", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
+    {"tribo", "rkf45", "smooth", TOLERANCE, 0.0, NULL, run, 0.0, 0},
+    {"tribo", "msbdf", "smooth", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
+    {"tribo", "rkf45", "velocity-limited", TOLERANCE, 0.0, NULL, run, 0.0, 0},
+    {"tribo", "msbdf", "velocity-limited", TOLERANCE, 0.0, is_moderate, run, 0.0, 0},
 };
 const struct methods tribo_methods = {all, sizeof all / sizeof *all};

@@ -14,7 +14,7 @@ struct outcome {
 enum sweep { NO_SETTING, STEP, TOLERANCE };
 
 struct method {
-    const char *package; /* whose time integration it is: plain, tribo, gsl, sundials, siconos */
+    const char *package; /* whose time integration it is: plain, tribo, sundials, siconos */
     const char *name;
     const char *law; /* "coulomb" is Coulomb's law itself, without epsilon */
     enum sweep sweep;

@@ -83,7 +83,7 @@ END {
         split(today[level[l]], want, " ")
         line = "| " level[l] " |"
         for (i = 1; i <= columns; i++) {
-            line = line sprintf(" %s / %s %s |", want[i], number(best_for(column[i], "^(plain|gsl|sundials|siconos) ", level[l])), fastest)
+            line = line sprintf(" %s / %s %s |", want[i], number(best_for(column[i], "^(plain|sundials|siconos) ", level[l])), fastest)
         }
         print line
     }

@@ -107,6 +107,8 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
     call d%set_observer(stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
+    call d%set_max_step(1.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
     call require(all(untouched([x, y, z, w, t])) .and. all(untouched(q)) .and. untouched(i), 'nothing: outputs')
     call s%destroy()
     call d%destroy()
@@ -324,7 +326,8 @@ contains
     call s%oscillator(0.1_dp, 1.0_dp, 1.0_dp)
     call d%create(s, 'exact', 0.1_dp)
     call d%create(s, 'exactly', 0.1_dp, stat=stat, errmsg=msg)
-    call expect_error(stat, msg, TRIBO_ERR_NAME, 'method "exactly" is unknown')
+    call expect_error(stat, msg, TRIBO_ERR_NAME, 'method "exactly" is unknown; there are ' // &
+      'rk4/fixed, rk2, rk4, rkf45, rkck, rk8pd, rk1imp, rk2imp, rk4imp, msbdf, exact, event, central/fixed, moreau/fixed, auto')
     call d%create(s, 'rkf45', 0.0_dp, 1e-6_dp, stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'dt = 0 is not positive')
     call d%create(s, 'rkf45', 0.1_dp, stat=stat, errmsg=msg)
@@ -350,6 +353,14 @@ contains
     call d%count(7, i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 7 is none of the counts of a driver')
     call require(untouched(i), 'count: output')
+    call d%set_max_step(1.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'method exact has no largest step')
+    call d%create(s, 'RK8PD', 0.1_dp, 1e-6_dp)
+    call require(d%method() == 'rk8pd', 'create: letters of any case')
+    call d%set_max_step(0.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'h = 0 is not positive')
+    call d%set_max_step(nan, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'h = nan is not a number')
     ! The observer's answer ends the run.
     call d%create(s, 'rk4/fixed', 0.25_dp)
     t = 0

@@ -59,6 +59,7 @@ static void run(tribo_system *sys, const char *method, double most)
     tribo_driver *drv = NULL;
     put_one(tribo_driver_create(&drv, sys, method, 0.05, 1e-5, 1e-5));
     put_text(tribo_driver_method(drv));
+    put_one(tribo_driver_set_max_step(drv, 0.04));
     put_one(tribo_driver_advance(drv, &t, 0.5, y));
     put_one(tribo_driver_set_observer(drv, seen, sums));
     put_one(tribo_driver_advance(drv, &t, 2.5, y));

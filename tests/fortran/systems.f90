@@ -218,6 +218,8 @@ contains
     call drv%create(sys, method, 0.05_dp, 1e-5_dp, 1e-5_dp, stat)
     call compare('create', stat)
     call compare('method', drv%method())
+    call drv%set_max_step(0.04_dp, stat)
+    call compare('set_max_step', stat)
     call drv%advance(t, 0.5_dp, y, stat)
     call compare('advance', stat)
     sees%most = most

@@ -447,6 +447,44 @@ TEST(messages)
     tribo_destroy(c);
 }
 
+/* Another number after every call that sets something, and the same after others, and after calls that fail. */
+TEST(revisions)
+{
+    tribo_context *c = create(2);
+    const double x[] = {1.0, 2.0}, bad[] = {1.0, -1.0}, r[] = {2.0, 1.0, 1.0, 3.0}, inverse[] = {1.0, 0.5};
+    const size_t rows[] = {0, 1, 2}, cols[] = {0, 1};
+    double f[2];
+    size_t before = tribo_revision(c);
+    ck_assert_uint_eq(tribo_revision(NULL), 0);
+#define CHANGES(call)                                                                                                            \
+    do {                                                                                                                         \
+        assert_ok(call);                                                                                                         \
+        require(tribo_revision(c) != before, "%s goes unnoticed", #call);                                                        \
+        before = tribo_revision(c);                                                                                              \
+    } while (0)
+    CHANGES(tribo_set_law(c, TRIBO_SMOOTH));
+    CHANGES(tribo_set_limit(c, x));
+    CHANGES(tribo_set_limit_all(c, 1.0));
+    CHANGES(tribo_set_epsilon(c, x));
+    CHANGES(tribo_set_epsilon_all(c, 0.1));
+    CHANGES(tribo_set_epsilon_step(c, 0.1, 1.0));
+    CHANGES(tribo_set_coupling(c, TRIBO_PARTITION));
+    CHANGES(tribo_set_sharing(c, TRIBO_SHARE_LAST));
+    CHANGES(tribo_set_operator_diagonal(c, x));
+    CHANGES(tribo_set_operator_dense(c, r));
+    CHANGES(tribo_set_operator_csr(c, rows, cols, x));
+    CHANGES(tribo_set_operator_mass(c, 2, inverse, rows, cols, x));
+    assert_ok(tribo_balance(c, x, x, NULL, f));
+    assert_ok(tribo_step_force(c, 0.1, x, f));
+    assert_ok(tribo_solve_box(c, x, x, x, f));
+    assert_ok(tribo_accept(c, x, x));
+    ck_assert_int_ne(tribo_set_limit(c, bad), TRIBO_OK);
+    ck_assert_int_ne(tribo_set_law(c, 77), TRIBO_OK);
+    ck_assert_int_ne(tribo_set_operator_diagonal(c, bad), TRIBO_OK);
+    ck_assert_uint_eq(tribo_revision(c), before);
+    tribo_destroy(c);
+}
+
 TEST_MAIN("context", {defaults, 1}, {no_operator, 1}, {owned_operator, 1}, {settings, 1}, {epsilon_step, 1},
           {epsilon_step_without_division, 1}, {open_contacts, 24}, {opening_contacts, 1}, {no_contacts, 1}, {no_feq, 2},
-          {clones, 1}, {versions, 1}, {texts_of_statuses, 1}, {messages, 1})
+          {clones, 1}, {versions, 1}, {texts_of_statuses, 1}, {messages, 1}, {revisions, 1})

@@ -7,6 +7,7 @@
 #define STEP (1.0 / 64.0)
 #define BLOCKS 8
 #define DIMENSION (2 * BLOCKS + 1)
+#define METHODS 15
 
 static tribo_system *chain(int law)
 {
@@ -151,7 +152,11 @@ TEST(creation_errors)
         const char *text;
     } cases[] = {
         {NULL, 0.1, 0, 0, TRIBO_ERR_NULL, "method is NULL"},
-        {"rk5", 0.1, 0, 0, TRIBO_ERR_NAME, "method \"rk5\""},
+        {"rk5", 0.1, 0, 0, TRIBO_ERR_NAME,
+         "method \"rk5\" is unknown; there are rk4/fixed, rk2, rk4, rkf45, rkck, rk8pd, rk1imp, rk2imp, rk4imp, msbdf, exact, "
+         "event, "
+         "central/fixed, moreau/fixed, auto"},
+        {"rk4/fixed and much more that nobody wants to read again", 0.1, 0, 0, TRIBO_ERR_NAME, "moreau/fixed, auto"},
         {"", 0.1, 0, 0, TRIBO_ERR_NAME, "method \"\""},
         {"rk4/fixed", 0, 0, 0, TRIBO_ERR_NOT_POSITIVE, "dt = 0"},
         {"rk4/fixed", -1, 0, 0, TRIBO_ERR_NOT_POSITIVE, "dt = -1"},
@@ -180,7 +185,7 @@ TEST(creation_errors)
 
 TEST(advance_errors)
 {
-    const char *const methods[] = {"rk4/fixed", "rkf45", "bsimp"};
+    const char *const methods[] = {"rk4/fixed", "rkf45", "rk4imp"};
     tribo_system *sys = chain(TRIBO_QUINN);
     tribo_driver *drv = driver_create(sys, methods[_i], STEP, 1e-6);
     double t = 0.5, bad = NAN, y[DIMENSION] = {0}, ill[DIMENSION] = {0};
@@ -255,7 +260,7 @@ static int see_one(double t, const double *y, int event, void *data)
 /* From far above, the contacts come to the band within a few steps. */
 TEST(inconsistent_under_way)
 {
-    const char *const methods[] = {"rk4/fixed", "rkf45", "bsimp"};
+    const char *const methods[] = {"rk4/fixed", "rkf45", "rk4imp"};
     tribo_system *sys = torn();
     tribo_driver *drv = driver_create(sys, methods[_i], 0.01, 1e-6);
     double t = 0.0, y[3] = {0.0, 1.0, 0.0};
@@ -274,10 +279,118 @@ TEST(inconsistent_under_way)
     tribo_system_destroy(sys);
 }
 
+/* In any case of letters; nothing shorter, and nothing longer. */
+TEST(names)
+{
+    const char *const right[] = {"rk4/fixed", "RK4/FIXED", "Rk8Pd", "CENTRAL/fixed", "Auto", "eXACT"};
+    const char *const wrong[] = {"rk4/fixe", "rk4/fixed ", "rk", "exact2", "\xc5xact"};
+    tribo_system *sys = chain(TRIBO_QUINN);
+    for (size_t i = 0; i < COUNT(right); i++) {
+        tribo_driver_destroy(driver_create(sys, right[i], STEP, 1e-6));
+    }
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        tribo_driver *drv;
+        assert_status(tribo_driver_create(&drv, sys, wrong[i], STEP, 1e-6, 0.0), TRIBO_ERR_NAME);
+    }
+    tribo_system_destroy(sys);
+}
+
+/* Steps that time does not resolve are refused before the first one. */
+TEST(resolution)
+{
+    const char *const methods[] = {"rk4/fixed", "central/fixed", "moreau/fixed"};
+    const struct {
+        double dt, begin, end;
+    } cases[] = {{1e-9, 1e8, 1e8 + 1.0}, {1e-9, 0.0, 1e8}, {1e-9, -1e8, 1.0}, {1e-300, 0.0, 1e-283}, {1e-320, 0.0, 1.0}};
+    tribo_system *sys = oscillator(TRIBO_QUINN, 1.5, 0.5);
+    for (size_t k = 0; k < COUNT(cases); k++) {
+        double t = cases[k].begin, y[3] = {1.0, 0.0, 0.0};
+        tribo_driver *drv = driver_create(sys, methods[_i], cases[k].dt, 0.0);
+        assert_status(tribo_driver_advance(drv, &t, cases[k].end, y), TRIBO_ERR_STEP);
+        assert_says(tribo_driver_message(drv), "hardly more than time resolves");
+        assert_exact(t, cases[k].begin);
+        assert_exact(y[0], 1.0);
+        ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), 0);
+        tribo_driver_destroy(drv);
+    }
+    /* and near there, steps differ by the rounding of time */
+    double t = 1e8, y[3] = {1.0, 0.0, 0.0};
+    tribo_driver *drv = driver_create(sys, methods[_i], 1e-6, 0.0);
+    driver_advance(drv, &t, 1e8 + 1e-3, y);
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), 1000);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* A degree of freedom that no contact touches, and that grows until numbers end. Nobody sees what is not finite. */
+static int see_finite(double t, const double *y, int event, void *data)
+{
+    struct seen *seen = data;
+    (void)event;
+    for (size_t i = 0; i < 5; i++) {
+        require(isfinite(y[i]), "at t = %g an observer sees y[%zu] = %g", t, i, y[i]);
+    }
+    seen->t = t;
+    memcpy(seen->y, y, 5 * sizeof *y);
+    return 0;
+}
+
+TEST(growth)
+{
+    const char *method = tribo_method_name(_i);
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1.0, 0.0, 0.0, -1.0}, direction[] = {1.0, 0.0};
+    for (int observed = 0; observed < 2; observed++) {
+        double t = 0.0, y[5] = {1.0, 1.0};
+        struct seen seen = {0, 0, 0.0, {0}};
+        tribo_system *sys;
+        tribo_driver *drv;
+        assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+        assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.1));
+        assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 0.1));
+        assert_ok(tribo_driver_create(&drv, sys, method, 0.1, 1e-4, 1e-4));
+        assert_ok(tribo_driver_set_observer(drv, observed ? see_finite : NULL, &seen));
+        const int status = tribo_driver_advance(drv, &t, 2000.0, y);
+        require(status == TRIBO_ERR_NOT_FINITE || status == TRIBO_ERR_STEP, "%s: %d, y[1] = %g", method, status, y[1]);
+        ck_assert_uint_gt(strlen(tribo_driver_message(drv)), 20);
+        require(t > 1.0 && t < 720.0, "%s ends at %g", method, t);
+        for (size_t i = 0; i < 5; i++) {
+            require(isfinite(y[i]), "%s: y[%zu] = %g", method, i, y[i]);
+        }
+        if (observed) {
+            assert_exact(t, seen.t);
+            assert_all_exact(y, seen.y, 5);
+        }
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
+/* Structures that no contact touches: x'' + x = 3/2 sin(t/2) from x = 1, x' = 0. */
+TEST(no_contacts)
+{
+    const char *method = tribo_method_name(_i);
+    const double one = 1.0, amplitude = 1.5, end = 8.0;
+    double t = 0.0, y[3] = {1.0, 0.0, 0.0};
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 1, 0, &one, NULL, &one, NULL, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(sys, 0.5, NULL, &amplitude));
+    assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, NULL));
+    tribo_driver *drv = driver_create(sys, method, 1e-3, 1e-8);
+    for (int k = 1; k <= 4; k++) {
+        driver_advance(drv, &t, 0.25 * k * end, y);
+    }
+    const double tolerance = strcmp(method, "rk1imp") ? 1e-5 : 2e-3; /* of a step 1e-8 */
+    assert_close(y[0], 2.0 * sin(0.5 * end) - sin(end) + cos(end), tolerance);
+    assert_close(y[1], cos(0.5 * end) - cos(end) - sin(end), tolerance);
+    assert_exact(y[2], 0.0);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
 /* Numbers that overflow end the run where they do. */
 TEST(overflow)
 {
-    const char *const methods[] = {"rk4/fixed", "rkf45", "bsimp"};
+    const char *const methods[] = {"rk4/fixed", "rkf45", "rk4imp"};
     tribo_system *sys = chain(TRIBO_QUINN);
     tribo_driver *drv = driver_create(sys, methods[_i], STEP, 1e-6);
     double t = 0.0, y[DIMENSION] = {0};
@@ -292,4 +405,5 @@ TEST(overflow)
 }
 
 TEST_MAIN("driver", {four_evaluations_a_step, 6}, {last_steps, 1}, {classical_runge_kutta, 1}, {pieces, 6}, {observer_stops, 3},
-          {creation_errors, 1}, {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3}, {overflow, 3})
+          {creation_errors, 1}, {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3}, {overflow, 3}, {names, 1},
+          {resolution, 3}, {growth, METHODS}, {no_contacts, METHODS})
