@@ -8,6 +8,7 @@
 
 #include <gsl/gsl_blas.h>
 
+#include "hidden.h"
 #include "normal_modes.h"
 #include "system.h"
 
@@ -86,6 +87,29 @@ static double *transposed_direction(const struct model *m)
     return x;
 }
 
+/* Whether R, of a system whose mass matrix is not diagonal, tells all that it should. */
+static int check_operator(const struct model *m, const tribo_system *sys, const double *r)
+{
+    const size_t n = sys->ndof;
+    const struct matrix *b = &sys->response;
+    struct hidden where;
+    double *x = calloc(m->ncontact * n + 1, sizeof *x);
+    for (size_t d = 0; x && d < n; d++) {
+        for (size_t k = b->first[d]; k < b->first[d + 1]; k++) {
+            x[b->col[k] * n + d] = b->val[k];
+        }
+    }
+    const int hidden = x ? tribo_hidden(&sys->direction, &sys->metric, x, r, &where) : -1;
+    free(x);
+    if (hidden < 0) {
+        return no_memory(m);
+    }
+    return hidden ? fail(m, TRIBO_ERR_UNSUPPORTED,
+                         "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
+                         where.contact, where.spread)
+                  : TRIBO_OK;
+}
+
 /* R = Z'Z, Z [n][ncontact], which is as symmetric and semidefinite as rounding lets it be. */
 static int set_operator(const struct model *m, tribo_system *sys, double *z, size_t n)
 {
@@ -98,9 +122,13 @@ static int set_operator(const struct model *m, tribo_system *sys, double *z, siz
         gsl_matrix_view rv = gsl_matrix_view_array(r, c, c), zv = gsl_matrix_view_array(z, n, c);
         gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &zv.matrix, &zv.matrix, 0.0, &rv.matrix);
     }
-    const int status = tribo_set_operator_dense(sys->contacts, r);
+    int status = m->nmode ? TRIBO_OK : check_operator(m, sys, r);
+    if (!status) {
+        status = tribo_set_operator_dense(sys->contacts, r);
+        status = status ? fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+    }
     free(r);
-    return status ? fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+    return status;
 }
 
 /* The system owns the mass matrix and its factor from now on. */

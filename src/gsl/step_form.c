@@ -14,6 +14,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "driver.h"
+#include "hidden.h"
 #include "spectrum.h"
 #include "../real.h"
 
@@ -314,6 +315,46 @@ static int factorize(struct step_form *s, const tribo_system *sys, double h)
     return TRIBO_OK;
 }
 
+/* A is diagonal: the operator is that of the bodies one by one. */
+static int set_bodies(struct step_form *s, const tribo_system *sys)
+{
+    const struct matrix *j = &sys->direction;
+    double *inverse = calloc(sys->ndof, sizeof *inverse);
+    if (!inverse) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    }
+    for (size_t i = 0; i < j->rows; i++) {
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            const size_t d = j->col[k];
+            inverse[d] = j->val[k] != 0.0 ? s->response[i * sys->ndof + d] / j->val[k] : inverse[d];
+        }
+    }
+    const int status = tribo_set_operator_mass(s->contacts, sys->ndof, inverse, j->first, j->col, j->val);
+    free(inverse);
+    return status ? tribo_system_fail(sys, status, "in a step, %s", tribo_message(s->contacts)) : TRIBO_OK;
+}
+
+/* The operator is r, unless that hides bodies. */
+static int set_operator(struct step_form *s, const tribo_system *sys, const double *r, double h)
+{
+    struct hidden where;
+    switch (tribo_hidden(&sys->direction, &sys->metric, s->response, r, &where)) {
+    case 0:
+        break;
+    case 1:
+        return s->below || s->above
+                   ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                       "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
+                                       "of %g: take central/fixed, event or exact",
+                                       where.contact, where.spread, h)
+                   : set_bodies(s, sys);
+    default:
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    }
+    const int status = tribo_set_operator_dense(s->contacts, r);
+    return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(s->contacts)) : TRIBO_OK;
+}
+
 /* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B, made symmetric by the contacts'
  * weights. */
 static int prepare(struct step_form *s, const tribo_system *sys, double h)
@@ -350,10 +391,10 @@ static int prepare(struct step_form *s, const tribo_system *sys, double h)
             r[i * c + j] = sum / tribo_system_weight(sys, j);
         }
     }
-    status = tribo_set_operator_dense(s->contacts, r);
+    status = set_operator(s, sys, r, h);
     free(r);
     if (status) {
-        return tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(s->contacts));
+        return status;
     }
     s->h = h;
     s->revision = sys->revision;

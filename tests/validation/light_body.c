@@ -1,0 +1,77 @@
+/* A light body between the ground and a heavy one: the heavy one moves as if it stood on the ground itself, with the smaller one of
+ * both limits, whatever the light one weighs. */
+#include "run.h"
+
+#include <string.h>
+
+static const double limits[][2] = {{0.1, 0.3}, {0.3, 0.1}, {0.2, 0.2}};
+static const double ratios[] = {1e6, 1e9, 1e12, 1e14, 1e16, 1e17};
+
+static const struct {
+    const char *name;
+    double dt, tolerance, error;
+} methods[] = {{"exact", 1.0, 0.0, 1e-12}, {"event", 1.0, 1e-12, 1e-10}, {"central/fixed", 2e-3, 0.0, 1e-12}, {"moreau/fixed", 2e-3, 0.0, 1e-12}};
+
+/* limit [2] of the contacts with the ground and between the bodies; off is what the mass matrix has off its diagonal, in parts of
+ * the most that it may have, and join a spring between them. */
+static tribo_system *stand(double ratio, const double *limit, double off, double join, int expected)
+{
+    const double light = 1.0 / ratio, both = off * sqrt(light), mass[] = {light, both, both, 1.0};
+    const double stiffness[] = {join, -join, -join, 1.0 + join}, direction[] = {1.0, 0.0, -1.0, 1.0}, load[] = {0.0, 0.7};
+    tribo_system *sys = NULL;
+    char text[200];
+    assert_status(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction, 0, text, sizeof text), expected);
+    if (sys) {
+        assert_ok(tribo_set_law(tribo_system_context(sys), TRIBO_COULOMB));
+        assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+        assert_ok(tribo_system_add_load(sys, 0.5, NULL, load));
+    } else {
+        assert_says(text, "contact 1 touches bodies of which one is");
+    }
+    return sys;
+}
+
+static tribo_system *alone(double limit)
+{
+    const double one = 1.0, load = 0.7;
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &one, &one, 0, NULL, 0));
+    assert_ok(tribo_set_law(tribo_system_context(sys), TRIBO_COULOMB));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
+    assert_ok(tribo_system_add_load(sys, 0.5, NULL, &load));
+    return sys;
+}
+
+TEST(moves_as_if_alone)
+{
+    const size_t m = (size_t)_i % COUNT(methods), l = (size_t)_i / COUNT(methods) % COUNT(limits);
+    const double ratio = ratios[(size_t)_i / COUNT(methods) / COUNT(limits)];
+    tribo_system *pair = stand(ratio, limits[l], 0.0, 0.0, TRIBO_OK), *one = alone(fmin(limits[l][0], limits[l][1]));
+    double y[5] = {0.0}, want[3] = {0.0};
+    run(pair, methods[m].name, methods[m].dt, methods[m].tolerance, 20.0, y);
+    run(one, methods[m].name, methods[m].dt, methods[m].tolerance, 20.0, want);
+    const double error = methods[m].error + 20.0 / ratio;
+    assert_close(y[1], want[0], error);
+    assert_close(y[3], want[1], error);
+    assert_close(y[4], want[2], error);
+    ck_assert(fabs(want[2]) > 0.5);
+    tribo_system_destroy(pair);
+    tribo_system_destroy(one);
+}
+
+/* What a dense matrix hides is refused, and what does no harm is not. */
+TEST(hidden_bodies)
+{
+    double y[5] = {0.0}, t = 0.0;
+    tribo_driver *drv;
+    stand(1e12, limits[0], 0.1, 0.0, TRIBO_ERR_UNSUPPORTED);
+    tribo_system_destroy(stand(1e6, limits[0], 0.1, 0.0, TRIBO_OK));
+    tribo_system *sys = stand(1e12, limits[0], 0.0, 1e-9, TRIBO_OK);
+    drv = driver_create(sys, "moreau/fixed", 1e-3, 0.0);
+    assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(drv), "contact 1 touches bodies");
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("light_body", {moves_as_if_alone, (int)(COUNT(methods) * COUNT(limits) * COUNT(ratios))}, {hidden_bodies, 1})
