@@ -250,6 +250,25 @@ static void limit_table(struct scene *c, struct random *g)
     }
 }
 
+/* Every other body weighs next to nothing, on a spring that fits it; loads are on the others. */
+static void light_and_heavy(struct scene *c, struct random *g)
+{
+    struct structure *s = &c->structure;
+    const double ratio = pow(10.0, uniform(g, 0.0, 16.0));
+    const size_t light = below(g, 2), n = 2 + below(g, 4);
+    s->ndof = s->ncontact = n;
+    s->load[0].omega = 0.5;
+    s->load[1].omega = 0.7;
+    for (size_t i = 0; i < n; i++) {
+        s->mass[i * n + i] = i % 2 == light ? 1.0 / ratio : 1.0;
+        add_spring(s, i, n, s->mass[i * n + i]);
+        connect(s, i, i, 1);
+        s->limit[i] = uniform(g, 0.1, 0.5);
+        s->load[0].sine[i] = i % 2 == light ? 0.0 : uniform(g, -1.0, 1.0);
+        s->load[1].sine[i] = i % 2 == light ? 0.0 : 1.0;
+    }
+}
+
 /* ---------------------------------------------------------------------------------------------------------- agreement */
 
 static const struct kind {
@@ -264,7 +283,8 @@ static const struct kind {
              {"whole numbers", whole_numbers, 20.0},
              {"parting bases", parting_bases, DURATION},
              {"doubled contacts", doubled, DURATION},
-             {"limit table", limit_table, DURATION}};
+             {"limit table", limit_table, DURATION},
+             {"light and heavy", light_and_heavy, DURATION}};
 
 /* What a motion is compared by: largest differences, and how far it strays from Coulomb's law. */
 struct apart {
