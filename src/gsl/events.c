@@ -1,5 +1,6 @@
 #include "events.h"
 #include "../real.h"
+#include "../twofold.h"
 
 #include <float.h>
 #include <math.h>
@@ -156,10 +157,26 @@ static int show_between(struct events *e, tribo_driver *drv, double begin, doubl
 {
     int status = TRIBO_OK;
     for (double at; e->shows_between && drv->seen && !status && (at = begin + *shown * drv->dt) < t + tau; *shown += 1.0) {
-        e->state(e->motion, at - t, y, drv->slope);
+        e->state(e->motion, greater((at - t) - drv->sys->low, 0.0), y, drv->slope);
         status = tribo_driver_accept(drv, at, drv->slope, 0);
     }
     return status;
+}
+
+/* The time after another tau, and its low part; end if that is all there was. */
+static double go_on(tribo_system *sys, double t, double tau, double end)
+{
+    const struct twofold next = twofold_sum(t, sys->low + tau);
+    const int there = tau >= (end - t) - sys->low || next.hi > end || (next.hi == end && next.lo > 0.0);
+    tribo_system_set_low(sys, there ? 0.0 : next.lo);
+    return there ? end : next.hi;
+}
+
+/* Steps that no event ends do so at a number t, if they are long enough for that. */
+static double to_a_number(const tribo_system *sys, double t, double reach, double end)
+{
+    const double next = lesser(t + (sys->low + reach), end), there = (next - t) - sys->low;
+    return fabs(there - reach) <= 1e-3 * reach ? there : reach;
 }
 
 /* One phase, from (t, y) to its end and the decision there. */
@@ -170,15 +187,16 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     const size_t dimension = tribo_system_dimension(sys);
     const double end = lesser(t1, tribo_system_next_kink(sys, *t));
     const struct guard *event = NULL;
-    double reach = end - *t, when = 0.0;
-    int status = on_context(drv, e->begin(e->motion, *t, y, end, &reach));
+    double reach = (end - *t) - sys->low, when = 0.0;
+    int status = on_context(drv, e->begin(e->motion, *t, y, &reach));
     if (status) {
         return status;
     }
-    if (!(*t + reach > *t)) {
+    reach = to_a_number(sys, *t, reach, end);
+    e->search.resolution = DBL_EPSILON * DBL_EPSILON * greater(fabs(*t), reach);
+    if (!(reach > e->search.resolution)) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, reach);
     }
-    e->search.resolution = greater(0.5 * DBL_EPSILON * fabs(*t), DBL_EPSILON * DBL_EPSILON * reach);
     if (!tribo_first_zero(&e->search, reach, &event, &when)) {
         e->state(e->motion, reach, y, e->next);
         status = tribo_driver_check(drv, e->next);
@@ -198,7 +216,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         return status;
     }
     memcpy(y, e->next, dimension * sizeof *y);
-    *t = !event && reach == end - *t ? end : lesser(*t + when, end);
+    *t = go_on(sys, *t, when, end);
     drv->steps++;
     learn(e, drv);
     sys->evaluations += e->shows_between ? e->search.looks : 0;
@@ -212,7 +230,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
     if (!status) {
-        const int shown_now = event || *t >= t1 || !e->shows_between;
+        const int shown_now = event || (*t >= t1 && sys->low == 0.0) || !e->shows_between;
         status = shown_now ? tribo_driver_accept(drv, *t, y, event != NULL) : tribo_driver_keep(drv, *t, y);
     }
     return status;
@@ -230,8 +248,9 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     e->credit = most_credit(e);
     e->paid = *t;
     e->suspects = 0;
-    while (!status && *t < t1) {
+    while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }
+    tribo_system_set_low(drv->sys, 0.0);
     return status;
 }

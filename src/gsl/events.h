@@ -14,9 +14,9 @@ struct events {
 
     /* the method's own */
     void *motion;
-    /* Begins a phase at (t, y) that lasts until end, or for as long as *reach becomes, and sets its guards. Returns a status, its
+    /* Begins a phase at (t, y) that lasts *reach, or less if *reach becomes less, and sets its guards. Returns a status, its
      * message on the system's context. */
-    int (*begin)(void *motion, double t, const double *y, double end, double *reach);
+    int (*begin)(void *motion, double t, const double *y, double *reach);
     /* The state at tau into the phase that began with `from`. */
     void (*state)(void *motion, double tau, const double *from, double *to);
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */

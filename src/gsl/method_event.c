@@ -292,7 +292,7 @@ static void destroy(tribo_driver *drv)
     }
 }
 
-static int begin(void *motion, double t, const double *y, double end, double *reach);
+static int begin(void *motion, double t, const double *y, double *reach);
 static void state(void *motion, double tau, const double *from, double *to);
 
 static int create(tribo_driver *drv)
@@ -372,7 +372,7 @@ static void state(void *motion, double tau, const double *from, double *to)
     }
 }
 
-static int begin(void *motion, double t, const double *y, double end, double *reach)
+static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
     const int status = expand(e, t, y);
@@ -380,7 +380,7 @@ static int begin(void *motion, double t, const double *y, double end, double *re
         return status;
     }
     const double length = step_length(e);
-    *reach = lesser(length, end - t);
+    *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = e->fastest > 0.0 ? greater(*reach, lesser(length, 1.0 / e->fastest)) : *reach;
     set_guards(e);

@@ -551,7 +551,7 @@ static void set_guards(struct exact *x, const double *y)
     }
 }
 
-static int begin(void *motion, double t, const double *y, double end, double *reach)
+static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct exact *x = motion;
     tribo_system *sys = x->sys;
@@ -571,7 +571,7 @@ static int begin(void *motion, double t, const double *y, double end, double *re
     }
     memcpy(x->wr, x->zr, h->exponents * sizeof *x->wr);
     memcpy(x->wi, x->zi, h->exponents * sizeof *x->wi);
-    *reach = x->longest = longest_phase(h, end - t);
+    *reach = x->longest = longest_phase(h, *reach);
     bound_exponents(x, 0.0);
     set_guards(x, y);
     return TRIBO_OK;

@@ -1,5 +1,6 @@
 #include "system.h"
 #include "../real.h"
+#include "../twofold.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -130,16 +131,16 @@ static size_t knot_at(const struct table *table, double t)
     return lo;
 }
 
-/* Value (order 0) or slope (1) of column i of a table with so many of them at time t. */
-static double look_up(const struct table *table, size_t columns, size_t i, double t, int order)
+/* Value (order 0) or slope (1) of column i of a table with so many of them at the time set. */
+static double look_up(const tribo_system *sys, const struct table *table, size_t columns, size_t i, int order)
 {
     const size_t k = table->at;
     const double *v = table->value + k * columns + i;
-    if (k + 1 == table->knots || t < table->time[0]) {
+    if (k + 1 == table->knots || sys->time < table->time[0]) {
         return order ? 0.0 : *v;
     }
     const double slope = (v[columns] - v[0]) / (table->time[k + 1] - table->time[k]);
-    return order ? slope : v[0] + slope * (t - table->time[k]);
+    return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
 }
 
 size_t tribo_system_revision(const tribo_system *sys)
@@ -158,17 +159,32 @@ static void follow_limits(tribo_system *sys)
     sys->ours += sys->seen - before;
 }
 
+/* The harmonic at t + low. What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
+static void turn(struct harmonic *h, double t, double low)
+{
+    const double angle = h->omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
+    const double c = cos(angle), s = sin(angle), x = cos(rest), y = sin(rest);
+    h->cos_t = c * x - s * y;
+    h->sin_t = s * x + c * y;
+}
+
 static void set_loads(tribo_system *sys, double t)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
-        struct harmonic *h = &sys->harmonic[k];
-        h->cos_t = cos(h->omega * t);
-        h->sin_t = sin(h->omega * t);
+        turn(&sys->harmonic[k], t, sys->low);
     }
     for (size_t k = 0; k < sys->tables; k++) {
         sys->table[k].at = knot_at(&sys->table[k], t);
     }
     sys->time = t;
+}
+
+void tribo_system_set_low(tribo_system *sys, double low)
+{
+    if (low != sys->low) {
+        sys->low = low;
+        sys->time = NAN;
+    }
 }
 
 void tribo_system_set_time(tribo_system *sys, double t)
@@ -190,8 +206,8 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
         return;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] = look_up(&sys->limits, sys->ncontact, i, sys->time, 0);
-        rate[i] = look_up(&sys->limits, sys->ncontact, i, sys->time, 1);
+        limit[i] = look_up(sys, &sys->limits, sys->ncontact, i, 0);
+        rate[i] = look_up(sys, &sys->limits, sys->ncontact, i, 1);
     }
 }
 
@@ -201,7 +217,7 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
     for (size_t k = 0; k <= sys->tables; k++) {
         const struct table *table = k < sys->tables ? &sys->table[k] : &sys->limits;
         for (size_t i = table->knots ? knot_at(table, t) : 0; i < table->knots; i++) {
-            if (table->time[i] > t) {
+            if (table->time[i] > t || (table->time[i] == t && sys->low < 0.0)) {
                 next = lesser(next, table->time[i]);
                 break;
             }
@@ -213,7 +229,7 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
 void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to)
 {
     for (size_t k = 0; order < 2 && k < sys->tables; k++) {
-        const double value = factor * look_up(&sys->table[k], 1, 0, sys->time, order);
+        const double value = factor * look_up(sys, &sys->table[k], 1, 0, order);
         for (size_t i = 0; i < sys->ndof; i++) {
             to[i] += value * sys->table[k].pattern[i];
         }

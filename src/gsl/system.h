@@ -39,7 +39,7 @@ struct tribo_system {
     double *given_limit; /* [ncontact] those that it had before the table */
     size_t revision;     /* counts changes of loads, tables and damping */
     size_t ours, seen;   /* of the context's revision: how much the table added, and where it left it */
-    double time;         /* that cos_t and sin_t belong to; NaN: none yet */
+    double time, low;    /* that cos_t and sin_t belong to (NaN: none yet), and what rounding left of it (below) */
 
     /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: W AK and W AC are
      * K and C to rounding of every entry. */
@@ -72,6 +72,9 @@ size_t tribo_system_revision(const tribo_system *sys);
 
 /* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
 void tribo_system_set_time(tribo_system *sys, double t);
+
+/* From here on every time means t + low, at which events happen between two numbers t. */
+void tribo_system_set_low(tribo_system *sys, double low);
 
 /* Adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load makes to `to`, at the time
  * set. */
