@@ -103,8 +103,8 @@ static int allocate_program(struct op *op)
     if (!p->near || !p->to || !p->q) {
         return 0;
     }
-    double **const vector[] = {&p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,     &p->first,
-                               &p->unit, &p->step, &p->step_low, &p->row, &p->spare[0], &p->spare[1]};
+    double **const vector[] = {&p->lo,   &p->hi,   &p->gradient, &p->noise, &p->low,      &p->first,
+                               &p->unit, &p->step, &p->step_low, &p->row,   &p->spare[0], &p->spare[1]};
     for (size_t k = 0; k < VECTORS - 1; k++) {
         *vector[k] = p->q + (k + 1) * s;
     }

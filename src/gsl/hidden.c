@@ -86,7 +86,8 @@ static size_t rank_of(const struct matrix *direction, const struct matrix *metri
     return rank;
 }
 
-int tribo_hidden(const struct matrix *direction, const struct matrix *metric, const double *x, const double *r, struct hidden *where)
+int tribo_hidden(const struct matrix *direction, const struct matrix *metric, const double *x, const double *r,
+                 struct hidden *where)
 {
     const size_t n = direction->rows;
     where->spread = 1.0;

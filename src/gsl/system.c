@@ -162,7 +162,8 @@ static void follow_limits(tribo_system *sys)
 /* The harmonic at t + low. What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
 static void turn(struct harmonic *h, double t, double low)
 {
-    const double angle = h->omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
+    const double angle = h->omega * t,
+                 rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
     const double c = cos(angle), s = sin(angle), x = cos(rest), y = sin(rest);
     h->cos_t = c * x - s * y;
     h->sin_t = s * x + c * y;
@@ -288,7 +289,8 @@ double tribo_system_weight(const tribo_system *sys, size_t i)
 static size_t follows(const tribo_system *sys, size_t i, size_t first)
 {
     const size_t *dof = sys->direction.col + first;
-    const double one = fabs(tribo_matrix_get(&sys->response, dof[0], i)), other = fabs(tribo_matrix_get(&sys->response, dof[1], i));
+    const double one = fabs(tribo_matrix_get(&sys->response, dof[0], i)),
+                 other = fabs(tribo_matrix_get(&sys->response, dof[1], i));
     return other >= 1e-3 * one;
 }
 

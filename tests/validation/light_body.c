@@ -1,5 +1,5 @@
-/* A light body between the ground and a heavy one: the heavy one moves as if it stood on the ground itself, with the smaller one of
- * both limits, whatever the light one weighs. */
+/* A light body between the ground and a heavy one: the heavy one moves as if it stood on the ground itself, with the smaller one
+ * of both limits, whatever the light one weighs. */
 #include "run.h"
 
 #include <string.h>
@@ -10,7 +10,10 @@ static const double ratios[] = {1e6, 1e9, 1e12, 1e14, 1e16, 1e17};
 static const struct {
     const char *name;
     double dt, tolerance, error;
-} methods[] = {{"exact", 1.0, 0.0, 1e-12}, {"event", 1.0, 1e-12, 1e-10}, {"central/fixed", 2e-3, 0.0, 1e-12}, {"moreau/fixed", 2e-3, 0.0, 1e-12}};
+} methods[] = {{"exact", 1.0, 0.0, 1e-12},
+               {"event", 1.0, 1e-12, 1e-10},
+               {"central/fixed", 2e-3, 0.0, 1e-12},
+               {"moreau/fixed", 2e-3, 0.0, 1e-12}};
 
 /* limit [2] of the contacts with the ground and between the bodies; off is what the mass matrix has off its diagonal, in parts of
  * the most that it may have, and join a spring between them. */
