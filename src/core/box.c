@@ -29,29 +29,29 @@
 /* Refinement ends with gradients of so much rounding, or the factor is not what it should be. */
 #define SETTLED 4.0
 
-/* The gradient of i, and of how much of its terms the rounding is in it; returns the size of all its terms, of which some may
- * have underflowed. A graded island's forces and R are as good as exact, and what it knows of q is q. */
-static double find_gradient(struct program *p, size_t i, double *rounded)
+/* The gradient of i is found, its terms being of this size, and what of it is rounded of that. */
+static inline void set_noise(struct program *p, size_t i, double terms, double rounded, int first)
 {
-    double size, low;
-    if (p->twofold) {
-        p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
-        *rounded = fabs(p->q[i]) + GRADED_PART * size + DBL_MIN;
-        return size + fabs(p->q[i]) + DBL_MIN;
-    }
-    p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
-    return *rounded = size + fabs(p->q[i]) + DBL_MIN;
+    p->first[i] = first ? terms : p->first[i];
+    p->noise[i] = tribo_resolution(p->terms[i]) * rounded + NOTHING * p->first[i];
 }
 
-/* first: they are the first ones of a call. */
+/* first: they are the first ones of a call. Of terms some may have underflowed. A graded island's forces and R are as good as
+ * exact, and what it knows of q is q. */
 static void find_gradients(struct program *p, int first)
 {
-    for (size_t e = 0; e < p->count; e++) {
+    double size, low;
+    for (size_t e = 0; !p->twofold && e < p->count; e++) {
         const size_t i = p->near[e];
-        double rounded;
-        const double terms = find_gradient(p, i, &rounded);
-        p->first[i] = first ? terms : p->first[i];
-        p->noise[i] = tribo_resolution(p->terms[i]) * rounded + NOTHING * p->first[i];
+        p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
+        const double terms = size + fabs(p->q[i]) + DBL_MIN;
+        set_noise(p, i, terms, terms, first);
+    }
+    for (size_t e = 0; p->twofold && e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
+        const double q = fabs(p->q[i]) + DBL_MIN;
+        set_noise(p, i, size + q, q + GRADED_PART * size, first);
     }
 }
 

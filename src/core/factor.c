@@ -8,11 +8,6 @@
 #include "../real.h"
 #include "../simd.h"
 
-double tribo_resolution(size_t n)
-{
-    return 4.0 * (double)(n + 4) * DBL_EPSILON;
-}
-
 double tribo_scale(double diagonal)
 {
     int e;

@@ -103,7 +103,10 @@ static inline double tribo_cut(const struct program *p, size_t i, double force)
 }
 
 /* Rounding of a sum of n terms of size 1 leaves about this; what is smaller counts as zero. */
-double tribo_resolution(size_t n);
+static inline double tribo_resolution(size_t n)
+{
+    return 4.0 * (double)(n + 4) * DBL_EPSILON;
+}
 
 /* A power of 2 that takes a diagonal entry to between 1/2 and 2, from both sides. */
 double tribo_scale(double diagonal);
