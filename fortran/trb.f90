@@ -20,6 +20,8 @@
 !>   TRBFND(NAME, LAW, IERR)                         NAME e.g. 'quinn', 'QUINN'        LAW its number
 !>   TRBEVL(LAW, V, FEQ, FMUN, EPS,                  one contact, no handle            F and its derivatives by V, FEQ, FMUN
 !>          F, DFDV, DFDQ, DFDN, IERR)
+!>   TRBELF(N, DZ, STIF, FMUN, F, DFDZ, IERR)        N elements, no handle             F after a displacement DZ, its derivative
+!>   TRBELP(N, DZ, STIF, FMUN, F, DFDZ, IERR)        the same in the plane: DZ(2,N)    F(2,N), DFDZ(2,2,N)
 !> Life
 !>   TRBNEW(N, IH, IERR)                             N >= 0                            IH new: quinn, limit 0, epsilon 1E-6,
 !>                                                                                     no operator yet
@@ -268,6 +270,28 @@ subroutine trbevl(law, v, feq, fmun, eps, f, dfdv, dfdq, dfdn, ierr)
   integer, intent(out) :: ierr
   call tribo_law_eval(law, v, feq, fmun, eps, f, dfdv, dfdq, dfdn, ierr)
 end subroutine trbevl
+
+subroutine trbelf(n, dz, stif, fmun, f, dfdz, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  real(dp), intent(in) :: dz(*), stif(*), fmun(*)
+  real(dp), intent(inout) :: f(*), dfdz(*)
+  integer, intent(out) :: ierr
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0) call tribo_elastic_force(dz(:n), stif(:n), fmun(:n), f(:n), dfdz(:n), ierr)
+end subroutine trbelf
+
+subroutine trbelp(n, dz, stif, fmun, f, dfdz, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: n
+  real(dp), intent(in) :: dz(2, *), stif(*), fmun(*)
+  real(dp), intent(inout) :: f(2, *), dfdz(2, 2, *)
+  integer, intent(out) :: ierr
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0) call tribo_elastic_force(dz(:, :n), stif(:n), fmun(:n), f(:, :n), dfdz(:, :, :n), ierr)
+end subroutine trbelp
 
 ! ---------------------------------------------------------------------------------------------------------------------------- life
 

@@ -87,7 +87,7 @@ module tribo
     TRIBO_REAL_MAX_STEP = 2       !< 2.785/lambda, up to which rk4 is stable; infinite if lambda is 0
 
   public :: tribo_version, tribo_version_string, tribo_strerror
-  public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval
+  public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval, tribo_elastic_force
 
   !> A set of contacts with their law, limits, epsilon, operator R, solver memory and workspace.
   type, extends(tribo_object), public :: tribo_context
@@ -144,6 +144,11 @@ module tribo
   end type held_mass
 
   ! The C library. Outputs are intent(inout) here as well, lest a compiler copies back a section that the call has not written.
+  !> On a line, or in the plane.
+  interface tribo_elastic_force
+    procedure :: elastic_force_line, elastic_force_plane
+  end interface tribo_elastic_force
+
   interface
     function c_version() result(version) bind(c, name='tribo_version')
       import :: c_int
@@ -169,6 +174,24 @@ module tribo
       real(c_double), intent(inout) :: f, df_dv, df_dfeq, df_dlimit
       integer(c_int) :: status
     end function c_law_eval
+
+    function c_elastic_force(n, dz, stiffness, limit, f, df_dz) result(status) bind(c, name='tribo_elastic_force')
+      import :: c_double, c_int, c_ptr, c_size_t
+      integer(c_size_t), value :: n
+      real(c_double), intent(in) :: dz(*), stiffness(*), limit(*)
+      real(c_double), intent(inout) :: f(*)
+      type(c_ptr), value :: df_dz
+      integer(c_int) :: status
+    end function c_elastic_force
+
+    function c_elastic_force_planar(n, dz, stiffness, limit, f, df_dz) result(status) bind(c, name='tribo_elastic_force_planar')
+      import :: c_double, c_int, c_ptr, c_size_t
+      integer(c_size_t), value :: n
+      real(c_double), intent(in) :: dz(*), stiffness(*), limit(*)
+      real(c_double), intent(inout) :: f(*)
+      type(c_ptr), value :: df_dz
+      integer(c_int) :: status
+    end function c_elastic_force_planar
 
     function c_create(ctx, ncontact) result(status) bind(c, name='tribo_create')
       import :: c_ptr, c_size_t, c_int
@@ -506,6 +529,53 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine tribo_law_eval
+
+  !> Elastic contacts, no context: each a spring in series with a Coulomb slider. f goes on by a displacement dz, and df_dz says how it
+  !> follows. dz, stiffness, limit, f and df_dz are of one size.
+  subroutine elastic_force_line(dz, stiffness, limit, f, df_dz, stat, errmsg)
+    real(dp), intent(in) :: dz(:), stiffness(:), limit(:)
+    real(dp), intent(inout) :: f(:)
+    real(dp), intent(inout), optional, contiguous, target :: df_dz(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: at
+
+    w%status = TRIBO_OK
+    w%n = size(f)
+    at = c_null_ptr
+    call expect_size(w, 'dz', dz, w%n)
+    call expect_size(w, 'stiffness', stiffness, w%n)
+    call expect_size(w, 'limit', limit, w%n)
+    if (present(df_dz)) call find(w, 'df_dz', df_dz, at)
+    if (w%status == TRIBO_OK) w%status = c_elastic_force(int(w%n, c_size_t), dz, stiffness, limit, f, at)
+    call finish(w, stat, errmsg)
+  end subroutine elastic_force_line
+
+  !> The same in the plane: dz(2,n), f(2,n), stiffness(n), limit(n), df_dz(2,2,n).
+  subroutine elastic_force_plane(dz, stiffness, limit, f, df_dz, stat, errmsg)
+    real(dp), intent(in) :: dz(:,:), stiffness(:), limit(:)
+    real(dp), intent(inout) :: f(:,:)
+    real(dp), intent(inout), optional, contiguous, target :: df_dz(:,:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: at
+
+    w%status = TRIBO_OK
+    w%n = size(f, 2)
+    at = c_null_ptr
+    call expect_shape(w, 'f', shape(f), [2, w%n])
+    call expect_shape(w, 'dz', shape(dz), [2, w%n])
+    call expect_size(w, 'stiffness', stiffness, w%n)
+    call expect_size(w, 'limit', limit, w%n)
+    if (present(df_dz)) then
+      call expect_shape(w, 'df_dz', shape(df_dz), [2, 2, w%n])
+      if (size(df_dz) > 0) at = c_loc(df_dz)
+    end if
+    if (w%status == TRIBO_OK) w%status = c_elastic_force_planar(int(w%n, c_size_t), dz, stiffness, limit, f, at)
+    call finish(w, stat, errmsg)
+  end subroutine elastic_force_plane
 
   ! ---------------------------------------------------------------------------------------------------------- life of a context
 

@@ -10,6 +10,10 @@ TRIBO_API const char *tribo_law_reference(int law);
 TRIBO_API int tribo_law_find(const char *name, int *law);
 TRIBO_API int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, double *f, double *df_dv,
                              double *df_dfeq, double *df_dlimit);
+TRIBO_API int tribo_elastic_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
+                                  double *df_dz);
+TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
+                                         double *df_dz);
 TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
 TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 TRIBO_API void tribo_destroy(tribo_context *ctx);

@@ -217,6 +217,10 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, tribo_strerror(TRIBO_ERR_NOT_POSITIVE))
     call require(all(untouched([f, df_dv, df_dfeq, df_dlimit])), 'tribo_law_eval: outputs')
     values = blank
+    call tribo_elastic_force([1.0_dp, 1.0_dp], [1.0_dp, 1.0_dp, 1.0_dp], [1.0_dp, 1.0_dp, 1.0_dp], values, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'dz has size 2, not 3')
+    call require(all(untouched(values)), 'tribo_elastic_force: f')
+    values = blank
     msgs = ''
     call tribo_law_eval(TRIBO_QUINN, [9.0_dp, inf, -9.0_dp], 0.0_dp, 2.0_dp, 1.0_dp, values, stat=stats, errmsg=msgs)
     call require(all(stats == [TRIBO_OK, TRIBO_ERR_NOT_FINITE, TRIBO_OK]), 'tribo_law_eval of arrays: stat')

@@ -61,6 +61,15 @@ C
             CALL CMPR('TRBEVL', 4, W)
    30    CONTINUE
    40 CONTINUE
+      CALL TRBELF(N, V, EPS, FMUN, FEQ, W, IERR)
+      CALL CMPI('TRBELF', IERR)
+      CALL CMPR('TRBELF', N, FEQ)
+      CALL CMPR('TRBELF', N, W)
+      CALL SCSTAT(4, V, A, FEQ)
+      CALL TRBELP(N/2, V, EPS, FMUN, FEQ, VAL, IERR)
+      CALL CMPI('TRBELP', IERR)
+      CALL CMPR('TRBELP', N, FEQ)
+      CALL CMPR('TRBELP', 2*N, VAL)
       J = -7
       CALL TRBFND('quin', J, IERR)
       CALL EXPECT('TRBFND of no law', J .EQ. -7 .AND. IERR .EQ. 7)
@@ -454,6 +463,10 @@ C     The errors of calls with a handle that is one.
       J = -777
       CALL TRBEVL(99, 0D0, 0D0, 1D0, 1D0, X(1), X(2), X(3), X(4), IERR)
       CALL EXPECT('TRBEVL', IERR .EQ. 5)
+      CALL TRBELF(-1, X, X, X, X, Y, IERR)
+      CALL EXPECT('TRBELF', IERR .EQ. 3)
+      CALL TRBELP(-1, X, X, X, X, Y, IERR)
+      CALL EXPECT('TRBELP', IERR .EQ. 3)
       DO 10 K = 1, 4
          X(K) = 0D0
          Y(K) = -777D0

@@ -45,7 +45,7 @@ program results
 contains
 
   subroutine registry()
-    real(dp) :: f(n), df_dv(n), df_dfeq(n), df_dlimit(n)
+    real(dp) :: f(n), df_dv(n), df_dfeq(n), df_dlimit(n), plane(2, n/2), turn(2, 2, n/2)
     integer :: status, law, number, i, stat(n)
 
     call compare('tribo_version', tribo_version())
@@ -67,6 +67,19 @@ contains
         call compare('tribo_law_eval', [f(i), df_dv(i), df_dfeq(i), df_dlimit(i)])
       end do
     end do
+    f = scene_feq(:, 4)
+    call tribo_elastic_force(scene_v(:, 4), scene_epsilon, scene_limit, f, df_dv, stat(1))
+    call compare('tribo_elastic_force', stat(1))
+    call compare('tribo_elastic_force', f)
+    call compare('tribo_elastic_force', df_dv)
+    f = scene_feq(:, 4)
+    call tribo_elastic_force(scene_v(:, 4), scene_epsilon, scene_limit, f)
+    f = scene_feq(:, 4)
+    plane = reshape(f, shape(plane))
+    call tribo_elastic_force(reshape(scene_v(:, 4), shape(plane)), scene_epsilon(:n/2), scene_limit(:n/2), plane, turn, stat(1))
+    call compare('tribo_elastic_force in the plane', stat(1))
+    call compare('tribo_elastic_force in the plane', reshape(plane, [n]))
+    call compare('tribo_elastic_force in the plane', reshape(turn, [2*n]))
     do law = 0, tribo_law_count() - 1
       number = -1
       call tribo_law_find(tribo_law_name(law) // '  ', number)

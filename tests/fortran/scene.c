@@ -1,5 +1,7 @@
 /* What results.f90 does from Fortran, through the C interface: data that both read, and a tape of results to compare with, see
  * tape.h. */
+#include <string.h>
+
 #include "tape.h"
 #include "tribo/tribo.h"
 
@@ -62,6 +64,14 @@ static void registry(void)
                 tribo_law_eval(law, scene_v[3][i], scene_feq[3][i], scene_limit[i], scene_epsilon[i], f, f + 1, f + 2, f + 3));
             put(4, f);
         }
+    }
+    double f[2][N], d[2][2 * N];
+    for (int plane = 0; plane < 2; plane++) {
+        memcpy(f[plane], scene_feq[3], sizeof f[plane]);
+        put_one(plane ? tribo_elastic_force_planar(N / 2, scene_v[3], scene_epsilon, scene_limit, f[1], d[1])
+                      : tribo_elastic_force(N, scene_v[3], scene_epsilon, scene_limit, f[0], d[0]));
+        put(N, f[plane]);
+        put(plane ? 2 * N : N, d[plane]);
     }
 }
 
