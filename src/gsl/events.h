@@ -1,5 +1,5 @@
-/* The loop over events that the methods "exact" and "event" share. A method knows the motion while contacts do what they do, a phase;
- * here it is found out when that ends, what comes then, and whether all of it kept to Coulomb's law. */
+/* The loop over events that the methods "exact" and "event" share. A method knows the motion while contacts do what they do, a
+ * phase; here it is found out when that ends, what comes then, and whether all of it kept to Coulomb's law. */
 #ifndef TRIBO_EVENTS_H
 #define TRIBO_EVENTS_H
 
@@ -33,8 +33,9 @@ void tribo_events_free(struct events *e);
 /* As advance of struct method. */
 int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double t1, double *y, int continues);
 
-/* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest, or
- * two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or force is side * value. */
+/* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest,
+ * or two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or
+ * force is side * value. */
 void tribo_events_clear_guards(struct events *e);
 void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard);
 void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard);

@@ -1,5 +1,5 @@
-/* Intervals [a, b] are walked through from left to right. Where all guards are positive at both ends, their quintics and the bounds
- * of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b, the
+/* Intervals [a, b] are walked through from left to right. Where all guards are positive at both ends, their quintics and the
+ * bounds of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b, the
  * interval becomes shorter: up to where the quintics have their first zero, or by half. */
 #include "first_zero.h"
 #include "../real.h"
@@ -7,7 +7,8 @@
 #include <float.h>
 #include <math.h>
 
-/* So many looks at a motion between two events, or a first step of zero, mean that it has frequencies which cannot be followed. */
+/* So many looks at a motion between two events, or a first step of zero, mean that it has frequencies which cannot be followed.
+ */
 #define MOST_LOOKS ((size_t)1 << 24)
 
 /* A guard that begins at zero may stray from there by this part of its size. */
@@ -64,8 +65,8 @@ static double first_length(const struct first_zero *s, double longest)
     return lesser(sixth_root(300.0 * ratio), longest);
 }
 
-/* The guard that, among those not positive at the right end of the interval of length h, is the first to fall to zero as far as the
- * quintics tell, and when. */
+/* The guard that, among those not positive at the right end of the interval of length h, is the first to fall to zero as far as
+ * the quintics tell, and when. */
 static struct guard *first_to_fall(struct first_zero *s, double h, double *when)
 {
     struct guard *first = NULL;

@@ -12,11 +12,11 @@ struct guard {
     size_t contact;
     int slides;
     double side;
-    const void *output;          /* the motion's own */
-    double offset, start, ramp;  /* the motion's own */
-    double size, bend;           /* bounds, from where the search is on, of its parts together and of its sixth derivative */
-    double allowance;            /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
-    double lowest;               /* below zero by this much at most, so far */
+    const void *output;         /* the motion's own */
+    double offset, start, ramp; /* the motion's own */
+    double size, bend;          /* bounds, from where the search is on, of its parts together and of its sixth derivative */
+    double allowance;           /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
+    double lowest;              /* below zero by this much at most, so far */
     struct sample left, right, middle; /* with the allowance added */
 };
 

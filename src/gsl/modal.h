@@ -56,8 +56,8 @@ struct modal {
     size_t bytes;
 };
 
-/* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h). Returns a status; its message is on the
- * system's context. */
+/* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h). Returns a status; its message is on
+ * the system's context. */
 int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds);
 void tribo_modal_free(struct modal *h);
 

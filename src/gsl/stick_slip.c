@@ -41,8 +41,9 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force, &m->allowance, &m->base, &m->noise, &m->diagonal, &m->seen, &m->parting, &m->excess,
-                                   &m->v,     &m->a,          &m->gain,  &m->lo,        &m->hi,   &m->f,     &m->still};
+    double **const by_contact[] = {&m->limit,    &m->limit_rate, &m->force,   &m->allowance, &m->base, &m->noise,
+                                   &m->diagonal, &m->seen,       &m->parting, &m->excess,    &m->v,    &m->a,
+                                   &m->gain,     &m->lo,         &m->hi,      &m->f,         &m->still};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
@@ -127,8 +128,8 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
     }
 }
 
-/* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are the
- * sum of. */
+/* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are
+ * the sum of. */
 static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     if (m->sized) {
@@ -291,8 +292,8 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
     }
 }
 
-/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds. But where bases part, a contact that rests by
- * itself goes with them. */
+/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
+ * But where bases part, a contact that rests by itself goes with them. */
 static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;
@@ -301,8 +302,7 @@ static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
         found = 0;
         for (size_t i = 0; !status && i < sys->ncontact; i++) {
-            if ((m->slip[i] == 1 || m->slip[i] == -1) &&
-                m->slip[i] != slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y))) {
+            if ((m->slip[i] == 1 || m->slip[i] == -1) && m->slip[i] != slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y))) {
                 m->slip[i] = 0;
                 found++;
             }
@@ -470,9 +470,9 @@ static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
 
-/* Of a light body between heavy ones the acceleration may be nothing but rounding, also where a contact on it lets go, or goes back
- * inside its limit. Then the forces tell that it takes to hold all that are at rest: if they go beyond the limits, the contact
- * that is most overloaded slides; and otherwise these are the forces. */
+/* Of a light body between heavy ones the acceleration may be nothing but rounding, also where a contact on it lets go, or goes
+ * back inside its limit. Then the forces tell that it takes to hold all that are at rest: if they go beyond the limits, the
+ * contact that is most overloaded slides; and otherwise these are the forces. */
 static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
 {
     const int status = find_holding_forces(m, sys);

@@ -14,18 +14,18 @@ struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
     tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */
     size_t contacts;
-    int uncoupled;  /* R is diagonal */
+    int uncoupled; /* R is diagonal */
     int base_moves;
     int simple;     /* no contact has more than one degree of freedom */
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
-    signed char *slip;          /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
-    unsigned char *holds;       /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
-                                   by themselves, and keep their forces */
-    signed char *loose;         /* [ncontact] 1: it does not hold */
-    size_t dependents;          /* how many rest by themselves */
-    unsigned char *rested;      /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
+    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
+    unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
+                              by themselves, and keep their forces */
+    signed char *loose;    /* [ncontact] 1: it does not hold */
+    size_t dependents;     /* how many rest by themselves */
+    unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     double *limit, *limit_rate; /* [ncontact] */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *acceleration;       /* [ndof] and q'' */
@@ -55,8 +55,8 @@ void tribo_stick_slip_free(struct stick_slip *m);
  * rounding. Decides. */
 int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
-/* Decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out of their velocities in y. Sets slip, holds, force, acceleration and
- * allowance. */
+/* Decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out of their
+ * velocities in y. Sets slip, holds, force, acceleration and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
 /* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */

@@ -95,8 +95,8 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 /* w_i such that W B_i = w_i J_i'. */
 double tribo_system_weight(const tribo_system *sys, size_t i);
 
-/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0) and have one degree of freedom, or the
- * difference of two. */
+/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0) and have one degree of freedom, or
+ * the difference of two. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */

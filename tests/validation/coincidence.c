@@ -1,5 +1,5 @@
-/* Methods "exact" and "event" where much happens at once, or next to nothing: contacts of equal limits that reach them together, loads
- * that just exceed a limit; and what cannot be followed ends soon and says so. */
+/* Methods "exact" and "event" where much happens at once, or next to nothing: contacts of equal limits that reach them together,
+ * loads that just exceed a limit; and what cannot be followed ends soon and says so. */
 #include <string.h>
 
 #include "coulomb.h"
@@ -31,9 +31,9 @@ static tribo_system *pack(size_t n, double limit)
     return sys;
 }
 
-/* All contacts reach their limit in one instant, and let go one after another: the top one with the third power of time, the one below
- * with the fifth, and so on. Displacement of the top block at t = 8: by central differences in steps of 5e-6, which are of the first
- * order. */
+/* All contacts reach their limit in one instant, and let go one after another: the top one with the third power of time, the one
+ * below with the fifth, and so on. Displacement of the top block at t = 8: by central differences in steps of 5e-6, which are of
+ * the first order. */
 TEST(let_go_one_after_another)
 {
     const double want[] = {-0.75982849, -0.75980607, -0.75980469, -0.75980465, -0.75980465};
@@ -108,8 +108,8 @@ TEST(fast_decay)
     tribo_system_destroy(sys);
 }
 
-/* A load faster than any time can be told apart; a motion that grows out of all numbers; an observer's steps that are lost beside t.
- * What was reached stays. */
+/* A load faster than any time can be told apart; a motion that grows out of all numbers; an observer's steps that are lost beside
+ * t. What was reached stays. */
 TEST(what_cannot_be_followed)
 {
     const double minus = -1.0, one = 1.0, two = 2.0;
@@ -129,7 +129,8 @@ TEST(what_cannot_be_followed)
     drv = driver_create(sys, method, 1.0, 1e-10);
     assert_status(tribo_driver_advance(drv, &t, 1000.0, y), TRIBO_ERR_NOT_FINITE);
     assert_says(tribo_driver_message(drv), "grows without bound");
-    require(t > 600.0 && t < 711.0 && y[0] > 1e250 && isfinite(y[0]) && isfinite(y[1]) && isfinite(y[2]), "t = %g, y = %g", t, y[0]);
+    require(t > 600.0 && t < 711.0 && y[0] > 1e250 && isfinite(y[0]) && isfinite(y[1]) && isfinite(y[2]), "t = %g, y = %g", t,
+            y[0]);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 }

@@ -462,8 +462,8 @@ TEST(observed_events)
 
 /* ----------------------------------------------------------------------------------------------------------- the edge */
 
-/* On a belt with b = sin t the spring's force grows just as the inertia's shrinks: f = x + b' = 1, the limit itself, for ever. The
- * block stays, as Coulomb's law has it. */
+/* On a belt with b = sin t the spring's force grows just as the inertia's shrinks: f = x + b' = 1, the limit itself, for ever.
+ * The block stays, as Coulomb's law has it. */
 TEST(on_the_edge)
 {
     const double one = 1.0;
