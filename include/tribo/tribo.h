@@ -134,12 +134,15 @@ TRIBO_API int tribo_law_eval(int law, double v, double feq, double limit, double
                              double *df_dfeq, double *df_dlimit);
 
 /* Elastic contacts, no context: n elements, each a spring in series with a Coulomb slider (Jenkins, Masing), go on from the force
- * that they carry by a displacement. For integrators of one's own; forces, which are all the state there is, stay with the
- * caller. dz         [n] in      displacement of one end against the other since f stiffness  [n] in      of the spring, >= 0
+ * that they carry by a displacement. For integrators of one's own; forces, all the state that there is, stay with the caller.
+ * dz         [n] in      displacement of one end against the other since f
+ * stiffness  [n] in      of the spring, >= 0
  * limit      [n] in      mu times normal load, >= 0; where it has fallen below |f|, f follows
  * f          [n] in/out  force that the element holds against dz: f + stiffness dz, or +-limit where that is beyond. The body
- * gets -J'f. df_dz      [n] out, or NULL   stiffness, or 0 where the element slides Thread-safe. Returns TRIBO_ERR_NULL,
- * TRIBO_ERR_SIZE (n), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE (stiffness, limit), and then nothing has been written. */
+ *                        gets -J'f
+ * df_dz      [n] out, or NULL   stiffness, or 0 where the element slides
+ * Thread-safe. Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (n), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE (stiffness, limit); on an
+ * error nothing has been written. */
 TRIBO_API int tribo_elastic_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
                                   double *df_dz);
 

@@ -5,7 +5,10 @@
  *     y = q [ndof], q' [ndof], energy dissipated by friction since t = 0        2 ndof + 1 values.
  *
  * Conventions, units and threads as in tribo.h; a system and its drivers belong to one thread. GSL's error handler is
- * never changed, nor ever called: what GSL would object to is refused here first.
+ * never changed, and what it would object to is refused here first: matrices that are singular, and more memory than there is.
+ * GSL allocates for itself in adaptive methods, and ends the program where it gets nothing; what it will ask for is allocated and
+ * freed just before, and refused with TRIBO_ERR_MEMORY if there is not so much. That is no help where another thread takes the
+ * memory in between, or where the system promises memory that it has not (overcommit).
  * This library is BSD-3-Clause; GSL is under the GPL, and so is what is linked with both.
  * All functions: since 1.0, unless said otherwise.
  */
@@ -47,10 +50,12 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * direction  [ncontact][ndof] in  J: row i is how the velocities of the degrees of freedom make that of contact i
  * nmode      in   0, or: keep only the motion in the nmode lowest modes of (K, M); q then holds their amplitudes (modes have
  *                 modal mass 1, and the first of their largest displacements is positive), ndof of the system is nmode, and
- * damping must be NULL (see tribo_system_set_damping_ratio) message    [size] out, or NULL: on error, the text that says what is
- * wrong and where The context starts with Quinn's law and limit 0 (all contacts open), and with R = J M^-1 J'. No load, no motion
- * yet. Modes are found to the accuracy of the stiffness's own entries, however soft beside the stiffest, and omega of rigid-body
- * motions is 0; one of which rounding of the entries leaves less than two digits is refused (TRIBO_ERR_UNSUPPORTED).
+ *                 damping must be NULL (see tribo_system_set_damping_ratio)
+ * message    [size] out, or NULL: on error, the text that says what is wrong and where
+ * The context starts with Quinn's law and limit 0 (all contacts open), and with R = J M^-1 J'. No load, no motion yet.
+ * Modes are found to the accuracy of the stiffness's own entries, however soft beside the stiffest, and omega of rigid-body
+ * motions is 0; one of which rounding of the entries leaves less than two digits is refused (TRIBO_ERR_UNSUPPORTED). So are
+ * bodies that contacts join, if the mass matrix is not diagonal and one weighs so little that R hides the other.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
  * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
@@ -121,24 +126,31 @@ typedef struct tribo_driver tribo_driver;
  * method   in   in any case of letters. Coulomb's law itself, epsilon -> 0:
  *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads
  *               "event": high-order steps between events, with the tolerances; any system
- *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt that
- * is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule (Moreau and Jean). Second
- * order, but for contacts that reverse without sticking, and central with damping: there first order "auto": exact where it can
- * do the system and that is small, else event; see tribo_driver_method exact and event look over all of the motion for what goes
- * beyond Coulomb's law, see tribo_driver_real The law, coupling and epsilon of the context: "rk4/fixed": the classical
- * Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step; "rk2", "rk4", "rkf45", "rkck", "rk8pd": explicit
- * Runge-Kutta methods of order 3, 4, 5, 5 and 8 (Fehlberg, Cash and Karp, Prince and Dormand), adaptive. Their steps follow the
- * stiffness of contacts at rest "rk1imp", "rk2imp", "rk4imp", "msbdf": implicit ones, adaptive: Euler's, those of Gauss of order
- * 2 and 4, and backward differences of order 1 to 5, by Newton's method with dense matrices of the whole state. For small
- * epsilon: msbdf dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks
- * for it. exact: how often an observer sees the motion between events abstol   in   >= 0; > 0 for adaptive methods and event (and
- * auto, where it takes event) reltol   in   >= 0 Adaptive: the estimated error of a step is below abstol + reltol times the
- * largest displacement, of velocities below abstol + reltol times the largest velocity, and of the energy below abstol + reltol
- * |energy|, in the units of y. Velocities that make contact i's are found to limit_max/limit_i epsilon_i/1000 at least: a
- * tolerance beside which epsilon is small gives Coulomb's law nevertheless. Errors of steps add up. Seen of the energy, relative,
- * for oscillator and belt, epsilon 1e-2 to 1e-5, at tolerance 1e-4: 3e-4 (rk1imp 7e-3, rk2imp 5e-4), 1e-8: 6e-7 (rk1imp 2e-4,
- * rk2imp 1e-5) Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE,
- * TRIBO_ERR_MEMORY; the message is on the system's context. */
+ *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt
+ *               that is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule
+ *               (Moreau and Jean). Second order, but for contacts that reverse without sticking, and central with damping:
+ *               there first order
+ *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
+ *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
+ *               The law, coupling and epsilon of the context:
+ *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step
+ *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL
+ *               stepper of that name tries the steps, and the driver decides how long they are. Those of the explicit ones
+ *               (rk2 to rk8pd, msadams) follow the stiffness of contacts at rest; the others solve with dense matrices of the
+ *               whole state. For small epsilon: msbdf, or rk4imp
+ * dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks for it.
+ *               exact: how often an observer sees the motion between events
+ * abstol   in   >= 0; > 0 for adaptive methods and event (and auto, where it takes event)
+ * reltol   in   >= 0
+ *               Adaptive: the estimated error of a step is below abstol + reltol times the largest displacement, of velocities
+ *               below abstol + reltol times the largest velocity, and of the energy below abstol + reltol |energy|, in the
+ *               units of y. Velocities that make contact i's are found to limit_max/limit_i epsilon_i/1000 at least: a
+ *               tolerance beside which epsilon is small gives Coulomb's law nevertheless. Errors of steps add up: the energy
+ *               is off, relative, by less than 1e-2 at tolerance 1e-4, and at 1e-8 by less than 1e-6 (msbdf 2e-6, rk2imp
+ *               5e-6, rk1imp 4e-4), for oscillator and belt, epsilon 1e-2 to 1e-4. Contacts with Coulomb's law itself chatter
+ *               about v = 0 in very short steps.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY; the
+ * message is on the system's context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
 

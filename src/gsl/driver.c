@@ -13,9 +13,10 @@
 static const struct method automatic;
 
 static const struct method *const methods[] = {
-    &tribo_method_rk4_fixed, &tribo_method_rk2,    &tribo_method_rk4,           &tribo_method_rkf45,        &tribo_method_rkck,
-    &tribo_method_rk8pd,     &tribo_method_rk1imp, &tribo_method_rk2imp,        &tribo_method_rk4imp,       &tribo_method_msbdf,
-    &tribo_method_exact,     &tribo_method_event,  &tribo_method_central_fixed, &tribo_method_moreau_fixed, &automatic,
+    &tribo_method_rk4_fixed,    &tribo_method_rk2,    &tribo_method_rk4,    &tribo_method_rkf45,  &tribo_method_rkck,
+    &tribo_method_rk8pd,        &tribo_method_rk1imp, &tribo_method_rk2imp, &tribo_method_rk4imp, &tribo_method_bsimp,
+    &tribo_method_msadams,      &tribo_method_msbdf,  &tribo_method_exact,  &tribo_method_event,  &tribo_method_central_fixed,
+    &tribo_method_moreau_fixed, &automatic,
 };
 
 int tribo_method_count(void)
@@ -155,6 +156,11 @@ int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
     return status;
 }
 
+int tribo_driver_explain(tribo_driver *drv, double t, double h)
+{
+    return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_message(drv->sys->contacts));
+}
+
 int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data), void *data)
 {
     if (!drv) {
@@ -288,7 +294,7 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
     }
     /* a rest that is only rounding is spread over the steps */
     const double rest = greater(1e-6, 4.0 * resolution / drv->dt);
-    const double steps = fabs(whole - round(whole)) < rest && whole > 0.5 ? round(whole) : ceil(whole);
+    const double steps = fabs(whole - round(whole)) < rest && whole > 0.5 ? round(whole) : greater(ceil(whole), 1.0);
     const double h = whole > steps ? (t1 - begin) / steps : drv->dt;
     int status = TRIBO_OK;
     for (double k = 1.0; k <= steps && !status; k++) {

@@ -42,6 +42,9 @@ int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
 #endif
     ;
 
+/* The same for a step h from t in which an evaluation failed, with the system's status and message. */
+int tribo_driver_explain(tribo_driver *drv, double t, double h);
+
 /* TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
 int tribo_driver_check(tribo_driver *drv, const double *y);
 
@@ -60,6 +63,6 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
 
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
     tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck, tribo_method_rk8pd,
-    tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_msbdf;
+    tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_bsimp, tribo_method_msadams, tribo_method_msbdf;
 
 #endif

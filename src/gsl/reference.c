@@ -1,5 +1,6 @@
 /* Quinn's three reference systems, all with M = I. */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include "system.h"
@@ -135,7 +136,7 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    if (n < 2 || n > (size_t)1 << 40) {
+    if (n < 2 || n > SIZE_MAX / 1024) {
         return TRIBO_ERR_SIZE;
     }
     if (!isfinite(alpha)) {

@@ -1,5 +1,5 @@
-/* rk4 in fixed steps, and the methods that choose their steps: the loop that tries steps, measures their errors, and takes them
- * or not. */
+/* The methods that choose their steps: the loop in which GSL's steppers try steps, and their errors decide whether these are
+ * taken. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -8,49 +8,9 @@
 #include <gsl/gsl_errno.h>
 
 #include "driver.h"
+#include "gsl_step.h"
 #include "spectrum.h"
-#include "stepper.h"
 #include "../real.h"
-
-/* ------------------------------------------------------------------------------------------------- rk4 with fixed steps */
-
-static void destroy_rk4(tribo_driver *drv)
-{
-    free(drv->own);
-}
-
-static int create_rk4(tribo_driver *drv)
-{
-    drv->own = malloc(5 * tribo_system_dimension(drv->sys) * sizeof(double));
-    return drv->own ? TRIBO_OK : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method rk4/fixed");
-}
-
-static int explain(tribo_driver *drv, double t, double h)
-{
-    return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_message(drv->sys->contacts));
-}
-
-static int rk4_step(tribo_driver *drv, double t, double next, double *y)
-{
-    const size_t dimension = tribo_system_dimension(drv->sys);
-    double *to = drv->own;
-    struct step s = {.t = t, .h = next - t, .y = y, .slope = drv->slope, .to = to};
-    if (tribo_system_begin_step(drv->sys, t, y, drv->slope) || tribo_rk4_step(drv->sys, &s, to + dimension)) {
-        return explain(drv, t, next - t);
-    }
-    memcpy(y, to, dimension * sizeof *y);
-    return TRIBO_OK;
-}
-
-static int advance_rk4(tribo_driver *drv, double *t, double t1, double *y, int continues)
-{
-    (void)continues;
-    return tribo_driver_fixed_steps(drv, t, t1, y, rk4_step);
-}
-
-const struct method tribo_method_rk4_fixed = {"rk4/fixed", WITHOUT_TOLERANCES, create_rk4, destroy_rk4, advance_rk4, NULL};
-
-/* ------------------------------------------------------------------------------------------------------- adaptive steps */
 
 /* While all contacts rest, nothing moves, and an estimate sees no error however long the step: this long in terms of the
  * fastest motion of structure and loads it may be. */
@@ -59,13 +19,19 @@ const struct method tribo_method_rk4_fixed = {"rk4/fixed", WITHOUT_TOLERANCES, c
 /* Velocities of contacts are found to this part of epsilon, over which friction changes from one end to the other. */
 #define PART_OF_EPSILON 1e-3
 
+/* So many steps may be rejected while time gets on by this part of the largest step. */
+#define MOST_REJECTED 2000
+#define HEADWAY 1e-3
+
 struct adaptive {
-    const struct stepper *kind;
-    void *stepper;
-    double h;                             /* the next step */
-    double *memory;                       /* all arrays */
-    double *to, *error, *end, *tolerance; /* [dimension] */
-    int slope_known;                      /* drv->slope is that of the state */
+    const struct gsl_step_kind *kind;
+    struct gsl_step *step;
+    double h;                       /* the next step */
+    double span;                    /* of the advance */
+    double since;                   /* when the count began of */
+    size_t rejected;                /* steps rejected without headway */
+    double *memory;                 /* all arrays */
+    double *to, *error, *tolerance; /* [dimension] */
 
     /* what follows from the system, as it was with these revisions */
     int prepared;
@@ -79,7 +45,7 @@ static void destroy(tribo_driver *drv)
 {
     struct adaptive *a = drv->own;
     if (a) {
-        a->kind->destroy(a->stepper);
+        tribo_gsl_step_destroy(a->step);
         free(a->memory);
         free(a);
     }
@@ -92,18 +58,17 @@ static int create(tribo_driver *drv)
     if (a) {
         drv->own = a;
         a->kind = drv->method->with;
-        a->stepper = a->kind->create(a->kind, n);
-        a->memory = malloc((5 * n + 2 * c) * sizeof *a->memory);
+        a->step = tribo_gsl_step_create(a->kind, drv->sys);
+        a->memory = malloc((4 * n + 2 * c) * sizeof *a->memory);
     }
-    if (!a || !a->stepper || !a->memory) {
+    if (!a || !a->step || !a->memory) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     a->to = a->memory;
     a->error = a->memory + n;
-    a->end = a->memory + 2 * n;
-    a->tolerance = a->memory + 3 * n;
-    a->cap = a->memory + 4 * n;
-    a->band = a->memory + 5 * n;
+    a->tolerance = a->memory + 2 * n;
+    a->cap = a->memory + 3 * n;
+    a->band = a->memory + 4 * n;
     a->rate = a->band + c;
     return TRIBO_OK;
 }
@@ -176,7 +141,7 @@ static double longest(const struct adaptive *a, const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
     double h = drv->max_step > 0.0 ? drv->max_step : a->largest;
-    for (size_t i = 0; a->kind->stable < HUGE_VAL && i < sys->ncontact; i++) {
+    for (size_t i = 0; !a->kind->matrices && i < sys->ncontact; i++) {
         if (fabs(sys->v[i]) <= a->band[i] && a->rate[i] * h > a->kind->stable) {
             h = a->kind->stable / a->rate[i];
         }
@@ -213,13 +178,15 @@ static int find_tolerance(const struct adaptive *a, tribo_driver *drv, double t,
     return TRIBO_OK;
 }
 
-/* The largest error in terms of the tolerance; not finite if one is not. */
+/* The largest error in terms of the tolerance; infinite if something is not finite. */
 static double size_of(const struct adaptive *a, size_t n)
 {
     double most = 0.0;
     for (size_t i = 0; i < n; i++) {
-        const double x = fabs(a->error[i]) / a->tolerance[i];
-        most = x <= most ? most : x;
+        if (!isfinite(a->to[i]) || !isfinite(a->error[i])) {
+            return HUGE_VAL;
+        }
+        most = greater(most, fabs(a->error[i]) / a->tolerance[i]);
     }
     return most;
 }
@@ -228,7 +195,7 @@ static double size_of(const struct adaptive *a, size_t n)
 static int give_up(tribo_driver *drv, int gsl_status, double t, double h, double size)
 {
     if (gsl_status && drv->sys->status) {
-        return explain(drv, t, h);
+        return tribo_driver_explain(drv, t, h);
     }
     if (gsl_status) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP,
@@ -238,52 +205,62 @@ static int give_up(tribo_driver *drv, int gsl_status, double t, double h, double
                              h, size);
 }
 
+/* How many times longer the next step is: as GSL's control has it, none is changed for little. */
+static double next_step(const struct adaptive *a, double size)
+{
+    const double order = tribo_gsl_step_order(a->step);
+    if (size > 1.0) {
+        return clamp(0.9 * pow(size, -1.0 / order), 0.2, 0.9);
+    }
+    return size > 0.5 ? 1.0 : size > 0.0 ? clamp(0.9 * pow(size, -1.0 / (order + 1.0)), 1.0, 5.0) : 5.0;
+}
+
 /* A step from *t, at most to end. */
 static int advance_step(tribo_driver *drv, double *t, double end, double *y)
 {
     struct adaptive *a = drv->own;
     const size_t n = tribo_system_dimension(drv->sys);
-    struct step s = {
-        .t = *t, .y = y, .slope = drv->slope, .tolerance = a->tolerance, .to = a->to, .error = a->error, .end = a->end};
     a->h = lesser(a->h, longest(a, drv));
     for (;;) {
-        const double left = end - *t;
-        s.h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* no tiny rest */
-        if (!(*t + s.h > *t)) {
-            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, s.h);
+        const double left = end - *t, h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* no tiny rest */
+        if (!(*t + h > *t)) {
+            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
         }
-        const int status = a->kind->attempt(a->stepper, drv->sys, &s);
+        const int status = tribo_gsl_step_try(a->step, *t, h, y, drv->slope, a->tolerance, a->rate, a->to, a->error);
         if (status == GSL_EBADFUNC) {
-            return explain(drv, *t, s.h);
+            return tribo_driver_explain(drv, *t, h);
         }
         const double size = status ? HUGE_VAL : size_of(a, n);
         if (size <= 1.0) {
-            const double growth = a->kind->accept(a->stepper, &s, size);
-            a->h = s.h == a->h ? growth * s.h : greater(a->h, growth * s.h);
-            *t = s.h == left ? end : *t + s.h;
+            const double next = next_step(a, size) * h;
+            a->h = h == a->h ? next : greater(a->h, next);
+            *t = h == left ? end : *t + h;
             memcpy(y, a->to, n * sizeof *y);
-            if (s.ends) {
-                memcpy(drv->slope, a->end, n * sizeof *y);
-            }
-            a->slope_known = s.ends;
             return TRIBO_OK;
         }
         drv->rejected++;
-        a->h = s.h * (status || !isfinite(size) ? 0.25 : lesser(a->kind->reject(a->stepper, size), 0.9));
-        if (!(*t + a->h > *t)) {
+        a->rejected++;
+        if (*t - a->since > HEADWAY * lesser(a->largest, a->span)) {
+            a->since = *t;
+            a->rejected = 0;
+        } else if (a->rejected > MOST_REJECTED) {
+            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g steps make no headway, at a length of %g", *t, h);
+        }
+        a->h = h * (isfinite(size) ? next_step(a, size) : 0.25);
+        if (a->h < DBL_EPSILON * greater(fabs(*t), a->span)) {
             return give_up(drv, status, *t, a->h, size);
         }
     }
 }
 
-/* What a step from (t, y) has to know. */
+/* What a step from (t, y) has to know. The reversal law is told of each state that is accepted. */
 static int begin_step(tribo_driver *drv, double t, const double *y)
 {
     struct adaptive *a = drv->own;
     int law;
     tribo_get_law(drv->sys->contacts, &law);
-    if ((!a->slope_known || law == TRIBO_QUINN_REVERSAL) && tribo_system_begin_step(drv->sys, t, y, drv->slope)) {
-        return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g: %s", t, tribo_message(drv->sys->contacts));
+    if ((a->kind->takes_slope || law == TRIBO_QUINN_REVERSAL) && tribo_system_begin_step(drv->sys, t, y, drv->slope)) {
+        return tribo_driver_explain(drv, t, a->h);
     }
     if (drv->sys->limits.knots) {
         find_bands(a, drv->sys);
@@ -296,13 +273,19 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     struct adaptive *a = drv->own;
     int status = prepare(a, drv);
     if (!continues) {
-        a->kind->restart(a->stepper);
+        tribo_gsl_step_restart(a->step);
         a->h = drv->dt;
-        a->slope_known = 0;
     }
+    a->since = *t;
+    a->span = t1 - *t;
+    a->rejected = 0;
     while (!status && *t < t1) {
+        const double kink = tribo_system_next_kink(drv->sys, *t);
         status = begin_step(drv, *t, y);
-        status = status ? status : advance_step(drv, t, lesser(t1, tribo_system_next_kink(drv->sys, *t)), y);
+        status = status ? status : advance_step(drv, t, lesser(t1, kink), y);
+        if (*t == kink) {
+            tribo_gsl_step_restart(a->step);
+        }
         if (!status) {
             status = tribo_driver_accept(drv, *t, y, 0);
             drv->steps += !status || status == TRIBO_ERR_STOPPED;
@@ -311,8 +294,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     return status;
 }
 
-#define ADAPTIVE(id)                                                                                                             \
-    const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_stepper_##id};
+#define ADAPTIVE(id) const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id};
 ADAPTIVE(rk2)
 ADAPTIVE(rk4)
 ADAPTIVE(rkf45)
@@ -321,4 +303,6 @@ ADAPTIVE(rk8pd)
 ADAPTIVE(rk1imp)
 ADAPTIVE(rk2imp)
 ADAPTIVE(rk4imp)
+ADAPTIVE(bsimp)
+ADAPTIVE(msadams)
 ADAPTIVE(msbdf)

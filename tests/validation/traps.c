@@ -1,10 +1,14 @@
 /* Systems and drivers raise no floating-point exceptions. As in unit/traps.c every test runs twice: exceptions are looked for,
  * and they are trapped. */
+#include <string.h>
+
 #include "tribo/tribo_gsl.h"
 
 #include "../traps.h"
 
 enum { OSCILLATOR, CHAIN, BELT, IMMOVABLE, SYSTEMS };
+
+#define METHODS 17
 
 /* Two masses on springs, each with a contact to the ground, and a contact that friction cannot move: it is driven from both
  * sides. */
@@ -43,23 +47,37 @@ static tribo_system *create(int which)
     return s;
 }
 
-static const char *const methods[] = {"rk4/fixed", "central/fixed", "moreau/fixed", "exact", "event"};
+/* Under every law and coupling; where a law jumps, or contacts that friction cannot move creep for ever, a method may find no
+ * step. */
+static void play(int which, const char *method, int law, int coupling)
+{
+    tribo_system *s = create(which);
+    tribo_context *c = tribo_system_context(s);
+    tribo_driver *d;
+    double y[64] = {0}, t = 0.0;
+    assert_quiet(tribo_set_law(c, law));
+    assert_quiet(tribo_set_coupling(c, coupling));
+    assert_quiet(tribo_set_epsilon_step(c, 0.01, 0.4));
+    assert_quiet(tribo_driver_create(&d, s, method, 0.01, 1e-5, 1e-5));
+    for (int k = 1, status = TRIBO_OK; k <= 6 && !status; k++) {
+        status = quiet(tribo_driver_advance(d, &t, 0.5 * k, y));
+        require(!status || (status == TRIBO_ERR_STEP && !strchr(method, '/')), "%s, system %d, law %d: %d, %s", method, which,
+                law, status, tribo_driver_message(d));
+    }
+    tribo_driver_destroy(d);
+    tribo_system_destroy(s);
+}
 
 TEST(drivers)
 {
-    const char *method = methods[_i / 2 % (int)COUNT(methods)];
-    tribo_system *s = create(_i / 2 / (int)COUNT(methods));
-    tribo_driver *d;
-    double y[64] = {0}, t = 0.0;
-    assert_quiet(tribo_set_epsilon_step(tribo_system_context(s), 0.01, 0.4));
-    if (_i % 2 == 0 || set_traps()) {
-        assert_quiet(tribo_driver_create(&d, s, method, 0.01, 1e-8, 1e-8));
-        for (int k = 1; k <= 30; k++) {
-            assert_quiet(tribo_driver_advance(d, &t, 0.5 * k, y));
-        }
-        tribo_driver_destroy(d);
+    const char *method = tribo_method_name(_i / 2 % METHODS);
+    ck_assert_int_eq(tribo_method_count(), METHODS);
+    /* Coulomb's law jumps, and for the chain adaptive methods chatter for long */
+    const int first = strchr(method, '/') ? TRIBO_COULOMB : TRIBO_COULOMB + 1;
+    for (int law = first; law < tribo_law_count() && (_i % 2 == 0 || set_traps()); law++) {
+        play(_i / 2 / METHODS, method, law, TRIBO_CONSISTENT);
+        play(_i / 2 / METHODS, method, law, TRIBO_PARTITION);
     }
-    tribo_system_destroy(s);
 }
 
 /* Everything but integration, for all laws. */
@@ -83,4 +101,4 @@ TEST(systems)
     tribo_system_destroy(s);
 }
 
-TEST_MAIN("traps", {drivers, 2 * SYSTEMS * 5}, {systems, 2 * SYSTEMS * 6})
+TEST_MAIN("traps", {drivers, 2 * SYSTEMS *METHODS}, {systems, 2 * SYSTEMS * 6})
