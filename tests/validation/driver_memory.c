@@ -40,19 +40,23 @@ TEST(creation)
     tribo_system_destroy(sys);
 }
 
-/* Exact and event prepare what they need for contacts that stick when they first do, the others at the beginning. */
+/* Methods with fixed steps prepare at the beginning, so that nothing has happened when that fails, and nothing is allocated later.
+ * Exact and event prepare what they need for contacts that stick when they first do, and GSL allocates in all steps of implicit
+ * ones: where they end there is a good state, from which another run comes as close as its tolerance says. */
 TEST(advance)
 {
     const char *method = tribo_method_name(_i);
     struct random g = random_of(2);
     const struct model m = model_create(&g, 1);
+    const int fixed = strstr(method, "/fixed") != NULL;
     double want[DIMENSION];
     tribo_system *twin = start(&m, want);
     run(twin, method, 0.01, 1e-6, 0.5, want);
     int status = TRIBO_ERR_MEMORY;
     for (size_t bytes = 0; status; bytes = memory_missed()) {
-        double t = 0.0, y[DIMENSION];
+        double t = 0.0, y[DIMENSION], before[DIMENSION];
         tribo_system *sys = start(&m, y);
+        memcpy(before, y, sizeof y);
         tribo_driver *drv = driver_create(sys, method, 0.01, 1e-6);
         memory_bound(bytes);
         status = tribo_driver_advance(drv, &t, 0.5, y);
@@ -60,9 +64,13 @@ TEST(advance)
         if (status) {
             require(status == TRIBO_ERR_MEMORY, "%s, %zu bytes: %d", method, bytes, status);
             assert_says(tribo_driver_message(drv), "out of memory");
+            require(!fixed || (t == 0.0 && memcmp(y, before, sizeof y) == 0), "%s went on to %g", method, t);
             driver_advance(drv, &t, 0.5, y);
         }
-        assert_all_close(y, want, DIMENSION, 1e-4);
+        assert_all_close(y, want, DIMENSION, fixed || strcmp(method, "exact") == 0 ? 1e-12 : 1e-4);
+        const size_t calls = memory_calls();
+        driver_advance(drv, &t, 1.0, y);
+        require(!fixed || memory_calls() == calls, "%s: %zu allocations", method, memory_calls() - calls);
         tribo_driver_destroy(drv);
         tribo_system_destroy(sys);
     }
