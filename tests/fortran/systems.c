@@ -75,6 +75,11 @@ static void run(tribo_system *sys, const char *method, double most)
         put_one(tribo_driver_count(drv, which, &count));
         put_size(count);
     }
+    for (int which = TRIBO_REAL_EXCESS; which <= TRIBO_REAL_BACKSLIP; which++) {
+        double value = -1.0;
+        put_one(tribo_driver_real(drv, which, &value));
+        put_one(value);
+    }
     tribo_driver_destroy(drv);
 }
 

@@ -209,7 +209,7 @@ contains
     real(dp), intent(in) :: most
     type(tribo_driver) :: drv
     type(counter), target :: sees
-    real(dp) :: y(sys%dimension()), t
+    real(dp) :: y(sys%dimension()), t, value
     integer :: stat, which, count
     integer(int64) :: long
 
@@ -243,6 +243,12 @@ contains
       call compare('count', count)
       if (stat == TRIBO_OK) call drv%count(which, long)
       call require(stat /= TRIBO_OK .or. long == count, 'count of a long integer')
+    end do
+    do which = TRIBO_REAL_EXCESS, TRIBO_REAL_BACKSLIP
+      value = -1
+      call drv%real(which, value, stat)
+      call compare('real', stat)
+      call compare('real', value)
     end do
   end subroutine run
 
