@@ -1,6 +1,6 @@
 #include "eigen.h"
 #include "../real.h"
-#include "dense.h"
+#include "linalg.h"
 
 #include <complex.h>
 #include <float.h>

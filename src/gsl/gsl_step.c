@@ -1,5 +1,5 @@
 #include "gsl_step.h"
-#include "dense.h"
+#include "linalg.h"
 #include "../real.h"
 
 #include <fenv.h>

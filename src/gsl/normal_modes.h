@@ -8,7 +8,7 @@
 #ifndef TRIBO_NORMAL_MODES_H
 #define TRIBO_NORMAL_MODES_H
 
-#include "dense.h"
+#include "linalg.h"
 
 /* A mode that is not known well enough, and what rounding of the stiffness may do to its omega^2. */
 struct doubt {

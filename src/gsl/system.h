@@ -5,7 +5,7 @@
 
 #include "tribo/tribo_gsl.h"
 
-#include "dense.h"
+#include "linalg.h"
 
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero. */
 struct harmonic {
@@ -70,6 +70,10 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
 /* Counts all changes that a caller can make: of loads, tables and damping, and of the context's settings. */
 size_t tribo_system_revision(const tribo_system *sys);
 
+/* ---- loads.c */
+
+void tribo_loads_free(tribo_system *sys);
+
 /* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
@@ -88,6 +92,8 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 
 /* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
 double tribo_system_next_kink(const tribo_system *sys, double t);
+
+/* ---- system.c */
 
 /* A bound on the frequencies: neither an exponent of the structure, held or not, nor a load is faster. */
 double tribo_system_fastest(const tribo_system *sys);
@@ -108,8 +114,11 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
 /* dydt with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
 
-/* linear.c: to [ndof] = M^-1 force, force [given]. */
+/* structure.c: to [ndof] = M^-1 force, force [given]. */
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to);
+
+/* jacobian.c: of odeiv2. */
+int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params);
 
 /* Keeps the message on the system's context and returns status. */
 int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)

@@ -1,6 +1,6 @@
 /* Dense matrices, in factors that never make GSL's error handler speak. */
-#ifndef TRIBO_DENSE_H
-#define TRIBO_DENSE_H
+#ifndef TRIBO_LINALG_H
+#define TRIBO_LINALG_H
 
 #include "matrix.h"
 

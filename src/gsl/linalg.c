@@ -1,4 +1,4 @@
-#include "dense.h"
+#include "linalg.h"
 #include "../simd.h"
 
 #include <math.h>

@@ -1,0 +1,130 @@
+/* The Jacobian of a system's right-hand side, for implicit integrators: dense, with the derivatives of the contact forces. */
+#include "system.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+
+/* The matrices of the Jacobian, dense, and room for its products. */
+struct dense {
+    double *stiffness, *damping, *direction, *response, *df_dv, *df_da, *df_dq, *df_du, *pull, *load;
+};
+
+static struct dense dense_of(const tribo_system *sys)
+{
+    const size_t n = sys->ndof, m = sys->ncontact;
+    struct dense d;
+    d.stiffness = sys->dense;
+    d.damping = d.stiffness + n * n;
+    d.direction = d.damping + n * n;
+    d.response = d.direction + m * n;
+    d.df_dv = d.response + n * m;
+    d.df_da = d.df_dv + m * m;
+    d.df_dq = d.df_da + m * m;
+    d.df_du = d.df_dq + m * n;
+    d.pull = d.df_du + m * n;
+    d.load = d.pull + m * n;
+    return d;
+}
+
+static int expand(const struct matrix *a, double *to)
+{
+    double *from = tribo_matrix_to_dense(a);
+    if (from) {
+        memcpy(to, from, a->rows * a->cols * sizeof *to);
+    }
+    free(from);
+    return from != NULL;
+}
+
+static int create_dense(tribo_system *sys)
+{
+    const size_t n = sys->ndof, m = sys->ncontact;
+    sys->dense = calloc(2 * n * n + 5 * m * n + 2 * m * m + n + 1, sizeof *sys->dense);
+    if (!sys->dense) {
+        return 0;
+    }
+    const struct dense d = dense_of(sys);
+    if (expand(&sys->stiffness, d.stiffness) && (!sys->damping.rows || expand(&sys->damping, d.damping)) &&
+        expand(&sys->direction, d.direction) && expand(&sys->response, d.response)) {
+        return 1;
+    }
+    free(sys->dense);
+    sys->dense = NULL;
+    return 0;
+}
+
+/* c += factor a b; a [rows][inner], b [inner][cols]. Skips zeros of a, of which diagonal operators have many. */
+static void multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
+{
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t k = 0; k < inner; k++) {
+            const double x = factor * a[i * inner + k];
+            for (size_t j = 0; x != 0.0 && j < cols; j++) {
+                c[i * cols + j] += x * b[k * cols + j];
+            }
+        }
+    }
+}
+
+/* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
+int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
+{
+    tribo_system *sys = params;
+    const size_t n = sys->ndof, m = sys->ncontact, size = 2 * n + 1;
+    sys->jacobians++;
+    if (!sys->dense && !create_dense(sys)) {
+        sys->status = tribo_set_message(sys->contacts, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
+        return GSL_EBADFUNC;
+    }
+    const struct dense d = dense_of(sys);
+    tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
+    sys->status = tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
+    if (sys->status) {
+        return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
+    }
+
+    /* pull = (df/da) J,  df/dq = -pull AK,  df/du = (df/dv) J - pull AC */
+    memset(d.df_dq, 0, 3 * m * n * sizeof *d.df_dq);
+    multiply_add(m, m, n, 1.0, d.df_da, d.direction, d.pull);
+    multiply_add(m, n, n, -1.0, d.pull, d.stiffness, d.df_dq);
+    multiply_add(m, n, n, -1.0, d.pull, d.damping, d.df_du);
+    multiply_add(m, m, n, 1.0, d.df_dv, d.direction, d.df_du);
+
+    /* df/dt = -(df/dv) b' + (df/da) (J load' - b'') */
+    double *df_dt = sys->feq;
+    memset(d.load, 0, n * sizeof *d.load);
+    memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
+    memset(sys->a, 0, m * sizeof *sys->a);
+    memset(df_dt, 0, m * sizeof *df_dt);
+    tribo_system_loads(sys, 0, 1, 1.0, d.load);
+    tribo_system_loads(sys, 1, 1, -1.0, sys->dv_dt);
+    tribo_system_loads(sys, 1, 2, -1.0, sys->a);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
+    multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
+    multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
+
+    memset(dfdy, 0, size * size * sizeof *dfdy);
+    memset(dfdt, 0, size * sizeof *dfdt);
+    for (size_t i = 0; i < n; i++) {
+        double *row = dfdy + (n + i) * size;
+        dfdy[i * size + n + i] = 1.0;
+        for (size_t j = 0; j < n; j++) {
+            row[j] = -d.stiffness[i * n + j];
+            row[n + j] = -d.damping[i * n + j];
+        }
+        multiply_add(1, m, n, 1.0, d.response + i * m, d.df_dq, row);
+        multiply_add(1, m, n, 1.0, d.response + i * m, d.df_du, row + n);
+        dfdt[n + i] = d.load[i];
+        multiply_add(1, m, 1, 1.0, d.response + i * m, df_dt, dfdt + n + i);
+    }
+    /* power = -power f.v */
+    double *row = dfdy + 2 * n * size;
+    multiply_add(1, m, n, -sys->power, sys->v, d.df_dq, row);
+    multiply_add(1, m, n, -sys->power, sys->v, d.df_du, row + n);
+    multiply_add(1, m, n, -sys->power, sys->f, d.direction, row + n);
+    multiply_add(1, m, 1, -sys->power, sys->v, df_dt, dfdt + 2 * n);
+    multiply_add(1, m, 1, -sys->power, sys->f, sys->dv_dt, dfdt + 2 * n);
+    return GSL_SUCCESS;
+}

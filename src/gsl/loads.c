@@ -1,0 +1,352 @@
+/* What comes from outside and changes with time: loads on the structure, motion of the bases, limits that follow a table. */
+#include "system.h"
+#include "../real.h"
+#include "../twofold.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void free_harmonic(struct harmonic *h)
+{
+    free(h->index);
+    free(h->cosine);
+    free(h->sine);
+}
+
+static void free_table(struct table *t)
+{
+    free(t->time);
+    free(t->value);
+    free(t->pattern);
+}
+
+void tribo_loads_free(tribo_system *sys)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        free_harmonic(&sys->harmonic[k]);
+    }
+    free(sys->harmonic);
+    for (size_t k = 0; k < sys->tables; k++) {
+        free_table(&sys->table[k]);
+    }
+    free(sys->table);
+    free_table(&sys->limits);
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ at a time */
+
+/* The knot at or before t, the first one if there is none. */
+static size_t knot_at(const struct table *table, double t)
+{
+    size_t lo = 0, hi = table->knots;
+    while (hi - lo > 1) {
+        const size_t mid = lo + (hi - lo) / 2;
+        *(table->time[mid] <= t ? &lo : &hi) = mid;
+    }
+    return lo;
+}
+
+/* Value (order 0) or slope (1) of column i of a table with so many of them at the time set. */
+static double look_up(const tribo_system *sys, const struct table *table, size_t columns, size_t i, int order)
+{
+    const size_t k = table->at;
+    const double *v = table->value + k * columns + i;
+    if (k + 1 == table->knots || sys->time < table->time[0]) {
+        return order ? 0.0 : *v;
+    }
+    const double slope = (v[columns] - v[0]) / (table->time[k + 1] - table->time[k]);
+    return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
+}
+
+/* Makes the limits of the context those of the table, at the time set. */
+static void follow_limits(tribo_system *sys)
+{
+    const size_t before = tribo_revision(sys->contacts);
+    sys->limits.at = knot_at(&sys->limits, sys->time);
+    tribo_system_limits(sys, sys->v, sys->a);
+    tribo_set_limit(sys->contacts, sys->v);
+    sys->seen = tribo_revision(sys->contacts);
+    sys->ours += sys->seen - before;
+}
+
+/* The harmonic at t + low. What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
+static void turn(struct harmonic *h, double t, double low)
+{
+    const double angle = h->omega * t,
+                 rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
+    const double c = cos(angle), s = sin(angle), x = cos(rest), y = sin(rest);
+    h->cos_t = c * x - s * y;
+    h->sin_t = s * x + c * y;
+}
+
+static void set_loads(tribo_system *sys, double t)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        turn(&sys->harmonic[k], t, sys->low);
+    }
+    for (size_t k = 0; k < sys->tables; k++) {
+        sys->table[k].at = knot_at(&sys->table[k], t);
+    }
+    sys->time = t;
+}
+
+void tribo_system_set_low(tribo_system *sys, double low)
+{
+    if (low != sys->low) {
+        sys->low = low;
+        sys->time = NAN;
+    }
+}
+
+void tribo_system_set_time(tribo_system *sys, double t)
+{
+    const int moves = t != sys->time;
+    if (moves) {
+        set_loads(sys, t);
+    }
+    if (sys->limits.knots && (moves || sys->seen != tribo_revision(sys->contacts))) {
+        follow_limits(sys);
+    }
+}
+
+void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
+{
+    if (sys->limits.knots == 0) {
+        tribo_get_limit(sys->contacts, limit);
+        memset(rate, 0, sys->ncontact * sizeof *rate);
+        return;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] = look_up(sys, &sys->limits, sys->ncontact, i, 0);
+        rate[i] = look_up(sys, &sys->limits, sys->ncontact, i, 1);
+    }
+}
+
+double tribo_system_next_kink(const tribo_system *sys, double t)
+{
+    double next = HUGE_VAL;
+    for (size_t k = 0; k <= sys->tables; k++) {
+        const struct table *table = k < sys->tables ? &sys->table[k] : &sys->limits;
+        for (size_t i = table->knots ? knot_at(table, t) : 0; i < table->knots; i++) {
+            if (table->time[i] > t || (table->time[i] == t && sys->low < 0.0)) {
+                next = lesser(next, table->time[i]);
+                break;
+            }
+        }
+    }
+    return next;
+}
+
+void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to)
+{
+    for (size_t k = 0; order < 2 && k < sys->tables; k++) {
+        const double value = factor * look_up(sys, &sys->table[k], 1, 0, order);
+        for (size_t i = 0; i < sys->ndof; i++) {
+            to[i] += value * sys->table[k].pattern[i];
+        }
+    }
+}
+
+void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *h = &sys->harmonic[k];
+        if (h->moves_base != moves_base) {
+            continue;
+        }
+        double c = h->cos_t, s = h->sin_t;
+        for (int d = 0; d < order; d++) {
+            const double dc = -h->omega * s;
+            s = h->omega * c;
+            c = dc;
+        }
+        for (size_t i = 0; i < h->count; i++) {
+            to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
+        }
+    }
+    if (!moves_base && sys->tables) {
+        tribo_system_tables(sys, order, factor, to);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ harmonics */
+
+/* Keeps only entries in which cosine or sine is not zero. */
+static int compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
+{
+    h->index = malloc((n + 1) * sizeof *h->index);
+    h->cosine = malloc((n + 1) * sizeof *h->cosine);
+    h->sine = malloc((n + 1) * sizeof *h->sine);
+    if (!h->index || !h->cosine || !h->sine) {
+        return 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (cosine[i] != 0.0 || sine[i] != 0.0) {
+            h->index[h->count] = i;
+            h->cosine[h->count] = cosine[i];
+            h->sine[h->count++] = sine[i];
+        }
+    }
+    return 1;
+}
+
+static int check_amplitudes(const tribo_system *sys, const char *name, const double *x, size_t n)
+{
+    for (size_t i = 0; x && i < n; i++) {
+        if (!isfinite(x[i])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int add_harmonic(tribo_system *sys, int moves_base, double omega, const double *cosine, const double *sine)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    const size_t given = moves_base ? sys->ncontact : sys->given, n = moves_base ? sys->ncontact : sys->ndof;
+    if (!isfinite(omega)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+    }
+    int status = check_amplitudes(sys, "cosine", cosine, given);
+    if (!status) {
+        status = check_amplitudes(sys, "sine", sine, given);
+    }
+    if (status) {
+        return status;
+    }
+    struct harmonic h = {.omega = omega, .moves_base = moves_base};
+    double *parts = calloc(2 * n + 1, sizeof *parts);
+    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
+    sys->harmonic = all ? all : sys->harmonic;
+    int done = parts && all;
+    for (int part = 0; done && part < 2; part++) {
+        const double *from = part ? sine : cosine;
+        if (from && moves_base) {
+            memcpy(parts + (size_t)part * n, from, n * sizeof *parts);
+        } else if (from) {
+            tribo_system_accelerate(sys, from, parts + (size_t)part * n);
+        }
+    }
+    done = done && compress(&h, n, parts, parts + n);
+    free(parts);
+    if (!done) {
+        free_harmonic(&h);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
+    }
+    sys->harmonic[sys->harmonics++] = h;
+    sys->base_harmonics += (size_t)moves_base;
+    sys->revision++;
+    sys->time = NAN;
+    return TRIBO_OK;
+}
+
+int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, 0, omega, cosine, sine);
+}
+
+int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, 1, omega, cosine, sine);
+}
+
+/* --------------------------------------------------------------------------------------------------------------------- tables */
+
+static int check_table(const tribo_system *sys, size_t knots, size_t columns, const double *time, const double *value)
+{
+    if (!time || !value) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? "value" : "time");
+    }
+    for (size_t k = 0; k < knots; k++) {
+        if (!isfinite(time[k])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "time[%zu] = %g is not finite", k, time[k]);
+        }
+        if (k && time[k] <= time[k - 1]) {
+            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1,
+                                     time[k - 1]);
+        }
+    }
+    return check_amplitudes(sys, "value", value, knots * columns);
+}
+
+/* A copy of the table; 0 if out of memory. */
+static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
+{
+    t->knots = knots;
+    t->time = malloc((knots + 1) * sizeof *t->time);
+    t->value = malloc((knots * columns + 1) * sizeof *t->value);
+    if (!t->time || !t->value) {
+        return 0;
+    }
+    memcpy(t->time, time, knots * sizeof *time);
+    memcpy(t->value, value, knots * columns * sizeof *value);
+    return 1;
+}
+
+int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (knots == 0 || !pattern) {
+        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL")
+                     : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+    }
+    int status = check_table(sys, knots, 1, time, value);
+    status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
+    if (status) {
+        return status;
+    }
+    struct table t = {0};
+    struct table *all = realloc(sys->table, (sys->tables + 1) * sizeof *all);
+    sys->table = all ? all : sys->table;
+    if (all && create_table(&t, knots, 1, time, value)) {
+        t.pattern = malloc((sys->ndof + 1) * sizeof *t.pattern);
+    }
+    if (!t.pattern) {
+        free_table(&t);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+    }
+    tribo_system_accelerate(sys, pattern, t.pattern);
+    sys->table[sys->tables++] = t;
+    sys->revision++;
+    sys->time = NAN;
+    return TRIBO_OK;
+}
+
+int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    struct table t = {0};
+    if (knots) {
+        const int status = check_table(sys, knots, sys->ncontact, time, limit);
+        if (status) {
+            return status;
+        }
+        for (size_t k = 0; k < knots * sys->ncontact; k++) {
+            if (limit[k] < 0.0) {
+                return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / sys->ncontact,
+                                         limit[k], k % sys->ncontact);
+            }
+        }
+        if (!create_table(&t, knots, sys->ncontact, time, limit)) {
+            free_table(&t);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+        }
+    }
+    if (!sys->limits.knots && knots) {
+        tribo_get_limit(sys->contacts, sys->given_limit);
+    } else if (sys->limits.knots && !knots) {
+        tribo_set_limit(sys->contacts, sys->given_limit);
+    }
+    free_table(&sys->limits);
+    sys->limits = t;
+    sys->revision++;
+    sys->time = NAN;
+    return TRIBO_OK;
+}
