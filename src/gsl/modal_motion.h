@@ -1,0 +1,56 @@
+/* The motion of a structure with contacts held, from a state on, in closed form: a phase of method "exact". */
+#ifndef TRIBO_MODAL_MOTION_H
+#define TRIBO_MODAL_MOTION_H
+
+#include "modal.h"
+#include "quintic.h"
+
+/* It began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
+struct modal_motion {
+    tribo_system *sys;
+    const signed char *slip; /* [ncontact] of the contacts, as struct stick_slip has it, and their forces; the caller's */
+    const double *force;
+    const struct modal *h;
+    double t0, tau;                          /* tau: where w is */
+    double fastest;                          /* exponent or harmonic */
+    double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
+    double *drift, *drift_rate;              /* [modes] of those that drift: what harmonics do not explain, at t0 */
+    double *zr, *zi;                         /* [exponents] at t0 */
+    double *wr, *wi, *w1r, *w1i, *w2r, *w2i; /* [exponents] z and its derivatives at tau */
+    double *growth, *growth6;                /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
+    double *cos_t, *sin_t, *cos_0, *sin_0;   /* [harmonics] at t0 + tau, at t0 */
+    double *now, *work;                      /* [modes] eta and eta' at tau; workspace */
+    double *dq;                              /* [ndof] */
+    double longest;                          /* so long do bounds hold */
+};
+
+/* 1, or 0 if out of memory. tribo_modal_motion_free takes what failed too. */
+int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const signed char *slip, const double *force);
+void tribo_modal_motion_free(struct modal_motion *x);
+
+/* Room for the harmonics that the system has; 1, or 0 if out of memory. */
+int tribo_modal_motion_reserve(struct modal_motion *x);
+
+/* Starts at (t, y) with h held, for a time of longest. Returns for how long its bounds can hold. */
+double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, double t, const double *y, double longest);
+
+/* Goes to t0 + tau: z and its derivatives, and the harmonics. */
+void tribo_modal_motion_go(struct modal_motion *x, double tau);
+
+/* An output there, with two derivatives: its part that is linear in time is start + ramp tau. */
+struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, double start, double ramp);
+
+/* What start, and ramp, are of an output that is now at t0. */
+void tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, double now, double *start,
+                             double *ramp);
+
+/* Goes to t0 + tau: the state there. from is the state at t0; to may be the same. */
+void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to);
+
+/* Bounds of the exponents from tau on, */
+void tribo_modal_motion_bound(struct modal_motion *x, double tau);
+
+/* and of what an output has of them and of harmonics, and of the sixth derivative of that. */
+void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend);
+
+#endif
