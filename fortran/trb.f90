@@ -68,7 +68,7 @@
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
 !>   TRBACC(IH, N, V, FEQ, IERR)                     V(N), FEQ(N) of an accepted step
 !> Queries
-!>   TRBMOD(IH, N, MODE, IERR)                                                         MODE(N): 0 stuck, +1 -1 sliding, 2 open
+!>   TRBSLP(IH, N, ISLIP, IERR)                                                        ISLIP(N): 0 stuck, +1 -1 sliding, 2 open
 !>   TRBCNT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_...            IVAL
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
 
@@ -713,17 +713,17 @@ end subroutine trbacc
 
 ! ------------------------------------------------------------------------------------------------------------------------- queries
 
-subroutine trbmod(ih, n, mode, ierr)
+subroutine trbslp(ih, n, slip, ierr)
   use tribo_fixed
   implicit none
   integer, intent(in) :: ih, n
-  integer, intent(inout) :: mode(*)
+  integer, intent(inout) :: slip(*)
   integer, intent(out) :: ierr
   type(tribo_context), pointer :: c
 
   call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%get_modes(mode(:n), ierr)
-end subroutine trbmod
+  if (ierr == TRIBO_OK) call c%get_slip(slip(:n), ierr)
+end subroutine trbslp
 
 subroutine trbcnt(ih, iwhich, ival, ierr)
   use tribo_fixed

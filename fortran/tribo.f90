@@ -43,7 +43,7 @@ module tribo
   !> Kind of all reals here: double precision; and the status codes, see tribo_support.f90.
   public :: dp
   public :: TRIBO_OK, TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE, &
-    TRIBO_ERR_SIZE, TRIBO_ERR_NAME, TRIBO_ERR_STATE, TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_MEMORY, TRIBO_ERR_FILE, &
+    TRIBO_ERR_SIZE, TRIBO_ERR_NAME, TRIBO_ERR_STATE, TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_MEMORY, &
     TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_DUPLICATE, TRIBO_ERR_INCONSISTENT, TRIBO_ERR_NO_CONVERGENCE, &
     TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, TRIBO_ERR_CALLBACK, TRIBO_ERR_CHATTER
 
@@ -64,8 +64,8 @@ module tribo
 
   !> How redundant contacts share, where R f is unique but f is not.
   integer, parameter, public :: &
-    TRIBO_SHARE_LEAST = 0, &      !< f of least norm: depends neither on the order of the contacts nor on earlier calls
-    TRIBO_SHARE_LAST = 1          !< the forces of the last call, changed no more than they must be: continuous in time
+    TRIBO_SHARE_LEAST_NORM = 0, &      !< f of least norm: depends neither on the order of the contacts nor on earlier calls
+    TRIBO_SHARE_PREVIOUS = 1          !< the forces of the last call, changed no more than they must be: continuous in time
 
   !> For get_count. STUCK and RANK are those of the last balance, step_force or solve_box, the others add up since create.
   integer, parameter, public :: &
@@ -76,7 +76,7 @@ module tribo
     TRIBO_COUNT_SKIPPED = 4, &    !< islands that needed no solver: a single contact, or none near stick
     TRIBO_COUNT_FACTORIZATIONS = 5, & !< matrices factorized
     TRIBO_COUNT_UPDATES = 6, &    !< changes of a stick set
-    TRIBO_COUNT_MEMORY = 7, &     !< reversal marks that accept has set or cleared
+    TRIBO_COUNT_REVERSALS = 7, &     !< reversal marks that accept has set or cleared
     TRIBO_COUNT_REUSED = 8        !< of the solves: those that ended with the stick set and the factor they began with
 
   !> For get_real.
@@ -114,7 +114,7 @@ module tribo
     procedure :: step_force
     procedure :: solve_box
     procedure :: accept
-    procedure :: get_modes
+    procedure :: get_slip
     procedure, private :: get_count_short, get_count_long
     generic :: get_count => get_count_short, get_count_long
     procedure :: get_real
@@ -410,12 +410,12 @@ module tribo
       integer(c_int) :: status
     end function c_accept
 
-    function c_get_modes(ctx, mode) result(status) bind(c, name='tribo_get_modes')
+    function c_get_slip(ctx, slip) result(status) bind(c, name='tribo_get_slip')
       import :: c_ptr, c_signed_char, c_int
       type(c_ptr), value :: ctx
-      integer(c_signed_char), intent(inout) :: mode(*)
+      integer(c_signed_char), intent(inout) :: slip(*)
       integer(c_int) :: status
-    end function c_get_modes
+    end function c_get_slip
 
     function c_get_count(ctx, which, value) result(status) bind(c, name='tribo_get_count')
       import :: c_ptr, c_size_t, c_int
@@ -530,8 +530,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine tribo_law_eval
 
-  !> Elastic contacts, no context: each a spring in series with a Coulomb slider. f goes on by a displacement dz, and df_dz says how it
-  !> follows. dz, stiffness, limit, f and df_dz are of one size.
+  !> Elastic contacts, no context: each a spring in series with a Coulomb slider. f goes on by a displacement dz, and df_dz says
+  !> how it follows. dz, stiffness, limit, f and df_dz are of one size.
   subroutine elastic_force_line(dz, stiffness, limit, f, df_dz, stat, errmsg)
     real(dp), intent(in) :: dz(:), stiffness(:), limit(:)
     real(dp), intent(inout) :: f(:)
@@ -919,7 +919,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_coupling
 
-  !> TRIBO_SHARE_LEAST or TRIBO_SHARE_LAST.
+  !> TRIBO_SHARE_LEAST_NORM or TRIBO_SHARE_PREVIOUS.
   subroutine set_sharing(this, sharing, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     integer, intent(in) :: sharing
@@ -1112,21 +1112,21 @@ contains
   ! -------------------------------------------------------------------------------------------------------------------- queries
 
   !> What each contact did in the last balance or step_force: 0 stuck, +1 and -1 sliding in that direction (the force is
-  !> -limit*mode), 2 open. An error (TRIBO_ERR_STATE) where there has been none, or a solve_box since.
-  subroutine get_modes(this, mode, stat, errmsg)
+  !> -limit*slip), 2 open. An error (TRIBO_ERR_STATE) where there has been none, or a solve_box since.
+  subroutine get_slip(this, slip, stat, errmsg)
     class(tribo_context), intent(in) :: this
-    integer, intent(inout) :: mode(:)
+    integer, intent(inout) :: slip(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    integer(c_signed_char) :: small(size(mode))
+    integer(c_signed_char) :: small(size(slip))
 
     call begin(this, w)
-    call expect_shape(w, 'mode', shape(mode), [w%n])
-    if (w%status == TRIBO_OK) w%status = c_get_modes(w%ctx, small)
-    if (w%status == TRIBO_OK) mode = int(small)
+    call expect_shape(w, 'slip', shape(slip), [w%n])
+    if (w%status == TRIBO_OK) w%status = c_get_slip(w%ctx, small)
+    if (w%status == TRIBO_OK) slip = int(small)
     call finish(w, stat, errmsg)
-  end subroutine get_modes
+  end subroutine get_slip
 
   !> One of TRIBO_COUNT_...; those that add up may outgrow a default integer, and value may be a longer one.
   subroutine get_count_short(this, which, value, stat, errmsg)

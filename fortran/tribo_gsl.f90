@@ -57,7 +57,7 @@ module tribo_gsl
     procedure :: oscillator, chain, belt
     procedure, private :: linear_dense, linear_sparse
     generic :: linear => linear_dense, linear_sparse
-    procedure :: add_load, add_motion, add_load_table
+    procedure :: add_load, add_base_motion, add_load_table
     procedure :: set_limit_table, set_damping_ratio
     procedure :: get_frequencies, expand
     procedure :: ndof, ncontact, dimension
@@ -176,12 +176,12 @@ module tribo_gsl
       integer(c_int) :: status
     end function c_add_load
 
-    function c_add_motion(sys, omega, cosine, sine) result(status) bind(c, name='tribo_system_add_motion')
+    function c_add_base_motion(sys, omega, cosine, sine) result(status) bind(c, name='tribo_system_add_base_motion')
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: sys, cosine, sine
       real(c_double), value :: omega
       integer(c_int) :: status
-    end function c_add_motion
+    end function c_add_base_motion
 
     function c_add_load_table(sys, knots, time, value, pattern) result(status) bind(c, name='tribo_system_add_load_table')
       import :: c_double, c_int, c_ptr, c_size_t
@@ -609,7 +609,7 @@ contains
   end subroutine add_load
 
   !> Adds a harmonic to the driven velocities of the contacts, b(t) = ... + cosine*cos(omega*t) + sine*sin(omega*t), e.g. of a belt.
-  subroutine add_motion(this, omega, cosine, sine, stat, errmsg)
+  subroutine add_base_motion(this, omega, cosine, sine, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: omega
     real(dp), intent(in), optional, contiguous, target :: cosine(:), sine(:)
@@ -623,9 +623,9 @@ contains
     at = c_null_ptr
     if (present(cosine)) call find_input(w, 'cosine', cosine, w%n, at(1))
     if (present(sine)) call find_input(w, 'sine', sine, w%n, at(2))
-    if (w%status == TRIBO_OK) w%status = c_add_motion(held%sys, omega, at(1), at(2))
+    if (w%status == TRIBO_OK) w%status = c_add_base_motion(held%sys, omega, at(1), at(2))
     call finish(w, stat, errmsg)
-  end subroutine add_motion
+  end subroutine add_base_motion
 
   !> Adds a load that follows a table, p(t) = ... + pattern*value(t), with value linear between its knots at time, which ascends,
   !> and constant outside. pattern: as in add_load.

@@ -23,7 +23,6 @@ module tribo_support
     TRIBO_ERR_STATE = 8, &        !< another call must come first
     TRIBO_ERR_UNSUPPORTED = 9, &  !< not available for this system, law or build
     TRIBO_ERR_MEMORY = 10, &
-    TRIBO_ERR_FILE = 11, &        !< a file cannot be read or does not hold what it should
     TRIBO_ERR_NOT_SYMMETRIC = 20, &
     TRIBO_ERR_INDEFINITE = 21, &  !< not positive semidefinite, or a mass matrix that is not positive definite
     TRIBO_ERR_DUPLICATE = 22, &   !< an entry is given twice

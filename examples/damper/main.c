@@ -140,7 +140,7 @@ static void write_history(const struct job *job, double limit, const char *name)
         const double cycle = (double)i / (double)d->steps;
         need(tribo_driver_advance(d->drv, &t, cycle * d->period, job->y), tribo_driver_message(d->drv));
         need(tribo_system_contacts(d->sys, t, job->y, v, NULL, f), tribo_message(contacts));
-        need(tribo_get_modes(contacts, mode), tribo_message(contacts));
+        need(tribo_get_slip(contacts, mode), tribo_message(contacts));
         fprintf(table, "%.8g,%.10g,%.10g", cycle, t, load_displacement(d, job->y));
         for (size_t c = 0; c < d->contacts; c++) {
             fprintf(table, ",%.8g,%.8g,%d", v[c], f[c], mode[c]);

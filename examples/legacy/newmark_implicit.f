@@ -39,7 +39,7 @@ C     BEGINNING TO END, AND THE FIRST ONE THAT TAKES FOUR ITERATIONS
          CALL STEP
          MOST = MAX0(MOST, NITER)
          IF (LBAND .NE. 0 .OR. NITER .NE. 1) GOTO 50
-         CALL TRBMOD(IH, N, MODE, IERR)
+         CALL TRBSLP(IH, N, MODE, IERR)
          DO 40 J = 1, N
    40       IF (MODE(J) .NE. 0) GOTO 50
          LBAND = I

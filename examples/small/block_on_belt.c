@@ -29,7 +29,7 @@ int main(void)
         u += dt * (a + f / mass);
         x += dt * u;
     }
-    status = status ? status : tribo_get_modes(contact, &mode);
+    status = status ? status : tribo_get_slip(contact, &mode);
     if (status) {
         fprintf(stderr, "%s: %s\n", tribo_strerror(status), tribo_message(contact));
     }

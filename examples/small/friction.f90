@@ -50,7 +50,7 @@ contains
     print '(a)', 'two blocks:  pull   friction on the ground, between the blocks   stuck'
     do i = 1, size(pull)
       call c%balance(v, [0.0_dp, pull(i)], feq, f)
-      call c%get_modes(mode)
+      call c%get_slip(mode)
       call c%force(v, feq, again)
       print '(f17.2, f25.2, f20.2, l14, l3)', pull(i), f, mode == 0
       if (any(abs(f + min(pull(i), 0.6_dp)) > 1e-12_dp) .or. any(abs(f - again) > 0)) error stop 'two blocks: wrong force'

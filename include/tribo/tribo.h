@@ -69,7 +69,6 @@ enum {
     TRIBO_ERR_STATE = 8,        /* another call must come first */
     TRIBO_ERR_UNSUPPORTED = 9,  /* not available for this system, law or build */
     TRIBO_ERR_MEMORY = 10,
-    TRIBO_ERR_FILE = 11, /* a file cannot be read or does not hold what it should */
     /* operators and matrices */
     TRIBO_ERR_NOT_SYMMETRIC = 20,
     TRIBO_ERR_INDEFINITE = 21, /* not positive semidefinite, or a mass matrix that is not positive definite */
@@ -257,7 +256,7 @@ TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
  *          than 2048 contacts that are kept sparse: while not more than 64 are redundant; beyond that, one of the solutions.)
  *   LAST   one that is found from the forces of the last call, and follows slow changes without jumps. For event-driven codes,
  *          where a contact that has reached its limit should stay there while others take over. */
-enum { TRIBO_SHARE_LEAST = 0, TRIBO_SHARE_LAST = 1 };
+enum { TRIBO_SHARE_LEAST_NORM = 0, TRIBO_SHARE_PREVIOUS = 1 };
 TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
 TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
 
@@ -320,22 +319,22 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 
 /* ----------------------------------------------------------------------------------------------------------- queries */
 
-/* What each contact did in the last tribo_balance or tribo_step_force. mode [n] out: 0 stuck, +1 and -1 sliding in that
- * direction (the force is -limit * mode), 2 open; by the limits that it had.
+/* What each contact did in the last tribo_balance or tribo_step_force. slip [n] out: 0 stuck, +1 and -1 sliding in that
+ * direction (the force is -limit * slip), 2 open; by the limits that it had.
  * Returns TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or tribo_set_operator_... since. */
-TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
+TRIBO_API int tribo_get_slip(const tribo_context *ctx, signed char *slip);
 
 /* Counts. STUCK and RANK are those of the last tribo_balance, tribo_step_force or tribo_solve_box; ISLANDS is that of the
  * operator; the others add up since tribo_create. */
 enum {
-    TRIBO_COUNT_STUCK = 0,          /* contacts with mode 0; 0 where tribo_get_modes has none */
+    TRIBO_COUNT_STUCK = 0,          /* contacts with slip 0; 0 where tribo_get_slip has none */
     TRIBO_COUNT_RANK = 1,           /* sum of the ranks of the matrices that the last call solved with */
     TRIBO_COUNT_ISLANDS = 2,        /* groups of coupled contacts in the operator, and single contacts */
     TRIBO_COUNT_SOLVES = 3,         /* islands that had to be solved */
     TRIBO_COUNT_SKIPPED = 4,        /* islands that needed no solver: a single contact, or none near stick */
     TRIBO_COUNT_FACTORIZATIONS = 5, /* matrices factorized */
     TRIBO_COUNT_UPDATES = 6,        /* contacts that entered or left a stick set */
-    TRIBO_COUNT_MEMORY = 7,         /* reversal marks that tribo_accept has set or cleared */
+    TRIBO_COUNT_REVERSALS = 7,      /* reversal marks that tribo_accept has set or cleared */
     TRIBO_COUNT_REUSED = 8          /* of the solves: those that ended with the stick set and the factor they began with */
 };
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);

@@ -75,7 +75,7 @@ TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const doubl
 
 /* Adds a harmonic to the driven velocities of the contacts, b(t) += cosine cos(omega t) + sine sin(omega t), e.g. of a belt.
  * cosine, sine  [ncontact] in, each or NULL */
-TRIBO_API int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
+TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
 /* Adds a load that follows a table, p(t) += pattern * value(t), with value linear between its knots and constant outside.
  * time     [knots] in   ascending

@@ -26,7 +26,7 @@ static void begin(tribo_context *ctx)
 /* For shares that go on from these forces, also in groups that no solver saw. */
 static void remember(tribo_context *ctx)
 {
-    for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op.groups; g++) {
+    for (size_t g = 0; ctx->sharing == TRIBO_SHARE_PREVIOUS && g < ctx->op.groups; g++) {
         struct program *p = tribo_op_program(&ctx->op, g);
         for (size_t k = 0; !ctx->op.awake[g] && k < p->island->size; k++) {
             p->x[k] = tribo_carried(ctx, p, k);
@@ -83,7 +83,7 @@ static int solve(tribo_context *ctx, struct program *p)
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contacts near stick around contact %zu",
                           p->count, member[p->near[0]]);
     }
-    if (is->nullity && ctx->sharing == TRIBO_SHARE_LEAST) {
+    if (is->nullity && ctx->sharing == TRIBO_SHARE_LEAST_NORM) {
         tribo_box_share(p);
     }
     ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;

@@ -116,7 +116,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
     c->law = tribo_law(TRIBO_QUINN);
     c->kept = 1;
     c->coupling = TRIBO_CONSISTENT;
-    c->sharing = TRIBO_SHARE_LEAST;
+    c->sharing = TRIBO_SHARE_LEAST_NORM;
     for (size_t i = 0; i < ncontact; i++) {
         c->given[i] = DEFAULT_EPSILON;
     }
@@ -403,8 +403,9 @@ int tribo_set_sharing(tribo_context *ctx, int sharing)
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (sharing != TRIBO_SHARE_LEAST && sharing != TRIBO_SHARE_LAST) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST", sharing);
+    if (sharing != TRIBO_SHARE_LEAST_NORM && sharing != TRIBO_SHARE_PREVIOUS) {
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST_NORM nor TRIBO_SHARE_PREVIOUS",
+                          sharing);
     }
     ctx->sharing = sharing;
     ctx->linearized = 0;
@@ -432,7 +433,7 @@ static signed char mode_of(const tribo_context *ctx, size_t i)
     return (signed char)(limit > 0.0 ? fabs(f) < ctx->holds * limit ? 0 : f < 0.0 ? 1 : -1 : 2);
 }
 
-int tribo_get_modes(const tribo_context *ctx, signed char *mode)
+int tribo_get_slip(const tribo_context *ctx, signed char *mode)
 {
     if (!ctx) {
         return TRIBO_ERR_NULL;
@@ -475,7 +476,7 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
         [TRIBO_COUNT_SKIPPED] = ctx->skipped,
         [TRIBO_COUNT_FACTORIZATIONS] = ctx->op.program.work.factorizations,
         [TRIBO_COUNT_UPDATES] = ctx->op.program.work.updates,
-        [TRIBO_COUNT_MEMORY] = ctx->marks,
+        [TRIBO_COUNT_REVERSALS] = ctx->marks,
         [TRIBO_COUNT_REUSED] = ctx->reused,
     };
     if (which < 0 || which >= (int)(sizeof counts / sizeof *counts)) {

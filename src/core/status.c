@@ -39,8 +39,6 @@ const char *tribo_strerror(int status)
         return "not available here";
     case TRIBO_ERR_MEMORY:
         return "out of memory";
-    case TRIBO_ERR_FILE:
-        return "a file cannot be used";
     case TRIBO_ERR_NOT_SYMMETRIC:
         return "a matrix is not symmetric";
     case TRIBO_ERR_INDEFINITE:

@@ -113,7 +113,7 @@ static int out_of_memory(tribo_system *sys)
 static int passes_a_change(const struct gsl_step *g, double part)
 {
     const size_t n = g->sys->ncontact;
-    if (tribo_get_modes(g->sys->contacts, g->mode + n)) {
+    if (tribo_get_slip(g->sys->contacts, g->mode + n)) {
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
@@ -215,7 +215,7 @@ static int guarded_jacobian(double t, const double y[], double *dfdy, double dfd
     if (status) {
         return status;
     }
-    tribo_get_modes(g->sys->contacts, g->mode);
+    tribo_get_slip(g->sys->contacts, g->mode);
     memcpy(g->jacobian, dfdy, n * n * sizeof *dfdy);
     g->known = 1;
     g->regular = 0.0;
@@ -294,7 +294,7 @@ static int has_stuck(const struct gsl_step *g)
 {
     const size_t n = g->sys->ncontact;
     int found = 0;
-    if (!tribo_get_modes(g->sys->contacts, g->mode + n)) {
+    if (!tribo_get_slip(g->sys->contacts, g->mode + n)) {
         for (size_t i = 0; i < n; i++) {
             found |= g->mode[i] != g->mode[n + i] || g->mode[i] == 0;
         }

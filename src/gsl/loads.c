@@ -248,7 +248,7 @@ int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine,
     return add_harmonic(sys, 0, omega, cosine, sine);
 }
 
-int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
+int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
     return add_harmonic(sys, 1, omega, cosine, sine);
 }

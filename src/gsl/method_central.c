@@ -71,7 +71,7 @@ static int kick(tribo_driver *drv, double from, double t, double to, const doubl
         return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(sys->contacts));
     }
     tribo_matrix_multiply_add(&sys->response, time, s->f, u);
-    tribo_get_modes(sys->contacts, s->mode);
+    tribo_get_slip(sys->contacts, s->mode);
     tribo_system_snap(sys, s->mode, s->base, u);
     tribo_step_form_relative(s, sys, u, s->end);
     *energy += time * tribo_step_form_power(sys, s->f, s->v, s->end);

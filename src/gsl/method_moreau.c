@@ -257,7 +257,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
             s->u[d] += h * s->f[i] * m->response[i * n + d];
         }
     }
-    tribo_get_modes(m->contacts, s->mode);
+    tribo_get_slip(m->contacts, s->mode);
     tribo_system_snap(sys, s->mode, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
     s->goes_on = 1;

@@ -192,7 +192,7 @@ int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double li
     if (status) {
         return status;
     }
-    status = tribo_system_add_motion(s, omega, NULL, motion);
+    status = tribo_system_add_base_motion(s, omega, NULL, motion);
     if (status) {
         tribo_system_destroy(s);
         return status;

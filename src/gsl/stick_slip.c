@@ -75,7 +75,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
     m->uncoupled = islands == sys->ncontact;
     /* a contact that has reached its limit stays there while others take over */
-    tribo_set_sharing(m->box, TRIBO_SHARE_LAST);
+    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
     tribo_set_law(m->hold, TRIBO_COULOMB);
     tribo_set_coupling(m->hold, TRIBO_PARTITION);
     return TRIBO_OK;

@@ -53,6 +53,6 @@ TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const 
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
 TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);
 TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);
-TRIBO_API int tribo_get_modes(const tribo_context *ctx, signed char *mode);
+TRIBO_API int tribo_get_slip(const tribo_context *ctx, signed char *slip);
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
 TRIBO_API int tribo_get_real(const tribo_context *ctx, int which, double *value);

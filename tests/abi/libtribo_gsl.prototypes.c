@@ -11,7 +11,7 @@ TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix 
                                          char *message, size_t size);
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
-TRIBO_API int tribo_system_add_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
+TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);

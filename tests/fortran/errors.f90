@@ -83,7 +83,7 @@ contains
     call c%step_force(1.0_dp, [0.3_dp, 0.2_dp, 9.0_dp], f)
     call fresh%step_force(1.0_dp, [0.3_dp, 0.2_dp, 9.0_dp], wanted)
     as_made = all(abs(limit - [1, 2, 3]) <= 0) .and. all(abs(epsilon - [0.25_dp, 0.5_dp, 0.75_dp]) <= 0) .and. &
-      law == TRIBO_QUINN .and. coupling == TRIBO_CONSISTENT .and. sharing == TRIBO_SHARE_LEAST .and. &
+      law == TRIBO_QUINN .and. coupling == TRIBO_CONSISTENT .and. sharing == TRIBO_SHARE_LEAST_NORM .and. &
       all(abs(f - wanted) <= 0) .and. abs(rate - wanted_rate) <= 0
   end function as_made
 
@@ -146,7 +146,7 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_coupling(i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
-    call c%set_sharing(TRIBO_SHARE_LAST, stat, msg)
+    call c%set_sharing(TRIBO_SHARE_PREVIOUS, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_sharing(i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
@@ -166,7 +166,7 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%accept(x, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
-    call c%get_modes(mode, stat, msg)
+    call c%get_slip(mode, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_count(TRIBO_COUNT_STUCK, i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
@@ -243,7 +243,7 @@ contains
     call c%set_coupling(2, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
     call c%set_sharing(-1, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'sharing = -1 is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST')
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'sharing = -1 is neither TRIBO_SHARE_LEAST_NORM nor TRIBO_SHARE_PREVIOUS')
     call c%set_limit([1.0_dp, 2.0_dp], stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'limit has size 2, not 3')
     call c%set_limit([1.0_dp, nan, 2.0_dp], stat, msg)
@@ -543,12 +543,12 @@ contains
     mode = blank_integer
     i = blank_integer
     x = blank
-    call c%get_modes(mode, stat, msg)
+    call c%get_slip(mode, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_STATE, &
       'no tribo_balance or tribo_step_force since the last tribo_solve_box or operator')
     call c%balance([0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp])
-    call c%get_modes(mode(:2), stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'mode has size 2, not 3')
+    call c%get_slip(mode(:2), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'slip has size 2, not 3')
     call c%get_count(99, i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 99 is no count')
     call c%get_real(-1, x, stat, msg)

@@ -208,12 +208,12 @@ C
       DO 10 I = 1, 6
          MODE(I) = 9
    10 CONTINUE
-      CALL TRBMOD(IH, 4, MODE(2), IERR)
-      CALL CMPI('TRBMOD', IERR)
+      CALL TRBSLP(IH, 4, MODE(2), IERR)
+      CALL CMPI('TRBSLP', IERR)
       DO 20 I = 1, 4
          X(I) = MODE(I + 1)
    20 CONTINUE
-      CALL CMPR('TRBMOD', 4, X)
+      CALL CMPR('TRBSLP', 4, X)
       CALL EXPECT('around', MODE(1) .EQ. 9 .AND. MODE(6) .EQ. 9)
       DO 30 I = 0, 8
          CALL TRBCNT(IH, I, IVAL, IERR)
@@ -418,8 +418,8 @@ C     Every routine that takes a handle, with one that is none.
          CALL WANTED('TRBBOX', IH, IERR, 1, SAYS)
          CALL TRBACC(IH, N, X, X, IERR)
          CALL WANTED('TRBACC', IH, IERR, 1, SAYS)
-         CALL TRBMOD(IH, N, ICOL, IERR)
-         CALL WANTED('TRBMOD', IH, IERR, 1, SAYS)
+         CALL TRBSLP(IH, N, ICOL, IERR)
+         CALL WANTED('TRBSLP', IH, IERR, 1, SAYS)
          CALL TRBCNT(IH, 0, J, IERR)
          CALL WANTED('TRBCNT', IH, IERR, 1, SAYS)
          CALL TRBVAL(IH, 0, Y(1), IERR)
@@ -517,8 +517,8 @@ C     A number of contacts that is not that of the handle
          CALL TRBACC(IH, NM, X, X, IERR)
          CALL WANTED('TRBACC', IH, IERR, 6, SAYS)
          MODE(1) = -777
-         CALL TRBMOD(IH, NM, MODE, IERR)
-         CALL WANTED('TRBMOD', IH, IERR, 6, SAYS)
+         CALL TRBSLP(IH, NM, MODE, IERR)
+         CALL WANTED('TRBSLP', IH, IERR, 6, SAYS)
    30 CONTINUE
       SAME = MODE(1) .EQ. -777
       DO 40 K = 1, 4
@@ -562,7 +562,8 @@ C     Values
      1'coupling = 2 is neither TRIBO_CONSISTENT nor TRIBO_PARTITION')
       CALL TRBSHR(IH, 2, IERR)
       CALL WANTED('TRBSHR', IH, IERR, 5,
-     1'sharing = 2 is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST')
+     1'sharing = 2 is neither TRIBO_SHARE_LEAST_NORM nor '//
+     2'TRIBO_SHARE_PREVIOUS')
       CALL TRBOPD(IH, N, NEG, IERR)
       CALL WANTED('TRBOPD', IH, IERR, 3, 'r(3) = -1 is negative')
       CALL TRBOPF(IH, N, Q, 2, IERR)
@@ -612,8 +613,8 @@ C     Values
       CALL TRBTPR(IH, N, X, X, Y, IERR)
       CALL WANTED('TRBTPR', IH, IERR, 8,
      1    'no tribo_balance_tangent since the last balance or change')
-      CALL TRBMOD(IH, N, MODE, IERR)
-      CALL WANTED('TRBMOD', IH, IERR, 8,
+      CALL TRBSLP(IH, N, MODE, IERR)
+      CALL WANTED('TRBSLP', IH, IERR, 8,
      1    'no tribo_balance or tribo_step_force since the last tribo_'//
      2            'solve_box or operator')
       CALL TRBCNT(IH, 99, J, IERR)

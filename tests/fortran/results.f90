@@ -204,9 +204,9 @@ contains
     real(dp) :: value
 
     mode = 9
-    call c%get_modes(mode, stat)
-    call compare('get_modes', stat)
-    call compare('get_modes', real(mode, dp))
+    call c%get_slip(mode, stat)
+    call compare('get_slip', stat)
+    call compare('get_slip', real(mode, dp))
     do which = 0, counts - 1
       call c%get_count(which, count, stat)
       call compare('get_count', stat)
@@ -346,9 +346,9 @@ contains
       call c%balance(scene_v(:, 2), scene_a(:, 2), f=f(:, 2))
       call c%balance(scene_v(:, 2), scene_a(:, 2), feq(:, 2))
       call require(all(same_bits(f(:, 1), f(:, 2)) .and. same_bits(feq(:, 1), feq(:, 2))), 'balance of one output')
-      call c%get_modes(straight)
-      call c%get_modes(mode(2*n:1:-2))
-      call require(all(mode(2*n:1:-2) == straight) .and. all(mode(1::2) == 9), 'sections: get_modes')
+      call c%get_slip(straight)
+      call c%get_slip(mode(2*n:1:-2))
+      call require(all(mode(2*n:1:-2) == straight) .and. all(mode(1::2) == 9), 'sections: get_slip')
       call c%balance_tangent(scene_v(:, 2), scene_a(:, 2), df_dv=jacobian(:n, :, 1), df_da=jacobian(:n, :, 2))
       call c%balance_tangent(scene_v(:, 2), scene_a(:, 2), df_da=q(:, :, 2))
       call c%balance_tangent(scene_v(:, 2), scene_a(:, 2), df_dv=q(:, :, 1))
@@ -426,7 +426,7 @@ contains
     call c%solve_box(x, x, x, x)
     call c%step_force(1.0_dp, x, x)
     call c%accept(x, x)
-    call c%get_modes(mode)
+    call c%get_slip(mode)
     call c%get_count(TRIBO_COUNT_STUCK, i)
     call require(i == 0 .and. mass%calls == 0, 'no contacts')
   end subroutine no_contacts

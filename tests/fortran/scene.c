@@ -97,7 +97,7 @@ static void settings(const tribo_context *c)
 static void queries(const tribo_context *c)
 {
     signed char mode[N] = {9, 9, 9, 9};
-    put_one(tribo_get_modes(c, mode));
+    put_one(tribo_get_slip(c, mode));
     for (size_t i = 0; i < N; i++) {
         put_one(mode[i]);
     }

@@ -149,10 +149,10 @@ contains
     call compare('add_load', stat)
     call sys%add_load(0.0_dp, sine, stat=stat)
     call compare('add_load', stat)
-    call sys%add_motion(0.75_dp, motion, stat=stat)
-    call compare('add_motion', stat)
-    call sys%add_motion(0.5_dp, sine=limits, stat=stat)
-    call compare('add_motion', stat)
+    call sys%add_base_motion(0.75_dp, motion, stat=stat)
+    call compare('add_base_motion', stat)
+    call sys%add_base_motion(0.5_dp, sine=limits, stat=stat)
+    call compare('add_base_motion', stat)
     if (reduced) then
       call sys%set_damping_ratio(0.02_dp, stat)
       call compare('set_damping_ratio', stat)
@@ -272,8 +272,8 @@ contains
     call a%add_load(1.0_dp, cosine, sine)
     call b%add_load(1.0_dp, rows(1, :dof), rows(2, 3*dof:2*dof + 1:-1))
     rows(1, :ncontact) = motion
-    call a%add_motion(1.0_dp, motion, motion)
-    call b%add_motion(1.0_dp, rows(1, :ncontact), rows(1, :ncontact))
+    call a%add_base_motion(1.0_dp, motion, motion)
+    call b%add_base_motion(1.0_dp, rows(1, :ncontact), rows(1, :ncontact))
     call a%add_load_table(times, values, sine)
     rows(1, 1::4) = times
     rows(1, 2::4) = values

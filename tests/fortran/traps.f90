@@ -120,7 +120,7 @@ contains
       end if
       call c%step_force(1e-3_dp, v, f)
       call require_finite(f, 'step_force')
-      call c%get_modes(mode)
+      call c%get_slip(mode)
       call c%solve_box(a, -limit, limit, f)
       call require_finite(f, 'solve_box')
       call c%force_tangent(v, feq, f, dv, dfeq, dlimit)

@@ -393,7 +393,7 @@ static void check_modes(const struct slot *s, const double *f)
 {
     signed char mode[MOST];
     size_t stuck = 0, counted;
-    require(tribo_get_modes(s->c, mode) == TRIBO_OK, "modes");
+    require(tribo_get_slip(s->c, mode) == TRIBO_OK, "modes");
     for (size_t i = 0; i < s->n; i++) {
         const int slides = fabs(f[i]) == s->limit[i], want = s->limit[i] == 0.0 ? 2 : !slides ? 0 : f[i] < 0.0 ? 1 : -1;
         require(mode[i] == want || s->law == TRIBO_SMOOTH, "mode %d, f %g of %g", mode[i], f[i], s->limit[i]);

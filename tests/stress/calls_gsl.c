@@ -217,7 +217,7 @@ static void load(struct bytes *b, struct scene *s)
         check(s, tribo_system_add_load(s->sys, omega, some ? cosine : NULL, some < 2 ? sine : NULL));
         break;
     case 1:
-        check(s, tribo_system_add_motion(s->sys, omega, some ? cosine : NULL, some < 2 ? sine : NULL));
+        check(s, tribo_system_add_base_motion(s->sys, omega, some ? cosine : NULL, some < 2 ? sine : NULL));
         break;
     case 2:
         check(s, tribo_system_add_load_table(s->sys, knots, time, value, choose(b, 16) ? cosine : NULL));

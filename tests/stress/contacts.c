@@ -117,7 +117,7 @@ static void run(int seed)
     assert_ok(tribo_set_law(c, law));
     assert_ok(tribo_set_limit(c, s.limit));
     assert_ok(tribo_set_epsilon(c, s.epsilon));
-    assert_ok(tribo_set_sharing(c, seed % 3 ? TRIBO_SHARE_LEAST : TRIBO_SHARE_LAST));
+    assert_ok(tribo_set_sharing(c, seed % 3 ? TRIBO_SHARE_LEAST_NORM : TRIBO_SHARE_PREVIOUS));
     for (int k = 0; k < 40; k++) {
         disturb(&s, &g);
         const int step = below(&g, 3) == 0;

@@ -181,7 +181,7 @@ tribo_system *structure_system(const struct structure *s)
     require(status == TRIBO_OK, "%s: %d: %s", s->name, status, text);
     for (size_t k = 0; k < 2; k++) {
         assert_ok(tribo_system_add_load(sys, s->load[k].omega, s->load[k].cosine, s->load[k].sine));
-        assert_ok(tribo_system_add_motion(sys, s->motion[k].omega, s->motion[k].cosine, s->motion[k].sine));
+        assert_ok(tribo_system_add_base_motion(sys, s->motion[k].omega, s->motion[k].cosine, s->motion[k].sine));
     }
     assert_ok(tribo_set_limit(tribo_system_context(sys), s->limit));
     return sys;

@@ -23,7 +23,7 @@ static void work(tribo_context *c, const struct problem *p)
     tribo_step_force(c, 0.1, p->v, f);
     tribo_solve_box(c, p->a, p->v, p->v, f);
     tribo_accept(c, p->v, feq);
-    tribo_get_modes(c, mode);
+    tribo_get_slip(c, mode);
     tribo_get_count(c, TRIBO_COUNT_STUCK, &count);
     tribo_set_limit(c, p->limit);
     tribo_set_epsilon(c, p->epsilon);

@@ -429,12 +429,12 @@ TEST(modes)
     size_t stuck = 0;
     tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
     stain(mode, sizeof mode);
-    assert_status(tribo_get_modes(c, mode), TRIBO_ERR_STATE);
+    assert_status(tribo_get_slip(c, mode), TRIBO_ERR_STATE);
     ck_assert(stained(mode, sizeof mode));
     ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 0);
     for (int step = 0; step < 2; step++) {
         assert_ok(step ? tribo_step_force(c, 0.1, p.v, x.f) : tribo_balance(c, p.v, p.a, NULL, x.f));
-        assert_ok(tribo_get_modes(c, mode));
+        assert_ok(tribo_get_slip(c, mode));
         stuck = 0;
         for (size_t i = 0; i < p.n; i++) {
             const int slides = fabs(x.f[i]) == p.limit[i], want = p.limit[i] > 0.0 ? slides ? (int)-sgn(x.f[i]) : 0 : 2;
@@ -444,10 +444,10 @@ TEST(modes)
         ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), stuck);
         /* a call that is refused changes nothing; another operator or forces in a box of the caller's own leave no modes */
         assert_status(tribo_balance(c, NULL, p.a, NULL, x.f), TRIBO_ERR_NULL);
-        assert_ok(tribo_get_modes(c, mode));
+        assert_ok(tribo_get_slip(c, mode));
         assert_ok(step ? tribo_set_operator_dense(c, p.r) : tribo_solve_box(c, p.a, none, none, x.f));
         stain(mode, sizeof mode);
-        assert_status(tribo_get_modes(c, mode), TRIBO_ERR_STATE);
+        assert_status(tribo_get_slip(c, mode), TRIBO_ERR_STATE);
         ck_assert(stained(mode, sizeof mode));
         ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 0);
     }
@@ -467,7 +467,7 @@ TEST(modes_of_the_smooth_law)
     assert_ok(tribo_set_limit_all(c, 2.0));
     assert_ok(tribo_set_epsilon_all(c, 1.0));
     assert_ok(tribo_balance(c, v, rest, NULL, NULL));
-    assert_ok(tribo_get_modes(c, mode));
+    assert_ok(tribo_get_slip(c, mode));
     ck_assert_mem_eq(mode, want, sizeof want);
     tribo_destroy(c);
 }

@@ -282,9 +282,9 @@ TEST(shares_that_last)
     }
     tribo_context *c = problem_context(&p, TRIBO_COULOMB, TRIBO_CONSISTENT),
                   *d = problem_context(&p, TRIBO_COULOMB, TRIBO_CONSISTENT);
-    assert_ok(tribo_set_sharing(c, TRIBO_SHARE_LAST));
+    assert_ok(tribo_set_sharing(c, TRIBO_SHARE_PREVIOUS));
     assert_ok(tribo_get_sharing(c, &sharing));
-    ck_assert_int_eq(sharing, TRIBO_SHARE_LAST);
+    ck_assert_int_eq(sharing, TRIBO_SHARE_PREVIOUS);
     const double step = 0.999 * total / 400.0;
     for (int k = 0; k <= 400; k++) {
         double torque = 0.0, same = 0.0;
@@ -653,7 +653,7 @@ TEST(mostly_sliding)
             assert_close(f[i], law_force(law, v[i], want, limit[i], epsilon[i]), 1e-14);
             assert_close(call % 2 ? feq[i] : want, want, 1e-14);
         }
-        assert_ok(tribo_get_modes(c, mode));
+        assert_ok(tribo_get_slip(c, mode));
         for (size_t i = 0; i < SCENE && law != TRIBO_SMOOTH; i++) {
             const int holds = fabs(f[i]) < limit[i];
             ck_assert_int_eq(mode[i], limit[i] == 0.0 ? 2 : holds ? 0 : f[i] < 0.0 ? 1 : -1);
@@ -668,7 +668,7 @@ TEST(mostly_sliding)
         assert_ok(tribo_clone(c, &d));
         assert_ok(tribo_set_limit(c, limit));
         for (int clone = 0; clone < 2; clone++) {
-            assert_ok(tribo_get_modes(clone ? d : c, before));
+            assert_ok(tribo_get_slip(clone ? d : c, before));
             ck_assert_mem_eq(before, mode, sizeof mode);
             ck_assert_uint_eq(count_of(clone ? d : c, TRIBO_COUNT_STUCK), stuck);
         }
@@ -683,7 +683,7 @@ TEST(mostly_sliding)
         assert_status(tribo_balance(c, v, a, NULL, again), TRIBO_ERR_NOT_FINITE);
         assert_says(tribo_message(c), bad == v ? "v[1799]" : "a[1799]");
         assert_all_exact(again, f, SCENE);
-        assert_ok(tribo_get_modes(c, before));
+        assert_ok(tribo_get_slip(c, before));
         ck_assert_mem_eq(before, mode, sizeof mode);
         bad[SCENE - 1] = good;
     }
@@ -882,7 +882,7 @@ TEST(shares_after_sliding)
     assert_ok(tribo_set_operator_dense(c, r));
     assert_ok(tribo_set_limit_all(c, 1.0));
     assert_ok(tribo_set_epsilon_all(c, 1.0));
-    assert_ok(tribo_set_sharing(c, TRIBO_SHARE_LAST));
+    assert_ok(tribo_set_sharing(c, TRIBO_SHARE_PREVIOUS));
     assert_ok(tribo_balance(c, rest, pull, NULL, f));
     assert_ok(tribo_balance(c, slides, none, NULL, f));
     assert_ok(tribo_balance(c, rest, none, NULL, f));

@@ -26,7 +26,7 @@ static struct fingerprint fingerprint(const tribo_context *ctx)
     assert_ok(tribo_get_epsilon(c, x.epsilon));
     assert_ok(tribo_force(c, rest, beyond, x.reversal));
     assert_ok(tribo_balance(c, v, a, x.feq, x.f));
-    x.marks = count_of(c, TRIBO_COUNT_MEMORY);
+    x.marks = count_of(c, TRIBO_COUNT_REVERSALS);
     tribo_destroy(c);
     return x;
 }
@@ -116,7 +116,7 @@ TEST(no_context)
         tribo_balance_tangent(null, good, good, out.dv, out.f, out.square[0], out.square[1]),
         tribo_step_force(null, 1.0, good, out.f),
         tribo_accept(null, good, good),
-        tribo_get_modes(null, out.mode),
+        tribo_get_slip(null, out.mode),
         tribo_get_count(null, TRIBO_COUNT_RANK, &out.count),
         tribo_get_real(null, TRIBO_REAL_RESIDUAL, &out.value),
     };
@@ -145,8 +145,8 @@ TEST(getters)
     REFUSED(TRIBO_ERR_NULL, "coupling is NULL", tribo_get_coupling(c, NULL));
     REFUSED(TRIBO_ERR_NULL, "limit is NULL", tribo_get_limit(c, NULL));
     REFUSED(TRIBO_ERR_NULL, "epsilon is NULL", tribo_get_epsilon(c, NULL));
-    REFUSED(TRIBO_ERR_STATE, "tribo_balance", tribo_get_modes(c, out.mode));
-    REFUSED(TRIBO_ERR_NULL, "mode is NULL", tribo_get_modes(c, NULL));
+    REFUSED(TRIBO_ERR_STATE, "tribo_balance", tribo_get_slip(c, out.mode));
+    REFUSED(TRIBO_ERR_NULL, "mode is NULL", tribo_get_slip(c, NULL));
     REFUSED(TRIBO_ERR_NULL, "value is NULL", tribo_get_count(c, TRIBO_COUNT_STUCK, NULL));
     REFUSED(TRIBO_ERR_RANGE, "sharing = 2", tribo_set_sharing(c, 2));
     REFUSED(TRIBO_ERR_NULL, "sharing is NULL", tribo_get_sharing(c, NULL));

@@ -339,9 +339,9 @@ TEST(memory)
             const double v[2] = {0.1 * cases[k].v, before ? 9.0 : 0.0}, feq[2] = {cases[k].feq, 0.0};
             size_t marks[2];
             assert_ok(tribo_accept(c, before ? fast : rest, rest));
-            assert_ok(tribo_get_count(c, TRIBO_COUNT_MEMORY, &marks[0]));
+            assert_ok(tribo_get_count(c, TRIBO_COUNT_REVERSALS, &marks[0]));
             assert_ok(tribo_accept(c, v, feq));
-            assert_ok(tribo_get_count(c, TRIBO_COUNT_MEMORY, &marks[1]));
+            assert_ok(tribo_get_count(c, TRIBO_COUNT_REVERSALS, &marks[1]));
             const int after = cases[k].after < 0 ? before : cases[k].after;
             ck_assert_msg(remembers(c, 0) == after, "case %zu, bit %d before", k, before);
             ck_assert_int_eq(remembers(c, 1), before);
@@ -358,7 +358,7 @@ TEST(memory_of_other_laws)
     tribo_context *c = reversal_contacts();
     assert_ok(tribo_set_law(c, TRIBO_QUINN));
     assert_ok(tribo_accept(c, fast, rest));
-    assert_ok(tribo_get_count(c, TRIBO_COUNT_MEMORY, &marks));
+    assert_ok(tribo_get_count(c, TRIBO_COUNT_REVERSALS, &marks));
     ck_assert_uint_eq(marks, 0);
     assert_ok(tribo_set_law(c, TRIBO_QUINN_REVERSAL));
     ck_assert_int_eq(remembers(c, 0), 0);

@@ -64,7 +64,7 @@ static void *share(void *data)
         j->good &= tribo_get_limit(c, x) == TRIBO_OK && tribo_get_epsilon(c, x) == TRIBO_OK;
         j->good &= tribo_get_law(c, &number) == TRIBO_OK && tribo_get_coupling(c, &number) == TRIBO_OK;
         j->good &= tribo_get_ncontact(c, &count) == TRIBO_OK && tribo_get_sharing(c, &number) == TRIBO_OK;
-        j->good &= tribo_get_modes(c, mode) == TRIBO_OK && tribo_get_count(c, TRIBO_COUNT_STUCK, &count) == TRIBO_OK;
+        j->good &= tribo_get_slip(c, mode) == TRIBO_OK && tribo_get_count(c, TRIBO_COUNT_STUCK, &count) == TRIBO_OK;
         j->good &= tribo_get_real(c, TRIBO_REAL_MAX_RATE, x) == TRIBO_OK && tribo_get_count(c, -1, &count) == TRIBO_ERR_RANGE;
         if (k % 20 == 0) {
             j->good &= tribo_clone(c, &own) == TRIBO_OK;

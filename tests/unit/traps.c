@@ -200,7 +200,7 @@ static void ask_queries(struct scene *s)
         size_t value;
         assert_quiet(tribo_get_count(s->c, which, &value));
     }
-    quiet(tribo_get_modes(s->c, mode));
+    quiet(tribo_get_slip(s->c, mode));
     assert_quiet(tribo_clone(s->c, &copy));
     tribo_destroy(s->c);
     s->c = copy;

@@ -20,7 +20,7 @@ static void add_load(tribo_system *sys)
 
 static void add_motion(tribo_system *sys)
 {
-    assert_ok(tribo_system_add_motion(sys, 0.0, model->motion[1], NULL));
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, model->motion[1], NULL));
 }
 
 static const double time[] = {0.0, 1.5, 4.0}, value[] = {0.0, 1.0, -1.0};
@@ -182,7 +182,7 @@ TEST(ground_that_starts)
     tribo_driver *drv = driver_create(sys, method, 5e-4, 1e-8);
     driver_advance(drv, &t, 1.0, y);
     assert_close(y[0], 0.5, 1e-9);
-    assert_ok(tribo_system_add_motion(sys, 0.0, &speed, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, &speed, NULL));
     driver_advance(drv, &t, 1.5, y);
     const double tolerance = strcmp(method, "rk1imp") ? 1e-6 : 1e-4;
     assert_close(y[0], 1.0 - 0.5 * cos(0.5), tolerance);

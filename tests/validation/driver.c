@@ -242,7 +242,7 @@ static tribo_system *torn(void)
     tribo_system *sys;
     assert_ok(tribo_system_linear(&sys, 1, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
     tribo_context *c = tribo_system_context(sys);
-    assert_ok(tribo_system_add_motion(sys, 1.0, NULL, sine));
+    assert_ok(tribo_system_add_base_motion(sys, 1.0, NULL, sine));
     assert_ok(tribo_set_coupling(c, TRIBO_PARTITION));
     assert_ok(tribo_set_limit_all(c, 0.1));
     assert_ok(tribo_set_epsilon_all(c, 0.1));

@@ -111,7 +111,7 @@ TEST(rest_on_a_belt)
     struct rest rest = {block(1.0, 0.1, 2.0), 0, 0};
     tribo_system *const both[] = {sys, rest.sys};
     for (size_t k = 0; k < 2; k++) {
-        assert_ok(tribo_system_add_motion(both[k], 1.0, NULL, &one));
+        assert_ok(tribo_system_add_base_motion(both[k], 1.0, NULL, &one));
         assert_ok(tribo_system_add_load_table(both[k], 2, times, values, &one));
     }
     tribo_driver *drv = driver_create(sys, "event", 1.0, 1e-9);
@@ -342,8 +342,8 @@ TEST(driven_from_both_sides)
     double y[3] = {0};
     tribo_system *sys;
     assert_ok(tribo_system_linear(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
-    assert_ok(tribo_system_add_motion(sys, 1.0, shake, NULL));
-    assert_ok(tribo_system_add_motion(sys, 0.0, shift, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, 1.0, shake, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, 0.0, shift, NULL));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     go(sys, methods[_i], 1e-13, 20.0, y);
     assert_close(y[2], 2.0 * (20.0 - sin(20.0)), 1e-8);
@@ -469,7 +469,7 @@ TEST(on_the_edge)
     const double one = 1.0;
     double t = 0.0, y[3] = {0}, excess = 1.0, backslip = 1.0;
     tribo_system *sys = block(1.0, 1.0, 1.0);
-    assert_ok(tribo_system_add_motion(sys, 1.0, NULL, &one));
+    assert_ok(tribo_system_add_base_motion(sys, 1.0, NULL, &one));
     tribo_driver *drv = driver_create(sys, methods[_i], 1.0, 1e-12);
     driver_advance(drv, &t, 200.0, y);
     assert_close(y[0], 1.0 - cos(t), 1e-11);

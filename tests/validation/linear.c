@@ -44,7 +44,7 @@ TEST(belt_by_matrices)
     tribo_system *sys, *linear;
     assert_ok(tribo_system_belt(&sys, 2.0, 0.5, 0.25, 1.0, 0.5));
     assert_ok(tribo_system_linear(&linear, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
-    assert_ok(tribo_system_add_motion(linear, 0.5, NULL, motion));
+    assert_ok(tribo_system_add_base_motion(linear, 0.5, NULL, motion));
     assert_ok(tribo_set_limit(tribo_system_context(linear), limit));
     assert_ok(tribo_set_epsilon_step(tribo_system_context(linear), STEP, 1.0));
     assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), STEP, 1.0));

@@ -81,7 +81,7 @@ static int make_loaded(tribo_system **sys, tribo_driver **drv)
     (void)drv;
     int status = make_linear(sys, model, 0, 3);
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
-    status = status ? status : tribo_system_add_motion(*sys, 1.0, NULL, model->motion[0]);
+    status = status ? status : tribo_system_add_base_motion(*sys, 1.0, NULL, model->motion[0]);
     return status ? status : tribo_system_set_damping_ratio(*sys, 0.1);
 }
 
@@ -92,7 +92,7 @@ static int advance_exact(tribo_system **sys, tribo_driver **drv, int damped)
     int status = make_linear(sys, model, damped, 0);
     status = status ? status : tribo_set_limit_all(tribo_system_context(*sys), 1.0);
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
-    status = status ? status : tribo_system_add_motion(*sys, 1.0, NULL, model->motion[0]);
+    status = status ? status : tribo_system_add_base_motion(*sys, 1.0, NULL, model->motion[0]);
     status = status ? status : tribo_driver_create(drv, *sys, "exact", 1.0, 0.0, 0.0);
     return status ? status : tribo_driver_advance(*drv, &t, 0.1, y);
 }

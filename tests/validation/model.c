@@ -54,7 +54,7 @@ void model_finish(const struct model *m, tribo_system *sys, double epsilon)
 {
     const double limit[CONTACTS] = {0.5, 1.0, 0.25};
     assert_ok(tribo_system_add_load(sys, m->load_omega, m->load[0], m->load[1]));
-    assert_ok(tribo_system_add_motion(sys, m->motion_omega, m->motion[0], m->motion[1]));
+    assert_ok(tribo_system_add_base_motion(sys, m->motion_omega, m->motion[0], m->motion[1]));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), epsilon));
 }

@@ -21,7 +21,7 @@ int pile_create(tribo_system **sys, double ratio, int even)
     int status = tribo_system_linear(sys, N, N, mass, NULL, stiffness, direction, 0, NULL, 0);
     if (!status) {
         status = tribo_set_limit(tribo_system_context(*sys), limit);
-        status = status ? status : tribo_system_add_motion(*sys, 0.5, NULL, belt);
+        status = status ? status : tribo_system_add_base_motion(*sys, 0.5, NULL, belt);
     }
     return status;
 }

@@ -224,11 +224,11 @@ TEST(load_errors)
     REFUSED(TRIBO_ERR_NOT_FINITE, "cosine[2] = nan", tribo_system_add_load(sys, 1.0, bad, NULL));
     REFUSED(TRIBO_ERR_NOT_FINITE, "sine[2] = nan", tribo_system_add_load(sys, 1.0, NULL, bad));
     REFUSED(TRIBO_ERR_NOT_FINITE, "omega = inf", tribo_system_add_load(sys, HUGE_VAL, NULL, m.load[0]));
-    REFUSED(TRIBO_ERR_NOT_FINITE, "cosine[2] = nan", tribo_system_add_motion(sys, 1.0, bad, NULL));
-    REFUSED(TRIBO_ERR_NOT_FINITE, "sine[2] = nan", tribo_system_add_motion(sys, 1.0, NULL, bad));
-    REFUSED(TRIBO_ERR_NOT_FINITE, "omega = nan", tribo_system_add_motion(sys, NAN, NULL, m.motion[0]));
+    REFUSED(TRIBO_ERR_NOT_FINITE, "cosine[2] = nan", tribo_system_add_base_motion(sys, 1.0, bad, NULL));
+    REFUSED(TRIBO_ERR_NOT_FINITE, "sine[2] = nan", tribo_system_add_base_motion(sys, 1.0, NULL, bad));
+    REFUSED(TRIBO_ERR_NOT_FINITE, "omega = nan", tribo_system_add_base_motion(sys, NAN, NULL, m.motion[0]));
     assert_status(tribo_system_add_load(NULL, 1.0, m.load[0], NULL), TRIBO_ERR_NULL);
-    assert_status(tribo_system_add_motion(NULL, 1.0, m.motion[0], NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_system_add_base_motion(NULL, 1.0, m.motion[0], NULL), TRIBO_ERR_NULL);
     assert_ok(tribo_system_add_load(sys, 1.0, NULL, NULL));
     rate_of(sys, 0.3, y, after);
     assert_all_exact(after, before, DIMENSION);

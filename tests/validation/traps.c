@@ -21,7 +21,7 @@ static tribo_system *immovable(void)
     assert_ok(tribo_system_linear(&s, 2, 3, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(s), limit));
     assert_ok(tribo_system_add_load(s, 1.3, NULL, load));
-    assert_ok(tribo_system_add_motion(s, 0.7, NULL, driven));
+    assert_ok(tribo_system_add_base_motion(s, 0.7, NULL, driven));
     return s;
 }
 
