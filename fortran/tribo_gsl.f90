@@ -55,9 +55,11 @@ module tribo_gsl
   type, extends(tribo_object), public :: tribo_system
   contains
     procedure :: oscillator, chain, belt
+    procedure :: clone => clone_system
     procedure, private :: linear_dense, linear_sparse
     generic :: linear => linear_dense, linear_sparse
     procedure :: add_load, add_base_motion, add_load_table
+    procedure :: clear_loads
     procedure :: set_limit_table, set_damping_ratio
     procedure :: get_frequencies, expand
     procedure :: ndof, ncontact, dimension
@@ -182,6 +184,19 @@ module tribo_gsl
       real(c_double), value :: omega
       integer(c_int) :: status
     end function c_add_base_motion
+
+    function c_clear_loads(sys) result(status) bind(c, name='tribo_system_clear_loads')
+      import :: c_int, c_ptr
+      type(c_ptr), value :: sys
+      integer(c_int) :: status
+    end function c_clear_loads
+
+    function c_clone_system(sys, copy) result(status) bind(c, name='tribo_system_clone')
+      import :: c_int, c_ptr
+      type(c_ptr), value :: sys
+      type(c_ptr), intent(inout) :: copy
+      integer(c_int) :: status
+    end function c_clone_system
 
     function c_add_load_table(sys, knots, time, value, pattern) result(status) bind(c, name='tribo_system_add_load_table')
       import :: c_double, c_int, c_ptr, c_size_t
@@ -476,6 +491,24 @@ contains
     call finish(w, stat, errmsg)
   end subroutine oscillator
 
+  !> A copy that shares nothing, with loads, motions, tables, and the context and its settings; e.g. one a thread.
+  subroutine clone_system(this, copy, stat, errmsg)
+    class(tribo_system), intent(in) :: this
+    class(tribo_system), intent(inout) :: copy
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(held_system), pointer :: held
+    type(work) :: w
+    type(c_ptr) :: sys
+
+    call find_system(this, held, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_clone_system(held%sys, sys)
+      call adopt_system(copy, w, sys, int(held%given))
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine clone_system
+
   !> n >= 2 blocks on a frictional surface, pulled by alpha*sin(omega*t) at the first one. Fig. 8. limit is the paper's mu N_i; the
   !> context keeps the paper's scaling, limits mu N_i and R = 1; the last entry of the state is the paper's D.
   subroutine chain(this, n, limit, alpha, omega, stat, errmsg)
@@ -626,6 +659,19 @@ contains
     if (w%status == TRIBO_OK) w%status = c_add_base_motion(held%sys, omega, at(1), at(2))
     call finish(w, stat, errmsg)
   end subroutine add_base_motion
+
+  !> Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay.
+  subroutine clear_loads(this, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(held_system), pointer :: held
+    type(work) :: w
+
+    call find_system(this, held, w)
+    if (w%status == TRIBO_OK) w%status = c_clear_loads(held%sys)
+    call finish(w, stat, errmsg)
+  end subroutine clear_loads
 
   !> Adds a load that follows a table, p(t) = ... + pattern*value(t), with value linear between its knots at time, which ascends,
   !> and constant outside. pattern: as in add_load.

@@ -69,9 +69,16 @@ TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix 
 
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 
+/* A copy that shares nothing, with loads, motions, tables, and the context and its settings; e.g. one a thread.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_system_clone(const tribo_system *sys, tribo_system **copy);
+
 /* Adds a harmonic to the load, p(t) += cosine cos(omega t) + sine sin(omega t).
  * cosine, sine  [ndof of the matrices given] in, each or NULL; forces, also for a reduced system */
 TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
+
+/* Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay. */
+TRIBO_API int tribo_system_clear_loads(tribo_system *sys);
 
 /* Adds a harmonic to the driven velocities of the contacts, b(t) += cosine cos(omega t) + sine sin(omega t), e.g. of a belt.
  * cosine, sine  [ncontact] in, each or NULL */

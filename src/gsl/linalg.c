@@ -78,6 +78,27 @@ void tribo_cholesky_free(struct cholesky *c)
     memset(c, 0, sizeof *c);
 }
 
+/* count times size bytes, or NULL for NULL; *done becomes 0 if out of memory. */
+static void *copy_of(const void *from, size_t count, size_t size, int *done)
+{
+    void *to = from ? malloc(count * size + 1) : NULL;
+    if (to) {
+        memcpy(to, from, count * size);
+    }
+    *done &= to || !from;
+    return to;
+}
+
+int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
+{
+    int done = 1;
+    c->n = from->n;
+    c->factor = copy_of(from->factor, from->n * from->n, sizeof *c->factor, &done);
+    c->order = copy_of(from->order, from->n, sizeof *c->order, &done);
+    c->root = copy_of(from->root, from->n, sizeof *c->root, &done);
+    return done;
+}
+
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot)
 {
     const int diagonal = tribo_matrix_is_diagonal(a);

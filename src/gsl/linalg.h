@@ -23,6 +23,7 @@ struct cholesky {
 
 /* Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE with the place and value of a pivot that is not positive. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
+int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from); /* 1, or 0 if out of memory */
 void tribo_cholesky_free(struct cholesky *c);
 
 /* x [n][cols] = S' x, and x = S x; one after the other they solve A y = x. */

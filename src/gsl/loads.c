@@ -34,6 +34,70 @@ void tribo_loads_free(tribo_system *sys)
     free_table(&sys->limits);
 }
 
+/* ---------------------------------------------------------------------------------------------------------------------- copies */
+
+/* A copy of the table; 0 if out of memory. */
+static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
+{
+    t->knots = knots;
+    t->time = malloc((knots + 1) * sizeof *t->time);
+    t->value = malloc((knots * columns + 1) * sizeof *t->value);
+    if (!t->time || !t->value) {
+        return 0;
+    }
+    memcpy(t->time, time, knots * sizeof *time);
+    memcpy(t->value, value, knots * columns * sizeof *value);
+    return 1;
+}
+
+static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
+{
+    const size_t bytes = from->count * sizeof *from->cosine;
+    *to = *from;
+    to->index = malloc(from->count * sizeof *to->index + 1);
+    to->cosine = malloc(bytes + 1);
+    to->sine = malloc(bytes + 1);
+    if (!to->index || !to->cosine || !to->sine) {
+        return 0;
+    }
+    memcpy(to->index, from->index, from->count * sizeof *to->index);
+    memcpy(to->cosine, from->cosine, bytes);
+    memcpy(to->sine, from->sine, bytes);
+    return 1;
+}
+
+/* With so many columns; pattern [ndof], if there is one. */
+static int copy_table(struct table *to, const struct table *from, size_t columns, size_t ndof)
+{
+    *to = (struct table){0};
+    if (!from->knots) {
+        return 1;
+    }
+    if (!create_table(to, from->knots, columns, from->time, from->value)) {
+        return 0;
+    }
+    to->pattern = from->pattern ? malloc(ndof * sizeof *to->pattern) : NULL;
+    if (to->pattern) {
+        memcpy(to->pattern, from->pattern, ndof * sizeof *to->pattern);
+    }
+    return to->pattern || !from->pattern;
+}
+
+int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
+{
+    sys->harmonic = malloc((from->harmonics + 1) * sizeof *sys->harmonic);
+    sys->table = malloc((from->tables + 1) * sizeof *sys->table);
+    int done = sys->harmonic && sys->table;
+    for (size_t k = 0; done && k < from->harmonics; k++) {
+        done = copy_harmonic(&sys->harmonic[sys->harmonics++], &from->harmonic[k]);
+    }
+    for (size_t k = 0; done && k < from->tables; k++) {
+        done = copy_table(&sys->table[sys->tables++], &from->table[k], 1, sys->ndof);
+    }
+    sys->base_harmonics = from->base_harmonics;
+    return done && copy_table(&sys->limits, &from->limits, sys->ncontact, 0);
+}
+
 /* ------------------------------------------------------------------------------------------------------------------ at a time */
 
 /* The knot at or before t, the first one if there is none. */
@@ -248,6 +312,29 @@ int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine,
     return add_harmonic(sys, 0, omega, cosine, sine);
 }
 
+int tribo_system_clear_loads(tribo_system *sys)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    size_t kept = 0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        if (sys->harmonic[k].moves_base) {
+            sys->harmonic[kept++] = sys->harmonic[k];
+        } else {
+            free_harmonic(&sys->harmonic[k]);
+        }
+    }
+    for (size_t k = 0; k < sys->tables; k++) {
+        free_table(&sys->table[k]);
+    }
+    sys->harmonics = kept;
+    sys->tables = 0;
+    sys->revision++;
+    sys->time = NAN;
+    return TRIBO_OK;
+}
+
 int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
     return add_harmonic(sys, 1, omega, cosine, sine);
@@ -270,20 +357,6 @@ static int check_table(const tribo_system *sys, size_t knots, size_t columns, co
         }
     }
     return check_amplitudes(sys, "value", value, knots * columns);
-}
-
-/* A copy of the table; 0 if out of memory. */
-static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
-{
-    t->knots = knots;
-    t->time = malloc((knots + 1) * sizeof *t->time);
-    t->value = malloc((knots * columns + 1) * sizeof *t->value);
-    if (!t->time || !t->value) {
-        return 0;
-    }
-    memcpy(t->time, time, knots * sizeof *time);
-    memcpy(t->value, value, knots * columns * sizeof *value);
-    return 1;
 }
 
 int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)

@@ -120,6 +120,10 @@ int tribo_matrix_identity(struct matrix *a, size_t n)
 
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
 {
+    if (!from->first) {
+        *a = (struct matrix){0};
+        return 1;
+    }
     const size_t entries = from->first[from->rows];
     if (!create(a, from->rows, from->cols, entries)) {
         return 0;

@@ -44,6 +44,58 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     return TRIBO_OK;
 }
 
+/* What tribo_system_build does not make. 1, or 0 if out of memory. */
+static int copy_rest(tribo_system *to, const tribo_system *sys)
+{
+    tribo_destroy(to->contacts);
+    to->contacts = NULL;
+    to->power = sys->power;
+    to->revision = sys->revision;
+    to->given = sys->given;
+    to->loads_accelerate = sys->loads_accelerate;
+    memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
+    const size_t entries = sys->given * sys->ndof;
+    to->modes = sys->modes ? malloc(entries * sizeof *to->modes) : NULL;
+    to->omega = sys->omega ? malloc(sys->ndof * sizeof *to->omega) : NULL;
+    if (!to->modes != !sys->modes || !to->omega != !sys->omega) {
+        return 0;
+    }
+    if (to->modes) {
+        memcpy(to->modes, sys->modes, entries * sizeof *to->modes);
+        memcpy(to->omega, sys->omega, sys->ndof * sizeof *to->omega);
+    }
+    return tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
+           tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->metric, &sys->metric) &&
+           tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);
+}
+
+int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!copy) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "copy is NULL");
+    }
+    tribo_system *to = NULL;
+    struct matrix a[4] = {{0}};
+    const struct matrix *from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response};
+    int done = 1;
+    for (size_t k = 0; done && k < 4; k++) {
+        done = tribo_matrix_copy(&a[k], from[k]);
+    }
+    for (size_t k = 0; !done && k < 4; k++) {
+        tribo_matrix_free(&a[k]);
+    }
+    done = done && tribo_system_build(&to, sys->ndof, sys->ncontact, &a[0], &a[1], &a[2], &a[3]) == TRIBO_OK;
+    if (!done || !copy_rest(to, sys)) {
+        tribo_system_destroy(to);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degrees of freedom", sys->ndof);
+    }
+    *copy = to;
+    return TRIBO_OK;
+}
+
 void tribo_system_destroy(tribo_system *sys)
 {
     if (!sys) {

@@ -74,6 +74,9 @@ size_t tribo_system_revision(const tribo_system *sys);
 
 void tribo_loads_free(tribo_system *sys);
 
+/* The loads, motions and tables of from for sys, which has none; 1, or 0 if out of memory. */
+int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
+
 /* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
 void tribo_system_set_time(tribo_system *sys, double t);
 

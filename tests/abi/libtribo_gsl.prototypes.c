@@ -10,7 +10,9 @@ TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix 
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
                                          char *message, size_t size);
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
+TRIBO_API int tribo_system_clone(const tribo_system *sys, tribo_system **copy);
 TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
+TRIBO_API int tribo_system_clear_loads(tribo_system *sys);
 TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);

@@ -98,6 +98,12 @@ static void reference(tribo_system *sys)
     for (int i = 0; i < tribo_method_count(); i++) {
         run(sys, tribo_method_name(i), 1e9);
     }
+    tribo_system *copy = NULL;
+    put_one(tribo_system_clone(sys, &copy));
+    put_one(tribo_system_clear_loads(sys));
+    run(sys, "central/fixed", 1e9);
+    run(copy, "central/fixed", 1e9);
+    tribo_system_destroy(copy);
     tribo_system_destroy(sys);
 }
 

@@ -117,6 +117,7 @@ contains
 
   subroutine reference(sys)
     type(tribo_system), intent(inout) :: sys
+    type(tribo_system) :: copy
     type(tribo_context) :: c
     integer :: stat, i
 
@@ -128,6 +129,12 @@ contains
     do i = 0, tribo_method_count() - 1
       call run(sys, tribo_method_name(i) // '  ', 1e9_dp)
     end do
+    call sys%clone(copy, stat)
+    call compare('clone', stat)
+    call sys%clear_loads(stat)
+    call compare('clear_loads', stat)
+    call run(sys, 'central/fixed', 1e9_dp)
+    call run(copy, 'central/fixed', 1e9_dp)
   end subroutine reference
 
   subroutine linear(sys, reduced)

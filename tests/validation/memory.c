@@ -85,6 +85,29 @@ static int make_loaded(tribo_system **sys, tribo_driver **drv)
     return status ? status : tribo_system_set_damping_ratio(*sys, 0.1);
 }
 
+/* Systems of all kinds, and copies of them; tables too. */
+static int make_copy(tribo_system **sys, tribo_driver **drv)
+{
+    const double times[] = {0.0, 1.0}, values[] = {0.0, 1.0}, limits[2 * CONTACTS] = {1.0};
+    tribo_system *from = NULL;
+    (void)drv;
+    int status = make_loaded(&from, drv);
+    status = status ? status : tribo_system_add_load_table(from, 2, times, values, model->load[0]);
+    status = status ? status : tribo_system_set_limit_table(from, 2, times, limits);
+    status = status ? status : tribo_system_clone(from, sys);
+    tribo_system_destroy(from);
+    return status;
+}
+
+static int make_full_copy(tribo_system **sys, tribo_driver **drv)
+{
+    tribo_system *from = NULL;
+    int status = make_full(&from, drv);
+    status = status ? status : tribo_system_clone(from, sys);
+    tribo_system_destroy(from);
+    return status;
+}
+
 /* From rest, with contacts that hold: what a held structure needs, with damping that couples its modes, or without. */
 static int advance_exact(tribo_system **sys, tribo_driver **drv, int damped)
 {
@@ -121,7 +144,8 @@ static const struct {
     int (*make)(tribo_system **sys, tribo_driver **drv);
 } makers[] = {{"chain", make_chain},       {"belt", make_belt},       {"oscillator", make_oscillator}, {"full", make_full},
               {"diagonal", make_diagonal}, {"reduced", make_reduced}, {"driver", make_driver},         {"loaded", make_loaded},
-              {"exact", make_exact},       {"coupled", make_coupled}, {"graded", make_graded}};
+              {"exact", make_exact},       {"coupled", make_coupled}, {"graded", make_graded},
+              {"copy", make_copy},         {"full copy", make_full_copy}};
 
 /* Fails one allocation after the other, until there are no more. */
 TEST(failures)
