@@ -1,7 +1,7 @@
 /* Checks of arguments. */
 #include <math.h>
 
-#include "internal.h"
+#include "context.h"
 
 /* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
 TRIBO_SIMD int tribo_all_finite(const double *x, size_t n)

@@ -5,14 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
+#include "context.h"
 
 #define DEFAULT_EPSILON 1e-6
-
-double tribo_slope(double limit, double epsilon)
-{
-    return 2.0 * quotient(limit, epsilon);
-}
 
 /* The bounds of the solver, which are the limits unless one of them is beyond what can be told apart. */
 static void find_bounds(tribo_context *ctx)
@@ -30,8 +25,8 @@ static void find_bounds(tribo_context *ctx)
         ctx->bound[i] = lesser(ctx->limit[i], TRIBO_FAR);
     }
     for (size_t g = 0; g < ctx->op.groups; g++) {
-        const struct program *p = tribo_op_program(&ctx->op, g);
-        for (size_t k = 0; k < p->island->size; k++) {
+        const struct box_qp *p = tribo_operator_problem(&ctx->op, g);
+        for (size_t k = 0; k < p->group->size; k++) {
             ctx->bound[p->member[k]] = lesser(ctx->limit[p->member[k]], tribo_most(p, k));
         }
     }
@@ -138,7 +133,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     *c = *ctx;
     c->owner = NULL;
     memset(&c->op, 0, sizeof c->op);
-    if (!allocate(c, n) || !tribo_op_copy(&c->op, &ctx->op, n)) {
+    if (!allocate(c, n) || !tribo_operator_copy(&c->op, &ctx->op, n)) {
         tribo_destroy(c);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }
@@ -168,7 +163,7 @@ void tribo_destroy(tribo_context *ctx)
     if (!ctx) {
         return;
     }
-    tribo_op_free(&ctx->op);
+    tribo_operator_free(&ctx->op);
     free(ctx->message);
     free(ctx->given);
     free(ctx->limits);
@@ -204,326 +199,4 @@ int tribo_fail_without_operator(const tribo_context *ctx)
 {
     return tribo_fail(ctx, TRIBO_ERR_STATE,
                       "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
-}
-
-int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!ncontact) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "ncontact is NULL");
-    }
-    *ncontact = ctx->n;
-    return TRIBO_OK;
-}
-
-int tribo_set_law(tribo_context *ctx, int law)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    const struct law *l = tribo_law(law);
-    if (!l) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
-    }
-    ctx->law = l;
-    ctx->linearized = 0;
-    ctx->revision++;
-    memset(ctx->moving, 0, ctx->n);
-    return TRIBO_OK;
-}
-
-int tribo_get_law(const tribo_context *ctx, int *law)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!law) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "law is NULL");
-    }
-    *law = ctx->law->id;
-    return TRIBO_OK;
-}
-
-/* Where limits are set: those of the last balance stay, for its modes. */
-static double *new_limits(tribo_context *ctx)
-{
-    if (ctx->limit_then == ctx->limit) {
-        ctx->limit = ctx->limits + (ctx->limit == ctx->limits ? ctx->n + 1 : 0);
-    }
-    return ctx->limit;
-}
-
-int tribo_set_limit(tribo_context *ctx, const double *limit)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    const int status = tribo_check_nonnegative(ctx, "limit", limit, ctx->n);
-    if (status) {
-        return status;
-    }
-    tribo_copy(new_limits(ctx), limit, ctx->n);
-    tribo_refresh(ctx);
-    return TRIBO_OK;
-}
-
-int tribo_set_limit_all(tribo_context *ctx, double limit)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!isfinite(limit)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "limit = %g is not finite", limit);
-    }
-    if (limit < 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "limit = %g is negative", limit);
-    }
-    double *each = new_limits(ctx);
-    for (size_t i = 0; i < ctx->n; i++) {
-        each[i] = limit;
-    }
-    tribo_refresh(ctx);
-    return TRIBO_OK;
-}
-
-static int copy_out(const tribo_context *ctx, const char *name, const double *from, double *to)
-{
-    if (!to && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
-    }
-    tribo_copy(to, from, ctx->n);
-    return TRIBO_OK;
-}
-
-int tribo_get_limit(const tribo_context *ctx, double *limit)
-{
-    return ctx ? copy_out(ctx, "limit", ctx->limit, limit) : TRIBO_ERR_NULL;
-}
-
-int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    const int status = tribo_need_epsilon(ctx);
-    return status ? status : copy_out(ctx, "epsilon", ctx->epsilon, epsilon);
-}
-
-int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    const int status = tribo_check_positive(ctx, "epsilon", epsilon, ctx->n);
-    if (status) {
-        return status;
-    }
-    tribo_copy(ctx->given, epsilon, ctx->n);
-    ctx->step = 0.0;
-    tribo_refresh(ctx);
-    return TRIBO_OK;
-}
-
-static int check_scalar(const tribo_context *ctx, const char *name, double x)
-{
-    if (!isfinite(x)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, x);
-    }
-    if (x <= 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, x);
-    }
-    return TRIBO_OK;
-}
-
-int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    const int status = check_scalar(ctx, "epsilon", epsilon);
-    if (status) {
-        return status;
-    }
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->given[i] = epsilon;
-    }
-    ctx->step = 0.0;
-    tribo_refresh(ctx);
-    return TRIBO_OK;
-}
-
-int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = check_scalar(ctx, "dt", dt);
-    if (!status) {
-        status = check_scalar(ctx, "lambda_dt", lambda_dt);
-    }
-    if (status) {
-        return status;
-    }
-    ctx->step = dt;
-    ctx->lambda_dt = lambda_dt;
-    tribo_refresh(ctx);
-    return TRIBO_OK;
-}
-
-int tribo_set_coupling(tribo_context *ctx, int coupling)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (coupling != TRIBO_CONSISTENT && coupling != TRIBO_PARTITION) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
-    }
-    ctx->coupling = coupling;
-    ctx->linearized = 0;
-    ctx->revision++;
-    return TRIBO_OK;
-}
-
-int tribo_get_coupling(const tribo_context *ctx, int *coupling)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!coupling) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "coupling is NULL");
-    }
-    *coupling = ctx->coupling;
-    return TRIBO_OK;
-}
-
-int tribo_set_sharing(tribo_context *ctx, int sharing)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (sharing != TRIBO_SHARE_LEAST && sharing != TRIBO_SHARE_LAST) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST", sharing);
-    }
-    ctx->sharing = sharing;
-    ctx->linearized = 0;
-    ctx->revision++;
-    return TRIBO_OK;
-}
-
-int tribo_get_sharing(const tribo_context *ctx, int *sharing)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!sharing) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "sharing is NULL");
-    }
-    *sharing = ctx->sharing;
-    return TRIBO_OK;
-}
-
-/* The force alone tells: only where a law holds the contact is it less than the limit. (The smooth law never reaches the limit;
- * it counts as holding where |v| < epsilon.) */
-static signed char mode_of(const tribo_context *ctx, size_t i)
-{
-    const double limit = ctx->limit_then[i], f = tribo_force_of(ctx, i);
-    return (signed char)(limit > 0.0 ? fabs(f) < ctx->holds * limit ? 0 : f < 0.0 ? 1 : -1 : 2);
-}
-
-int tribo_get_modes(const tribo_context *ctx, signed char *mode)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!mode && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "mode is NULL");
-    }
-    if (!ctx->balanced) {
-        return tribo_fail(ctx, TRIBO_ERR_STATE,
-                          "no tribo_balance or tribo_step_force since the last tribo_solve_box or operator");
-    }
-    for (size_t i = 0; i < ctx->n; i++) {
-        mode[i] = mode_of(ctx, i);
-    }
-    return TRIBO_OK;
-}
-
-static size_t count_stuck(const tribo_context *ctx)
-{
-    size_t stuck = 0;
-    for (size_t i = 0; ctx->balanced && i < ctx->n; i++) {
-        stuck += mode_of(ctx, i) == 0;
-    }
-    return stuck;
-}
-
-int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!value) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
-    }
-    const size_t counts[] = {
-        [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
-        [TRIBO_COUNT_RANK] = ctx->rank,
-        [TRIBO_COUNT_ISLANDS] = ctx->op.islands,
-        [TRIBO_COUNT_SOLVES] = ctx->solves,
-        [TRIBO_COUNT_SKIPPED] = ctx->skipped,
-        [TRIBO_COUNT_FACTORIZATIONS] = ctx->op.program.work.factorizations,
-        [TRIBO_COUNT_UPDATES] = ctx->op.program.work.updates,
-        [TRIBO_COUNT_MEMORY] = ctx->marks,
-        [TRIBO_COUNT_REUSED] = ctx->reused,
-    };
-    if (which < 0 || which >= (int)(sizeof counts / sizeof *counts)) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);
-    }
-    *value = counts[which];
-    return TRIBO_OK;
-}
-
-/* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
- * 2N/epsilon, or half of it for the laws that are dampers near v = 0. The eigenvalues of that are at most the largest s_i R_ii
- * times the largest eigenvalue of D^-1 R, for any set of contacts near stick. */
-static double max_rate(const tribo_context *ctx)
-{
-    double rate = 0.0;
-    for (size_t i = 0; i < ctx->n; i++) {
-        if (ctx->limit[i] > 0.0) {
-            rate = greater(rate, product(ctx->slope[i], ctx->op.diagonal[i]));
-        }
-    }
-    if (!ctx->law->uses_feq) {
-        return product(0.5 * rate, ctx->op.growth);
-    }
-    if (!ctx->law->relaxes) {
-        return 0.0;
-    }
-    return ctx->coupling == TRIBO_PARTITION ? product(rate, ctx->op.growth) : rate;
-}
-
-int tribo_get_real(const tribo_context *ctx, int which, double *value)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!value) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
-    }
-    if (which == TRIBO_REAL_RESIDUAL) {
-        *value = ctx->residual;
-        return TRIBO_OK;
-    }
-    if (which != TRIBO_REAL_MAX_RATE && which != TRIBO_REAL_MAX_STEP) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no real quantity", which);
-    }
-    const int status = tribo_need_operator(ctx);
-    if (!status) {
-        const double rate = max_rate(ctx);
-        *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
-    }
-    return status;
 }

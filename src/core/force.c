@@ -1,7 +1,7 @@
 /* Forces of contacts whose f_eq is known. */
 #include <math.h>
 
-#include "internal.h"
+#include "context.h"
 
 /* f_eq as laws read it: where it does not matter it need not be finite, nor even be set. */
 TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const double *restrict band, const double *restrict feq,
@@ -32,7 +32,7 @@ TRIBO_SIMD static void cut_all(size_t n, double *x)
     }
 }
 
-static int check(const tribo_context *ctx, const double *v, const double *feq)
+static int check_force(const tribo_context *ctx, const double *v, const double *feq)
 {
     int status = tribo_need_epsilon(ctx);
     status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
@@ -95,7 +95,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check(ctx, v, feq);
+    const int status = check_force(ctx, v, feq);
     if (status) {
         return status;
     }
@@ -112,7 +112,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check(ctx, v, feq);
+    const int status = check_force(ctx, v, feq);
     if (!status) {
         evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
     }
@@ -127,7 +127,7 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     if (!ctx->law->remembers) {
         return tribo_check_finite(ctx, "v", v, ctx->n);
     }
-    const int status = check(ctx, v, feq);
+    const int status = check_force(ctx, v, feq);
     if (status) {
         return status;
     }

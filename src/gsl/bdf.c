@@ -13,7 +13,7 @@
 
 #include "newton.h"
 #include "stepper.h"
-#include "../real.h"
+#include "../common/real.h"
 
 enum { ORDERS = 5, DIFFERENCES = ORDERS + 3 };
 

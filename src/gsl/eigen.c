@@ -1,5 +1,5 @@
 #include "eigen.h"
-#include "../real.h"
+#include "../common/real.h"
 #include "dense.h"
 
 #include <complex.h>

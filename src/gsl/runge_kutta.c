@@ -7,8 +7,8 @@
 
 #include "newton.h"
 #include "stepper.h"
-#include "../real.h"
-#include "../simd.h"
+#include "../common/real.h"
+#include "../common/simd.h"
 
 /* Stage i is at t + c_i h and y + h sum_j a_ij k_j; the step ends at y + h sum_i b_i k_i. The error is h times the sum of
  * before f(t, y), e_i k_i and after f at the end, and, where the step is made twice, what half steps change over halves; it goes

@@ -16,7 +16,7 @@
 #include "driver.h"
 #include "hidden.h"
 #include "spectrum.h"
-#include "../real.h"
+#include "../common/real.h"
 
 struct step_form {
     double *u, *a;       /* [ndof] velocity (central: half a step back), acceleration or what a step adds to u */

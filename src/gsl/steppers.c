@@ -10,7 +10,7 @@
 #include "driver.h"
 #include "spectrum.h"
 #include "stepper.h"
-#include "../real.h"
+#include "../common/real.h"
 
 /* ------------------------------------------------------------------------------------------------- rk4 with fixed steps */
 

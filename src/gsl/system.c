@@ -1,6 +1,6 @@
 #include "system.h"
-#include "../real.h"
-#include "../twofold.h"
+#include "../common/real.h"
+#include "../common/twofold.h"
 
 #include <math.h>
 #include <stdarg.h>

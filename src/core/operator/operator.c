@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
-#include "rows.h"
-#include "../simd.h"
-#include "../twofold.h"
+#include "operator.h"
+#include "../../common/csr.h"
+#include "../../common/simd.h"
+#include "../../common/twofold.h"
 
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128
@@ -21,17 +21,17 @@
 #define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
 
-void tribo_op_free(struct op *op)
+void tribo_operator_free(struct operator* op)
 {
     for (size_t k = 0; op->group && k < op->groups; k++) {
         tribo_sparse_free(op->group[k].sparse);
     }
-    struct program *p = &op->program;
+    struct box_qp *p = &op->problem;
     free(op->diagonal);
     free(op->group);
     free(op->group_of);
-    free(op->awake);
-    free(op->touched);
+    free(op->solved);
+    free(op->solved_list);
     free(op->store);
     free(op->reach);
     free(p->near);
@@ -39,12 +39,12 @@ void tribo_op_free(struct op *op)
     free(p->to);
     free(p->q);
     free(p->basis);
-    *op = (struct op){.most = TRIBO_FAR};
+    *op = (struct operator){.most = TRIBO_FAR};
 }
 
-int tribo_op_diagonal(struct op *op, size_t n, const double *r)
+int tribo_operator_diagonal(struct operator* op, size_t n, const double *r)
 {
-    *op = (struct op){.most = TRIBO_FAR, .growth = 1.0, .islands = n};
+    *op = (struct operator){.most = TRIBO_FAR, .growth = 1.0, .islands = n};
     op->diagonal = malloc((n + 1) * sizeof *op->diagonal);
     for (size_t i = 0; op->diagonal && r && i < n; i++) {
         op->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
@@ -53,18 +53,18 @@ int tribo_op_diagonal(struct op *op, size_t n, const double *r)
 }
 
 /* What a group keeps, in doubles, which are as large as everything else that it keeps. */
-static size_t kept_by(const struct island *is)
+static size_t kept_by(const struct group *g)
 {
-    return 6 * is->size + (is->sparse ? 0 : (is->graded ? 4 : 2) * is->size * is->size);
+    return 6 * g->size + (g->sparse ? 0 : (g->graded ? 4 : 2) * g->size * g->size);
 }
 
-struct program *tribo_op_program(struct op *op, size_t k)
+struct box_qp *tribo_operator_problem(struct operator* op, size_t k)
 {
-    struct program *p = &op->program;
-    struct island *is = &op->group[k];
-    const size_t size = is->size;
-    p->island = is;
-    p->x = op->store + is->kept;
+    struct box_qp *p = &op->problem;
+    struct group *g = &op->group[k];
+    const size_t size = g->size;
+    p->group = g;
+    p->x = op->store + g->kept;
     p->member = (void *)(p->x + size);
     p->order = (void *)(p->x + 2 * size);
     p->at = (void *)(p->x + 3 * size);
@@ -78,25 +78,25 @@ struct program *tribo_op_program(struct op *op, size_t k)
     return p;
 }
 
-void tribo_op_expect(const struct op *op, size_t k)
+void tribo_operator_expect(const struct operator* op, size_t k)
 {
     enum { MOST = 2048 }; /* what there is beyond will come by itself */
     const size_t bytes = kept_by(&op->group[k]) * sizeof *op->store;
     tribo_expect(op->store + op->group[k].kept, bytes < MOST ? bytes : MOST, 0);
 }
 
-static int allocate_store(struct op *op, size_t n)
+static int allocate_store(struct operator* op, size_t n)
 {
     op->store = calloc(op->stored + 1, sizeof *op->store);
     op->reach = calloc(n + 1, sizeof *op->reach);
     return op->store && op->reach;
 }
 
-static int allocate_program(struct op *op)
+static int allocate_program(struct operator* op)
 {
     enum { VECTORS = 13 };
     const size_t s = op->largest + 1;
-    struct program *p = &op->program;
+    struct box_qp *p = &op->problem;
     p->near = malloc(s * sizeof *p->near);
     p->to = malloc(s);
     p->q = calloc(VECTORS * s, sizeof *p->q);
@@ -112,43 +112,43 @@ static int allocate_program(struct op *op)
 }
 
 /* Room for null vectors, once the ranks are known. */
-static int allocate_basis(struct op *op)
+static int allocate_basis(struct operator* op)
 {
     for (size_t k = 0; k < op->groups; k++) {
-        const struct island *is = &op->group[k];
-        size_t redundant = is->nullity;
-        if (is->sparse && redundant > TRIBO_SPARSE_REDUNDANT) {
+        const struct group *g = &op->group[k];
+        size_t redundant = g->nullity;
+        if (g->sparse && redundant > TRIBO_SPARSE_REDUNDANT) {
             redundant = TRIBO_SPARSE_REDUNDANT;
         }
-        op->basis = redundant * is->size > op->basis ? redundant * is->size : op->basis;
+        op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
     }
-    op->program.held = malloc((op->largest + 1) * sizeof *op->program.held);
-    op->program.basis = malloc((op->basis + 1) * sizeof *op->program.basis);
-    return op->program.held && op->program.basis;
+    op->problem.held = malloc((op->largest + 1) * sizeof *op->problem.held);
+    op->problem.basis = malloc((op->basis + 1) * sizeof *op->problem.basis);
+    return op->problem.held && op->problem.basis;
 }
 
-static int allocate_groups(struct op *op, size_t n, size_t groups)
+static int allocate_groups(struct operator* op, size_t n, size_t groups)
 {
     op->group_of = malloc(n * sizeof *op->group_of);
     op->group = calloc(groups, sizeof *op->group);
-    op->awake = calloc(groups, 1);
-    op->touched = malloc(groups * sizeof *op->touched);
-    return op->group_of && op->group && op->awake && op->touched;
+    op->solved = calloc(groups, 1);
+    op->solved_list = malloc(groups * sizeof *op->solved_list);
+    return op->group_of && op->group && op->solved && op->solved_list;
 }
 
-int tribo_op_copy(struct op *to, const struct op *from, size_t n)
+int tribo_operator_copy(struct operator* to, const struct operator* from, size_t n)
 {
     if (!from->diagonal) {
-        *to = (struct op){.most = TRIBO_FAR};
+        *to = (struct operator){.most = TRIBO_FAR};
         return 1;
     }
-    if (!tribo_op_diagonal(to, n, from->diagonal)) {
+    if (!tribo_operator_diagonal(to, n, from->diagonal)) {
         return 0;
     }
     to->growth = from->growth;
     to->islands = from->islands;
     to->most = from->most;
-    to->program.work = from->program.work;
+    to->problem.work = from->problem.work;
     if (!from->groups) {
         return 1;
     }
@@ -167,10 +167,10 @@ int tribo_op_copy(struct op *to, const struct op *from, size_t n)
     if (!allocate_store(to, n) || !allocate_program(to) || !allocate_basis(to)) {
         return 0;
     }
-    memcpy(to->awake, from->awake, from->groups);
-    memcpy(to->touched, from->touched, from->touches * sizeof *to->touched);
-    to->touches = from->touches;
-    tribo_copy(to->store, from->store, from->stored);
+    memcpy(to->solved, from->solved, from->groups);
+    memcpy(to->solved_list, from->solved_list, from->nsolved * sizeof *to->solved_list);
+    to->nsolved = from->nsolved;
+    memcpy(to->store, from->store, from->stored * sizeof *to->store);
     return 1;
 }
 
@@ -186,7 +186,7 @@ static size_t root_of(size_t *parent, size_t i)
 }
 
 /* Numbers the islands in the order of their first contact: label [n]. parent [n] is workspace. */
-static size_t find_islands(const struct rows *a, size_t *label, size_t *parent)
+static size_t find_islands(const struct csr *a, size_t *label, size_t *parent)
 {
     for (size_t i = 0; i < a->n; i++) {
         parent[i] = i;
@@ -208,7 +208,7 @@ static size_t find_islands(const struct rows *a, size_t *label, size_t *parent)
 
 /* From islands to groups. place [n]: of a contact in its group; member [n]: the contacts of the groups, one group after the
  * other; first [islands]: where in member those of a group begin. */
-static int find_groups(struct op *op, size_t n, const size_t *label, size_t *place, size_t *member, size_t *first)
+static int find_groups(struct operator* op, size_t n, const size_t *label, size_t *place, size_t *member, size_t *first)
 {
     size_t *count = first, members = 0;
     if (!allocate_groups(op, n, op->islands)) {
@@ -223,7 +223,7 @@ static int find_groups(struct op *op, size_t n, const size_t *label, size_t *pla
         if (count[label[i]] > 1 && place[i] == 0) {
             op->group[op->groups].size = count[label[i]];
             op->group_of[i] = op->groups++;
-            /* the others of the island learn it from their first */
+            /* the others of the group learn it from their first */
             count[label[i]] = op->group_of[i];
         } else if (place[i] > 0) {
             op->group_of[i] = count[label[i]];
@@ -243,18 +243,18 @@ static int find_groups(struct op *op, size_t n, const size_t *label, size_t *pla
 }
 
 /* The rows of a group by place, if it may be worth to keep it sparse. */
-static int make_sparse(struct island *is, const struct rows *a, const size_t *member, const size_t *place)
+static int make_sparse(struct group *g, const struct csr *a, const size_t *member, const size_t *place)
 {
-    struct rows own;
+    struct csr own;
     size_t entries = 0;
-    for (size_t p = 0; p < is->size; p++) {
+    for (size_t p = 0; p < g->size; p++) {
         entries += a->first[member[p] + 1] - a->first[member[p]];
     }
-    if (!tribo_rows_create(&own, is->size, entries)) {
+    if (!tribo_csr_create(&own, g->size, entries)) {
         return 0;
     }
     entries = 0;
-    for (size_t p = 0; p < is->size; p++) {
+    for (size_t p = 0; p < g->size; p++) {
         for (size_t e = a->first[member[p]]; e < a->first[member[p] + 1]; e++) {
             if (a->val[e] != 0.0) {
                 own.col[entries] = place[a->col[e]];
@@ -263,18 +263,18 @@ static int make_sparse(struct island *is, const struct rows *a, const size_t *me
         }
         own.first[p + 1] = entries;
     }
-    const int done = tribo_sparse_create(&is->sparse, &own);
-    tribo_rows_free(&own);
+    const int done = tribo_sparse_create(&g->sparse, &own);
+    tribo_csr_free(&own);
     return done;
 }
 
-static double diagonal_of(const struct rows *a, size_t i)
+static double diagonal_of(const struct csr *a, size_t i)
 {
-    const double *entry = tribo_rows_entry(a, i, i);
+    const double *entry = tribo_csr_entry(a, i, i);
     return entry ? *entry : 0.0;
 }
 
-static void fill_diagonal(struct op *op, const struct rows *a)
+static void fill_diagonal(struct operator* op, const struct csr *a)
 {
     for (size_t i = 0; i < a->n; i++) {
         op->diagonal[i] = greater(diagonal_of(a, i), TRIBO_IMMOVABLE);
@@ -283,7 +283,7 @@ static void fill_diagonal(struct op *op, const struct rows *a)
 
 /* y = D^-1 |R| x, x [n] being positive. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz
  * 1942), more closely with every call on the last y. */
-static double grow(const struct op *op, const struct rows *a, const double *x, double *y)
+static double grow(const struct operator* op, const struct csr *a, const double *x, double *y)
 {
     double most = 1.0;
     for (size_t i = 0; i < a->n; i++) {
@@ -298,7 +298,7 @@ static double grow(const struct op *op, const struct rows *a, const double *x, d
 }
 
 /* 0 if out of memory. */
-static int find_growth(struct op *op, const struct rows *a)
+static int find_growth(struct operator* op, const struct csr *a)
 {
     enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
     double before = HUGE_VAL, *x = malloc((2 * a->n + 1) * sizeof *x);
@@ -329,24 +329,24 @@ static double spread_of(const struct inertia *from, size_t i)
 }
 
 /* Whether the group may have to be graded. Returns 0 if the masses differ too much for it: then flaw says where. */
-static int find_grading(struct island *is, const struct inertia *from, const size_t *member, struct flaw *flaw)
+static int find_grading(struct group *g, const struct inertia *from, const size_t *member, struct flaw *flaw)
 {
     double most = 1.0;
-    for (size_t c = 0; from && c < is->size; c++) {
+    for (size_t c = 0; from && c < g->size; c++) {
         const double spread = spread_of(from, member[c]);
         if (spread > most) {
             most = spread;
-            *flaw = (struct flaw){member[c], is->size, spread};
+            *flaw = (struct flaw){member[c], g->size, spread};
         }
     }
-    is->graded = most > GRADED_FROM && is->size <= GRADED_TO;
-    return most <= (is->graded ? GRADED_MOST : GRADED_MOST_LARGE);
+    g->graded = most > GRADED_FROM && g->size <= GRADED_TO;
+    return most <= (g->graded ? GRADED_MOST : GRADED_MOST_LARGE);
 }
 
 /* Everything is free. Returns what is left, as tribo_factor_rebuild does. */
-static double factorize_all(struct program *p, size_t *where)
+static double factorize_all(struct box_qp *p, size_t *where)
 {
-    p->count = p->island->size;
+    p->count = p->group->size;
     for (size_t i = 0; i < p->count; i++) {
         p->near[i] = i;
         p->at[i] = FREE;
@@ -355,19 +355,19 @@ static double factorize_all(struct program *p, size_t *where)
 }
 
 /* 1 if R as it is filled in has a pivot so small that its rounding counts. */
-static int loses_digits(struct program *p)
+static int loses_digits(struct box_qp *p)
 {
-    const struct island *is = p->island;
+    const struct group *g = p->group;
     size_t where;
     factorize_all(p, &where);
-    const double last = is->rank ? p->l[(is->rank - 1) * (is->size + 1)] : 1.0; /* the root of its inverse */
-    return is->rank < is->size || 1.0 < GRADED_PIVOT * last * last;
+    const double last = g->rank ? p->l[(g->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
+    return g->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
 }
 
 /* R of a graded group to twice as many digits. */
-static void fill_graded(const struct program *p, const struct inertia *from, const size_t *member, const size_t *place)
+static void fill_graded(const struct box_qp *p, const struct inertia *from, const size_t *member, const size_t *place)
 {
-    const size_t size = p->island->size;
+    const size_t size = p->group->size;
     memset(p->r, 0, size * size * sizeof *p->r);
     for (size_t c = 0; c < size; c++) {
         const size_t i = member[c];
@@ -385,73 +385,73 @@ static void fill_graded(const struct program *p, const struct inertia *from, con
     }
 }
 
-static void fill_group(struct op *op, size_t k, const struct rows *a, const struct inertia *from, const size_t *member,
+static void fill_group(struct operator* op, size_t k, const struct csr *a, const struct inertia *from, const size_t *member,
                        const size_t *place)
 {
-    struct program *p = tribo_op_program(op, k);
-    struct island *is = p->island;
-    is->lightest = HUGE_VAL;
-    is->terms = 0;
-    for (size_t c = 0; c < is->size; c++) {
+    struct box_qp *p = tribo_operator_problem(op, k);
+    struct group *g = p->group;
+    g->lightest = HUGE_VAL;
+    g->terms = 0;
+    for (size_t c = 0; c < g->size; c++) {
         const size_t i = member[c];
         p->member[c] = i;
         p->at[c] = AWAY;
         p->scale[c] = tribo_scale(op->diagonal[i]);
-        is->lightest = lesser(is->lightest, p->scale[c]);
+        g->lightest = lesser(g->lightest, p->scale[c]);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             p->terms[c] += a->val[e] != 0.0;
-            if (a->val[e] != 0.0 && !is->sparse) {
-                p->r[c * is->size + place[a->col[e]]] = a->val[e];
+            if (a->val[e] != 0.0 && !g->sparse) {
+                p->r[c * g->size + place[a->col[e]]] = a->val[e];
             }
         }
-        is->terms = p->terms[c] > is->terms ? p->terms[c] : is->terms;
+        g->terms = p->terms[c] > g->terms ? p->terms[c] : g->terms;
     }
-    if (is->graded) {
-        is->graded = 0;
-        is->graded = loses_digits(p);
-        if (is->graded) {
+    if (g->graded) {
+        g->graded = 0;
+        g->graded = loses_digits(p);
+        if (g->graded) {
             fill_graded(p, from, member, place);
         }
     }
-    for (size_t c = 0; c < is->size; c++) {
+    for (size_t c = 0; c < g->size; c++) {
         op->most = lesser(op->most, tribo_most(p, c));
     }
 }
 
 /* The ranks of all groups. */
-static int check_definite(struct op *op, struct flaw *flaw)
+static int check_definite(struct operator* op, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
-        struct program *p = tribo_op_program(op, k);
-        struct island *is = p->island;
+        struct box_qp *p = tribo_operator_problem(op, k);
+        struct group *g = p->group;
         size_t where = 0;
         const double left = factorize_all(p, &where);
-        const double zero = is->sparse ? TRIBO_SPARSE_ZERO : is->graded ? TRIBO_GRADED_ZERO : tribo_resolution(is->size);
+        const double zero = g->sparse ? TRIBO_SPARSE_ZERO : g->graded ? TRIBO_GRADED_ZERO : tribo_resolution(g->size);
         if (fabs(left) > 16.0 * zero) {
-            *flaw = (struct flaw){p->member[where], is->size, left};
+            *flaw = (struct flaw){p->member[where], g->size, left};
             return TRIBO_ERR_INDEFINITE;
         }
-        is->nullity = is->dependents;
-        memset(p->at, AWAY, is->size);
+        g->nullity = g->dependents;
+        memset(p->at, AWAY, g->size);
         tribo_factor_rebuild(p, NULL);
     }
-    op->program.work.factorizations = 0;
+    op->problem.work.factorizations = 0;
     return TRIBO_OK;
 }
 
-static int create_groups(struct op *op, const struct rows *a, const struct inertia *from, const size_t *member,
+static int create_groups(struct operator* op, const struct csr *a, const struct inertia *from, const size_t *member,
                          const size_t *first, const size_t *place, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
-        struct island *is = &op->group[k];
-        if (!find_grading(is, from, member + first[k], flaw)) {
+        struct group *g = &op->group[k];
+        if (!find_grading(g, from, member + first[k], flaw)) {
             return TRIBO_ERR_UNSUPPORTED;
         }
-        if (!is->graded && is->size > SPARSE_FROM && !make_sparse(is, a, member + first[k], place)) {
+        if (!g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member + first[k], place)) {
             return TRIBO_ERR_MEMORY;
         }
-        is->kept = op->stored;
-        op->stored += kept_by(is);
+        g->kept = op->stored;
+        op->stored += kept_by(g);
     }
     if (!allocate_store(op, a->n) || !allocate_program(op)) {
         return TRIBO_ERR_MEMORY;
@@ -463,13 +463,13 @@ static int create_groups(struct op *op, const struct rows *a, const struct inert
     return status || allocate_basis(op) ? status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_op_create(struct op *op, const struct rows *a, const struct inertia *from, struct flaw *flaw)
+int tribo_operator_create(struct operator* op, const struct csr *a, const struct inertia *from, struct flaw *flaw)
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
     size_t *label = malloc((n + 1) * sizeof *label), *first = malloc((n + 1) * sizeof *first),
            *place = malloc((n + 1) * sizeof *place), *member = malloc((n + 1) * sizeof *member);
-    if (label && first && place && member && tribo_op_diagonal(op, n, NULL)) {
+    if (label && first && place && member && tribo_operator_diagonal(op, n, NULL)) {
         op->islands = find_islands(a, label, place);
         fill_diagonal(op, a);
         if (op->islands == n) {
@@ -479,7 +479,7 @@ int tribo_op_create(struct op *op, const struct rows *a, const struct inertia *f
         }
     }
     if (status) {
-        tribo_op_free(op);
+        tribo_operator_free(op);
     }
     free(label);
     free(first);

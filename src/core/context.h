@@ -1,6 +1,6 @@
 /* What the files of src/core share. */
-#ifndef TRIBO_INTERNAL_H
-#define TRIBO_INTERNAL_H
+#ifndef TRIBO_CONTEXT_H
+#define TRIBO_CONTEXT_H
 
 #include <float.h>
 #include <math.h>
@@ -9,36 +9,10 @@
 
 #include "tribo/tribo.h"
 
-#include "island.h"
-#include "law.h"
-#include "../compiler.h"
-#include "../real.h"
-
-#define TRIBO_ALONE SIZE_MAX
-
-/* R_ii = 0 is taken as this: the limit R_ii -> +0. */
-#define TRIBO_IMMOVABLE DBL_MIN
-
-/* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. */
-struct op {
-    double *diagonal;     /* [n] R_ii, at least TRIBO_IMMOVABLE; NULL: there is no operator yet */
-    double growth;        /* at least the largest eigenvalue of D^-1 R, D being the diagonal */
-    size_t islands;       /* groups and single contacts */
-    size_t groups;        /* of two contacts and more */
-    double most;          /* the smallest tribo_most of their contacts; TRIBO_FAR if there is no group */
-    struct island *group; /* [groups] */
-    size_t *group_of;     /* [n] TRIBO_ALONE if contact i is */
-    unsigned char *awake; /* [groups] solved for in the last call */
-    size_t *touched;      /* [groups] which these are, */
-    size_t touches;       /* so many */
-    size_t largest;       /* contacts in the largest group */
-    double *store;        /* [stored] what groups keep from call to call, group by group */
-    size_t stored;
-    size_t basis;           /* room for null vectors */
-    double *reach;          /* [n] sum of |R_ij| N_j: what friction can do to a contact at most */
-    int reaches;            /* reach is that of the limits */
-    struct program program; /* workspace of the largest group, with views of one */
-};
+#include "operator/operator.h"
+#include "law/law.h"
+#include "../common/compiler.h"
+#include "../common/real.h"
 
 struct message;
 
@@ -82,7 +56,7 @@ struct tribo_context {
     double *limit_then;    /* [n] limits of the last balance: the same array, or the other of limits */
     double *limits;        /* [2][n + 1] */
     unsigned char *moving; /* [n] reversal memory */
-    struct op op;
+    struct operator op;
     struct chunk *chunk;     /* [chunks] */
     struct look last, spare; /* of the last balance; room for the next */
     int kept;                /* f holds all forces, and last has not been asked; otherwise f holds those of contacts NEAR */
@@ -134,41 +108,12 @@ static inline int tribo_need_epsilon(const tribo_context *ctx)
     return ctx->step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
 }
 
-/* islands.c */
-struct rows;
-
-/* Where R is not positive semidefinite. */
-struct flaw {
-    size_t contact, group; /* how many contacts are coupled there */
-    double pivot;          /* relative to the diagonal */
-};
-
-/* What the rows of R = J diag(w) J' came from; t is J'. */
-struct inertia {
-    const double *w;
-    const size_t *rowptr, *col;
-    const double *val;
-    const struct rows *t;
-};
-
-/* The operator of rows that are symmetric and finite, with sorted columns; a status. from: NULL if not known. */
-int tribo_op_create(struct op *op, const struct rows *a, const struct inertia *from, struct flaw *flaw);
-int tribo_op_diagonal(struct op *op, size_t n, const double *r); /* r NULL: not set yet; 1, or 0 if out of memory */
-int tribo_op_copy(struct op *to, const struct op *from, size_t n);
-void tribo_op_free(struct op *op); /* what is left is no operator */
-
-/* Views of group k in op's program. */
-struct program *tribo_op_program(struct op *op, size_t k);
-
-/* What group k keeps will soon be looked at: groups may be far from each other. */
-void tribo_op_expect(const struct op *op, size_t k);
-
 /* look.c: limits of the chunks, and then their epsilon, brought up to date with settings. */
 void tribo_refresh_limits(tribo_context *ctx);
 void tribo_refresh_widths(tribo_context *ctx);
 
 /* Checks v and a, and finds who is near stick; a status, and on failure all is as after the last call. */
-int tribo_look(tribo_context *ctx, const double *v, const double *a);
+int tribo_classify(tribo_context *ctx, const double *v, const double *a);
 
 /* f of contacts that need no solver, where ctx->f is to hold it, and their f_eq, or that of all contacts if wanted, as if all
  * were alone. */
@@ -187,14 +132,26 @@ static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 }
 
 /* The force of the contact at place k of a group as the solver takes it. */
-static inline double tribo_carried(const tribo_context *ctx, const struct program *p, size_t k)
+static inline double tribo_carried(const tribo_context *ctx, const struct box_qp *p, size_t k)
 {
     const double f = tribo_force_of(ctx, p->member[k]);
     return ctx->far ? tribo_cut(p, k, f) : f;
 }
 
-/* balance.c: the contacts of group k in the program's order, those near stick first. */
-struct program *tribo_collect(tribo_context *ctx, size_t k);
+/* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */
+void tribo_begin_call(tribo_context *ctx);
+
+/* Finds the groups with a contact near stick among those from i to end. */
+void tribo_find_near_groups(tribo_context *ctx, size_t i, size_t end);
+
+/* Solves the problem of a group; q, lo and hi are set. */
+int tribo_solve_group(tribo_context *ctx, struct box_qp *p);
+
+/* Keeps forces for shares that go on from them, also in groups that no solver saw. */
+void tribo_remember_forces(tribo_context *ctx);
+
+/* The contacts of group k in the problem's order, those near stick first. */
+struct box_qp *tribo_collect(tribo_context *ctx, size_t k);
 
 /* memcpy, but fine with NULL for no elements. */
 static inline void tribo_copy(double *to, const double *from, size_t n)
@@ -204,8 +161,7 @@ static inline void tribo_copy(double *to, const double *from, size_t n)
     }
 }
 
-/* context.c: 2 limit/epsilon; epsilon and slope brought up to date with limits, operator and settings. */
-double tribo_slope(double limit, double epsilon);
+/* context.c: epsilon and slope brought up to date with limits, operator and settings. */
 void tribo_refresh(tribo_context *ctx);
 
 /* The contacts as laws see them, and those from i on. */

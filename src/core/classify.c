@@ -1,7 +1,7 @@
 /* What a call learns of all contacts before it solves for any. In a large scene most slide, of which the direction is all that
  * there is to know, and reading and writing memory is all that they cost: so every array is passed over as seldom as can be, in
  * chunks that stay in the first-level cache. What a call learns takes the last call's place once v and a are found good. */
-#include "internal.h"
+#include "context.h"
 
 /* Whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
 TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
@@ -66,14 +66,15 @@ static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, co
     }
 }
 
-TRIBO_SIMD static void slide(size_t n, const unsigned char *restrict state, const double *restrict limit, double *restrict f)
+TRIBO_SIMD static void force_of_slips(size_t n, const unsigned char *restrict state, const double *restrict limit,
+                                      double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
         f[i] = state[i] == FORTH ? -limit[i] : limit[i];
     }
 }
 
-TRIBO_SIMD static void slide_alike(size_t n, const unsigned char *restrict state, double limit, double *restrict f)
+TRIBO_SIMD static void force_of_alike_slips(size_t n, const unsigned char *restrict state, double limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
         f[i] = state[i] == FORTH ? -limit : limit;
@@ -141,7 +142,7 @@ void tribo_refresh_widths(tribo_context *ctx)
     }
 }
 
-static int check(const tribo_context *ctx, const double *v, const double *a)
+static int check_motion(const tribo_context *ctx, const double *v, const double *a)
 {
     const int status = tribo_check_finite(ctx, "v", v, ctx->n);
     return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
@@ -166,12 +167,12 @@ static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t e
     }
 }
 
-int tribo_look(tribo_context *ctx, const double *v, const double *a)
+int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 {
     const struct look look = ctx->spare;
     const int few = !ctx->op.groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
     if (!v || !a || few || !ctx->law->uses_feq) {
-        const int status = check(ctx, v, a);
+        const int status = check_motion(ctx, v, a);
         ctx->kept = status ? ctx->kept : 1;
         return status;
     }
@@ -181,7 +182,7 @@ int tribo_look(tribo_context *ctx, const double *v, const double *a)
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
         if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
-            return check(ctx, v, a);
+            return check_motion(ctx, v, a);
         }
         const int any = any_in_band(n, v + i, band);
         look.kind[k] = !any ? SLIDES : ctx->op.groups ? MIXED : KEPT;
@@ -230,9 +231,9 @@ void tribo_forces(const tribo_context *ctx, double *f)
         if (ctx->last.kind[k] == KEPT) {
             tribo_copy(f + i, ctx->f + i, n);
         } else if (ctx->chunk[k].least < ctx->chunk[k].largest) {
-            slide(n, state + i, ctx->limit + i, f + i);
+            force_of_slips(n, state + i, ctx->limit + i, f + i);
         } else {
-            slide_alike(n, state + i, ctx->chunk[k].largest, f + i);
+            force_of_alike_slips(n, state + i, ctx->chunk[k].largest, f + i);
         }
         for (size_t j = i, near; ctx->last.kind[k] == MIXED && (near = tribo_next_near(state, &j, i + n)) > 0; j += near) {
             tribo_copy(f + j, ctx->f + j, near);

@@ -1,14 +1,14 @@
 /* What a friction law is: a record in the registry, a force and its derivatives for one contact, and the loops over
- * contacts that the TRIBO_LAW macro makes of them. To add a law, write one file like law_quinn.c, and add its record to
- * laws.c and its number to tribo.h. */
+ * contacts that the TRIBO_LAW macro makes of them. To add a law, write one file like quinn.c, and add its record to
+ * registry.c and its number to tribo.h. */
 #ifndef TRIBO_LAW_H
 #define TRIBO_LAW_H
 
 #include <math.h>
 #include <stddef.h>
 
-#include "../real.h"
-#include "../simd.h"
+#include "../../common/real.h"
+#include "../../common/simd.h"
 
 /* Per contact: limit N; epsilon; slope = 2N/epsilon, kept apart so that nothing divides by N; moving, the reversal memory. */
 struct contacts {
@@ -38,6 +38,12 @@ extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law
 
 const struct law *tribo_law(int id); /* NULL if there is none */
 
+/* slope = 2 limit/epsilon */
+static inline double tribo_slope(double limit, double epsilon)
+{
+    return 2.0 * quotient(limit, epsilon);
+}
+
 static inline double sign(double x)
 {
     return (double)((x > 0.0) - (x < 0.0));
@@ -49,21 +55,21 @@ static inline double sliding(double v, double limit)
     return copysign(limit, -v);
 }
 
-/* Defines force_all and tangent_all from the law's functions of one contact. */
-#define TRIBO_LAW_LOOPS                                                                                                          \
-    TRIBO_SIMD static void force_all(const struct contacts *c, size_t n, const double *restrict v, const double *restrict feq,   \
-                                     double *restrict f)                                                                         \
+/* Defines <name>_force_all and <name>_tangent_all from the law's functions of one contact, <name>_force and <name>_tangent. */
+#define TRIBO_LAW_LOOPS(name)                                                                                                    \
+    TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
+                                            const double *restrict feq, double *restrict f)                                      \
     {                                                                                                                            \
         const double *restrict limit = c->limit, *restrict epsilon = c->epsilon, *restrict slope = c->slope;                     \
         const unsigned char *restrict moving = c->moving;                                                                        \
         for (size_t i = 0; i < n; i++) {                                                                                         \
-            f[i] = force(v[i], feq[i], limit[i], epsilon[i], slope[i], moving[i]);                                               \
+            f[i] = name##_force(v[i], feq[i], limit[i], epsilon[i], slope[i], moving[i]);                                        \
         }                                                                                                                        \
     }                                                                                                                            \
-    static void tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, struct tangent *d)           \
+    static void name##_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, struct tangent *d)    \
     {                                                                                                                            \
         for (size_t i = 0; i < n; i++) {                                                                                         \
-            d[i] = tangent(v[i], feq[i], c->limit[i], c->epsilon[i], c->slope[i], c->moving[i], c->follows);                     \
+            d[i] = name##_tangent(v[i], feq[i], c->limit[i], c->epsilon[i], c->slope[i], c->moving[i], c->follows);              \
         }                                                                                                                        \
     }
 

@@ -2,7 +2,9 @@
 #include <float.h>
 #include <string.h>
 
-#include "internal.h"
+#include "tribo/tribo.h"
+
+#include "law.h"
 
 static const struct law *const laws[] = {
     [TRIBO_COULOMB] = &tribo_law_coulomb, [TRIBO_VELOCITY_LIMITED] = &tribo_law_velocity_limited,
