@@ -17,9 +17,8 @@ void tribo_begin_call(tribo_context *ctx)
     }
     ctx->op.nsolved = 0;
     ctx->far = ctx->largest > TRIBO_ROOM * ctx->op.most;
-    ctx->limit_then = ctx->limit;
     ctx->rank = 0;
-    ctx->balanced = 0;
+    ctx->modes = NO_MODES;
     ctx->linearized = 0;
 }
 
@@ -38,8 +37,8 @@ void tribo_remember_forces(tribo_context *ctx)
 /* The groups with a contact near stick among those from i to end. */
 void tribo_find_near_groups(tribo_context *ctx, size_t i, size_t end)
 {
-    struct operator* op = & ctx->op;
-    for (size_t n; (n = tribo_next_near(ctx->last.state, &i, end)) > 0; i += n) {
+    struct delassus *op = &ctx->op;
+    for (size_t n; (n = tribo_next_near(ctx->last.of, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
             const size_t g = op->group_of[k];
             if (g != TRIBO_ALONE && !op->solved[g]) {
@@ -58,7 +57,7 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
     p->count = 0;
     p->far = ctx->far;
     for (size_t i = 0; i < p->group->size; i++) {
-        if (ctx->last.state[member[i]] == NEAR) {
+        if (ctx->last.of[member[i]] == STORED) {
             p->near[p->count++] = i;
         } else {
             p->near[--behind] = i;
@@ -94,7 +93,7 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
 /* kappa, see above. */
 static double relaxation(const tribo_context *ctx, size_t i, const double *v)
 {
-    return ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
+    return ctx->law->relaxes ? tribo_slope_of(&ctx->contacts, i) * v[i] : 0.0;
 }
 
 /* f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii, with f as the solver finds it. */
@@ -103,7 +102,7 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     const size_t *member = p->member;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double limit = ctx->bound[i], kappa = relaxation(ctx, i, v);
+        const double limit = ctx->contacts.bound[i], kappa = relaxation(ctx, i, v);
         p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
         p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
         p->q[k] = cut(a[i]) + ctx->op.diagonal[i] * kappa;
@@ -112,7 +111,7 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         const double beyond = quotient(p->gradient[k], ctx->op.diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
-        ctx->residual = greater(ctx->residual, fabs(p->x[k] - to) / greater(ctx->bound[i], DBL_MIN));
+        ctx->residual = greater(ctx->residual, fabs(p->x[k] - to) / greater(ctx->contacts.bound[i], DBL_MIN));
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
         ctx->feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
     }
@@ -127,7 +126,7 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *a
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         p->q[k] = cut(a[i]);
-        p->unit[k] = ctx->op.diagonal[i] * ctx->bound[i];
+        p->unit[k] = ctx->op.diagonal[i] * ctx->contacts.bound[i];
     }
     ctx->solves++;
     const int consistent = tribo_box_linear(p);
@@ -150,11 +149,10 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *a
 /* The law's forces of the near contacts of a group, run by run of neighbours. */
 static void near_forces(tribo_context *ctx, const struct box_qp *p, const double *v)
 {
-    const struct contacts all = tribo_contacts(ctx);
     const size_t *member = p->member;
     for (size_t e = 0, run; e < p->count; e += run) {
         const size_t i = member[p->near[e]];
-        const struct contacts c = tribo_contacts_from(&all, i);
+        const struct contacts c = tribo_contacts_from(&ctx->contacts, i);
         for (run = 1; e + run < p->count && member[p->near[e + run]] == i + run;) {
             run++;
         }
@@ -173,7 +171,7 @@ static void feq_of_others(tribo_context *ctx, const double *a)
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!(ctx->op.solved[g] && ctx->last.state[i] == NEAR) && ctx->limit[i] > 0.0) {
+            if (!(ctx->op.solved[g] && ctx->last.of[i] == STORED) && ctx->limit[i] > 0.0) {
                 ctx->feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op.diagonal[i]);
             }
         }
@@ -185,8 +183,8 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
     tribo_begin_call(ctx);
     ctx->residual = 0.0;
     tribo_forces_alone(ctx, v, a, wanted);
-    for (size_t i = 0, k = 0; !ctx->kept && i < ctx->n; i += TRIBO_CHUNK, k++) {
-        if (ctx->last.kind[k] == MIXED) {
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        if (ctx->last.stored[k] == SOME_STORED) {
             tribo_find_near_groups(ctx, i, i + tribo_chunk_size(ctx, i));
         }
     }
@@ -222,8 +220,8 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     }
     ctx->skipped += ctx->op.islands - ctx->op.nsolved;
     tribo_remember_forces(ctx);
-    ctx->balanced = 1;
-    ctx->holds = ctx->law->id == TRIBO_SMOOTH ? tanh(1.0) : 1.0;
+    ctx->modes = MODES_IN_FORCES;
+    ctx->holds = ctx->law->holds;
     if (feq) {
         feq_of_others(ctx, a);
         tribo_copy(feq, ctx->feq, ctx->n);

@@ -13,32 +13,32 @@ TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
     return any != 0;
 }
 
-TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, unsigned char *restrict state)
+TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
-        state[i] = v[i] > 0.0 ? FORTH : BACK;
+        did[i] = v[i] > 0.0 ? FORTH : BACK;
     }
 }
 
-/* The same, and contacts near stick if all have one band: BACK, NEAR and FORTH count 0, 1, 2. */
-TRIBO_SIMD static void find_states(size_t n, const double *restrict v, double band, unsigned char *restrict state)
+/* The same, and contacts near stick if all have one band: BACK, STORED and FORTH count -1, 0, 1. */
+TRIBO_SIMD static void find_states(size_t n, const double *restrict v, double band, signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
-        state[i] = (unsigned char)((v[i] > band) + (v[i] >= -band));
+        did[i] = (signed char)((v[i] > band) + (v[i] >= -band) - 1);
     }
 }
 
 /* The same with each contact's own band, or 0 if band is NULL, and open ones are not near stick. */
 TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
-                                 unsigned char *restrict state)
+                                 signed char *restrict did)
 {
     for (size_t i = 0; band && i < n; i++) {
         const int near = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
-        state[i] = (unsigned char)(near | (((v[i] > 0.0) & !near) << 1));
+        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? FORTH : BACK);
     }
     for (size_t i = 0; !band && i < n; i++) {
         const int near = (v[i] == 0.0) & (limit[i] > 0.0);
-        state[i] = (unsigned char)(near | (((v[i] > 0.0) & !near) << 1));
+        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? FORTH : BACK);
     }
 }
 
@@ -66,18 +66,17 @@ static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, co
     }
 }
 
-TRIBO_SIMD static void force_of_slips(size_t n, const unsigned char *restrict state, const double *restrict limit,
-                                      double *restrict f)
+TRIBO_SIMD static void force_of_slips(size_t n, const signed char *restrict did, const double *restrict limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
-        f[i] = state[i] == FORTH ? -limit[i] : limit[i];
+        f[i] = did[i] == FORTH ? -limit[i] : limit[i];
     }
 }
 
-TRIBO_SIMD static void force_of_alike_slips(size_t n, const unsigned char *restrict state, double limit, double *restrict f)
+TRIBO_SIMD static void force_of_alike_slips(size_t n, const signed char *restrict did, double limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
-        f[i] = state[i] == FORTH ? -limit : limit;
+        f[i] = did[i] == FORTH ? -limit : limit;
     }
 }
 
@@ -91,55 +90,44 @@ static void expect(const tribo_context *ctx, const double *x, size_t i, int writ
 
 enum { LANES = 4 }; /* side by side, since one would have to be found in order */
 
-TRIBO_SIMD static void find_limits(size_t n, const double *limit, struct chunk *chunk)
+TRIBO_SIMD void tribo_take_limits(size_t n, const double *restrict from, double *restrict to, struct chunk *chunk)
 {
     double least[LANES], largest[LANES];
     size_t i = 0;
     for (size_t k = 0; k < LANES; k++) {
-        least[k] = largest[k] = limit[0];
+        least[k] = largest[k] = from[0];
     }
     for (; i + LANES <= n; i += LANES) {
         for (size_t k = 0; k < LANES; k++) {
-            least[k] = lesser(least[k], limit[i + k]);
-            largest[k] = greater(largest[k], limit[i + k]);
+            to[i + k] = from[i + k];
+            least[k] = lesser(least[k], from[i + k]);
+            largest[k] = greater(largest[k], from[i + k]);
         }
     }
     for (; i < n; i++) {
-        least[0] = lesser(least[0], limit[i]);
-        largest[0] = greater(largest[0], limit[i]);
+        to[i] = from[i];
+        least[0] = lesser(least[0], from[i]);
+        largest[0] = greater(largest[0], from[i]);
     }
     chunk->least = lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
     chunk->largest = greater(greater(largest[0], largest[1]), greater(largest[2], largest[3]));
 }
 
-TRIBO_SIMD static double widest_of(size_t n, const double *restrict limit, const double *restrict epsilon)
+TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
+                                     double *restrict epsilon)
 {
-    double widest[LANES] = {-1.0, -1.0, -1.0, -1.0};
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            const double e = limit[i + k] > 0.0 ? epsilon[i + k] : -1.0;
-            widest[k] = greater(widest[k], e);
-        }
-    }
-    for (; i < n; i++) {
-        widest[0] = limit[i] > 0.0 ? greater(widest[0], epsilon[i]) : widest[0];
-    }
-    return greater(greater(widest[0], widest[1]), greater(widest[2], widest[3]));
-}
-
-void tribo_refresh_limits(tribo_context *ctx)
-{
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        find_limits(tribo_chunk_size(ctx, i), ctx->limit + i, &ctx->chunk[k]);
+    for (size_t i = 0; i < n; i++) {
+        epsilon[i] = tribo_epsilon(1, width[i], bound[i]);
     }
 }
 
-void tribo_refresh_widths(tribo_context *ctx)
+const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, double *room)
 {
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        ctx->chunk[k].widest = widest_of(tribo_chunk_size(ctx, i), ctx->limit + i, ctx->epsilon + i);
+    if (!c->follows) {
+        return c->width + i;
     }
+    find_epsilons(n, c->width + i, c->bound + i, room);
+    return room;
 }
 
 static int check_motion(const tribo_context *ctx, const double *v, const double *a)
@@ -148,95 +136,115 @@ static int check_motion(const tribo_context *ctx, const double *v, const double 
     return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
 }
 
-size_t tribo_next_near(const unsigned char *state, size_t *i, size_t end)
+size_t tribo_next_near(const signed char *did, size_t *i, size_t end)
 {
-    const unsigned char *found = memchr(state + *i, NEAR, end - *i);
+    const signed char *found = memchr(did + *i, STORED, end - *i);
     size_t n = 0;
-    *i = found ? (size_t)(found - state) : end;
-    while (*i + n < end && state[*i + n] == NEAR) {
+    *i = found ? (size_t)(found - did) : end;
+    while (*i + n < end && did[*i + n] == STORED) {
         n++;
     }
     return n;
 }
 
-/* Of the contacts in the widest band those that are near stick. */
-static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t end, unsigned char *state)
+/* Of the contacts of a chunk that are in its band those that are near stick. */
+static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t end, signed char *did)
 {
-    for (size_t n; (n = tribo_next_near(state, &i, end)) > 0; i += n) {
-        find_near(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, ctx->limit + i, state + i);
+    double room[TRIBO_CHUNK];
+    for (size_t n; (n = tribo_next_near(did, &i, end)) > 0; i += n) {
+        const double *band = ctx->law->sticks_in_band ? tribo_epsilons(&ctx->contacts, i, n, room) : NULL;
+        find_near(n, v + i, band, ctx->limit + i, did + i);
+    }
+}
+
+void tribo_store_all(tribo_context *ctx)
+{
+    if (!ctx->last.all_stored) {
+        memset(ctx->last.of, STORED, ctx->n);
+        memset(ctx->last.stored, ALL_STORED, tribo_chunks(ctx->n));
+        ctx->last.all_stored = 1;
     }
 }
 
 int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 {
-    const struct look look = ctx->spare;
+    struct deeds now = ctx->spare;
     const int few = !ctx->op.groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
     if (!v || !a || few || !ctx->law->uses_feq) {
         const int status = check_motion(ctx, v, a);
-        ctx->kept = status ? ctx->kept : 1;
+        if (!status) {
+            tribo_store_all(ctx);
+        }
         return status;
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const double band = ctx->law->sticks_in_band ? ctx->chunk[k].widest : lesser(ctx->chunk[k].widest, 0.0);
+        const double band = ctx->law->sticks_in_band ? ctx->chunk[k].band : lesser(ctx->chunk[k].band, 0.0);
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
         if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
             return check_motion(ctx, v, a);
         }
         const int any = any_in_band(n, v + i, band);
-        look.kind[k] = !any ? SLIDES : ctx->op.groups ? MIXED : KEPT;
-        if (look.kind[k] == KEPT) {
-            memset(look.state + i, NEAR, n); /* or not: the law will tell */
-        } else if (look.kind[k] == MIXED) {
-            find_states(n, v + i, band, look.state + i);
-            narrow(ctx, v, i, i + n, look.state);
+        now.stored[k] = !any ? NONE_STORED : ctx->op.groups ? SOME_STORED : ALL_STORED;
+        if (now.stored[k] == ALL_STORED) {
+            memset(now.of + i, STORED, n); /* or not: the law will tell */
+        } else if (now.stored[k] == SOME_STORED) {
+            find_states(n, v + i, band, now.of + i);
+            narrow(ctx, v, i, i + n, now.of);
         } else {
-            find_directions(n, v + i, look.state + i);
+            find_directions(n, v + i, now.of + i);
         }
     }
+    now.all_stored = 0;
     ctx->spare = ctx->last;
-    ctx->last = look;
-    ctx->kept = 0;
+    ctx->last = now;
     return TRIBO_OK;
 }
 
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
-    const struct contacts all = tribo_contacts(ctx);
     const int some = ctx->op.islands > ctx->op.groups;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const int asked = ctx->kept || (some && ctx->last.kind[k] != SLIDES);
+        const int asked = ctx->last.stored[k] == ALL_STORED || (some && ctx->last.stored[k] == SOME_STORED);
         if (wanted || (asked && ctx->law->uses_feq)) {
             find_feq(ctx, k, i, n, a);
         }
         if (asked) {
-            const struct contacts c = tribo_contacts_from(&all, i);
+            const struct contacts c = tribo_contacts_from(&ctx->contacts, i);
             ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
         }
     }
 }
 
+/* The same of the n contacts of chunk k, from i on, which do not all store it. */
+static void forces_of_slips(const tribo_context *ctx, size_t k, size_t i, size_t n, double *f)
+{
+    const signed char *did = ctx->last.of;
+    if (ctx->chunk[k].least < ctx->chunk[k].largest) {
+        force_of_slips(n, did + i, ctx->limit + i, f + i);
+    } else {
+        force_of_alike_slips(n, did + i, ctx->chunk[k].largest, f + i);
+    }
+    for (size_t j = i, near; ctx->last.stored[k] == SOME_STORED && (near = tribo_next_near(did, &j, i + n)) > 0; j += near) {
+        tribo_copy(f + j, ctx->f + j, near);
+    }
+}
+
 void tribo_forces(const tribo_context *ctx, double *f)
 {
-    if (ctx->kept) {
+    if (ctx->last.all_stored) {
         tribo_copy(f, ctx->f, ctx->n);
         return;
     }
-    const unsigned char *state = ctx->last.state;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         expect(ctx, f, i, 1);
-        if (ctx->last.kind[k] == KEPT) {
-            tribo_copy(f + i, ctx->f + i, n);
-        } else if (ctx->chunk[k].least < ctx->chunk[k].largest) {
-            force_of_slips(n, state + i, ctx->limit + i, f + i);
+        if (ctx->last.stored[k] == ALL_STORED) {
+            memcpy(f + i, ctx->f + i, n * sizeof *f);
         } else {
-            force_of_alike_slips(n, state + i, ctx->chunk[k].largest, f + i);
-        }
-        for (size_t j = i, near; ctx->last.kind[k] == MIXED && (near = tribo_next_near(state, &j, i + n)) > 0; j += near) {
-            tribo_copy(f + j, ctx->f + j, near);
+            forces_of_slips(ctx, k, i, n, f);
         }
     }
 }

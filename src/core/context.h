@@ -22,8 +22,9 @@ struct message;
 
 /* What of a chunk's contacts changes with settings only. */
 struct chunk {
-    double widest;         /* epsilon; negative if all are open */
     double least, largest; /* limit */
+    double widest;         /* width */
+    double band;           /* no epsilon of a contact that is not open is larger; negative if all are open */
 };
 
 static inline size_t tribo_chunks(size_t n)
@@ -31,42 +32,45 @@ static inline size_t tribo_chunks(size_t n)
     return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
 }
 
-/* What a call finds of a contact: it slides towards v < 0, is near stick, or slides towards v > 0. An open one slides. */
-enum { BACK, NEAR, FORTH };
+/* What a contact did in the last call that found forces: it slid towards v < 0 or v > 0, which is to say that its force is its
+ * limit; or its force is stored in f. Before limits change modes take the place of that, with the same numbers (see
+ * tribo_get_modes): 0 for stuck, and OPEN. */
+enum { BACK = -1, STORED = 0, FORTH = 1, OPEN = 2 };
 
-/* All contacts of a chunk slide; or perhaps not; or that does not matter, since ctx->f holds all their forces. */
-enum { SLIDES, MIXED, KEPT };
+/* Of how many contacts of a chunk the force is stored; of all only if they say so. */
+enum { NONE_STORED, SOME_STORED, ALL_STORED };
 
-struct look {
-    unsigned char *state; /* [n] */
-    unsigned char *kind;  /* [chunks] in the same piece of memory */
+struct deeds {
+    signed char *of;       /* [n] */
+    unsigned char *stored; /* [chunks] in the same piece of memory */
+    int all_stored;        /* the forces of all contacts are */
 };
+
+/* What is known of the modes of the last call: nothing, or they follow from forces and limits, or they are written down. */
+enum { NO_MODES, MODES_IN_FORCES, MODES_WRITTEN };
 
 struct tribo_context {
     size_t n;
     const char *owner; /* of the operator; NULL: the caller */
     const struct law *law;
     int coupling, sharing;
-    double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
-    double *given;          /* [n] epsilon as given */
-    double *limit, *epsilon, *slope;
-    double *bound;         /* [n] limits as the solver takes them: the same array, or, if one is beyond op.most, bounds */
-    double *bounds;        /* [n] */
-    double largest;        /* limit */
-    double *limit_then;    /* [n] limits of the last balance: the same array, or the other of limits */
-    double *limits;        /* [2][n + 1] */
-    unsigned char *moving; /* [n] reversal memory */
-    struct operator op;
-    struct chunk *chunk;     /* [chunks] */
-    struct look last, spare; /* of the last balance; room for the next */
-    int kept;                /* f holds all forces, and last has not been asked; otherwise f holds those of contacts NEAR */
-    double *feq, *f;         /* [n] of the last balance */
-    double *v;               /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
-    struct tangent *tangent; /* [n] */
-    int balanced;            /* forces are those of a tribo_balance or tribo_step_force, and modes follow from it */
-    int linearized;          /* tangent is that of the last balance */
-    int far;                 /* a limit or a bound of the last call is so large that solutions may be beyond op.most */
-    double holds;            /* a contact holds if |f| is less than this part of the limit */
+    double step, lambda_dt;         /* tribo_set_epsilon_step; step 0: epsilon was given */
+    double *limit;                  /* [n] */
+    double *width, *rate;           /* [n] see law.h */
+    unsigned char *moving;          /* [n] reversal memory */
+    struct contacts contacts;       /* all of them, as laws see them; of far limits with what is cut: */
+    double *cut_limit, *cut_factor; /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
+    double largest, steepest;       /* limit; and factor, or 1 */
+    struct chunk *chunk;            /* [chunks] */
+    struct delassus op;
+    struct deeds last, spare; /* of the last call; room for the next */
+    double *feq, *f;          /* [n] of the last call; f where it is stored */
+    double *v;                /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
+    struct tangent *tangent;  /* [n] */
+    int modes;                /* NO_MODES, ... */
+    double holds;             /* a contact is stuck if |f| is less than this part of the limit */
+    int linearized;           /* tangent is that of the last call */
+    int far;                  /* a limit or a bound of the last call is so large that solutions may be beyond op.most */
     double residual;
     size_t rank, solves, reused, skipped, marks;
     size_t revision; /* counts changes of settings and operator */
@@ -108,11 +112,21 @@ static inline int tribo_need_epsilon(const tribo_context *ctx)
     return ctx->step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
 }
 
-/* look.c: limits of the chunks, and then their epsilon, brought up to date with settings. */
+/* settings.c: brings what follows from settings and operator up to date: after a change of limits; or of anything, then with
+ * width and rate of an epsilon that follows the operator. */
 void tribo_refresh_limits(tribo_context *ctx);
-void tribo_refresh_widths(tribo_context *ctx);
+void tribo_refresh(tribo_context *ctx);
 
-/* Checks v and a, and finds who is near stick; a status, and on failure all is as after the last call. */
+/* classify.c: copies the limits of a chunk's contacts, n > 0, and finds the least and the largest. */
+void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk);
+
+/* Returns epsilon of the n contacts from i on, n <= TRIBO_CHUNK; room [n]. */
+const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, double *room);
+
+/* All forces of this call will be stored. */
+void tribo_store_all(tribo_context *ctx);
+
+/* Checks v and a, and finds the contacts near stick; a status, and on failure all is as after the last call. */
 int tribo_classify(tribo_context *ctx, const double *v, const double *a);
 
 /* f of contacts that need no solver, where ctx->f is to hold it, and their f_eq, or that of all contacts if wanted, as if all
@@ -120,16 +134,19 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a);
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 
 /* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
-size_t tribo_next_near(const unsigned char *state, size_t *i, size_t end);
+size_t tribo_next_near(const signed char *did, size_t *i, size_t end);
 
 /* The forces of all contacts, f [n], while limits are those of the balance; or of one. */
 void tribo_forces(const tribo_context *ctx, double *f);
 
 static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 {
-    const int state = ctx->kept ? NEAR : ctx->last.state[i];
-    return state == NEAR ? ctx->f[i] : state == FORTH ? -ctx->limit_then[i] : ctx->limit_then[i];
+    const int did = ctx->last.of[i];
+    return did == STORED ? ctx->f[i] : did == FORTH ? -ctx->limit[i] : ctx->limit[i];
 }
+
+/* queries.c: writes modes down, before limits change. */
+void tribo_write_modes(tribo_context *ctx);
 
 /* The force of the contact at place k of a group as the solver takes it. */
 static inline double tribo_carried(const tribo_context *ctx, const struct box_qp *p, size_t k)
@@ -159,26 +176,6 @@ static inline void tribo_copy(double *to, const double *from, size_t n)
     if (n) {
         memcpy(to, from, n * sizeof *to);
     }
-}
-
-/* context.c: epsilon and slope brought up to date with limits, operator and settings. */
-void tribo_refresh(tribo_context *ctx);
-
-/* The contacts as laws see them, and those from i on. */
-static inline struct contacts tribo_contacts(const tribo_context *ctx)
-{
-    return (struct contacts){ctx->limit, ctx->epsilon, ctx->slope, ctx->moving, ctx->step > 0.0 ? 1.0 : 0.0};
-}
-
-static inline struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
-{
-    return (struct contacts){c->limit + i, c->epsilon + i, c->slope + i, c->moving + i, c->follows};
-}
-
-/* Where |v| is at most this, the law reads f_eq. */
-static inline double tribo_band(const tribo_context *ctx, size_t i)
-{
-    return ctx->law->sticks_in_band ? ctx->epsilon[i] : 0.0;
 }
 
 #endif

@@ -19,7 +19,9 @@ TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const doub
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
     if (ctx->law->uses_feq) {
-        select_feq(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, feq + i, used);
+        double room[TRIBO_CHUNK];
+        const double *band = ctx->law->sticks_in_band ? tribo_epsilons(&ctx->contacts, i, n, room) : NULL;
+        select_feq(n, v + i, band, feq + i, used);
     } else {
         memset(used, 0, n * sizeof *used);
     }
@@ -72,12 +74,11 @@ static void hand_out(size_t n, const struct tangent *d, double *df_dv, double *d
 static void evaluate(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
                      double *df_dlimit)
 {
-    const struct contacts all = tribo_contacts(ctx);
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double used[TRIBO_CHUNK];
         struct tangent d[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
-        const struct contacts c = tribo_contacts_from(&all, i);
+        const struct contacts c = tribo_contacts_from(&ctx->contacts, i);
         used_feq(ctx, i, n, v, feq, used);
         cut_all(n, used);
         if (f) {
@@ -134,7 +135,7 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     ctx->linearized = 0;
     for (size_t i = 0; i < ctx->n; i++) {
         const unsigned char before = ctx->moving[i];
-        if (fabs(v[i]) > ctx->epsilon[i]) {
+        if (fabs(v[i]) > tribo_epsilon_of(&ctx->contacts, i)) {
             ctx->moving[i] = 1;
         } else if (fabs(feq[i]) <= ctx->limit[i]) {
             ctx->moving[i] = 0;

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "context.h"
+#include "../common/simd.h"
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 {
@@ -17,10 +18,32 @@ int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 
 /* The force alone tells: only where a law holds the contact is it less than the limit. (The smooth law never reaches the limit;
  * it counts as holding where |v| < epsilon.) */
-static signed char mode_of(const tribo_context *ctx, size_t i)
+static inline signed char mode_of(signed char did, double f, double limit, double holds)
 {
-    const double limit = ctx->limit_then[i], f = tribo_force_of(ctx, i);
-    return (signed char)(limit > 0.0 ? fabs(f) < ctx->holds * limit ? 0 : f < 0.0 ? 1 : -1 : 2);
+    const double edge = holds * limit;
+    const int open = !(limit > 0.0), stored = (f <= -edge) - (f >= edge), mode = did + (did == STORED) * stored;
+    return (signed char)(mode * !open + OPEN * open); /* no choice: that is what makes loops of it fast */
+}
+
+/* Modes take the place of what contacts did. */
+TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const double *restrict limit, double holds,
+                                  signed char *restrict did)
+{
+    for (size_t i = 0; i < n; i++) {
+        did[i] = mode_of(did[i], f[i], limit[i], holds);
+    }
+}
+
+void tribo_write_modes(tribo_context *ctx)
+{
+    for (size_t i = 0, k = 0; ctx->modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
+        if (ctx->last.stored[k] != NONE_STORED || ctx->chunk[k].least == 0.0) {
+            find_modes(tribo_chunk_size(ctx, i), ctx->f + i, ctx->limit + i, ctx->holds, ctx->last.of + i);
+            ctx->last.stored[k] = SOME_STORED;
+            ctx->last.all_stored = 0;
+        }
+    }
+    ctx->modes = ctx->modes == NO_MODES ? NO_MODES : MODES_WRITTEN;
 }
 
 int tribo_get_modes(const tribo_context *ctx, signed char *mode)
@@ -31,12 +54,15 @@ int tribo_get_modes(const tribo_context *ctx, signed char *mode)
     if (!mode && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "mode is NULL");
     }
-    if (!ctx->balanced) {
+    if (ctx->modes == NO_MODES) {
         return tribo_fail(ctx, TRIBO_ERR_STATE,
                           "no tribo_balance or tribo_step_force since the last tribo_solve_box or operator");
     }
-    for (size_t i = 0; i < ctx->n; i++) {
-        mode[i] = mode_of(ctx, i);
+    if (ctx->n) {
+        memcpy(mode, ctx->last.of, ctx->n);
+    }
+    if (ctx->modes == MODES_IN_FORCES) {
+        find_modes(ctx->n, ctx->f, ctx->limit, ctx->holds, mode);
     }
     return TRIBO_OK;
 }
@@ -44,8 +70,11 @@ int tribo_get_modes(const tribo_context *ctx, signed char *mode)
 static size_t count_stuck(const tribo_context *ctx)
 {
     size_t stuck = 0;
-    for (size_t i = 0; ctx->balanced && i < ctx->n; i++) {
-        stuck += mode_of(ctx, i) == 0;
+    for (size_t i = 0; ctx->modes == MODES_IN_FORCES && i < ctx->n; i++) {
+        stuck += mode_of(ctx->last.of[i], ctx->f[i], ctx->limit[i], ctx->holds) == 0;
+    }
+    for (size_t i = 0; ctx->modes == MODES_WRITTEN && i < ctx->n; i++) {
+        stuck += ctx->last.of[i] == 0;
     }
     return stuck;
 }
@@ -84,7 +113,7 @@ static double max_rate(const tribo_context *ctx)
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
         if (ctx->limit[i] > 0.0) {
-            rate = greater(rate, product(ctx->slope[i], ctx->op.diagonal[i]));
+            rate = greater(rate, product(tribo_slope_of(&ctx->contacts, i), ctx->op.diagonal[i]));
         }
     }
     if (!ctx->law->uses_feq) {

@@ -1,8 +1,103 @@
-/* What a caller sets: law, limits, epsilon, coupling, sharing. */
+/* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows from it. Nothing but bounds follows from limits,
+ * which change more often than everything else. */
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
 #include "context.h"
+
+/* Whether epsilon follows limits and operator. */
+static int epsilon_follows(const tribo_context *ctx)
+{
+    return ctx->step > 0.0 && ctx->op.diagonal;
+}
+
+/* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
+static void follow_step(tribo_context *ctx)
+{
+    const double time = quotient(ctx->step, ctx->lambda_dt);
+    for (size_t i = 0; i < ctx->n; i++) {
+        const double half = greater(product(ctx->op.diagonal[i], time), DBL_MIN);
+        ctx->width[i] = 2.0 * half;
+        ctx->rate[i] = ctx->op.diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+    }
+}
+
+static double largest_of(size_t n, const double *x)
+{
+    double largest = x[0];
+    for (size_t i = 1; i < n; i++) {
+        largest = greater(largest, x[i]);
+    }
+    return largest;
+}
+
+static void find_widths(tribo_context *ctx)
+{
+    const double *factor = epsilon_follows(ctx) ? ctx->width : ctx->rate;
+    ctx->steepest = 1.0;
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        ctx->chunk[k].widest = largest_of(n, ctx->width + i);
+        ctx->steepest = greater(ctx->steepest, largest_of(n, factor + i));
+    }
+}
+
+/* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
+static void cut_far(tribo_context *ctx)
+{
+    struct contacts *c = &ctx->contacts;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->cut_limit[i] = lesser(ctx->limit[i], TRIBO_FAR);
+    }
+    for (size_t g = 0; g < ctx->op.groups; g++) {
+        const struct box_qp *p = tribo_operator_problem(&ctx->op, g);
+        for (size_t k = 0; k < p->group->size; k++) {
+            ctx->cut_limit[p->member[k]] = lesser(ctx->limit[p->member[k]], tribo_most(p, k));
+        }
+    }
+    const double *factor = c->follows ? ctx->width : ctx->rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->cut_factor[i] = lesser(factor[i], far / greater(ctx->cut_limit[i], 1.0));
+    }
+    c->bound = ctx->cut_limit;
+    *(c->follows ? &c->width : &c->rate) = ctx->cut_factor;
+}
+
+/* No epsilon of the chunk's contacts that are not open is larger; negative if there are none. */
+static double band_of(const struct chunk *chunk, int follows)
+{
+    if (chunk->largest == 0.0) {
+        return -1.0;
+    }
+    const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
+    return widest < TRIBO_FAR ? widest : DBL_MAX;
+}
+
+void tribo_refresh_limits(tribo_context *ctx)
+{
+    const int follows = epsilon_follows(ctx);
+    ctx->largest = 0.0;
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->largest = greater(ctx->largest, ctx->chunk[k].largest);
+        ctx->chunk[k].band = band_of(&ctx->chunk[k], follows);
+    }
+    ctx->contacts = (struct contacts){ctx->limit, ctx->limit, ctx->width, ctx->rate, ctx->moving, follows};
+    if (ctx->largest > lesser(ctx->op.most, TRIBO_FAR / ctx->steepest)) {
+        cut_far(ctx);
+    }
+    ctx->linearized = 0;
+    ctx->revision++;
+}
+
+void tribo_refresh(tribo_context *ctx)
+{
+    if (epsilon_follows(ctx)) {
+        follow_step(ctx);
+    }
+    find_widths(ctx);
+    tribo_refresh_limits(ctx);
+}
 
 int tribo_set_law(tribo_context *ctx, int law)
 {
@@ -32,15 +127,6 @@ int tribo_get_law(const tribo_context *ctx, int *law)
     return TRIBO_OK;
 }
 
-/* Where limits are set: those of the last balance stay, for its modes. */
-static double *new_limits(tribo_context *ctx)
-{
-    if (ctx->limit_then == ctx->limit) {
-        ctx->limit = ctx->limits + (ctx->limit == ctx->limits ? ctx->n + 1 : 0);
-    }
-    return ctx->limit;
-}
-
 int tribo_set_limit(tribo_context *ctx, const double *limit)
 {
     if (!ctx) {
@@ -50,8 +136,12 @@ int tribo_set_limit(tribo_context *ctx, const double *limit)
     if (status) {
         return status;
     }
-    tribo_copy(new_limits(ctx), limit, ctx->n);
-    tribo_refresh(ctx);
+    tribo_write_modes(ctx);
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        tribo_take_limits(n, limit + i, ctx->limit + i, &ctx->chunk[k]);
+    }
+    tribo_refresh_limits(ctx);
     return TRIBO_OK;
 }
 
@@ -66,26 +156,27 @@ int tribo_set_limit_all(tribo_context *ctx, double limit)
     if (limit < 0.0) {
         return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "limit = %g is negative", limit);
     }
-    double *each = new_limits(ctx);
+    tribo_write_modes(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
-        each[i] = limit;
+        ctx->limit[i] = limit;
     }
-    tribo_refresh(ctx);
-    return TRIBO_OK;
-}
-
-static int copy_out(const tribo_context *ctx, const char *name, const double *from, double *to)
-{
-    if (!to && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->chunk[k].least = ctx->chunk[k].largest = limit;
     }
-    tribo_copy(to, from, ctx->n);
+    tribo_refresh_limits(ctx);
     return TRIBO_OK;
 }
 
 int tribo_get_limit(const tribo_context *ctx, double *limit)
 {
-    return ctx ? copy_out(ctx, "limit", ctx->limit, limit) : TRIBO_ERR_NULL;
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!limit && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "limit is NULL");
+    }
+    tribo_copy(limit, ctx->limit, ctx->n);
+    return TRIBO_OK;
 }
 
 int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
@@ -94,7 +185,16 @@ int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
         return TRIBO_ERR_NULL;
     }
     const int status = tribo_need_epsilon(ctx);
-    return status ? status : copy_out(ctx, "epsilon", ctx->epsilon, epsilon);
+    if (status) {
+        return status;
+    }
+    if (!epsilon && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "epsilon is NULL");
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        epsilon[i] = tribo_epsilon_of(&ctx->contacts, i);
+    }
+    return TRIBO_OK;
 }
 
 int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
@@ -106,7 +206,10 @@ int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
     if (status) {
         return status;
     }
-    tribo_copy(ctx->given, epsilon, ctx->n);
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->width[i] = epsilon[i];
+        ctx->rate[i] = tribo_rate(epsilon[i]);
+    }
     ctx->step = 0.0;
     tribo_refresh(ctx);
     return TRIBO_OK;
@@ -133,7 +236,8 @@ int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
         return status;
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->given[i] = epsilon;
+        ctx->width[i] = epsilon;
+        ctx->rate[i] = tribo_rate(epsilon);
     }
     ctx->step = 0.0;
     tribo_refresh(ctx);

@@ -15,62 +15,183 @@ TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, 
     }
 }
 
-/* The box over all contacts, with v = dt a; lower NULL: -upper. Contacts whose bounds leave no choice take no part in the solver,
- * nor do those that are pulled harder than reach, what the others could do, if it is given. */
-static int box_all(tribo_context *ctx, double dt, const double *v, const double *lower, const double *upper, const double *reach,
-                   double *f)
+/* Bounds of all contacts; lower NULL: -upper. */
+struct bounds {
+    const double *lower, *upper;
+};
+
+static inline double lower_of(const struct bounds *b, size_t i)
 {
-    const double scale = ctx->op.groups ? quotient(1.0, dt) : 0.0;
-    ctx->kept = 1;
-    box_alone(ctx->n, dt, v, ctx->op.diagonal, lower, upper, ctx->f);
-    for (size_t i = 0; ctx->op.groups > 0 && i < ctx->n; i++) {
-        const int chooses = (lower ? lower[i] : -upper[i]) < upper[i];
-        ctx->last.state[i] = chooses && !(reach && fabs(scale * v[i]) > reach[i]) ? NEAR : BACK;
+    return b->lower ? b->lower[i] : -b->upper[i];
+}
+
+/* A call: its bounds, and how hard a contact is pulled, which is scale v. */
+struct call {
+    struct bounds b;
+    double scale;
+    const double *v;
+    int estimates; /* the pull tells something, and what limits can do against it is found from the sums of R's rows first */
+};
+
+/* Sums of rows and limits up to this make numbers of each other. */
+#define ESTIMATED 1e150
+
+/* Whether a contact is pulled harder than forces of this limit can hold it, through a row of R with this sum. */
+static inline int out_of_reach(double scale, double v, double row_sum, double limit)
+{
+    return fabs(scale * v) > row_sum * limit;
+}
+
+TRIBO_SIMD static int any_within_reach(size_t n, double scale, const double *restrict v, const double *restrict row_sum,
+                                       double largest)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t i = 0; i < n; i++) {
+        any |= out_of_reach(scale, v[i], row_sum[i], largest) ? 0 : -1;
     }
-    if (ctx->op.groups) {
-        tribo_find_near_groups(ctx, 0, ctx->n);
+    return any != 0;
+}
+
+/* At least the largest limit in any group with a contact in chunk k. */
+static double largest_around(const tribo_context *ctx, size_t k)
+{
+    if (ctx->op.span >= TRIBO_CHUNK) {
+        return ctx->largest;
     }
-    for (size_t g = 0; g < ctx->op.nsolved; g++) {
-        struct box_qp *p = tribo_collect(ctx, ctx->op.solved_list[g]);
-        const size_t *member = p->member;
-        for (size_t e = 0; e < p->count; e++) {
-            const size_t k = p->near[e], i = member[k];
-            const double lo = lower ? lower[i] : -upper[i];
+    const double before = k > 0 ? ctx->chunk[k - 1].largest : 0.0;
+    const double behind = k + 1 < tribo_chunks(ctx->n) ? ctx->chunk[k + 1].largest : 0.0;
+    return greater(ctx->chunk[k].largest, greater(before, behind));
+}
+
+/* Finds the groups in which a contact may take part, chunk by chunk: in a large scene most have none. */
+static void find_candidates(tribo_context *ctx, const struct call *c)
+{
+    struct delassus *op = &ctx->op;
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        const double largest = largest_around(ctx, k);
+        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->scale, c->v + i, op->row_sum + i, largest))) {
+            continue;
+        }
+        for (size_t j = i; j < i + n; j++) {
+            const size_t g = op->group_of[j];
+            if (g != TRIBO_ALONE && !op->solved[g] &&
+                !(c->estimates && out_of_reach(c->scale, c->v[j], op->row_sum[j], largest))) {
+                op->solved[g] = 1;
+                op->solved_list[op->nsolved++] = g;
+            }
+        }
+    }
+}
+
+/* The limits of a group, by place, and what they are at least and at most. */
+struct limits {
+    double least, largest;
+    double *of;
+};
+
+static struct limits limits_of(const tribo_context *ctx, const struct box_qp *p)
+{
+    struct limits l = {TRIBO_FAR, 0.0, p->step};
+    for (size_t k = 0; k < p->group->size; k++) {
+        l.of[k] = ctx->contacts.bound[p->member[k]];
+        l.least = lesser(l.least, l.of[k]);
+        l.largest = greater(l.largest, l.of[k]);
+    }
+    return l;
+}
+
+/* Whether friction could hold the contact at place k: limits that are all the same need no look at the row. */
+static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t k, const struct call *c, const struct limits *l)
+{
+    const double v = c->v[p->member[k]], row_sum = c->estimates ? ctx->op.row_sum[p->member[k]] : 0.0;
+    const int may = !c->estimates | !out_of_reach(c->scale, v, row_sum, l->largest);
+    const int sure = c->estimates & !out_of_reach(c->scale, v, row_sum, l->least);
+    double reach;
+    if (may == sure) {
+        return may;
+    }
+    tribo_row_dot(p, k, l->of, &reach);
+    return !(fabs(c->scale * v) > reach);
+}
+
+/* Sets the problem of a group: its contacts in the problem's order, those that take part first. Contacts whose bounds leave no
+ * choice do not, nor do those of Coulomb's law that are out of reach. */
+static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
+{
+    struct box_qp *p = tribo_operator_problem(&ctx->op, g);
+    const struct limits l = limits_of(ctx, p);
+    size_t behind = p->group->size;
+    p->count = 0;
+    p->far = ctx->far;
+    for (size_t k = 0; k < p->group->size; k++) {
+        const size_t i = p->member[k];
+        const double lo = lower_of(&c->b, i), hi = c->b.upper[i];
+        if (lo < hi && (c->b.lower || within_reach(ctx, p, k, c, &l))) {
+            p->near[p->count++] = k;
             p->lo[k] = ctx->far ? tribo_cut(p, k, lo) : lo;
-            p->hi[k] = ctx->far ? tribo_cut(p, k, upper[i]) : upper[i];
-            p->q[k] = cut(scale * v[i]);
+            p->hi[k] = ctx->far ? tribo_cut(p, k, hi) : hi;
+            p->q[k] = cut(c->scale * c->v[i]);
+        } else {
+            p->near[--behind] = k;
+            p->x[k] = tribo_carried(ctx, p, k);
         }
-        const int status = tribo_solve_group(ctx, p);
-        if (status) {
-            return status;
+    }
+    return p;
+}
+
+/* Solves for the contacts of a group that take part; there are some. */
+static int solve_for(tribo_context *ctx, struct box_qp *p, const struct bounds *b)
+{
+    const int status = tribo_solve_group(ctx, p);
+    for (size_t e = 0; !status && e < p->count; e++) {
+        const size_t k = p->near[e], i = p->member[k];
+        ctx->f[i] = clamp(p->x[k], lower_of(b, i), b->upper[i]);
+    }
+    return status;
+}
+
+/* Solves for the groups that are candidates, of which those stay that a contact takes part in; after a failure none of the rest.
+ */
+static int solve_candidates(tribo_context *ctx, const struct call *c)
+{
+    struct delassus *op = &ctx->op;
+    const size_t candidates = op->nsolved;
+    int status = TRIBO_OK;
+    op->nsolved = 0;
+    for (size_t k = 0; k < candidates; k++) {
+        const size_t g = op->solved_list[k];
+        if (k + 2 < candidates) {
+            tribo_operator_expect(op, op->solved_list[k + 2]);
         }
-        for (size_t e = 0; e < p->count; e++) {
-            const size_t k = p->near[e], i = member[k];
-            ctx->f[i] = clamp(p->x[k], lower ? lower[i] : -upper[i], upper[i]);
+        struct box_qp *p = status ? NULL : pose(ctx, g, c);
+        op->solved[g] = p && p->count > 0;
+        if (op->solved[g]) {
+            op->solved_list[op->nsolved++] = g;
+            status = solve_for(ctx, p, &c->b);
         }
+    }
+    return status;
+}
+
+/* Solves for all contacts. */
+static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
+{
+    const int estimates = !b.lower && ctx->largest < ESTIMATED && ctx->op.largest_sum < ESTIMATED;
+    const struct call c = {b, ctx->op.groups ? quotient(1.0, dt) : 0.0, v, estimates};
+    tribo_store_all(ctx);
+    box_alone(ctx->n, dt, v, ctx->op.diagonal, b.lower, b.upper, ctx->f);
+    if (ctx->op.groups) {
+        find_candidates(ctx, &c);
+    }
+    const int status = solve_candidates(ctx, &c);
+    if (status) {
+        return status;
     }
     ctx->skipped += ctx->op.islands - ctx->op.nsolved;
     tribo_remember_forces(ctx);
     tribo_copy(f, ctx->f, ctx->n);
     return TRIBO_OK;
-}
-
-/* The most that friction can do to the contacts, while the limits stay as they are. */
-static const double *reaches(tribo_context *ctx)
-{
-    struct operator* op = & ctx->op;
-    for (size_t g = 0; !op->reaches && g < op->groups; g++) {
-        struct box_qp *p = tribo_operator_problem(op, g);
-        const size_t *member = p->member, size = p->group->size;
-        for (size_t k = 0; k < size; k++) {
-            p->step[k] = ctx->bound[member[k]];
-        }
-        for (size_t k = 0; k < size; k++) {
-            tribo_row_dot(p, k, p->step, &op->reach[member[k]]);
-        }
-    }
-    op->reaches = 1;
-    return op->reach;
 }
 
 int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
@@ -93,9 +214,9 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
     tribo_begin_call(ctx);
-    status = box_all(ctx, dt, vfree, NULL, ctx->limit, ctx->op.groups ? reaches(ctx) : NULL, f);
+    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->limit}, f);
     if (!status) {
-        ctx->balanced = 1;
+        ctx->modes = MODES_IN_FORCES;
         ctx->holds = 1.0;
     }
     return status;
@@ -125,5 +246,5 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     }
     tribo_begin_call(ctx);
     ctx->far = most > TRIBO_ROOM * ctx->op.most;
-    return box_all(ctx, 1.0, a, lower, upper, NULL, f);
+    return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, f);
 }

@@ -6,8 +6,7 @@
 /* What every contact's law says at the last balance, which was at v. */
 static void linearize_laws(tribo_context *ctx, const double *v)
 {
-    const struct contacts c = tribo_contacts(ctx);
-    ctx->law->tangent(&c, ctx->n, v, ctx->feq, ctx->tangent);
+    ctx->law->tangent(&ctx->contacts, ctx->n, v, ctx->feq, ctx->tangent);
     tribo_copy(ctx->v, v, ctx->n);
     ctx->linearized = 1;
 }
@@ -15,14 +14,14 @@ static void linearize_laws(tribo_context *ctx, const double *v)
 /* How the force of contact i, at place k, follows its own velocity where it is not balanced. */
 static double own_rate(const tribo_context *ctx, const struct box_qp *p, size_t k, size_t i)
 {
-    if (ctx->last.state[i] != NEAR) {
+    if (ctx->last.of[i] != STORED) {
         return ctx->tangent[i].dv;
     }
     /* the bound of a relaxing law moves with v while it is not at the other limit */
-    const double kappa = ctx->slope[i] * ctx->v[i];
+    const double slope = tribo_slope_of(&ctx->contacts, i), kappa = slope * ctx->v[i];
     const int moves =
         ctx->law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->limit[i];
-    return moves ? -ctx->slope[i] : 0.0;
+    return moves ? -slope : 0.0;
 }
 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */
@@ -66,7 +65,7 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
         df[k] = p->at[k] == FREE ? 0.0 : clamp(product(own_rate(ctx, p, k, i), dv[k]), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
         if (!partition && ctx->law->relaxes) {
-            rhs[k] += r * clamp(product(ctx->slope[i], dv[k]), -most, most);
+            rhs[k] += r * clamp(product(tribo_slope_of(&ctx->contacts, i), dv[k]), -most, most);
         }
     }
     follow_free(p, vectors, rhs, df);
@@ -82,7 +81,7 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
             const size_t i = member[k];
             const struct tangent *d = &ctx->tangent[i];
             const double r = ctx->op.diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
-            df[k] = product(d->dv, dv[k]) - (ctx->last.state[i] == NEAR ? d->dfeq * quotient(sum, r) : 0.0);
+            df[k] = product(d->dv, dv[k]) - (ctx->last.of[i] == STORED ? d->dfeq * quotient(sum, r) : 0.0);
         }
     }
 }

@@ -42,6 +42,7 @@ struct sparse;
 /* What lasts as long as the operator. */
 struct group {
     size_t size;
+    size_t first;          /* into the members */
     size_t kept;           /* into the store: what the problem below keeps */
     double lightest;       /* the smallest scale, that of the largest diagonal entry */
     size_t terms;          /* entries of the fullest row */
@@ -62,16 +63,16 @@ struct work {
 struct box_qp {
     struct group *group;
     /* kept, side by side */
-    double *x;       /* [size] */
-    size_t *member;  /* [size] the contacts, ascending */
-    size_t *order;   /* [size] rank independent free contacts, in the order of the factor, then the dependents */
-    signed char *at; /* [size] */
-    size_t *terms;   /* [size] entries of R in a row */
-    double *scale;   /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
-    double *r;       /* [size][size], if dense */
-    double *l;       /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
-    double *r_low;   /* [size][size] what rounding left of R, if graded */
-    double *l_low;   /* [size][size] and of the factor */
+    double *x;            /* [size] */
+    const size_t *member; /* [size] the contacts, ascending */
+    size_t *order;        /* [size] rank independent free contacts, in the order of the factor, then the dependents */
+    signed char *at;      /* [size] */
+    size_t *terms;        /* [size] entries of R in a row */
+    double *scale;        /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
+    double *r;            /* [size][size], if dense */
+    double *l;            /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
+    double *r_low;        /* [size][size] what rounding left of R, if graded */
+    double *l_low;        /* [size][size] and of the factor */
     /* the problem: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
     int far;             /* solutions may be as large as they can be told apart */
     size_t *near, count; /* near[0 .. count): the contacts in the problem, ascending; near[count .. size): the others */

@@ -21,7 +21,7 @@ static inline void set_noise(struct box_qp *p, size_t i, double terms, double ro
 
 /* Of terms some may have underflowed. A graded group's forces and R are as good as
  * exact, and what it knows of q is q. */
-void tribo_box_gradients(struct box_qp *p, int first)
+static inline void find_gradients(struct box_qp *p, int first)
 {
     double size, low;
     for (size_t e = 0; !p->twofold && e < p->count; e++) {
@@ -35,6 +35,15 @@ void tribo_box_gradients(struct box_qp *p, int first)
         p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
         const double q = fabs(p->q[i]) + DBL_MIN;
         set_noise(p, i, size + q, q + GRADED_PART * size, first);
+    }
+}
+
+void tribo_box_gradients(struct box_qp *p, int first)
+{
+    if (first) {
+        find_gradients(p, 1);
+    } else {
+        find_gradients(p, 0);
     }
 }
 

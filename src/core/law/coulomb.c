@@ -26,6 +26,7 @@ const struct law tribo_law_coulomb = {
     .reference = "C. A. de Coulomb (1785); with f_eq at rest: D. D. Quinn, J. Vib. Acoust. 126 (2004) 391, Eq. 1-2, "
                  "doi:10.1115/1.1760564",
     .uses_feq = 1,
+    .holds = 1.0,
     .force = coulomb_force_all,
     .tangent = coulomb_tangent_all,
 };

@@ -26,6 +26,7 @@ const struct law tribo_law_karnopp = {
     .reference = "D. Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100, doi:10.1115/1.3140698",
     .uses_feq = 1,
     .sticks_in_band = 1,
+    .holds = 1.0,
     .force = karnopp_force_all,
     .tangent = karnopp_tangent_all,
 };

@@ -10,6 +10,7 @@ const struct law tribo_law_quinn = {
     .uses_feq = 1,
     .sticks_in_band = 1,
     .relaxes = 1,
+    .holds = 1.0,
     .force = quinn_force_all,
     .tangent = quinn_tangent_all,
 };

@@ -68,6 +68,7 @@ const struct law tribo_law_quinn_reversal = {
     .sticks_in_band = 1,
     .relaxes = 1,
     .remembers = 1,
+    .holds = 1.0,
     .force = reversal_force_all,
     .tangent = reversal_tangent_all,
 };

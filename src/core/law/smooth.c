@@ -23,6 +23,7 @@ const struct law tribo_law_smooth = {
     .reference = "hyperbolic tangent, as in the smooth laws that D. D. Quinn, J. Vib. Acoust. 126 (2004) 391, "
                  "cites as references 13 and 14",
     .sticks_in_band = 1,
+    .holds = 0.7615941559557649, /* tanh(1), at |v| = epsilon */
     .force = smooth_force_all,
     .tangent = smooth_tangent_all,
 };

@@ -27,6 +27,7 @@ const struct law tribo_law_velocity_limited = {
     .reference = "J. A. C. Martins and J. T. Oden, Nonlinear Anal. 11 (1987) 407, doi:10.1016/0362-546X(87)90055-1; "
                  "D. D. Quinn (2004), Eq. 3",
     .sticks_in_band = 1,
+    .holds = 1.0,
     .force = limited_force_all,
     .tangent = limited_tangent_all,
 };

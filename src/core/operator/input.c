@@ -60,14 +60,13 @@ static int out_of_memory(const tribo_context *ctx)
 }
 
 /* The new operator is right: it takes the old one's place. */
-static int install(tribo_context *ctx, struct operator* op)
+static int install(tribo_context *ctx, struct delassus *op)
 {
     op->problem.work.factorizations += ctx->op.problem.work.factorizations;
     op->problem.work.updates += ctx->op.problem.work.updates;
     tribo_operator_free(&ctx->op);
     ctx->op = *op;
-    ctx->balanced = 0;
-    ctx->linearized = 0;
+    ctx->modes = NO_MODES;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
@@ -89,7 +88,7 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
 {
     int status = check_owner(ctx);
     status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
-    struct operator op;
+    struct delassus op;
     if (status) {
         return status;
     }
@@ -99,7 +98,7 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
 /* Takes a, sorted rows with finite entries, as the operator. Frees a. from: what they came from, if that is known. */
 static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia *from)
 {
-    struct operator op = {0};
+    struct delassus op = {0};
     struct flaw flaw;
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
     int status = diagonal ? symmetrize(ctx, a, diagonal) : out_of_memory(ctx);

@@ -21,7 +21,7 @@
 #define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
 
-void tribo_operator_free(struct operator* op)
+void tribo_operator_free(struct delassus *op)
 {
     for (size_t k = 0; op->group && k < op->groups; k++) {
         tribo_sparse_free(op->group[k].sparse);
@@ -33,18 +33,19 @@ void tribo_operator_free(struct operator* op)
     free(op->solved);
     free(op->solved_list);
     free(op->store);
-    free(op->reach);
+    free(op->member);
+    free(op->row_sum);
     free(p->near);
     free(p->held);
     free(p->to);
     free(p->q);
     free(p->basis);
-    *op = (struct operator){.most = TRIBO_FAR};
+    *op = (struct delassus){.most = TRIBO_FAR};
 }
 
-int tribo_operator_diagonal(struct operator* op, size_t n, const double *r)
+int tribo_operator_diagonal(struct delassus *op, size_t n, const double *r)
 {
-    *op = (struct operator){.most = TRIBO_FAR, .growth = 1.0, .islands = n};
+    *op = (struct delassus){.most = TRIBO_FAR, .growth = 1.0, .islands = n};
     op->diagonal = malloc((n + 1) * sizeof *op->diagonal);
     for (size_t i = 0; op->diagonal && r && i < n; i++) {
         op->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
@@ -55,22 +56,22 @@ int tribo_operator_diagonal(struct operator* op, size_t n, const double *r)
 /* What a group keeps, in doubles, which are as large as everything else that it keeps. */
 static size_t kept_by(const struct group *g)
 {
-    return 6 * g->size + (g->sparse ? 0 : (g->graded ? 4 : 2) * g->size * g->size);
+    return 5 * g->size + (g->sparse ? 0 : (g->graded ? 4 : 2) * g->size * g->size);
 }
 
-struct box_qp *tribo_operator_problem(struct operator* op, size_t k)
+struct box_qp *tribo_operator_problem(struct delassus *op, size_t k)
 {
     struct box_qp *p = &op->problem;
     struct group *g = &op->group[k];
     const size_t size = g->size;
     p->group = g;
     p->x = op->store + g->kept;
-    p->member = (void *)(p->x + size);
-    p->order = (void *)(p->x + 2 * size);
-    p->at = (void *)(p->x + 3 * size);
-    p->terms = (void *)(p->x + 4 * size);
-    p->scale = p->x + 5 * size;
-    p->r = p->x + 6 * size;
+    p->member = op->member + g->first;
+    p->order = (void *)(p->x + size);
+    p->at = (void *)(p->x + 2 * size);
+    p->terms = (void *)(p->x + 3 * size);
+    p->scale = p->x + 4 * size;
+    p->r = p->x + 5 * size;
     p->l = p->r + size * size;
     p->r_low = p->l + size * size;
     p->l_low = p->r_low + size * size;
@@ -78,21 +79,20 @@ struct box_qp *tribo_operator_problem(struct operator* op, size_t k)
     return p;
 }
 
-void tribo_operator_expect(const struct operator* op, size_t k)
+void tribo_operator_expect(const struct delassus *op, size_t k)
 {
     enum { MOST = 2048 }; /* what there is beyond will come by itself */
     const size_t bytes = kept_by(&op->group[k]) * sizeof *op->store;
     tribo_expect(op->store + op->group[k].kept, bytes < MOST ? bytes : MOST, 0);
 }
 
-static int allocate_store(struct operator* op, size_t n)
+static int allocate_store(struct delassus *op)
 {
     op->store = calloc(op->stored + 1, sizeof *op->store);
-    op->reach = calloc(n + 1, sizeof *op->reach);
-    return op->store && op->reach;
+    return op->store != NULL;
 }
 
-static int allocate_program(struct operator* op)
+static int allocate_program(struct delassus *op)
 {
     enum { VECTORS = 13 };
     const size_t s = op->largest + 1;
@@ -112,7 +112,7 @@ static int allocate_program(struct operator* op)
 }
 
 /* Room for null vectors, once the ranks are known. */
-static int allocate_basis(struct operator* op)
+static int allocate_basis(struct delassus *op)
 {
     for (size_t k = 0; k < op->groups; k++) {
         const struct group *g = &op->group[k];
@@ -127,19 +127,21 @@ static int allocate_basis(struct operator* op)
     return op->problem.held && op->problem.basis;
 }
 
-static int allocate_groups(struct operator* op, size_t n, size_t groups)
+static int allocate_groups(struct delassus *op, size_t n, size_t groups)
 {
     op->group_of = malloc(n * sizeof *op->group_of);
     op->group = calloc(groups, sizeof *op->group);
     op->solved = calloc(groups, 1);
     op->solved_list = malloc(groups * sizeof *op->solved_list);
-    return op->group_of && op->group && op->solved && op->solved_list;
+    op->member = malloc(n * sizeof *op->member);
+    op->row_sum = calloc(n, sizeof *op->row_sum);
+    return op->member && op->row_sum && op->group_of && op->group && op->solved && op->solved_list;
 }
 
-int tribo_operator_copy(struct operator* to, const struct operator* from, size_t n)
+int tribo_operator_copy(struct delassus *to, const struct delassus *from, size_t n)
 {
     if (!from->diagonal) {
-        *to = (struct operator){.most = TRIBO_FAR};
+        *to = (struct delassus){.most = TRIBO_FAR};
         return 1;
     }
     if (!tribo_operator_diagonal(to, n, from->diagonal)) {
@@ -153,18 +155,22 @@ int tribo_operator_copy(struct operator* to, const struct operator* from, size_t
         return 1;
     }
     to->largest = from->largest;
+    to->span = from->span;
+    to->largest_sum = from->largest_sum;
     to->stored = from->stored;
     if (!allocate_groups(to, n, from->groups)) {
         return 0;
     }
     memcpy(to->group_of, from->group_of, n * sizeof *to->group_of);
+    memcpy(to->member, from->member, n * sizeof *to->member);
+    memcpy(to->row_sum, from->row_sum, n * sizeof *to->row_sum);
     for (to->groups = 0; to->groups < from->groups; to->groups++) {
         to->group[to->groups] = from->group[to->groups];
         if (!tribo_sparse_clone(&to->group[to->groups].sparse, from->group[to->groups].sparse)) {
             return 0;
         }
     }
-    if (!allocate_store(to, n) || !allocate_program(to) || !allocate_basis(to)) {
+    if (!allocate_store(to) || !allocate_program(to) || !allocate_basis(to)) {
         return 0;
     }
     memcpy(to->solved, from->solved, from->groups);
@@ -206,17 +212,18 @@ static size_t find_islands(const struct csr *a, size_t *label, size_t *parent)
     return islands;
 }
 
-/* From islands to groups. place [n]: of a contact in its group; member [n]: the contacts of the groups, one group after the
- * other; first [islands]: where in member those of a group begin. */
-static int find_groups(struct operator* op, size_t n, const size_t *label, size_t *place, size_t *member, size_t *first)
+/* Makes groups of the islands of more than one contact. place [n] gets where a contact stands in its group; count [islands] is
+ * workspace. */
+static int find_groups(struct delassus *op, size_t n, const size_t *label, size_t *place, size_t *count)
 {
-    size_t *count = first, members = 0;
+    size_t members = 0;
     if (!allocate_groups(op, n, op->islands)) {
         return 0;
     }
     memset(count, 0, op->islands * sizeof *count);
     for (size_t i = 0; i < n; i++) {
         op->group_of[i] = TRIBO_ALONE;
+        op->row_sum[i] = -1.0;
         place[i] = count[label[i]]++;
     }
     for (size_t i = 0; i < n; i++) {
@@ -230,13 +237,13 @@ static int find_groups(struct operator* op, size_t n, const size_t *label, size_
         }
     }
     for (size_t k = 0; k < op->groups; k++) {
-        first[k] = members;
+        op->group[k].first = members;
         members += op->group[k].size;
         op->largest = op->group[k].size > op->largest ? op->group[k].size : op->largest;
     }
     for (size_t i = 0; i < n; i++) {
         if (op->group_of[i] != TRIBO_ALONE) {
-            member[first[op->group_of[i]] + place[i]] = i;
+            op->member[op->group[op->group_of[i]].first + place[i]] = i;
         }
     }
     return 1;
@@ -274,7 +281,7 @@ static double diagonal_of(const struct csr *a, size_t i)
     return entry ? *entry : 0.0;
 }
 
-static void fill_diagonal(struct operator* op, const struct csr *a)
+static void fill_diagonal(struct delassus *op, const struct csr *a)
 {
     for (size_t i = 0; i < a->n; i++) {
         op->diagonal[i] = greater(diagonal_of(a, i), TRIBO_IMMOVABLE);
@@ -283,7 +290,7 @@ static void fill_diagonal(struct operator* op, const struct csr *a)
 
 /* y = D^-1 |R| x, x [n] being positive. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz
  * 1942), more closely with every call on the last y. */
-static double grow(const struct operator* op, const struct csr *a, const double *x, double *y)
+static double grow(const struct delassus *op, const struct csr *a, const double *x, double *y)
 {
     double most = 1.0;
     for (size_t i = 0; i < a->n; i++) {
@@ -298,7 +305,7 @@ static double grow(const struct operator* op, const struct csr *a, const double 
 }
 
 /* 0 if out of memory. */
-static int find_growth(struct operator* op, const struct csr *a)
+static int find_growth(struct delassus *op, const struct csr *a)
 {
     enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
     double before = HUGE_VAL, *x = malloc((2 * a->n + 1) * sizeof *x);
@@ -385,21 +392,23 @@ static void fill_graded(const struct box_qp *p, const struct inertia *from, cons
     }
 }
 
-static void fill_group(struct operator* op, size_t k, const struct csr *a, const struct inertia *from, const size_t *member,
-                       const size_t *place)
+static void fill_group(struct delassus *op, size_t k, const struct csr *a, const struct inertia *from, const size_t *place)
 {
     struct box_qp *p = tribo_operator_problem(op, k);
     struct group *g = p->group;
+    const size_t span = p->member[g->size - 1] - p->member[0];
+    op->span = span > op->span ? span : op->span;
     g->lightest = HUGE_VAL;
     g->terms = 0;
     for (size_t c = 0; c < g->size; c++) {
-        const size_t i = member[c];
-        p->member[c] = i;
+        const size_t i = p->member[c];
         p->at[c] = AWAY;
+        op->row_sum[i] = 0.0;
         p->scale[c] = tribo_scale(op->diagonal[i]);
         g->lightest = lesser(g->lightest, p->scale[c]);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             p->terms[c] += a->val[e] != 0.0;
+            op->row_sum[i] += lesser(fabs(a->val[e]), TRIBO_FAR);
             if (a->val[e] != 0.0 && !g->sparse) {
                 p->r[c * g->size + place[a->col[e]]] = a->val[e];
             }
@@ -410,16 +419,17 @@ static void fill_group(struct operator* op, size_t k, const struct csr *a, const
         g->graded = 0;
         g->graded = loses_digits(p);
         if (g->graded) {
-            fill_graded(p, from, member, place);
+            fill_graded(p, from, p->member, place);
         }
     }
     for (size_t c = 0; c < g->size; c++) {
+        op->largest_sum = greater(op->largest_sum, op->row_sum[p->member[c]]);
         op->most = lesser(op->most, tribo_most(p, c));
     }
 }
 
 /* The ranks of all groups. */
-static int check_definite(struct operator* op, struct flaw *flaw)
+static int check_definite(struct delassus *op, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct box_qp *p = tribo_operator_problem(op, k);
@@ -439,51 +449,51 @@ static int check_definite(struct operator* op, struct flaw *flaw)
     return TRIBO_OK;
 }
 
-static int create_groups(struct operator* op, const struct csr *a, const struct inertia *from, const size_t *member,
-                         const size_t *first, const size_t *place, struct flaw *flaw)
+static int create_groups(struct delassus *op, const struct csr *a, const struct inertia *from, const size_t *place,
+                         struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct group *g = &op->group[k];
-        if (!find_grading(g, from, member + first[k], flaw)) {
+        const size_t *member = op->member + g->first;
+        if (!find_grading(g, from, member, flaw)) {
             return TRIBO_ERR_UNSUPPORTED;
         }
-        if (!g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member + first[k], place)) {
+        if (!g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
             return TRIBO_ERR_MEMORY;
         }
         g->kept = op->stored;
         op->stored += kept_by(g);
     }
-    if (!allocate_store(op, a->n) || !allocate_program(op)) {
+    if (!allocate_store(op) || !allocate_program(op)) {
         return TRIBO_ERR_MEMORY;
     }
     for (size_t k = 0; k < op->groups; k++) {
-        fill_group(op, k, a, from, member + first[k], place);
+        fill_group(op, k, a, from, place);
     }
     const int status = check_definite(op, flaw);
     return status || allocate_basis(op) ? status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_operator_create(struct operator* op, const struct csr *a, const struct inertia *from, struct flaw *flaw)
+int tribo_operator_create(struct delassus *op, const struct csr *a, const struct inertia *from, struct flaw *flaw)
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
-    size_t *label = malloc((n + 1) * sizeof *label), *first = malloc((n + 1) * sizeof *first),
-           *place = malloc((n + 1) * sizeof *place), *member = malloc((n + 1) * sizeof *member);
-    if (label && first && place && member && tribo_operator_diagonal(op, n, NULL)) {
+    size_t *label = malloc((n + 1) * sizeof *label), *count = malloc((n + 1) * sizeof *count),
+           *place = malloc((n + 1) * sizeof *place);
+    if (label && count && place && tribo_operator_diagonal(op, n, NULL)) {
         op->islands = find_islands(a, label, place);
         fill_diagonal(op, a);
         if (op->islands == n) {
             status = TRIBO_OK;
-        } else if (find_growth(op, a) && find_groups(op, n, label, place, member, first)) {
-            status = create_groups(op, a, from, member, first, place, flaw);
+        } else if (find_growth(op, a) && find_groups(op, n, label, place, count)) {
+            status = create_groups(op, a, from, place, flaw);
         }
     }
     if (status) {
         tribo_operator_free(op);
     }
     free(label);
-    free(first);
+    free(count);
     free(place);
-    free(member);
     return status;
 }

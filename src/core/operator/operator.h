@@ -15,8 +15,7 @@
 #define TRIBO_IMMOVABLE DBL_MIN
 
 /* R. Contacts that share no body have only the diagonal; the others stand in groups, the connected parts of R's graph. */
-struct operator
-{
+struct delassus {
     double *diagonal;      /* [n] R_ii, at least TRIBO_IMMOVABLE; NULL: there is no operator yet */
     double growth;         /* at least the largest eigenvalue of D^-1 R, D being the diagonal */
     size_t islands;        /* groups and single contacts */
@@ -31,8 +30,10 @@ struct operator
     double *store;         /* [stored] what groups keep from call to call, group by group */
     size_t stored;
     size_t basis;          /* room for null vectors */
-    double *reach;         /* [n] sum of |R_ij| N_j: what friction can do to a contact at most */
-    int reaches;           /* reach is that of the limits */
+    size_t *member;        /* [n] the contacts of the groups, ascending, one group after the other */
+    double *row_sum;       /* [n] of |R_ij|; -1 for contacts in no group */
+    double largest_sum;    /* of these */
+    size_t span;           /* from the first contact of a group to its last, at most */
     struct box_qp problem; /* workspace of the largest group, with views of one */
 };
 
@@ -53,15 +54,15 @@ struct inertia {
 };
 
 /* The operator of rows that are symmetric and finite, with sorted columns; a status. from: NULL if not known. */
-int tribo_operator_create(struct operator* op, const struct csr *a, const struct inertia *from, struct flaw *flaw);
-int tribo_operator_diagonal(struct operator* op, size_t n, const double *r); /* r NULL: not set yet; 1, or 0 if out of memory */
-int tribo_operator_copy(struct operator* to, const struct operator* from, size_t n);
-void tribo_operator_free(struct operator* op); /* what is left is no operator */
+int tribo_operator_create(struct delassus *op, const struct csr *a, const struct inertia *from, struct flaw *flaw);
+int tribo_operator_diagonal(struct delassus *op, size_t n, const double *r); /* r NULL: not set yet; 1, or 0 if out of memory */
+int tribo_operator_copy(struct delassus *to, const struct delassus *from, size_t n);
+void tribo_operator_free(struct delassus *op); /* what is left is no operator */
 
 /* Views of group k in op's workspace. */
-struct box_qp *tribo_operator_problem(struct operator* op, size_t k);
+struct box_qp *tribo_operator_problem(struct delassus *op, size_t k);
 
 /* What group k keeps will soon be looked at: groups may be far from each other. */
-void tribo_operator_expect(const struct operator* op, size_t k);
+void tribo_operator_expect(const struct delassus *op, size_t k);
 
 #endif
