@@ -12,11 +12,11 @@
 
 void tribo_begin_call(tribo_context *ctx)
 {
-    for (size_t k = 0; k < ctx->op.nsolved; k++) {
-        ctx->op.solved[ctx->op.solved_list[k]] = 0;
+    for (size_t k = 0; k < ctx->memory.nsolved; k++) {
+        ctx->memory.solved[ctx->memory.solved_list[k]] = 0;
     }
-    ctx->op.nsolved = 0;
-    ctx->far = ctx->largest > TRIBO_ROOM * ctx->op.most;
+    ctx->memory.nsolved = 0;
+    ctx->far = ctx->largest > TRIBO_ROOM * ctx->op->most;
     ctx->rank = 0;
     ctx->modes = NO_MODES;
     ctx->linearized = 0;
@@ -25,9 +25,9 @@ void tribo_begin_call(tribo_context *ctx)
 /* For shares that go on from these forces, also in groups that no solver saw. */
 void tribo_remember_forces(tribo_context *ctx)
 {
-    for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op.groups; g++) {
-        struct box_qp *p = tribo_operator_problem(&ctx->op, g);
-        for (size_t k = 0; !ctx->op.solved[g] && k < p->group->size; k++) {
+    for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op->groups; g++) {
+        struct box_qp *p = tribo_problem(ctx, g);
+        for (size_t k = 0; !ctx->memory.solved[g] && k < p->group->size; k++) {
             p->x[k] = tribo_carried(ctx, p, k);
             p->at[k] = p->at[k] == FREE ? FREE : AWAY;
         }
@@ -37,13 +37,14 @@ void tribo_remember_forces(tribo_context *ctx)
 /* The groups with a contact near stick among those from i to end. */
 void tribo_find_near_groups(tribo_context *ctx, size_t i, size_t end)
 {
-    struct delassus *op = &ctx->op;
+    const struct delassus *op = ctx->op;
+    struct memory *m = &ctx->memory;
     for (size_t n; (n = tribo_next_near(ctx->last.of, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
             const size_t g = op->group_of[k];
-            if (g != TRIBO_ALONE && !op->solved[g]) {
-                op->solved[g] = 1;
-                op->solved_list[op->nsolved++] = g;
+            if (g != TRIBO_ALONE && !m->solved[g]) {
+                m->solved[g] = 1;
+                m->solved_list[m->nsolved++] = g;
             }
         }
     }
@@ -51,7 +52,7 @@ void tribo_find_near_groups(tribo_context *ctx, size_t i, size_t end)
 
 struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
 {
-    struct box_qp *p = tribo_operator_problem(&ctx->op, k);
+    struct box_qp *p = tribo_problem(ctx, k);
     const size_t *member = p->member;
     size_t behind = p->group->size;
     p->count = 0;
@@ -75,7 +76,7 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
     const struct work before = p->work;
     for (size_t e = 0; g->nullity && e < p->count; e++) {
         const size_t i = p->near[e];
-        p->unit[i] = ctx->op.diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
+        p->unit[i] = ctx->op->diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
     }
     ctx->solves++;
     if (!tribo_box_solve(p)) {
@@ -86,7 +87,7 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
         tribo_box_share(p);
     }
     ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
-    ctx->rank += g->rank;
+    ctx->rank += p->sets->rank;
     return TRIBO_OK;
 }
 
@@ -105,12 +106,12 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
         const double limit = ctx->contacts.bound[i], kappa = relaxation(ctx, i, v);
         p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
         p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
-        p->q[k] = cut(a[i]) + ctx->op.diagonal[i] * kappa;
+        p->q[k] = cut(a[i]) + ctx->op->diagonal[i] * kappa;
     }
     const int status = tribo_solve_group(ctx, p);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double beyond = quotient(p->gradient[k], ctx->op.diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
+        const double beyond = quotient(p->gradient[k], ctx->op->diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
         ctx->residual = greater(ctx->residual, fabs(p->x[k] - to) / greater(ctx->contacts.bound[i], DBL_MIN));
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
         ctx->feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
@@ -120,30 +121,29 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
 
 static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *a)
 {
-    const struct group *g = p->group;
     const size_t *member = p->member;
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         p->q[k] = cut(a[i]);
-        p->unit[k] = ctx->op.diagonal[i] * ctx->contacts.bound[i];
+        p->unit[k] = ctx->op->diagonal[i] * ctx->contacts.bound[i];
     }
     ctx->solves++;
     const int consistent = tribo_box_linear(p);
     ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double off = fabs(quotient(p->gradient[k], ctx->op.diagonal[i]));
+        const double off = fabs(quotient(p->gradient[k], ctx->op->diagonal[i]));
         ctx->residual = greater(ctx->residual, quotient(off, greater(ctx->limit[i], DBL_MIN)));
         ctx->feq[i] = p->x[k];
     }
-    ctx->rank += g->rank;
+    ctx->rank += p->sets->rank;
     if (consistent) {
         return TRIBO_OK;
     }
     return tribo_fail(ctx, TRIBO_ERR_INCONSISTENT,
                       "no f_eq balances the %zu contacts near stick around contact %zu: rank %zu, and a is outside its range",
-                      p->count, member[p->near[0]], g->rank);
+                      p->count, member[p->near[0]], p->sets->rank);
 }
 
 /* The law's forces of the near contacts of a group, run by run of neighbours. */
@@ -163,16 +163,16 @@ static void near_forces(tribo_context *ctx, const struct box_qp *p, const double
 /* f_eq of the contacts in groups that no solver saw. */
 static void feq_of_others(tribo_context *ctx, const double *a)
 {
-    for (size_t g = 0; g < ctx->op.groups; g++) {
-        struct box_qp *p = tribo_operator_problem(&ctx->op, g);
+    for (size_t g = 0; g < ctx->op->groups; g++) {
+        struct box_qp *p = tribo_problem(ctx, g);
         const size_t *member = p->member, size = p->group->size;
         for (size_t k = 0; k < size; k++) {
             p->step[k] = tribo_carried(ctx, p, k);
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!(ctx->op.solved[g] && ctx->last.of[i] == STORED) && ctx->limit[i] > 0.0) {
-                ctx->feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op.diagonal[i]);
+            if (!(ctx->memory.solved[g] && ctx->last.of[i] == STORED) && ctx->limit[i] > 0.0) {
+                ctx->feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
             }
         }
     }
@@ -189,11 +189,11 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
         }
     }
     int status = TRIBO_OK;
-    for (size_t k = 0; k < ctx->op.nsolved; k++) {
-        if (k + 2 < ctx->op.nsolved) {
-            tribo_operator_expect(&ctx->op, ctx->op.solved_list[k + 2]);
+    for (size_t k = 0; k < ctx->memory.nsolved; k++) {
+        if (k + 2 < ctx->memory.nsolved) {
+            tribo_memory_expect(ctx->op, &ctx->memory, ctx->memory.solved_list[k + 2]);
         }
-        struct box_qp *p = tribo_collect(ctx, ctx->op.solved_list[k]);
+        struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
         const int one = ctx->coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
         if (one == TRIBO_ERR_NO_CONVERGENCE) {
             return one;
@@ -218,7 +218,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status == TRIBO_ERR_NO_CONVERGENCE) {
         return status;
     }
-    ctx->skipped += ctx->op.islands - ctx->op.nsolved;
+    ctx->skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
     ctx->modes = MODES_IN_FORCES;
     ctx->holds = ctx->law->holds;

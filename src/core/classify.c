@@ -60,7 +60,7 @@ TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, do
 /* The same for chunk k, which begins with contact i; 0 for open ones. */
 static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, const double *a)
 {
-    feq_alone(n, ctx->op.diagonal + i, a + i, ctx->feq + i);
+    feq_alone(n, ctx->op->diagonal + i, a + i, ctx->feq + i);
     if (ctx->chunk[k].least == 0.0) {
         no_feq_if_open(n, ctx->limit + i, ctx->feq + i);
     }
@@ -169,7 +169,7 @@ void tribo_store_all(tribo_context *ctx)
 int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 {
     struct deeds now = ctx->spare;
-    const int few = !ctx->op.groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
+    const int few = !ctx->op->groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
     if (!v || !a || few || !ctx->law->uses_feq) {
         const int status = check_motion(ctx, v, a);
         if (!status) {
@@ -186,7 +186,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
             return check_motion(ctx, v, a);
         }
         const int any = any_in_band(n, v + i, band);
-        now.stored[k] = !any ? NONE_STORED : ctx->op.groups ? SOME_STORED : ALL_STORED;
+        now.stored[k] = !any ? NONE_STORED : ctx->op->groups ? SOME_STORED : ALL_STORED;
         if (now.stored[k] == ALL_STORED) {
             memset(now.of + i, STORED, n); /* or not: the law will tell */
         } else if (now.stored[k] == SOME_STORED) {
@@ -204,7 +204,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
-    const int some = ctx->op.islands > ctx->op.groups;
+    const int some = ctx->op->islands > ctx->op->groups;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         const int asked = ctx->last.stored[k] == ALL_STORED || (some && ctx->last.stored[k] == SOME_STORED);

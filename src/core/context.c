@@ -45,11 +45,10 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         return TRIBO_ERR_SIZE;
     }
     tribo_context *c = calloc(1, sizeof *c);
-    if (!c || !allocate(c, ncontact)) {
+    if (!c || !allocate(c, ncontact) || !tribo_operator_diagonal(&c->op, ncontact, NULL)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
-    c->op.most = TRIBO_FAR;
     c->law = tribo_law(TRIBO_QUINN);
     c->coupling = TRIBO_CONSISTENT;
     c->sharing = TRIBO_SHARE_LEAST;
@@ -77,8 +76,9 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     }
     *c = *ctx;
     c->owner = NULL;
-    memset(&c->op, 0, sizeof c->op);
-    if (!allocate(c, n) || !tribo_operator_copy(&c->op, &ctx->op, n)) {
+    c->op = tribo_operator_share(ctx->op);
+    c->memory = (struct memory){0};
+    if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op)) {
         tribo_destroy(c);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }
@@ -103,7 +103,8 @@ void tribo_destroy(tribo_context *ctx)
     if (!ctx) {
         return;
     }
-    tribo_operator_free(&ctx->op);
+    tribo_operator_release(ctx->op);
+    tribo_memory_free(&ctx->memory);
     free(ctx->message);
     free(ctx->limit);
     free(ctx->width);

@@ -62,7 +62,8 @@ struct tribo_context {
     double *cut_limit, *cut_factor; /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
     double largest, steepest;       /* limit; and factor, or 1 */
     struct chunk *chunk;            /* [chunks] */
-    struct delassus op;
+    struct delassus *op;
+    struct memory memory;
     struct deeds last, spare; /* of the last call; room for the next */
     double *feq, *f;          /* [n] of the last call; f where it is stored */
     double *v;                /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
@@ -104,7 +105,7 @@ int tribo_fail_without_operator(const tribo_context *ctx); /* context.c */
 
 static inline int tribo_need_operator(const tribo_context *ctx)
 {
-    return ctx->op.diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
+    return ctx->op->diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
 }
 
 static inline int tribo_need_epsilon(const tribo_context *ctx)
@@ -153,6 +154,12 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
 {
     const double f = tribo_force_of(ctx, p->member[k]);
     return ctx->far ? tribo_cut(p, k, f) : f;
+}
+
+/* Views of group k. */
+static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
+{
+    return tribo_memory_problem(ctx->op, &ctx->memory, k);
 }
 
 /* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */

@@ -90,11 +90,11 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     const size_t counts[] = {
         [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
         [TRIBO_COUNT_RANK] = ctx->rank,
-        [TRIBO_COUNT_ISLANDS] = ctx->op.islands,
+        [TRIBO_COUNT_ISLANDS] = ctx->op->islands,
         [TRIBO_COUNT_SOLVES] = ctx->solves,
         [TRIBO_COUNT_SKIPPED] = ctx->skipped,
-        [TRIBO_COUNT_FACTORIZATIONS] = ctx->op.problem.work.factorizations,
-        [TRIBO_COUNT_UPDATES] = ctx->op.problem.work.updates,
+        [TRIBO_COUNT_FACTORIZATIONS] = ctx->memory.problem.work.factorizations,
+        [TRIBO_COUNT_UPDATES] = ctx->memory.problem.work.updates,
         [TRIBO_COUNT_MEMORY] = ctx->marks,
         [TRIBO_COUNT_REUSED] = ctx->reused,
     };
@@ -113,16 +113,16 @@ static double max_rate(const tribo_context *ctx)
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
         if (ctx->limit[i] > 0.0) {
-            rate = greater(rate, product(tribo_slope_of(&ctx->contacts, i), ctx->op.diagonal[i]));
+            rate = greater(rate, product(tribo_slope_of(&ctx->contacts, i), ctx->op->diagonal[i]));
         }
     }
     if (!ctx->law->uses_feq) {
-        return product(0.5 * rate, ctx->op.growth);
+        return product(0.5 * rate, ctx->op->growth);
     }
     if (!ctx->law->relaxes) {
         return 0.0;
     }
-    return ctx->coupling == TRIBO_PARTITION ? product(rate, ctx->op.growth) : rate;
+    return ctx->coupling == TRIBO_PARTITION ? product(rate, ctx->op->growth) : rate;
 }
 
 int tribo_get_real(const tribo_context *ctx, int which, double *value)

@@ -9,7 +9,7 @@
 /* Whether epsilon follows limits and operator. */
 static int epsilon_follows(const tribo_context *ctx)
 {
-    return ctx->step > 0.0 && ctx->op.diagonal;
+    return ctx->step > 0.0 && ctx->op->diagonal;
 }
 
 /* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
@@ -17,9 +17,9 @@ static void follow_step(tribo_context *ctx)
 {
     const double time = quotient(ctx->step, ctx->lambda_dt);
     for (size_t i = 0; i < ctx->n; i++) {
-        const double half = greater(product(ctx->op.diagonal[i], time), DBL_MIN);
+        const double half = greater(product(ctx->op->diagonal[i], time), DBL_MIN);
         ctx->width[i] = 2.0 * half;
-        ctx->rate[i] = ctx->op.diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+        ctx->rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
     }
 }
 
@@ -50,8 +50,8 @@ static void cut_far(tribo_context *ctx)
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->cut_limit[i] = lesser(ctx->limit[i], TRIBO_FAR);
     }
-    for (size_t g = 0; g < ctx->op.groups; g++) {
-        const struct box_qp *p = tribo_operator_problem(&ctx->op, g);
+    for (size_t g = 0; g < ctx->op->groups; g++) {
+        const struct box_qp *p = tribo_problem(ctx, g);
         for (size_t k = 0; k < p->group->size; k++) {
             ctx->cut_limit[p->member[k]] = lesser(ctx->limit[p->member[k]], tribo_most(p, k));
         }
@@ -83,7 +83,7 @@ void tribo_refresh_limits(tribo_context *ctx)
         ctx->chunk[k].band = band_of(&ctx->chunk[k], follows);
     }
     ctx->contacts = (struct contacts){ctx->limit, ctx->limit, ctx->width, ctx->rate, ctx->moving, follows};
-    if (ctx->largest > lesser(ctx->op.most, TRIBO_FAR / ctx->steepest)) {
+    if (ctx->largest > lesser(ctx->op->most, TRIBO_FAR / ctx->steepest)) {
         cut_far(ctx);
     }
     ctx->linearized = 0;

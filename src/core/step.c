@@ -55,7 +55,7 @@ TRIBO_SIMD static int any_within_reach(size_t n, double scale, const double *res
 /* At least the largest limit in any group with a contact in chunk k. */
 static double largest_around(const tribo_context *ctx, size_t k)
 {
-    if (ctx->op.span >= TRIBO_CHUNK) {
+    if (ctx->op->span >= TRIBO_CHUNK) {
         return ctx->largest;
     }
     const double before = k > 0 ? ctx->chunk[k - 1].largest : 0.0;
@@ -66,7 +66,8 @@ static double largest_around(const tribo_context *ctx, size_t k)
 /* Finds the groups in which a contact may take part, chunk by chunk: in a large scene most have none. */
 static void find_candidates(tribo_context *ctx, const struct call *c)
 {
-    struct delassus *op = &ctx->op;
+    const struct delassus *op = ctx->op;
+    struct memory *m = &ctx->memory;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         const double largest = largest_around(ctx, k);
@@ -75,10 +76,10 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
         }
         for (size_t j = i; j < i + n; j++) {
             const size_t g = op->group_of[j];
-            if (g != TRIBO_ALONE && !op->solved[g] &&
+            if (g != TRIBO_ALONE && !m->solved[g] &&
                 !(c->estimates && out_of_reach(c->scale, c->v[j], op->row_sum[j], largest))) {
-                op->solved[g] = 1;
-                op->solved_list[op->nsolved++] = g;
+                m->solved[g] = 1;
+                m->solved_list[m->nsolved++] = g;
             }
         }
     }
@@ -104,7 +105,7 @@ static struct limits limits_of(const tribo_context *ctx, const struct box_qp *p)
 /* Whether friction could hold the contact at place k: limits that are all the same need no look at the row. */
 static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t k, const struct call *c, const struct limits *l)
 {
-    const double v = c->v[p->member[k]], row_sum = c->estimates ? ctx->op.row_sum[p->member[k]] : 0.0;
+    const double v = c->v[p->member[k]], row_sum = c->estimates ? ctx->op->row_sum[p->member[k]] : 0.0;
     const int may = !c->estimates | !out_of_reach(c->scale, v, row_sum, l->largest);
     const int sure = c->estimates & !out_of_reach(c->scale, v, row_sum, l->least);
     double reach;
@@ -119,7 +120,7 @@ static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t
  * choice do not, nor do those of Coulomb's law that are out of reach. */
 static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
 {
-    struct box_qp *p = tribo_operator_problem(&ctx->op, g);
+    struct box_qp *p = tribo_problem(ctx, g);
     const struct limits l = limits_of(ctx, p);
     size_t behind = p->group->size;
     p->count = 0;
@@ -155,19 +156,19 @@ static int solve_for(tribo_context *ctx, struct box_qp *p, const struct bounds *
  */
 static int solve_candidates(tribo_context *ctx, const struct call *c)
 {
-    struct delassus *op = &ctx->op;
-    const size_t candidates = op->nsolved;
+    struct memory *m = &ctx->memory;
+    const size_t candidates = m->nsolved;
     int status = TRIBO_OK;
-    op->nsolved = 0;
+    m->nsolved = 0;
     for (size_t k = 0; k < candidates; k++) {
-        const size_t g = op->solved_list[k];
+        const size_t g = m->solved_list[k];
         if (k + 2 < candidates) {
-            tribo_operator_expect(op, op->solved_list[k + 2]);
+            tribo_memory_expect(ctx->op, m, m->solved_list[k + 2]);
         }
         struct box_qp *p = status ? NULL : pose(ctx, g, c);
-        op->solved[g] = p && p->count > 0;
-        if (op->solved[g]) {
-            op->solved_list[op->nsolved++] = g;
+        m->solved[g] = p && p->count > 0;
+        if (m->solved[g]) {
+            m->solved_list[m->nsolved++] = g;
             status = solve_for(ctx, p, &c->b);
         }
     }
@@ -177,18 +178,18 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
 /* Solves for all contacts. */
 static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
 {
-    const int estimates = !b.lower && ctx->largest < ESTIMATED && ctx->op.largest_sum < ESTIMATED;
-    const struct call c = {b, ctx->op.groups ? quotient(1.0, dt) : 0.0, v, estimates};
+    const int estimates = !b.lower && ctx->largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
+    const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, estimates};
     tribo_store_all(ctx);
-    box_alone(ctx->n, dt, v, ctx->op.diagonal, b.lower, b.upper, ctx->f);
-    if (ctx->op.groups) {
+    box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->f);
+    if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
     const int status = solve_candidates(ctx, &c);
     if (status) {
         return status;
     }
-    ctx->skipped += ctx->op.islands - ctx->op.nsolved;
+    ctx->skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
     tribo_copy(f, ctx->f, ctx->n);
     return TRIBO_OK;
@@ -245,6 +246,6 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
     tribo_begin_call(ctx);
-    ctx->far = most > TRIBO_ROOM * ctx->op.most;
+    ctx->far = most > TRIBO_ROOM * ctx->op->most;
     return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, f);
 }

@@ -27,7 +27,7 @@ static double own_rate(const tribo_context *ctx, const struct box_qp *p, size_t 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */
 static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, double *df)
 {
-    const size_t rank = p->group->rank, all = rank + p->group->dependents;
+    const size_t rank = p->sets->rank, all = rank + p->sets->dependents;
     double ignored;
     for (size_t k = 0; k < all; k++) {
         df[p->order[k]] = 0.0;
@@ -60,7 +60,7 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
     double *rhs = p->noise;
     for (size_t k = 0; k < size; k++) {
         const size_t i = member[k];
-        const double r = ctx->op.diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
+        const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
                      pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
         df[k] = p->at[k] == FREE ? 0.0 : clamp(product(own_rate(ctx, p, k, i), dv[k]), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
@@ -80,7 +80,7 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
             const struct tangent *d = &ctx->tangent[i];
-            const double r = ctx->op.diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
+            const double r = ctx->op->diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
             df[k] = product(d->dv, dv[k]) - (ctx->last.of[i] == STORED ? d->dfeq * quotient(sum, r) : 0.0);
         }
     }
@@ -90,8 +90,8 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
 static double alone_product(const tribo_context *ctx, size_t i, double dv, double da)
 {
     const struct tangent *d = &ctx->tangent[i];
-    const double r = ctx->op.diagonal[i];
-    const int balanced = !ctx->op.groups || ctx->op.group_of[i] == TRIBO_ALONE;
+    const double r = ctx->op->diagonal[i];
+    const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
     const int follows = balanced && ctx->limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
     return product(d->dv, dv) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
 }
@@ -138,8 +138,8 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
             }
         }
     }
-    for (size_t k = 0; (df_dv || df_da) && k < ctx->op.nsolved; k++) {
-        solved_columns(ctx, tribo_collect(ctx, ctx->op.solved_list[k]), df_dv, df_da);
+    for (size_t k = 0; (df_dv || df_da) && k < ctx->memory.nsolved; k++) {
+        solved_columns(ctx, tribo_collect(ctx, ctx->memory.solved_list[k]), df_dv, df_da);
     }
     return TRIBO_OK;
 }
@@ -163,8 +163,8 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
     for (size_t i = 0; i < ctx->n; i++) {
         df[i] = alone_product(ctx, i, dv ? dv[i] : 0.0, da ? da[i] : 0.0);
     }
-    for (size_t g = 0; g < ctx->op.nsolved; g++) {
-        struct box_qp *p = tribo_collect(ctx, ctx->op.solved_list[g]);
+    for (size_t g = 0; g < ctx->memory.nsolved; g++) {
+        struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[g]);
         const size_t *member = p->member, size = p->group->size;
         for (size_t k = 0; k < size; k++) {
             p->lo[k] = dv ? dv[member[k]] : 0.0;

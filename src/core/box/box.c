@@ -23,7 +23,7 @@ static void box_refine(struct box_qp *p)
 {
     for (int pass = 0; pass < 4 && !tribo_box_settled(p, 1.0); pass++) {
         tribo_box_newton(p);
-        for (size_t k = 0; k < p->group->rank; k++) {
+        for (size_t k = 0; k < p->sets->rank; k++) {
             const size_t i = p->order[k];
             p->x[i] = tribo_box_moved(p, i);
         }
@@ -47,11 +47,11 @@ static int box_revise(struct box_qp *p)
             p->to[i] = FREE;
         }
     }
-    for (size_t k = 0; k < g->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         p->to[i] = (signed char)outside(p->x[i], p->lo[i], p->hi[i]);
     }
-    for (size_t k = g->rank; k < g->rank + g->dependents; k++) {
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
         if (fabs(p->gradient[i]) > tribo_box_tolerance(p, i)) {
             p->to[i] = p->gradient[i] > 0.0 ? AT_LOWER : AT_UPPER;
@@ -67,8 +67,8 @@ static void put_at_bounds(struct box_qp *p)
         const size_t i = p->near[e];
         p->x[i] = p->at[i] == AT_LOWER ? p->lo[i] : p->at[i] == AT_UPPER ? p->hi[i] : p->x[i];
     }
-    for (size_t d = 0; d < p->group->dependents; d++) {
-        const size_t i = p->order[p->group->rank + d];
+    for (size_t d = 0; d < p->sets->dependents; d++) {
+        const size_t i = p->order[p->sets->rank + d];
         p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
     }
 }
@@ -123,7 +123,7 @@ static int box_move(struct box_qp *p, double longest)
 static void find_doubt(const struct box_qp *p, double *error)
 {
     memset(error, 0, p->group->size * sizeof *error);
-    for (size_t k = 0; k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
         error[i] = p->noise[i] * p->scale[i] * p->scale[i];
     }
@@ -137,8 +137,8 @@ static size_t box_worst(const struct box_qp *p, int dependent)
     size_t found = g->size;
     double most = 1.0;
     find_doubt(p, p->spare[0]);
-    for (size_t e = 0; e < (dependent ? g->dependents : p->count); e++) {
-        const size_t i = dependent ? p->order[g->rank + e] : p->near[e];
+    for (size_t e = 0; e < (dependent ? p->sets->dependents : p->count); e++) {
+        const size_t i = dependent ? p->order[p->sets->rank + e] : p->near[e];
         const double pull = dependent ? fabs(p->gradient[i]) : p->lo[i] < p->hi[i] ? (double)p->at[i] * p->gradient[i] : 0.0;
         double doubt = 0.0;
         if (pull > tribo_box_tolerance(p, i)) {
@@ -162,7 +162,7 @@ static int box_slide(struct box_qp *p, size_t d)
     memset(p->step, 0, p->group->size * sizeof *p->step);
     memset(p->step_low, 0, p->group->size * sizeof *p->step_low);
     tribo_null_vector(p, d, p->step);
-    for (size_t k = 0; pull > 0.0 && k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; pull > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
         p->step[p->order[k]] *= -1.0;
     }
     const double curvature = fabs(tribo_row_dot(p, d, p->step, &size));
@@ -239,7 +239,7 @@ static void box_restore(struct box_qp *p, const double *x)
 static int box_inside(const struct box_qp *p)
 {
     int all = 1;
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         all &= p->lo[i] <= p->x[i] && p->x[i] <= p->hi[i];
     }
@@ -248,11 +248,11 @@ static int box_inside(const struct box_qp *p)
 
 int tribo_box_solve(struct box_qp *p)
 {
-    for (size_t e = 0; (p->far || p->group->far) && e < p->count; e++) {
+    for (size_t e = 0; (p->far || p->sets->far) && e < p->count; e++) {
         const size_t i = p->near[e];
         p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
     }
-    p->group->far = p->far;
+    p->sets->far = p->far;
     tribo_box_begin(p, 1);
     tribo_box_enter(p, 1);
     return box_primal_dual(p) || box_primal(p);

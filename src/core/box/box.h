@@ -42,16 +42,21 @@ struct sparse;
 /* What lasts as long as the operator. */
 struct group {
     size_t size;
-    size_t first;          /* into the members */
-    size_t kept;           /* into the store: what the problem below keeps */
+    size_t first;          /* into the operator's members */
+    size_t fixed;          /* into the operator's store: scale, terms, r and r_low */
+    size_t kept;           /* into the store of what is kept from call to call: x, order, at and the factor */
     double lightest;       /* the smallest scale, that of the largest diagonal entry */
     size_t terms;          /* entries of the fullest row */
-    int far;               /* what the problem's far was in the last call */
-    struct sparse *sparse; /* R and its factor, if they are sparse */
+    struct sparse *sparse; /* R and the pattern of its factor, if they are sparse */
     int graded;            /* they are kept to twice as many digits */
     size_t nullity;        /* size - rank of R: redundant contacts */
-    size_t rank;           /* now: free contacts in the factor, independent of each other, */
-    size_t dependents;     /* and those that depend on them */
+};
+
+/* What is kept of a group from call to call, besides arrays. */
+struct sets {
+    int far;           /* the problem was far in the last call */
+    size_t rank;       /* free contacts in the factor, independent of each other, */
+    size_t dependents; /* and those that depend on them */
 };
 
 /* Work done so far. */
@@ -59,20 +64,28 @@ struct work {
     size_t factorizations, updates;
 };
 
+/* L D L' of a sparse group. */
+struct sparse_factor {
+    double *l, *d; /* [slots]; [size] 1/d, 0 for contacts that are not in the factor */
+    double *w;     /* [size] workspace, zero between calls */
+    size_t *index; /* [size] where a free contact stands in the problem's order */
+};
+
 /* A group at work: views of what is kept, and workspace. */
 struct box_qp {
-    struct group *group;
-    /* kept, side by side */
-    double *x;            /* [size] */
-    const size_t *member; /* [size] the contacts, ascending */
-    size_t *order;        /* [size] rank independent free contacts, in the order of the factor, then the dependents */
-    signed char *at;      /* [size] */
-    size_t *terms;        /* [size] entries of R in a row */
-    double *scale;        /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
-    double *r;            /* [size][size], if dense */
-    double *l;            /* [size][size] Cholesky factor of the scaled R over order[0 .. rank), if dense */
-    double *r_low;        /* [size][size] what rounding left of R, if graded */
-    double *l_low;        /* [size][size] and of the factor */
+    /* constant */
+    const struct group *group;
+    const size_t *member;    /* [size] the contacts, ascending */
+    const double *scale;     /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
+    const size_t *terms;     /* [size] entries of R in a row */
+    const double *r, *r_low; /* [size][size] R, if dense; what rounding left of it, if graded */
+    /* kept */
+    struct sets *sets;
+    double *x;                   /* [size] */
+    size_t *order;               /* [size] rank independent free contacts, in the order of the factor, then the dependents */
+    signed char *at;             /* [size] */
+    double *l, *l_low;           /* [size][size] Cholesky factor of the scaled R over order[0 .. rank); see r */
+    struct sparse_factor sparse; /* instead, if R is sparse */
     /* the problem: min 1/2 x'Rx + q'x, lo <= x <= hi, over the near contacts; the x of the others is given */
     int far;             /* solutions may be as large as they can be told apart */
     size_t *near, count; /* near[0 .. count): the contacts in the problem, ascending; near[count .. size): the others */
@@ -173,12 +186,12 @@ int tribo_sparse_many(const struct box_qp *p, size_t changes);
 double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size);
 void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y);
 
-/* Prepares the factor of a group with these rows (sorted columns, by place): allocates. NULL in *s if a dense one is the better
- * choice: the sparse one would have too many entries, or the group has redundant contacts, or nearly so, and is not too large
- * for a factor that chooses its pivots. 1, or 0 if out of memory. */
+/* Finds the pattern of the factor of a group with these rows (sorted columns, by place): allocates. NULL in *s if a dense one is
+ * the better choice: the sparse one would have too many entries, or the group has redundant contacts, or nearly so, and is not
+ * too large for a factor that chooses its pivots. 1, or 0 if out of memory. */
 struct csr;
 int tribo_sparse_create(struct sparse **s, const struct csr *r);
-int tribo_sparse_clone(struct sparse **s, const struct sparse *from); /* NULL for NULL */
+size_t tribo_sparse_slots(const struct sparse *s); /* of the factor */
 void tribo_sparse_free(struct sparse *s);
 
 /* ---- rows of R */
@@ -253,7 +266,7 @@ static inline double tribo_box_moved(struct box_qp *p, size_t i)
 /* Whether the gradient of the independent x is at most so many times its rounding. */
 static inline int tribo_box_settled(const struct box_qp *p, double noises)
 {
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         if (!(fabs(p->gradient[i]) <= noises * p->noise[i])) {
             return 0;

@@ -60,7 +60,7 @@ static void factor_solve(const struct box_qp *p, double *step)
 static double largest_step(const struct box_qp *p, const double *step)
 {
     double most = 0.0;
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         most = greater(most, fabs(step[p->order[k]]));
     }
     return most;
@@ -73,11 +73,11 @@ void tribo_factor_solve(const struct box_qp *p, double *step)
         return;
     }
     const double room = largest_step(p, step) < TRIBO_ROOM * TRIBO_FAR ? 1.0 : TRIBO_ROOM, far = room * TRIBO_FAR;
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         step[p->order[k]] *= room;
     }
     factor_solve(p, step);
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         step[p->order[k]] = clamp(step[p->order[k]], -far, far) / room;
     }
 }
@@ -133,7 +133,7 @@ void tribo_row_spread(const struct box_qp *p, size_t i, double factor, double *y
         tribo_sparse_spread(p, i, factor, y);
         return;
     }
-    const size_t all = p->group->rank + p->group->dependents;
+    const size_t all = p->sets->rank + p->sets->dependents;
     for (size_t k = 0; k < all; k++) {
         y[p->order[k]] = factor * p->r[i * p->group->size + p->order[k]];
     }

@@ -32,7 +32,7 @@ static double dense_row_dot(const double *x, const double *y, size_t n)
 /* row [rank] = L^-1 (column of contact i); returns the pivot that i would have. */
 static double dense_column(const struct box_qp *p, size_t i, double *row)
 {
-    const size_t rank = p->group->rank, size = p->group->size;
+    const size_t rank = p->sets->rank, size = p->group->size;
     double pivot = dense_entry(p, i, i);
     for (size_t k = 0; k < rank; k++) {
         const double *l = p->l + k * size;
@@ -45,19 +45,19 @@ static double dense_column(const struct box_qp *p, size_t i, double *row)
 /* Appends i to the independent contacts or to the dependents. Returns 0 if it is not clear which. */
 static int dense_append(struct box_qp *p, size_t i)
 {
-    struct group *g = p->group;
-    double *row = p->l + g->rank * g->size;
+    const struct group *g = p->group;
+    double *row = p->l + p->sets->rank * g->size;
     const double pivot = dense_column(p, i, row), relative = pivot / dense_entry(p, i, i);
-    p->order[g->rank + g->dependents] = i;
-    if (relative <= tribo_resolution(g->rank + 1)) {
-        g->dependents++;
+    p->order[p->sets->rank + p->sets->dependents] = i;
+    if (relative <= tribo_resolution(p->sets->rank + 1)) {
+        p->sets->dependents++;
     } else if (relative <= TRIBO_DOUBTFUL) {
         return 0;
     } else {
-        row[g->rank] = 1.0 / sqrt(pivot);
+        row[p->sets->rank] = 1.0 / sqrt(pivot);
         /* the first dependent makes room at the end of the independent ones */
-        p->order[g->rank + g->dependents] = p->order[g->rank];
-        p->order[g->rank++] = i;
+        p->order[p->sets->rank + p->sets->dependents] = p->order[p->sets->rank];
+        p->order[p->sets->rank++] = i;
     }
     return 1;
 }
@@ -73,17 +73,17 @@ void tribo_dense_add(struct box_qp *p, size_t i)
  * columns make the matrix triangular again. */
 static void dense_take_out(struct box_qp *p, size_t at)
 {
-    struct group *g = p->group;
+    const struct group *g = p->group;
     const size_t size = g->size;
-    g->rank--;
-    for (size_t k = at; k < g->rank; k++) {
+    p->sets->rank--;
+    for (size_t k = at; k < p->sets->rank; k++) {
         memcpy(p->l + k * size, p->l + (k + 1) * size, (k + 2) * sizeof *p->l);
     }
-    for (size_t k = at; k < g->rank; k++) {
+    for (size_t k = at; k < p->sets->rank; k++) {
         double *l = p->l + k * size;
         const double a = l[k], b = 1.0 / l[k + 1], length = sqrt(a * a + b * b), c = a / length, s = b / length;
         l[k] = 1.0 / length;
-        for (size_t below = k + 1; below < g->rank; below++) {
+        for (size_t below = k + 1; below < p->sets->rank; below++) {
             double *m = p->l + below * size;
             const double x = m[k], y = m[k + 1];
             m[k] = c * x + s * y;
@@ -94,23 +94,22 @@ static void dense_take_out(struct box_qp *p, size_t at)
 
 void tribo_dense_remove(struct box_qp *p, size_t i)
 {
-    struct group *g = p->group;
-    const size_t all = g->rank + g->dependents;
+    const size_t all = p->sets->rank + p->sets->dependents;
     size_t at = 0;
     while (p->order[at] != i) {
         at++;
     }
     memmove(p->order + at, p->order + at + 1, (all - at - 1) * sizeof *p->order);
-    if (at >= g->rank) {
-        g->dependents--;
+    if (at >= p->sets->rank) {
+        p->sets->dependents--;
         return;
     }
     dense_take_out(p, at);
     /* what depended on the one that left may be independent now */
-    const size_t waiting = g->dependents;
-    g->dependents = 0;
+    const size_t waiting = p->sets->dependents;
+    p->sets->dependents = 0;
     for (size_t d = 0; d < waiting; d++) {
-        if (!dense_append(p, p->order[g->rank + g->dependents])) {
+        if (!dense_append(p, p->order[p->sets->rank + p->sets->dependents])) {
             tribo_dense_rebuild(p, NULL);
             return;
         }
@@ -164,7 +163,7 @@ size_t tribo_dense_order(struct box_qp *p)
 /* Cholesky factorization with the largest pivot next, so that the rank is revealed. */
 double tribo_dense_rebuild(struct box_qp *p, size_t *where)
 {
-    struct group *g = p->group;
+    const struct group *g = p->group;
     const size_t size = g->size, all = tribo_dense_order(p);
     size_t k = 0;
     p->work.factorizations++;
@@ -199,14 +198,14 @@ double tribo_dense_rebuild(struct box_qp *p, size_t *where)
             }
         }
     }
-    g->rank = k;
-    g->dependents = all - k;
+    p->sets->rank = k;
+    p->sets->dependents = all - k;
     return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
 }
 
 void tribo_dense_solve(const struct box_qp *p, double *step)
 {
-    const size_t rank = p->group->rank, size = p->group->size;
+    const size_t rank = p->sets->rank, size = p->group->size;
     double *y = p->row;
     for (size_t i = 0; i < rank; i++) {
         const double *l = p->l + i * size;

@@ -61,7 +61,7 @@ static void graded_eliminate(struct box_qp *p, size_t all, size_t k)
 
 double tribo_graded_rebuild(struct box_qp *p, size_t *where)
 {
-    struct group *g = p->group;
+    const struct group *g = p->group;
     const size_t size = g->size, all = tribo_dense_order(p);
     size_t k = 0;
     p->work.factorizations++;
@@ -83,8 +83,8 @@ double tribo_graded_rebuild(struct box_qp *p, size_t *where)
         }
         graded_eliminate(p, all, k);
     }
-    g->rank = k;
-    g->dependents = all - k;
+    p->sets->rank = k;
+    p->sets->dependents = all - k;
     return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
 }
 
@@ -101,7 +101,7 @@ static double graded_unit(const struct box_qp *p, const double *step)
 {
     double most = 1.0;
     int e;
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         most = greater(most, product(fabs(step[i]), greater(p->scale[i], 1.0)));
     }
@@ -111,7 +111,7 @@ static double graded_unit(const struct box_qp *p, const double *step)
 
 void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
 {
-    const size_t rank = p->group->rank;
+    const size_t rank = p->sets->rank;
     const double unit = graded_unit(p, step);
     for (size_t k = 0; k < rank; k++) {
         const size_t i = p->order[k];
@@ -144,7 +144,7 @@ void tribo_graded_null_vector(const struct box_qp *p, size_t d, double *y)
 {
     const size_t size = p->group->size;
     double *low = p->row;
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         y[i] = -p->r[d * size + i];
         low[i] = -p->r_low[d * size + i];
@@ -186,7 +186,7 @@ double tribo_graded_gradient(const struct box_qp *p, size_t i, double *low, doub
 void tribo_graded_newton(struct box_qp *p)
 {
     double size;
-    for (size_t k = 0; k < p->group->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         p->step[i] = -tribo_graded_gradient(p, i, &p->step_low[i], &size);
         p->step_low[i] *= -1.0;

@@ -22,8 +22,6 @@ void tribo_sparse_free(struct sparse *s)
         free(s->position);
         free(s->column);
         free(s->row_of);
-        free(s->l);
-        free(s->d);
         free(s);
     }
 }
@@ -31,29 +29,30 @@ void tribo_sparse_free(struct sparse *s)
 /* What depends on the number of contacts, or of slots. */
 static int allocate_contacts(struct sparse *s, size_t size)
 {
-    s->position = malloc(3 * size * sizeof *s->position);
+    s->position = malloc(2 * size * sizeof *s->position);
     s->column = calloc(2 * (size + 1), sizeof *s->column);
-    s->d = calloc(2 * size, sizeof *s->d);
-    if (!s->position || !s->column || !s->d) {
+    if (!s->position || !s->column) {
         return 0;
     }
     s->place = s->position + size;
-    s->index = s->position + 2 * size;
     s->row = s->column + size + 1;
-    s->w = s->d + size;
     return 1;
 }
 
 static int allocate_slots(struct sparse *s, size_t slots)
 {
     s->row_of = malloc((3 * slots + 1) * sizeof *s->row_of);
-    s->l = calloc(slots + 1, sizeof *s->l);
-    if (!s->row_of || !s->l) {
+    if (!s->row_of) {
         return 0;
     }
     s->column_of = s->row_of + slots;
     s->slot = s->row_of + 2 * slots;
     return 1;
+}
+
+size_t tribo_sparse_slots(const struct sparse *s)
+{
+    return s->column[s->r.n];
 }
 
 static int copy_rows(struct csr *to, const struct csr *from)
@@ -65,29 +64,6 @@ static int copy_rows(struct csr *to, const struct csr *from)
     memcpy(to->first, from->first, (from->n + 1) * sizeof *to->first);
     memcpy(to->col, from->col, entries * sizeof *to->col);
     memcpy(to->val, from->val, entries * sizeof *to->val);
-    return 1;
-}
-
-int tribo_sparse_clone(struct sparse **s, const struct sparse *from)
-{
-    *s = NULL;
-    if (!from) {
-        return 1;
-    }
-    const size_t size = from->r.n, slots = from->column[size];
-    struct sparse *c = calloc(1, sizeof *c);
-    if (!c || !copy_rows(&c->r, &from->r) || !allocate_contacts(c, size) || !allocate_slots(c, slots)) {
-        tribo_sparse_free(c);
-        return 0;
-    }
-    memcpy(c->position, from->position, 3 * size * sizeof *c->position);
-    memcpy(c->column, from->column, 2 * (size + 1) * sizeof *c->column);
-    memcpy(c->row_of, from->row_of, 3 * slots * sizeof *c->row_of);
-    memcpy(c->l, from->l, slots * sizeof *c->l);
-    memcpy(c->d, from->d, 2 * size * sizeof *c->d);
-    c->change = from->change;
-    c->rebuild = from->rebuild;
-    *s = c;
     return 1;
 }
 
@@ -152,15 +128,14 @@ static void fill_rows(struct sparse *s, size_t *count)
 }
 
 /* What a change and a new factor cost, in entries of L visited: a change goes from its column to the root. */
-static void sparse_estimate(struct sparse *s, const size_t *parent)
+static void sparse_estimate(struct sparse *s, const size_t *parent, double *path)
 {
     for (size_t j = s->r.n; j-- > 0;) {
         const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
-        s->w[j] = entries + (parent[j] == NONE ? 0.0 : s->w[parent[j]]);
-        s->change += s->w[j] / (double)s->r.n;
+        path[j] = entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
+        s->change += path[j] / (double)s->r.n;
         s->rebuild += 0.5 * entries * entries;
     }
-    memset(s->w, 0, s->r.n * sizeof *s->w);
 }
 
 /* 1; 0 if a dense factor is better; -1 if out of memory. */
@@ -168,7 +143,10 @@ static int find_pattern(struct sparse *s)
 {
     const size_t size = s->r.n;
     size_t *parent = malloc(3 * size * sizeof *parent);
-    if (!parent) {
+    double *path = malloc(size * sizeof *path);
+    if (!parent || !path) {
+        free(parent);
+        free(path);
         return -1;
     }
     size_t *seen = parent + size, *count = parent + 2 * size;
@@ -183,9 +161,10 @@ static int find_pattern(struct sparse *s)
     if (good > 0) {
         sparse_walk(s, parent, seen, count, 1);
         fill_rows(s, count);
-        sparse_estimate(s, parent);
+        sparse_estimate(s, parent, path);
     }
     free(parent);
+    free(path);
     return good;
 }
 
@@ -207,7 +186,7 @@ double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, doubl
 void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y)
 {
     const struct csr *r = &p->group->sparse->r;
-    for (size_t k = 0; k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         y[p->order[k]] = 0.0;
     }
     for (size_t e = r->first[i]; e < r->first[i + 1]; e++) {
@@ -223,52 +202,53 @@ void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double
  * not in the factor, *left gets the largest entry that elimination leaves. */
 static double sparse_eliminate(const struct box_qp *p, size_t k, double *left)
 {
-    struct sparse *s = p->group->sparse;
+    const struct sparse *s = p->group->sparse;
     const size_t i = s->place[k];
     double pivot = 0.0;
     for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
         const size_t j = s->position[s->r.col[e]];
         if (j <= k) {
-            s->w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
+            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
         }
     }
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
         const size_t j = s->column_of[t];
-        const double y = s->w[j];
-        s->w[j] = 0.0;
-        s->l[s->slot[t]] = y * s->d[j];
-        if (s->d[j] == 0.0) {
+        const double y = p->sparse.w[j];
+        p->sparse.w[j] = 0.0;
+        p->sparse.l[s->slot[t]] = y * p->sparse.d[j];
+        if (p->sparse.d[j] == 0.0) {
             *left = p->at[s->place[j]] == FREE ? greater(*left, fabs(y)) : *left;
         } else if (y != 0.0) {
             for (size_t q = s->column[j]; q < s->slot[t]; q++) {
-                s->w[s->row_of[q]] -= s->l[q] * y;
+                p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * y;
             }
-            pivot -= s->l[s->slot[t]] * y;
+            pivot -= p->sparse.l[s->slot[t]] * y;
         }
     }
-    pivot += s->w[k];
-    s->w[k] = 0.0;
+    pivot += p->sparse.w[k];
+    p->sparse.w[k] = 0.0;
     return pivot;
 }
 
-static void sparse_clear_row(struct sparse *s, size_t k)
+static void sparse_clear_row(const struct box_qp *p, size_t k)
 {
+    const struct sparse *s = p->group->sparse;
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
-        s->l[s->slot[t]] = 0.0;
+        p->sparse.l[s->slot[t]] = 0.0;
     }
 }
 
 double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
 {
-    struct group *g = p->group;
-    struct sparse *s = g->sparse;
+    const struct group *g = p->group;
+    const struct sparse *s = g->sparse;
     const size_t size = g->size;
     size_t waiting = size; /* dependents gather at the end of order */
     double most = 0.0;
     p->work.factorizations++;
-    memset(s->l, 0, s->column[size] * sizeof *s->l);
-    memset(s->d, 0, size * sizeof *s->d);
-    g->rank = 0;
+    memset(p->sparse.l, 0, s->column[size] * sizeof *p->sparse.l);
+    memset(p->sparse.d, 0, size * sizeof *p->sparse.d);
+    p->sets->rank = 0;
     for (size_t k = 0; k < size; k++) {
         const size_t i = s->place[k];
         double left = 0.0;
@@ -277,8 +257,8 @@ double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
         }
         const double pivot = sparse_eliminate(p, k, &left);
         if (pivot > TRIBO_SPARSE_ZERO) {
-            s->d[k] = 1.0 / pivot;
-            p->order[g->rank++] = i;
+            p->sparse.d[k] = 1.0 / pivot;
+            p->order[p->sets->rank++] = i;
         } else {
             left = greater(left, fabs(pivot));
             p->order[--waiting] = i;
@@ -288,13 +268,13 @@ double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
         }
         most = greater(most, left);
     }
-    g->dependents = size - waiting;
-    memmove(p->order + g->rank, p->order + waiting, g->dependents * sizeof *p->order);
-    for (size_t d = 0; d < g->dependents; d++) {
-        sparse_clear_row(s, s->position[p->order[g->rank + d]]);
+    p->sets->dependents = size - waiting;
+    memmove(p->order + p->sets->rank, p->order + waiting, p->sets->dependents * sizeof *p->order);
+    for (size_t d = 0; d < p->sets->dependents; d++) {
+        sparse_clear_row(p, s->position[p->order[p->sets->rank + d]]);
     }
-    for (size_t k = 0; k < g->rank + g->dependents; k++) {
-        s->index[p->order[k]] = k;
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        p->sparse.index[p->order[k]] = k;
     }
     return most;
 }
@@ -305,16 +285,16 @@ void tribo_sparse_solve(const struct box_qp *p, double *step)
     const size_t size = p->group->size;
     double *y = p->row;
     for (size_t j = 0; j < size; j++) {
-        y[j] = s->d[j] == 0.0 ? 0.0 : y[j] + p->scale[s->place[j]] * step[s->place[j]];
+        y[j] = p->sparse.d[j] == 0.0 ? 0.0 : y[j] + p->scale[s->place[j]] * step[s->place[j]];
         for (size_t q = s->column[j]; y[j] != 0.0 && q < s->column[j + 1]; q++) {
-            y[s->row_of[q]] -= s->l[q] * y[j];
+            y[s->row_of[q]] -= p->sparse.l[q] * y[j];
         }
     }
     for (size_t j = size; j-- > 0;) {
-        if (s->d[j] != 0.0) {
-            double x = y[j] * s->d[j];
+        if (p->sparse.d[j] != 0.0) {
+            double x = y[j] * p->sparse.d[j];
             for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
-                x -= s->l[q] * y[s->row_of[q]];
+                x -= p->sparse.l[q] * y[s->row_of[q]];
             }
             y[j] = x;
             step[s->place[j]] = p->scale[s->place[j]] * x;
@@ -325,27 +305,28 @@ void tribo_sparse_solve(const struct box_qp *p, double *step)
 
 /* L D L' += alpha w w' behind position k, w being in the workspace, with entries where column k of L may have some. Returns 0 if
  * that would leave a pivot without sign. */
-static int sparse_modify(struct sparse *s, size_t k, double alpha)
+static int sparse_modify(const struct box_qp *p, size_t k, double alpha)
 {
+    const struct sparse *s = p->group->sparse;
     int good = 1;
     for (size_t j = k; s->column[j] < s->column[j + 1];) {
         j = s->row_of[s->column[j]]; /* the parent in the elimination tree */
-        const double x = s->w[j];
-        s->w[j] = 0.0;
-        if (x == 0.0 || s->d[j] == 0.0 || !good) {
+        const double x = p->sparse.w[j];
+        p->sparse.w[j] = 0.0;
+        if (x == 0.0 || p->sparse.d[j] == 0.0 || !good) {
             continue;
         }
-        const double before = 1.0 / s->d[j], after = before + alpha * x * x;
+        const double before = 1.0 / p->sparse.d[j], after = before + alpha * x * x;
         good = after > TRIBO_SPARSE_ZERO;
         if (!good) {
             continue;
         }
         const double beta = alpha * x / after;
         alpha *= before / after;
-        s->d[j] = 1.0 / after;
+        p->sparse.d[j] = 1.0 / after;
         for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
-            s->w[s->row_of[q]] -= x * s->l[q];
-            s->l[q] += beta * s->w[s->row_of[q]];
+            p->sparse.w[s->row_of[q]] -= x * p->sparse.l[q];
+            p->sparse.l[q] += beta * p->sparse.w[s->row_of[q]];
         }
     }
     return good;
@@ -354,39 +335,39 @@ static int sparse_modify(struct sparse *s, size_t k, double alpha)
 /* Row and column k of L, for a contact that enters; its own pivot is positive. */
 static int sparse_enter(struct box_qp *p, size_t k)
 {
-    struct sparse *s = p->group->sparse;
+    const struct sparse *s = p->group->sparse;
     const size_t i = s->place[k];
     double ignored = 0.0;
     const double pivot = sparse_eliminate(p, k, &ignored);
     if (!(pivot > TRIBO_SPARSE_ZERO)) {
         return 0;
     }
-    s->d[k] = 1.0 / pivot;
+    p->sparse.d[k] = 1.0 / pivot;
     for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
         const size_t j = s->position[s->r.col[e]];
         if (j > k) {
-            s->w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
+            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
         }
     }
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
         const size_t j = s->column_of[t], slot = s->slot[t];
-        const double x = s->l[slot] / (s->d[j] == 0.0 ? 1.0 : s->d[j]); /* where d is 0 l is, too */
+        const double x = p->sparse.l[slot] / (p->sparse.d[j] == 0.0 ? 1.0 : p->sparse.d[j]); /* where d is 0 l is, too */
         for (size_t q = slot + 1; x != 0.0 && q < s->column[j + 1]; q++) {
-            s->w[s->row_of[q]] -= s->l[q] * x;
+            p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * x;
         }
     }
     for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
         const size_t j = s->row_of[q];
-        s->l[q] = s->d[j] == 0.0 ? 0.0 : s->w[j] * s->d[k];
-        s->w[j] = s->l[q];
+        p->sparse.l[q] = p->sparse.d[j] == 0.0 ? 0.0 : p->sparse.w[j] * p->sparse.d[k];
+        p->sparse.w[j] = p->sparse.l[q];
     }
-    return sparse_modify(s, k, -pivot);
+    return sparse_modify(p, k, -pivot);
 }
 
 static void sparse_put(struct box_qp *p, size_t at, size_t i)
 {
     p->order[at] = i;
-    p->group->sparse->index[i] = at;
+    p->sparse.index[i] = at;
 }
 
 /* Whether contact i depends on those in the factor: by the pivot that it would have as the last one. */
@@ -402,7 +383,7 @@ static int sparse_depends(struct box_qp *p, size_t i)
         const double x = s->r.val[e];
         if (j == i) {
             own = x;
-        } else if (s->d[s->position[j]] != 0.0) {
+        } else if (p->sparse.d[s->position[j]] != 0.0) {
             pivot -= x * p->step[j];
             size += fabs(x * p->step[j]);
         }
@@ -412,15 +393,15 @@ static int sparse_depends(struct box_qp *p, size_t i)
 
 void tribo_sparse_add(struct box_qp *p, size_t i)
 {
-    struct group *g = p->group;
+    const struct group *g = p->group;
     if (g->nullity && sparse_depends(p, i)) {
-        sparse_put(p, g->rank + g->dependents++, i);
+        sparse_put(p, p->sets->rank + p->sets->dependents++, i);
     } else if (sparse_enter(p, g->sparse->position[i])) {
         /* the first dependent makes room at the end of the independent ones */
-        if (g->dependents) {
-            sparse_put(p, g->rank + g->dependents, p->order[g->rank]);
+        if (p->sets->dependents) {
+            sparse_put(p, p->sets->rank + p->sets->dependents, p->order[p->sets->rank]);
         }
-        sparse_put(p, g->rank++, i);
+        sparse_put(p, p->sets->rank++, i);
     } else {
         tribo_sparse_rebuild(p, NULL);
     }
@@ -428,31 +409,31 @@ void tribo_sparse_add(struct box_qp *p, size_t i)
 
 void tribo_sparse_remove(struct box_qp *p, size_t i)
 {
-    struct group *g = p->group;
-    struct sparse *s = g->sparse;
-    const size_t k = s->position[i], at = s->index[i], waiting = g->dependents, work = p->work.factorizations;
-    if (at >= g->rank) {
-        g->dependents--;
-        sparse_put(p, at, p->order[g->rank + g->dependents]);
+    const struct group *g = p->group;
+    const struct sparse *s = g->sparse;
+    const size_t k = s->position[i], at = p->sparse.index[i], waiting = p->sets->dependents, work = p->work.factorizations;
+    if (at >= p->sets->rank) {
+        p->sets->dependents--;
+        sparse_put(p, at, p->order[p->sets->rank + p->sets->dependents]);
         return;
     }
-    g->rank--;
-    sparse_put(p, at, p->order[g->rank]);
+    p->sets->rank--;
+    sparse_put(p, at, p->order[p->sets->rank]);
     if (waiting) {
-        sparse_put(p, g->rank, p->order[g->rank + waiting]);
+        sparse_put(p, p->sets->rank, p->order[p->sets->rank + waiting]);
     }
-    sparse_clear_row(s, k);
+    sparse_clear_row(p, k);
     for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
-        s->w[s->row_of[q]] = s->l[q];
-        s->l[q] = 0.0;
+        p->sparse.w[s->row_of[q]] = p->sparse.l[q];
+        p->sparse.l[q] = 0.0;
     }
-    const double pivot = 1.0 / s->d[k];
-    s->d[k] = 0.0;
-    sparse_modify(s, k, pivot);
+    const double pivot = 1.0 / p->sparse.d[k];
+    p->sparse.d[k] = 0.0;
+    sparse_modify(p, k, pivot);
     /* what depended on it may be independent now */
-    g->dependents = 0;
+    p->sets->dependents = 0;
     for (size_t d = 0; d < waiting && p->work.factorizations == work; d++) {
-        tribo_sparse_add(p, p->order[g->rank + g->dependents]);
+        tribo_sparse_add(p, p->order[p->sets->rank + p->sets->dependents]);
     }
 }
 
@@ -470,24 +451,30 @@ int tribo_sparse_many(const struct box_qp *p, size_t changes)
 static int well_conditioned(struct sparse *s)
 {
     const size_t size = s->r.n;
-    struct group group = {.size = size, .sparse = s};
-    double least = 1.0, most = 1.0, *scale = malloc(size * sizeof *scale); /* of 1/pivot, which is 0 where there is none */
-    struct box_qp p = {.group = &group, .scale = scale, .at = calloc(size, 1), .order = malloc(size * sizeof *p.order)};
-    const int memory = scale && p.at && p.order;
+    const struct group group = {.size = size, .sparse = s};
+    struct sets sets = {0};
+    double least = 1.0, most = 1.0; /* of 1/pivot, which is 0 where there is none */
+    double *values = calloc(tribo_sparse_slots(s) + 3 * size, sizeof *values);
+    size_t *places = malloc(2 * size * sizeof *places);
+    signed char *at = calloc(size, 1);
+    const int memory = values && places && at;
     if (memory) {
+        double *scale = values + 2 * size;
+        const struct sparse_factor factor = {.l = values + 3 * size, .d = values, .w = values + size, .index = places};
+        struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .at = at, .order = places + size, .sparse = factor};
         for (size_t i = 0; i < size; i++) {
             const double *diagonal = tribo_csr_entry(&s->r, i, i);
             scale[i] = tribo_scale(diagonal ? *diagonal : 0.0);
         }
         tribo_sparse_rebuild(&p, NULL);
         for (size_t k = 0; k < size; k++) {
-            least = lesser(least, s->d[k]);
-            most = greater(most, s->d[k]);
+            least = lesser(least, factor.d[k]);
+            most = greater(most, factor.d[k]);
         }
     }
-    free(scale);
-    free(p.at);
-    free(p.order);
+    free(values);
+    free(places);
+    free(at);
     return memory ? least > 0.0 && most * TRIBO_DOUBTFUL < 1.0 : -1;
 }
 

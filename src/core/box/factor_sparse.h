@@ -15,9 +15,6 @@ struct sparse {
     size_t *column, *row;     /* [size + 1] column j of L has the slots column[j] to column[j + 1] - 1; rows alike */
     size_t *row_of;           /* [slots] rows ascending within a column */
     size_t *column_of, *slot; /* [slots] by rows: the columns, ascending, and the slots */
-    double *l, *d;            /* [slots]; [size] 1/d, 0 for contacts that are not in the factor */
-    double *w;                /* [size] workspace, zero between calls */
-    size_t *index;            /* [size] where a free contact stands in the problem's order */
     double change, rebuild;   /* cost of a change, on average, and of a new factor */
 };
 

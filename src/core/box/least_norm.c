@@ -19,7 +19,7 @@ void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
         tribo_row_spread(p, d, -1.0, y);
         tribo_factor_solve(p, y);
     }
-    for (size_t k = g->rank; k < g->rank + g->dependents; k++) {
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
         y[p->order[k]] = p->order[k] == d ? 1.0 : 0.0;
     }
 }
@@ -27,7 +27,7 @@ void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
 static double free_dot(const struct box_qp *p, const double *x, const double *y)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         sum += x[p->order[k]] * y[p->order[k]];
     }
     return sum;
@@ -36,7 +36,7 @@ static double free_dot(const struct box_qp *p, const double *x, const double *y)
 /* y += factor x */
 static void free_add(const struct box_qp *p, double factor, const double *x, double *y)
 {
-    for (size_t k = 0; k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         y[p->order[k]] += factor * x[p->order[k]];
     }
 }
@@ -51,17 +51,17 @@ void tribo_null_project(const struct box_qp *p, size_t k, double *y)
 
 size_t tribo_null_basis(struct box_qp *p)
 {
-    const size_t vectors = p->group->dependents;
+    const size_t vectors = p->sets->dependents;
     if (vectors > p->redundant) {
         return 0;
     }
     for (size_t j = 0; j < vectors; j++) {
         double *b = p->basis + j * p->group->size;
-        tribo_null_vector(p, p->order[p->group->rank + j], b);
+        tribo_null_vector(p, p->order[p->sets->rank + j], b);
         tribo_null_project(p, j, b);
         tribo_null_project(p, j, b);
         const double length = sqrt(free_dot(p, b, b));
-        for (size_t k = 0; k < p->group->rank + vectors; k++) {
+        for (size_t k = 0; k < p->sets->rank + vectors; k++) {
             b[p->order[k]] /= length;
         }
     }
@@ -80,7 +80,7 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
     const double length = sqrt(square);
     u[last] += u[last] < 0.0 ? -length : length;
     const double scale = length * fabs(u[last]); /* u'u/2 */
-    for (size_t k = 0; scale > 0.0 && k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; scale > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
         double *column = p->basis + p->order[k], sum = 0.0;
         for (size_t j = 0; j < vectors; j++) {
             sum += u[j] * column[j * size];
@@ -98,7 +98,7 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
 /* step = the way to least norm that the first vectors leave. */
 static void aim_at_least(struct box_qp *p, size_t vectors)
 {
-    for (size_t k = 0; k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
     }
     for (size_t j = 0; j < vectors; j++) {
@@ -111,10 +111,10 @@ static void aim_at_least(struct box_qp *p, size_t vectors)
 static double free_norm(const struct box_qp *p)
 {
     double most = DBL_MIN, sum = 0.0;
-    for (size_t k = 0; k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         most = greater(most, fabs(p->x[p->order[k]]));
     }
-    for (size_t k = 0; k < p->group->rank + p->group->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         const double part = p->x[p->order[k]] / most;
         sum += part * part;
     }

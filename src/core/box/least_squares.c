@@ -39,8 +39,8 @@ static int minimum_norm(struct box_qp *p)
     }
     tribo_box_gradients(p, 0);
     /* without null vectors those that depend on others tell by themselves */
-    for (size_t d = 0; d < p->group->dependents && !vectors; d++) {
-        const size_t i = p->order[p->group->rank + d];
+    for (size_t d = 0; d < p->sets->dependents && !vectors; d++) {
+        const size_t i = p->order[p->sets->rank + d];
         consistent &= fabs(p->gradient[i]) <= 16.0 * p->noise[i] + tribo_box_disagreement(p, i);
     }
     return consistent;
@@ -48,7 +48,7 @@ static int minimum_norm(struct box_qp *p)
 
 int tribo_box_linear(struct box_qp *p)
 {
-    p->group->far = p->far;
+    p->sets->far = p->far;
     tribo_box_begin(p, 0);
     tribo_box_enter(p, 0);
     int consistent = minimum_norm(p);

@@ -49,7 +49,7 @@ void tribo_box_gradients(struct box_qp *p, int first)
 
 void tribo_box_newton(struct box_qp *p)
 {
-    const size_t rank = p->group->rank;
+    const size_t rank = p->sets->rank;
     if (p->twofold) {
         tribo_graded_newton(p);
     } else {
@@ -58,7 +58,7 @@ void tribo_box_newton(struct box_qp *p)
         }
         tribo_factor_solve(p, p->step);
     }
-    for (size_t k = rank; k < rank + p->group->dependents; k++) {
+    for (size_t k = rank; k < rank + p->sets->dependents; k++) {
         p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
     }
 }

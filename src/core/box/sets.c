@@ -32,7 +32,7 @@ size_t tribo_box_change_all(struct box_qp *p)
     }
     /* a change that loses contacts while others depend on them may end in a factorization of its own, over a set that is no
      * longer that of at */
-    if (changes > 0 && (tribo_factor_many(p, changes, free) || (p->group->dependents && changes > 1))) {
+    if (changes > 0 && (tribo_factor_many(p, changes, free) || (p->sets->dependents && changes > 1))) {
         p->work.updates += changes;
         memcpy(p->at, p->to, n);
         tribo_factor_rebuild(p, NULL);
@@ -50,7 +50,7 @@ size_t tribo_box_change_all(struct box_qp *p)
 
 size_t tribo_box_advance(struct box_qp *p, double longest)
 {
-    const size_t all = p->group->rank + p->group->dependents;
+    const size_t all = p->sets->rank + p->sets->dependents;
     double length = longest;
     size_t hit = p->group->size;
     for (size_t k = 0; k < all; k++) {

@@ -59,13 +59,15 @@ static int out_of_memory(const tribo_context *ctx)
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contacts", ctx->n);
 }
 
-/* The new operator is right: it takes the old one's place. */
-static int install(tribo_context *ctx, struct delassus *op)
+/* The new operator is right: it takes the old one's place, and its memory that of the old one's. */
+static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 {
-    op->problem.work.factorizations += ctx->op.problem.work.factorizations;
-    op->problem.work.updates += ctx->op.problem.work.updates;
-    tribo_operator_free(&ctx->op);
-    ctx->op = *op;
+    m->problem.work.factorizations += ctx->memory.problem.work.factorizations;
+    m->problem.work.updates += ctx->memory.problem.work.updates;
+    tribo_operator_release(ctx->op);
+    tribo_memory_free(&ctx->memory);
+    ctx->op = op;
+    ctx->memory = *m;
     ctx->modes = NO_MODES;
     tribo_refresh(ctx);
     return TRIBO_OK;
@@ -88,22 +90,29 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
 {
     int status = check_owner(ctx);
     status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
-    struct delassus op;
+    const double none = 0.0;
+    struct delassus *op;
+    struct memory m = {0};
     if (status) {
         return status;
     }
-    return tribo_operator_diagonal(&op, ctx->n, r) ? install(ctx, &op) : out_of_memory(ctx);
+    if (!tribo_operator_diagonal(&op, ctx->n, r ? r : &none)) {
+        tribo_operator_release(op);
+        return out_of_memory(ctx);
+    }
+    return install(ctx, op, &m);
 }
 
 /* Takes a, sorted rows with finite entries, as the operator. Frees a. from: what they came from, if that is known. */
 static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia *from)
 {
-    struct delassus op = {0};
+    struct delassus *op;
+    struct memory m;
     struct flaw flaw;
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
     int status = diagonal ? symmetrize(ctx, a, diagonal) : out_of_memory(ctx);
     if (!status) {
-        status = tribo_operator_create(&op, a, from, &flaw);
+        status = tribo_operator_create(&op, &m, a, from, &flaw);
         if (status == TRIBO_ERR_UNSUPPORTED) {
             tribo_fail(ctx, status,
                        "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contacts",
@@ -112,7 +121,7 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
             tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contacts",
                        flaw.pivot, flaw.contact, flaw.group);
         } else {
-            status = status ? out_of_memory(ctx) : install(ctx, &op);
+            status = status ? out_of_memory(ctx) : install(ctx, op, &m);
         }
     }
     free(diagonal);

@@ -21,86 +21,121 @@
 #define GRADED_MOST 1e18
 #define GRADED_MOST_LARGE 1e10
 
-void tribo_operator_free(struct delassus *op)
+#if defined(TRIBO_GNU_C)
+#define COUNT(references, change) __atomic_add_fetch(&(references), (change), __ATOMIC_ACQ_REL)
+#else
+#define COUNT(references, change) ((references) += (change))
+#endif
+
+struct delassus *tribo_operator_share(struct delassus *op)
 {
+    COUNT(op->references, (size_t)1);
+    return op;
+}
+
+void tribo_operator_release(struct delassus *op)
+{
+    if (!op || COUNT(op->references, SIZE_MAX) > 0) { /* one less */
+        return;
+    }
     for (size_t k = 0; op->group && k < op->groups; k++) {
         tribo_sparse_free(op->group[k].sparse);
     }
-    struct box_qp *p = &op->problem;
     free(op->diagonal);
     free(op->group);
     free(op->group_of);
-    free(op->solved);
-    free(op->solved_list);
-    free(op->store);
     free(op->member);
     free(op->row_sum);
+    free(op->fixed);
+    free(op);
+}
+
+void tribo_memory_free(struct memory *m)
+{
+    struct box_qp *p = &m->problem;
+    free(m->solved);
+    free(m->solved_list);
+    free(m->sets);
+    free(m->store);
     free(p->near);
     free(p->held);
     free(p->to);
     free(p->q);
     free(p->basis);
-    *op = (struct delassus){.most = TRIBO_FAR};
+    *m = (struct memory){0};
 }
 
-int tribo_operator_diagonal(struct delassus *op, size_t n, const double *r)
+int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
 {
-    *op = (struct delassus){.most = TRIBO_FAR, .growth = 1.0, .islands = n};
-    op->diagonal = malloc((n + 1) * sizeof *op->diagonal);
-    for (size_t i = 0; op->diagonal && r && i < n; i++) {
-        op->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
+    struct delassus *o = calloc(1, sizeof *o);
+    *op = o;
+    if (!o) {
+        return 0;
     }
-    return op->diagonal != NULL;
+    *o = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0};
+    if (!r) {
+        return 1;
+    }
+    o->diagonal = malloc((n + 1) * sizeof *o->diagonal);
+    for (size_t i = 0; o->diagonal && i < n; i++) {
+        o->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
+    }
+    return o->diagonal != NULL;
 }
 
-/* What a group keeps, in doubles, which are as large as everything else that it keeps. */
+/* What is constant of a group, and what a memory keeps of it, in doubles, which are as large as everything else. */
+static size_t fixed_by(const struct group *g)
+{
+    return 2 * g->size + (g->sparse ? 0 : (g->graded ? 2 : 1) * g->size * g->size);
+}
+
 static size_t kept_by(const struct group *g)
 {
-    return 5 * g->size + (g->sparse ? 0 : (g->graded ? 4 : 2) * g->size * g->size);
+    return 3 * g->size + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : (g->graded ? 2 : 1) * g->size * g->size);
 }
 
-struct box_qp *tribo_operator_problem(struct delassus *op, size_t k)
+struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k)
 {
-    struct box_qp *p = &op->problem;
-    struct group *g = &op->group[k];
+    struct box_qp *p = &m->problem;
+    const struct group *g = &op->group[k];
     const size_t size = g->size;
+    double *fixed = op->fixed + g->fixed;
     p->group = g;
-    p->x = op->store + g->kept;
+    p->sets = &m->sets[k];
     p->member = op->member + g->first;
+    p->scale = fixed;
+    p->terms = (void *)(fixed + size);
+    p->r = fixed + 2 * size;
+    p->r_low = p->r + size * size;
+    p->x = m->store + g->kept;
     p->order = (void *)(p->x + size);
     p->at = (void *)(p->x + 2 * size);
-    p->terms = (void *)(p->x + 3 * size);
-    p->scale = p->x + 4 * size;
-    p->r = p->x + 5 * size;
-    p->l = p->r + size * size;
-    p->r_low = p->l + size * size;
-    p->l_low = p->r_low + size * size;
+    p->l = p->x + 3 * size;
+    p->l_low = p->l + size * size;
+    if (g->sparse) {
+        p->sparse = (struct sparse_factor){p->l + 3 * size, p->l, p->l + size, (void *)(p->l + 2 * size)};
+    }
     p->redundant = op->basis / size;
     return p;
 }
 
-void tribo_operator_expect(const struct delassus *op, size_t k)
+void tribo_memory_expect(const struct delassus *op, const struct memory *m, size_t k)
 {
-    enum { MOST = 2048 }; /* what there is beyond will come by itself */
-    const size_t bytes = kept_by(&op->group[k]) * sizeof *op->store;
-    tribo_expect(op->store + op->group[k].kept, bytes < MOST ? bytes : MOST, 0);
+    enum { MOST = 1024 }; /* what there is beyond will come by itself */
+    const size_t fixed = fixed_by(&op->group[k]) * sizeof *op->fixed, kept = kept_by(&op->group[k]) * sizeof *m->store;
+    tribo_expect(op->fixed + op->group[k].fixed, fixed < MOST ? fixed : MOST, 0);
+    tribo_expect(m->store + op->group[k].kept, kept < MOST ? kept : MOST, 0);
 }
 
-static int allocate_store(struct delassus *op)
-{
-    op->store = calloc(op->stored + 1, sizeof *op->store);
-    return op->store != NULL;
-}
-
-static int allocate_program(struct delassus *op)
+static int allocate_problem(struct box_qp *p, size_t largest)
 {
     enum { VECTORS = 13 };
-    const size_t s = op->largest + 1;
-    struct box_qp *p = &op->problem;
+    const size_t s = largest + 1;
     p->near = malloc(s * sizeof *p->near);
+    p->held = malloc(s * sizeof *p->held);
     p->to = malloc(s);
     p->q = calloc(VECTORS * s, sizeof *p->q);
-    if (!p->near || !p->to || !p->q) {
+    if (!p->near || !p->held || !p->to || !p->q) {
         return 0;
     }
     double **const vector[] = {&p->lo,   &p->hi,   &p->gradient, &p->noise, &p->low,      &p->first,
@@ -111,8 +146,23 @@ static int allocate_program(struct delassus *op)
     return 1;
 }
 
-/* Room for null vectors, once the ranks are known. */
-static int allocate_basis(struct delassus *op)
+/* A memory of nothing yet, but for room for null vectors, which is known when ranks are. */
+static int allocate_memory(struct memory *m, const struct delassus *op)
+{
+    m->solved = calloc(op->groups, 1);
+    m->solved_list = malloc(op->groups * sizeof *m->solved_list);
+    m->sets = calloc(op->groups, sizeof *m->sets);
+    m->store = calloc(op->kept_size + 1, sizeof *m->store);
+    return m->solved && m->solved_list && m->sets && m->store && allocate_problem(&m->problem, op->largest);
+}
+
+static int allocate_basis(struct memory *m, const struct delassus *op)
+{
+    m->problem.basis = malloc((op->basis + 1) * sizeof *m->problem.basis);
+    return m->problem.basis != NULL;
+}
+
+static void find_basis(struct delassus *op)
 {
     for (size_t k = 0; k < op->groups; k++) {
         const struct group *g = &op->group[k];
@@ -122,61 +172,32 @@ static int allocate_basis(struct delassus *op)
         }
         op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
     }
-    op->problem.held = malloc((op->largest + 1) * sizeof *op->problem.held);
-    op->problem.basis = malloc((op->basis + 1) * sizeof *op->problem.basis);
-    return op->problem.held && op->problem.basis;
 }
 
 static int allocate_groups(struct delassus *op, size_t n, size_t groups)
 {
     op->group_of = malloc(n * sizeof *op->group_of);
     op->group = calloc(groups, sizeof *op->group);
-    op->solved = calloc(groups, 1);
-    op->solved_list = malloc(groups * sizeof *op->solved_list);
     op->member = malloc(n * sizeof *op->member);
     op->row_sum = calloc(n, sizeof *op->row_sum);
-    return op->member && op->row_sum && op->group_of && op->group && op->solved && op->solved_list;
+    return op->member && op->row_sum && op->group_of && op->group;
 }
 
-int tribo_operator_copy(struct delassus *to, const struct delassus *from, size_t n)
+int tribo_memory_copy(struct memory *to, const struct memory *from, const struct delassus *op)
 {
-    if (!from->diagonal) {
-        *to = (struct delassus){.most = TRIBO_FAR};
-        return 1;
-    }
-    if (!tribo_operator_diagonal(to, n, from->diagonal)) {
-        return 0;
-    }
-    to->growth = from->growth;
-    to->islands = from->islands;
-    to->most = from->most;
+    *to = (struct memory){0};
     to->problem.work = from->problem.work;
-    if (!from->groups) {
+    if (!op->groups) {
         return 1;
     }
-    to->largest = from->largest;
-    to->span = from->span;
-    to->largest_sum = from->largest_sum;
-    to->stored = from->stored;
-    if (!allocate_groups(to, n, from->groups)) {
+    if (!allocate_memory(to, op) || !allocate_basis(to, op)) {
         return 0;
     }
-    memcpy(to->group_of, from->group_of, n * sizeof *to->group_of);
-    memcpy(to->member, from->member, n * sizeof *to->member);
-    memcpy(to->row_sum, from->row_sum, n * sizeof *to->row_sum);
-    for (to->groups = 0; to->groups < from->groups; to->groups++) {
-        to->group[to->groups] = from->group[to->groups];
-        if (!tribo_sparse_clone(&to->group[to->groups].sparse, from->group[to->groups].sparse)) {
-            return 0;
-        }
-    }
-    if (!allocate_store(to) || !allocate_program(to) || !allocate_basis(to)) {
-        return 0;
-    }
-    memcpy(to->solved, from->solved, from->groups);
+    memcpy(to->solved, from->solved, op->groups);
     memcpy(to->solved_list, from->solved_list, from->nsolved * sizeof *to->solved_list);
     to->nsolved = from->nsolved;
-    memcpy(to->store, from->store, from->stored * sizeof *to->store);
+    memcpy(to->sets, from->sets, op->groups * sizeof *to->sets);
+    memcpy(to->store, from->store, op->kept_size * sizeof *to->store);
     return 1;
 }
 
@@ -281,13 +302,6 @@ static double diagonal_of(const struct csr *a, size_t i)
     return entry ? *entry : 0.0;
 }
 
-static void fill_diagonal(struct delassus *op, const struct csr *a)
-{
-    for (size_t i = 0; i < a->n; i++) {
-        op->diagonal[i] = greater(diagonal_of(a, i), TRIBO_IMMOVABLE);
-    }
-}
-
 /* y = D^-1 |R| x, x [n] being positive. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz
  * 1942), more closely with every call on the last y. */
 static double grow(const struct delassus *op, const struct csr *a, const double *x, double *y)
@@ -367,15 +381,16 @@ static int loses_digits(struct box_qp *p)
     const struct group *g = p->group;
     size_t where;
     factorize_all(p, &where);
-    const double last = g->rank ? p->l[(g->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
-    return g->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
+    const double last = p->sets->rank ? p->l[(p->sets->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
+    return p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
 }
 
-/* R of a graded group to twice as many digits. */
-static void fill_graded(const struct box_qp *p, const struct inertia *from, const size_t *member, const size_t *place)
+/* R of a graded group to twice as many digits: r and r_low. */
+static void fill_graded(const struct box_qp *p, double *r, double *r_low, const struct inertia *from, const size_t *member,
+                        const size_t *place)
 {
     const size_t size = p->group->size;
-    memset(p->r, 0, size * size * sizeof *p->r);
+    memset(r, 0, size * size * sizeof *r);
     for (size_t c = 0; c < size; c++) {
         const size_t i = member[c];
         for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
@@ -384,18 +399,21 @@ static void fill_graded(const struct box_qp *p, const struct inertia *from, cons
             for (size_t k = from->t->first[dof]; x.hi != 0.0 && k < from->t->first[dof + 1]; k++) {
                 const size_t at = c * size + place[from->t->col[k]];
                 const struct twofold term = twofold_times(x, (struct twofold){from->t->val[k], 0.0}),
-                                     sum = twofold_add((struct twofold){p->r[at], p->r_low[at]}, term);
-                p->r[at] = sum.hi;
-                p->r_low[at] = sum.lo;
+                                     sum = twofold_add((struct twofold){r[at], r_low[at]}, term);
+                r[at] = sum.hi;
+                r_low[at] = sum.lo;
             }
         }
     }
 }
 
-static void fill_group(struct delassus *op, size_t k, const struct csr *a, const struct inertia *from, const size_t *place)
+static void fill_group(struct delassus *op, struct memory *m, size_t k, const struct csr *a, const struct inertia *from,
+                       const size_t *place)
 {
-    struct box_qp *p = tribo_operator_problem(op, k);
-    struct group *g = p->group;
+    struct box_qp *p = tribo_memory_problem(op, m, k);
+    struct group *g = &op->group[k];
+    double *scale = op->fixed + g->fixed, *r = scale + 2 * g->size;
+    size_t *terms = (void *)(scale + g->size);
     const size_t span = p->member[g->size - 1] - p->member[0];
     op->span = span > op->span ? span : op->span;
     g->lightest = HUGE_VAL;
@@ -404,22 +422,22 @@ static void fill_group(struct delassus *op, size_t k, const struct csr *a, const
         const size_t i = p->member[c];
         p->at[c] = AWAY;
         op->row_sum[i] = 0.0;
-        p->scale[c] = tribo_scale(op->diagonal[i]);
-        g->lightest = lesser(g->lightest, p->scale[c]);
+        scale[c] = tribo_scale(op->diagonal[i]);
+        g->lightest = lesser(g->lightest, scale[c]);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
-            p->terms[c] += a->val[e] != 0.0;
+            terms[c] += a->val[e] != 0.0;
             op->row_sum[i] += lesser(fabs(a->val[e]), TRIBO_FAR);
             if (a->val[e] != 0.0 && !g->sparse) {
-                p->r[c * g->size + place[a->col[e]]] = a->val[e];
+                r[c * g->size + place[a->col[e]]] = a->val[e];
             }
         }
-        g->terms = p->terms[c] > g->terms ? p->terms[c] : g->terms;
+        g->terms = terms[c] > g->terms ? terms[c] : g->terms;
     }
     if (g->graded) {
         g->graded = 0;
         g->graded = loses_digits(p);
         if (g->graded) {
-            fill_graded(p, from, p->member, place);
+            fill_graded(p, r, r + g->size * g->size, from, p->member, place);
         }
     }
     for (size_t c = 0; c < g->size; c++) {
@@ -429,11 +447,11 @@ static void fill_group(struct delassus *op, size_t k, const struct csr *a, const
 }
 
 /* The ranks of all groups. */
-static int check_definite(struct delassus *op, struct flaw *flaw)
+static int check_definite(struct delassus *op, struct memory *m, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
-        struct box_qp *p = tribo_operator_problem(op, k);
-        struct group *g = p->group;
+        struct box_qp *p = tribo_memory_problem(op, m, k);
+        struct group *g = &op->group[k];
         size_t where = 0;
         const double left = factorize_all(p, &where);
         const double zero = g->sparse ? TRIBO_SPARSE_ZERO : g->graded ? TRIBO_GRADED_ZERO : tribo_resolution(g->size);
@@ -441,16 +459,17 @@ static int check_definite(struct delassus *op, struct flaw *flaw)
             *flaw = (struct flaw){p->member[where], g->size, left};
             return TRIBO_ERR_INDEFINITE;
         }
-        g->nullity = g->dependents;
+        g->nullity = p->sets->dependents;
         memset(p->at, AWAY, g->size);
         tribo_factor_rebuild(p, NULL);
     }
-    op->problem.work.factorizations = 0;
+    m->problem.work.factorizations = 0;
+    find_basis(op);
     return TRIBO_OK;
 }
 
-static int create_groups(struct delassus *op, const struct csr *a, const struct inertia *from, const size_t *place,
-                         struct flaw *flaw)
+static int create_groups(struct delassus *op, struct memory *m, const struct csr *a, const struct inertia *from,
+                         const size_t *place, struct flaw *flaw)
 {
     for (size_t k = 0; k < op->groups; k++) {
         struct group *g = &op->group[k];
@@ -461,39 +480,52 @@ static int create_groups(struct delassus *op, const struct csr *a, const struct 
         if (!g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
             return TRIBO_ERR_MEMORY;
         }
-        g->kept = op->stored;
-        op->stored += kept_by(g);
+        g->fixed = op->fixed_size;
+        g->kept = op->kept_size;
+        op->fixed_size += fixed_by(g);
+        op->kept_size += kept_by(g);
     }
-    if (!allocate_store(op) || !allocate_program(op)) {
+    op->fixed = calloc(op->fixed_size + 1, sizeof *op->fixed);
+    if (!op->fixed || !allocate_memory(m, op)) {
         return TRIBO_ERR_MEMORY;
     }
     for (size_t k = 0; k < op->groups; k++) {
-        fill_group(op, k, a, from, place);
+        fill_group(op, m, k, a, from, place);
     }
-    const int status = check_definite(op, flaw);
-    return status || allocate_basis(op) ? status : TRIBO_ERR_MEMORY;
+    const int status = check_definite(op, m, flaw);
+    return status || allocate_basis(m, op) ? status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_operator_create(struct delassus *op, const struct csr *a, const struct inertia *from, struct flaw *flaw)
+int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const struct inertia *from,
+                          struct flaw *flaw)
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
     size_t *label = malloc((n + 1) * sizeof *label), *count = malloc((n + 1) * sizeof *count),
            *place = malloc((n + 1) * sizeof *place);
-    if (label && count && place && tribo_operator_diagonal(op, n, NULL)) {
+    double *diagonal = malloc((n + 1) * sizeof *diagonal);
+    struct delassus *op = NULL;
+    *m = (struct memory){0};
+    for (size_t i = 0; diagonal && i < n; i++) {
+        diagonal[i] = diagonal_of(a, i);
+    }
+    if (label && count && place && diagonal && tribo_operator_diagonal(&op, n, diagonal)) {
         op->islands = find_islands(a, label, place);
-        fill_diagonal(op, a);
         if (op->islands == n) {
             status = TRIBO_OK;
         } else if (find_growth(op, a) && find_groups(op, n, label, place, count)) {
-            status = create_groups(op, a, from, place, flaw);
+            status = create_groups(op, m, a, from, place, flaw);
         }
     }
     if (status) {
-        tribo_operator_free(op);
+        tribo_operator_release(op);
+        tribo_memory_free(m);
+        op = NULL;
     }
+    *created = op;
     free(label);
     free(count);
     free(place);
+    free(diagonal);
     return status;
 }
