@@ -16,16 +16,16 @@ void tribo_begin_call(tribo_context *ctx)
         ctx->memory.solved[ctx->memory.solved_list[k]] = 0;
     }
     ctx->memory.nsolved = 0;
-    ctx->far = ctx->largest > TRIBO_ROOM * ctx->op->most;
-    ctx->rank = 0;
-    ctx->modes = NO_MODES;
-    ctx->linearized = 0;
+    ctx->last.far = ctx->follow.largest > TRIBO_ROOM * ctx->op->most;
+    ctx->last.rank = 0;
+    ctx->last.modes = NO_MODES;
+    ctx->last.linearized = 0;
 }
 
 /* For shares that go on from these forces, also in groups that no solver saw. */
 void tribo_remember_forces(tribo_context *ctx)
 {
-    for (size_t g = 0; ctx->sharing == TRIBO_SHARE_LAST && g < ctx->op->groups; g++) {
+    for (size_t g = 0; ctx->set.sharing == TRIBO_SHARE_LAST && g < ctx->op->groups; g++) {
         struct box_qp *p = tribo_problem(ctx, g);
         for (size_t k = 0; !ctx->memory.solved[g] && k < p->group->size; k++) {
             p->x[k] = tribo_carried(ctx, p, k);
@@ -35,11 +35,11 @@ void tribo_remember_forces(tribo_context *ctx)
 }
 
 /* The groups with a contact near stick among those from i to end. */
-void tribo_find_near_groups(tribo_context *ctx, size_t i, size_t end)
+static void find_near_groups(tribo_context *ctx, size_t i, size_t end)
 {
     const struct delassus *op = ctx->op;
     struct memory *m = &ctx->memory;
-    for (size_t n; (n = tribo_next_near(ctx->last.of, &i, end)) > 0; i += n) {
+    for (size_t n; (n = tribo_next_near(ctx->last.did.of, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
             const size_t g = op->group_of[k];
             if (g != TRIBO_ALONE && !m->solved[g]) {
@@ -56,9 +56,9 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
     const size_t *member = p->member;
     size_t behind = p->group->size;
     p->count = 0;
-    p->far = ctx->far;
+    p->far = ctx->last.far;
     for (size_t i = 0; i < p->group->size; i++) {
-        if (ctx->last.of[member[i]] == STORED) {
+        if (ctx->last.did.of[member[i]] == STORED) {
             p->near[p->count++] = i;
         } else {
             p->near[--behind] = i;
@@ -78,23 +78,23 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
         const size_t i = p->near[e];
         p->unit[i] = ctx->op->diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
     }
-    ctx->solves++;
+    ctx->count.solves++;
     if (!tribo_box_solve(p)) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contacts near stick around contact %zu",
                           p->count, member[p->near[0]]);
     }
-    if (g->nullity && ctx->sharing == TRIBO_SHARE_LEAST) {
+    if (g->nullity && ctx->set.sharing == TRIBO_SHARE_LEAST) {
         tribo_box_share(p);
     }
-    ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
-    ctx->rank += p->sets->rank;
+    ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
+    ctx->last.rank += p->sets->rank;
     return TRIBO_OK;
 }
 
 /* kappa, see above. */
 static double relaxation(const tribo_context *ctx, size_t i, const double *v)
 {
-    return ctx->law->relaxes ? tribo_slope_of(&ctx->contacts, i) * v[i] : 0.0;
+    return ctx->set.law->relaxes ? tribo_slope_of(&ctx->follow.contacts, i) * v[i] : 0.0;
 }
 
 /* f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii, with f as the solver finds it. */
@@ -103,7 +103,7 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     const size_t *member = p->member;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double limit = ctx->contacts.bound[i], kappa = relaxation(ctx, i, v);
+        const double limit = ctx->follow.contacts.bound[i], kappa = relaxation(ctx, i, v);
         p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
         p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
         p->q[k] = cut(a[i]) + ctx->op->diagonal[i] * kappa;
@@ -112,9 +112,9 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         const double beyond = quotient(p->gradient[k], ctx->op->diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
-        ctx->residual = greater(ctx->residual, fabs(p->x[k] - to) / greater(ctx->contacts.bound[i], DBL_MIN));
+        ctx->last.residual = greater(ctx->last.residual, fabs(p->x[k] - to) / greater(ctx->follow.contacts.bound[i], DBL_MIN));
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
-        ctx->feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
+        ctx->last.feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
     }
     return status;
 }
@@ -126,18 +126,18 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *a
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         p->q[k] = cut(a[i]);
-        p->unit[k] = ctx->op->diagonal[i] * ctx->contacts.bound[i];
+        p->unit[k] = ctx->op->diagonal[i] * ctx->follow.contacts.bound[i];
     }
-    ctx->solves++;
+    ctx->count.solves++;
     const int consistent = tribo_box_linear(p);
-    ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
+    ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         const double off = fabs(quotient(p->gradient[k], ctx->op->diagonal[i]));
-        ctx->residual = greater(ctx->residual, quotient(off, greater(ctx->limit[i], DBL_MIN)));
-        ctx->feq[i] = p->x[k];
+        ctx->last.residual = greater(ctx->last.residual, quotient(off, greater(ctx->set.limit[i], DBL_MIN)));
+        ctx->last.feq[i] = p->x[k];
     }
-    ctx->rank += p->sets->rank;
+    ctx->last.rank += p->sets->rank;
     if (consistent) {
         return TRIBO_OK;
     }
@@ -152,11 +152,11 @@ static void near_forces(tribo_context *ctx, const struct box_qp *p, const double
     const size_t *member = p->member;
     for (size_t e = 0, run; e < p->count; e += run) {
         const size_t i = member[p->near[e]];
-        const struct contacts c = tribo_contacts_from(&ctx->contacts, i);
+        const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
         for (run = 1; e + run < p->count && member[p->near[e + run]] == i + run;) {
             run++;
         }
-        ctx->law->force(&c, run, v + i, ctx->feq + i, ctx->f + i);
+        ctx->set.law->force(&c, run, v + i, ctx->last.feq + i, ctx->last.f + i);
     }
 }
 
@@ -171,8 +171,8 @@ static void feq_of_others(tribo_context *ctx, const double *a)
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!(ctx->memory.solved[g] && ctx->last.of[i] == STORED) && ctx->limit[i] > 0.0) {
-                ctx->feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
+            if (!(ctx->memory.solved[g] && ctx->last.did.of[i] == STORED) && ctx->set.limit[i] > 0.0) {
+                ctx->last.feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
             }
         }
     }
@@ -181,11 +181,11 @@ static void feq_of_others(tribo_context *ctx, const double *a)
 static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     tribo_begin_call(ctx);
-    ctx->residual = 0.0;
+    ctx->last.residual = 0.0;
     tribo_forces_alone(ctx, v, a, wanted);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        if (ctx->last.stored[k] == SOME_STORED) {
-            tribo_find_near_groups(ctx, i, i + tribo_chunk_size(ctx, i));
+        if (ctx->last.did.stored[k] == SOME_STORED) {
+            find_near_groups(ctx, i, i + tribo_chunk_size(ctx, i));
         }
     }
     int status = TRIBO_OK;
@@ -194,7 +194,7 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
             tribo_memory_expect(ctx->op, &ctx->memory, ctx->memory.solved_list[k + 2]);
         }
         struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
-        const int one = ctx->coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
+        const int one = ctx->set.coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
         if (one == TRIBO_ERR_NO_CONVERGENCE) {
             return one;
         }
@@ -218,13 +218,13 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status == TRIBO_ERR_NO_CONVERGENCE) {
         return status;
     }
-    ctx->skipped += ctx->op->islands - ctx->memory.nsolved;
+    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
-    ctx->modes = MODES_IN_FORCES;
-    ctx->holds = ctx->law->holds;
+    ctx->last.modes = MODES_IN_FORCES;
+    ctx->last.holds = ctx->set.law->holds;
     if (feq) {
         feq_of_others(ctx, a);
-        tribo_copy(feq, ctx->feq, ctx->n);
+        tribo_copy(feq, ctx->last.feq, ctx->n);
     }
     if (f) {
         tribo_forces(ctx, f);

@@ -60,9 +60,9 @@ TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, do
 /* The same for chunk k, which begins with contact i; 0 for open ones. */
 static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, const double *a)
 {
-    feq_alone(n, ctx->op->diagonal + i, a + i, ctx->feq + i);
-    if (ctx->chunk[k].least == 0.0) {
-        no_feq_if_open(n, ctx->limit + i, ctx->feq + i);
+    feq_alone(n, ctx->op->diagonal + i, a + i, ctx->last.feq + i);
+    if (ctx->follow.chunk[k].least == 0.0) {
+        no_feq_if_open(n, ctx->set.limit + i, ctx->last.feq + i);
     }
 }
 
@@ -152,17 +152,17 @@ static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t e
 {
     double room[TRIBO_CHUNK];
     for (size_t n; (n = tribo_next_near(did, &i, end)) > 0; i += n) {
-        const double *band = ctx->law->sticks_in_band ? tribo_epsilons(&ctx->contacts, i, n, room) : NULL;
-        find_near(n, v + i, band, ctx->limit + i, did + i);
+        const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
+        find_near(n, v + i, band, ctx->set.limit + i, did + i);
     }
 }
 
 void tribo_store_all(tribo_context *ctx)
 {
-    if (!ctx->last.all_stored) {
-        memset(ctx->last.of, STORED, ctx->n);
-        memset(ctx->last.stored, ALL_STORED, tribo_chunks(ctx->n));
-        ctx->last.all_stored = 1;
+    if (!ctx->last.did.all_stored) {
+        memset(ctx->last.did.of, STORED, ctx->n);
+        memset(ctx->last.did.stored, ALL_STORED, tribo_chunks(ctx->n));
+        ctx->last.did.all_stored = 1;
     }
 }
 
@@ -170,7 +170,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 {
     struct deeds now = ctx->spare;
     const int few = !ctx->op->groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
-    if (!v || !a || few || !ctx->law->uses_feq) {
+    if (!v || !a || few || !ctx->set.law->uses_feq) {
         const int status = check_motion(ctx, v, a);
         if (!status) {
             tribo_store_all(ctx);
@@ -179,7 +179,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const double band = ctx->law->sticks_in_band ? ctx->chunk[k].band : lesser(ctx->chunk[k].band, 0.0);
+        const double band = ctx->set.law->sticks_in_band ? ctx->follow.chunk[k].band : lesser(ctx->follow.chunk[k].band, 0.0);
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
         if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
@@ -197,8 +197,8 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
         }
     }
     now.all_stored = 0;
-    ctx->spare = ctx->last;
-    ctx->last = now;
+    ctx->spare = ctx->last.did;
+    ctx->last.did = now;
     return TRIBO_OK;
 }
 
@@ -207,13 +207,13 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
     const int some = ctx->op->islands > ctx->op->groups;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const int asked = ctx->last.stored[k] == ALL_STORED || (some && ctx->last.stored[k] == SOME_STORED);
-        if (wanted || (asked && ctx->law->uses_feq)) {
+        const int asked = ctx->last.did.stored[k] == ALL_STORED || (some && ctx->last.did.stored[k] == SOME_STORED);
+        if (wanted || (asked && ctx->set.law->uses_feq)) {
             find_feq(ctx, k, i, n, a);
         }
         if (asked) {
-            const struct contacts c = tribo_contacts_from(&ctx->contacts, i);
-            ctx->law->force(&c, n, v + i, ctx->feq + i, ctx->f + i);
+            const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+            ctx->set.law->force(&c, n, v + i, ctx->last.feq + i, ctx->last.f + i);
         }
     }
 }
@@ -221,28 +221,28 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
 /* The same of the n contacts of chunk k, from i on, which do not all store it. */
 static void forces_of_slips(const tribo_context *ctx, size_t k, size_t i, size_t n, double *f)
 {
-    const signed char *did = ctx->last.of;
-    if (ctx->chunk[k].least < ctx->chunk[k].largest) {
-        force_of_slips(n, did + i, ctx->limit + i, f + i);
+    const signed char *did = ctx->last.did.of;
+    if (ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest) {
+        force_of_slips(n, did + i, ctx->set.limit + i, f + i);
     } else {
-        force_of_alike_slips(n, did + i, ctx->chunk[k].largest, f + i);
+        force_of_alike_slips(n, did + i, ctx->follow.chunk[k].largest, f + i);
     }
-    for (size_t j = i, near; ctx->last.stored[k] == SOME_STORED && (near = tribo_next_near(did, &j, i + n)) > 0; j += near) {
-        tribo_copy(f + j, ctx->f + j, near);
+    for (size_t j = i, near; ctx->last.did.stored[k] == SOME_STORED && (near = tribo_next_near(did, &j, i + n)) > 0; j += near) {
+        tribo_copy(f + j, ctx->last.f + j, near);
     }
 }
 
 void tribo_forces(const tribo_context *ctx, double *f)
 {
-    if (ctx->last.all_stored) {
-        tribo_copy(f, ctx->f, ctx->n);
+    if (ctx->last.did.all_stored) {
+        tribo_copy(f, ctx->last.f, ctx->n);
         return;
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         expect(ctx, f, i, 1);
-        if (ctx->last.stored[k] == ALL_STORED) {
-            memcpy(f + i, ctx->f + i, n * sizeof *f);
+        if (ctx->last.did.stored[k] == ALL_STORED) {
+            memcpy(f + i, ctx->last.f + i, n * sizeof *f);
         } else {
             forces_of_slips(ctx, k, i, n, f);
         }

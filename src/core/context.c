@@ -15,25 +15,26 @@ static int allocate(tribo_context *ctx, size_t n)
     const size_t m = n + 1;
     ctx->n = n;
     ctx->message = tribo_message_create();
-    ctx->limit = calloc(m, sizeof *ctx->limit);
-    ctx->width = malloc(m * sizeof *ctx->width);
-    ctx->rate = malloc(m * sizeof *ctx->rate);
-    ctx->cut_limit = malloc(m * sizeof *ctx->cut_limit);
-    ctx->cut_factor = malloc(m * sizeof *ctx->cut_factor);
+    ctx->set.limit = calloc(m, sizeof *ctx->set.limit);
+    ctx->set.width = malloc(m * sizeof *ctx->set.width);
+    ctx->set.rate = malloc(m * sizeof *ctx->set.rate);
+    ctx->follow.cut_limit = malloc(m * sizeof *ctx->follow.cut_limit);
+    ctx->follow.cut_factor = malloc(m * sizeof *ctx->follow.cut_factor);
     ctx->moving = calloc(m, sizeof *ctx->moving);
-    ctx->feq = calloc(m, sizeof *ctx->feq);
-    ctx->f = calloc(m, sizeof *ctx->f);
-    ctx->v = malloc(m * sizeof *ctx->v);
-    ctx->chunk = malloc(tribo_chunks(m) * sizeof *ctx->chunk);
-    ctx->last.of = calloc(m + tribo_chunks(m), 1);
+    ctx->last.feq = calloc(m, sizeof *ctx->last.feq);
+    ctx->last.f = calloc(m, sizeof *ctx->last.f);
+    ctx->last.v = malloc(m * sizeof *ctx->last.v);
+    ctx->follow.chunk = malloc(tribo_chunks(m) * sizeof *ctx->follow.chunk);
+    ctx->last.did.of = calloc(m + tribo_chunks(m), 1);
     ctx->spare.of = calloc(m + tribo_chunks(m), 1);
-    ctx->tangent = malloc(m * sizeof *ctx->tangent);
-    if (ctx->last.of && ctx->spare.of) {
-        ctx->last.stored = (unsigned char *)(ctx->last.of + m);
+    ctx->last.tangent = malloc(m * sizeof *ctx->last.tangent);
+    if (ctx->last.did.of && ctx->spare.of) {
+        ctx->last.did.stored = (unsigned char *)(ctx->last.did.of + m);
         ctx->spare.stored = (unsigned char *)(ctx->spare.of + m);
     }
-    return ctx->message && ctx->chunk && ctx->last.of && ctx->spare.of && ctx->limit && ctx->width && ctx->rate &&
-           ctx->cut_limit && ctx->cut_factor && ctx->moving && ctx->feq && ctx->f && ctx->v && ctx->tangent;
+    return ctx->message && ctx->follow.chunk && ctx->last.did.of && ctx->spare.of && ctx->set.limit && ctx->set.width &&
+           ctx->set.rate && ctx->follow.cut_limit && ctx->follow.cut_factor && ctx->moving && ctx->last.feq && ctx->last.f &&
+           ctx->last.v && ctx->last.tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -49,15 +50,15 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
-    c->law = tribo_law(TRIBO_QUINN);
-    c->coupling = TRIBO_CONSISTENT;
-    c->sharing = TRIBO_SHARE_LEAST;
+    c->set.law = tribo_law(TRIBO_QUINN);
+    c->set.coupling = TRIBO_CONSISTENT;
+    c->set.sharing = TRIBO_SHARE_LEAST;
     for (size_t i = 0; i < ncontact; i++) {
-        c->width[i] = DEFAULT_EPSILON;
-        c->rate[i] = tribo_rate(DEFAULT_EPSILON);
+        c->set.width[i] = DEFAULT_EPSILON;
+        c->set.rate[i] = tribo_rate(DEFAULT_EPSILON);
     }
     for (size_t k = 0; k < tribo_chunks(ncontact); k++) {
-        c->chunk[k].least = c->chunk[k].largest = 0.0;
+        c->follow.chunk[k].least = c->follow.chunk[k].largest = 0.0;
     }
     tribo_refresh(c);
     *ctx = c;
@@ -82,16 +83,16 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         tribo_destroy(c);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }
-    c->linearized = 0;
-    tribo_copy(c->limit, ctx->limit, n);
-    tribo_copy(c->width, ctx->width, n);
-    tribo_copy(c->rate, ctx->rate, n);
-    tribo_copy(c->feq, ctx->feq, n);
-    tribo_copy(c->f, ctx->f, n);
+    c->last.linearized = 0;
+    tribo_copy(c->set.limit, ctx->set.limit, n);
+    tribo_copy(c->set.width, ctx->set.width, n);
+    tribo_copy(c->set.rate, ctx->set.rate, n);
+    tribo_copy(c->last.feq, ctx->last.feq, n);
+    tribo_copy(c->last.f, ctx->last.f, n);
     memcpy(c->moving, ctx->moving, n);
-    memcpy(c->chunk, ctx->chunk, tribo_chunks(n) * sizeof *c->chunk);
-    memcpy(c->last.of, ctx->last.of, n);
-    memcpy(c->last.stored, ctx->last.stored, tribo_chunks(n));
+    memcpy(c->follow.chunk, ctx->follow.chunk, tribo_chunks(n) * sizeof *c->follow.chunk);
+    memcpy(c->last.did.of, ctx->last.did.of, n);
+    memcpy(c->last.did.stored, ctx->last.did.stored, tribo_chunks(n));
     tribo_refresh_limits(c);
     c->revision = ctx->revision;
     *copy = c;
@@ -106,19 +107,19 @@ void tribo_destroy(tribo_context *ctx)
     tribo_operator_release(ctx->op);
     tribo_memory_free(&ctx->memory);
     free(ctx->message);
-    free(ctx->limit);
-    free(ctx->width);
-    free(ctx->rate);
-    free(ctx->cut_limit);
-    free(ctx->cut_factor);
+    free(ctx->set.limit);
+    free(ctx->set.width);
+    free(ctx->set.rate);
+    free(ctx->follow.cut_limit);
+    free(ctx->follow.cut_factor);
     free(ctx->moving);
-    free(ctx->feq);
-    free(ctx->f);
-    free(ctx->v);
-    free(ctx->chunk);
-    free(ctx->last.of);
+    free(ctx->last.feq);
+    free(ctx->last.f);
+    free(ctx->last.v);
+    free(ctx->follow.chunk);
+    free(ctx->last.did.of);
     free(ctx->spare.of);
-    free(ctx->tangent);
+    free(ctx->last.tangent);
     free(ctx);
 }
 

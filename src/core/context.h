@@ -49,31 +49,53 @@ struct deeds {
 /* What is known of the modes of the last call: nothing, or they follow from forces and limits, or they are written down. */
 enum { NO_MODES, MODES_IN_FORCES, MODES_WRITTEN };
 
-struct tribo_context {
-    size_t n;
-    const char *owner; /* of the operator; NULL: the caller */
+/* What the caller set. */
+struct settings {
     const struct law *law;
     int coupling, sharing;
-    double step, lambda_dt;         /* tribo_set_epsilon_step; step 0: epsilon was given */
-    double *limit;                  /* [n] */
-    double *width, *rate;           /* [n] see law.h */
-    unsigned char *moving;          /* [n] reversal memory */
+    double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
+    double *limit;          /* [n] */
+    double *width, *rate;   /* [n] see law.h; of an epsilon that follows the operator, what follows from that */
+};
+
+/* What follows from settings and operator. */
+struct following {
     struct contacts contacts;       /* all of them, as laws see them; of far limits with what is cut: */
     double *cut_limit, *cut_factor; /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
     double largest, steepest;       /* limit; and factor, or 1 */
     struct chunk *chunk;            /* [chunks] */
-    struct delassus *op;
-    struct memory memory;
-    struct deeds last, spare; /* of the last call; room for the next */
-    double *feq, *f;          /* [n] of the last call; f where it is stored */
-    double *v;                /* [n] its velocities, and the law's derivatives there, after tribo_balance_tangent */
-    struct tangent *tangent;  /* [n] */
-    int modes;                /* NO_MODES, ... */
-    double holds;             /* a contact is stuck if |f| is less than this part of the limit */
-    int linearized;           /* tangent is that of the last call */
-    int far;                  /* a limit or a bound of the last call is so large that solutions may be beyond op.most */
+};
+
+/* What the last call found. */
+struct last {
+    struct deeds did;
+    double *feq, *f;         /* [n] f where it is stored */
+    double *v;               /* [n] velocities, and the law's derivatives there, after tribo_balance_tangent */
+    struct tangent *tangent; /* [n] */
+    int modes;               /* NO_MODES, ... */
+    double holds;            /* a contact is stuck if |f| is less than this part of the limit */
+    int linearized;          /* tangent is that of the last call */
+    int far;                 /* a limit or a bound was so large that solutions may be beyond op->most */
     double residual;
-    size_t rank, solves, reused, skipped, marks;
+    size_t rank;
+};
+
+/* What adds up since tribo_create, but for what the solver counts. */
+struct counters {
+    size_t solves, reused, skipped, marks;
+};
+
+struct tribo_context {
+    size_t n;
+    const char *owner; /* of the operator; NULL: the caller */
+    struct settings set;
+    struct following follow;
+    struct delassus *op;   /* constant; clones have it in common */
+    struct memory memory;  /* of the groups, from call to call */
+    unsigned char *moving; /* [n] reversal memory */
+    struct last last;
+    struct deeds spare; /* room for the next call */
+    struct counters count;
     size_t revision; /* counts changes of settings and operator */
     struct message *message;
 };
@@ -110,7 +132,7 @@ static inline int tribo_need_operator(const tribo_context *ctx)
 
 static inline int tribo_need_epsilon(const tribo_context *ctx)
 {
-    return ctx->step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
+    return ctx->set.step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
 }
 
 /* settings.c: brings what follows from settings and operator up to date: after a change of limits; or of anything, then with
@@ -130,8 +152,8 @@ void tribo_store_all(tribo_context *ctx);
 /* Checks v and a, and finds the contacts near stick; a status, and on failure all is as after the last call. */
 int tribo_classify(tribo_context *ctx, const double *v, const double *a);
 
-/* f of contacts that need no solver, where ctx->f is to hold it, and their f_eq, or that of all contacts if wanted, as if all
- * were alone. */
+/* f of contacts that need no solver, where ctx->last.f is to hold it, and their f_eq, or that of all contacts if wanted, as if
+ * all were alone. */
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 
 /* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
@@ -142,8 +164,8 @@ void tribo_forces(const tribo_context *ctx, double *f);
 
 static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 {
-    const int did = ctx->last.of[i];
-    return did == STORED ? ctx->f[i] : did == FORTH ? -ctx->limit[i] : ctx->limit[i];
+    const int did = ctx->last.did.of[i];
+    return did == STORED ? ctx->last.f[i] : did == FORTH ? -ctx->set.limit[i] : ctx->set.limit[i];
 }
 
 /* queries.c: writes modes down, before limits change. */
@@ -153,7 +175,7 @@ void tribo_write_modes(tribo_context *ctx);
 static inline double tribo_carried(const tribo_context *ctx, const struct box_qp *p, size_t k)
 {
     const double f = tribo_force_of(ctx, p->member[k]);
-    return ctx->far ? tribo_cut(p, k, f) : f;
+    return ctx->last.far ? tribo_cut(p, k, f) : f;
 }
 
 /* Views of group k. */
@@ -164,9 +186,6 @@ static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
 
 /* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */
 void tribo_begin_call(tribo_context *ctx);
-
-/* Finds the groups with a contact near stick among those from i to end. */
-void tribo_find_near_groups(tribo_context *ctx, size_t i, size_t end);
 
 /* Solves the problem of a group; q, lo and hi are set. */
 int tribo_solve_group(tribo_context *ctx, struct box_qp *p);

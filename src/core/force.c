@@ -18,9 +18,9 @@ TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const doub
 /* The same for the n contacts from i on. */
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
-    if (ctx->law->uses_feq) {
+    if (ctx->set.law->uses_feq) {
         double room[TRIBO_CHUNK];
-        const double *band = ctx->law->sticks_in_band ? tribo_epsilons(&ctx->contacts, i, n, room) : NULL;
+        const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
         select_feq(n, v + i, band, feq + i, used);
     } else {
         memset(used, 0, n * sizeof *used);
@@ -41,7 +41,7 @@ static int check_force(const tribo_context *ctx, const double *v, const double *
     if (status) {
         return status;
     }
-    if (!feq && ctx->n && ctx->law->uses_feq) {
+    if (!feq && ctx->n && ctx->set.law->uses_feq) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
     }
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
@@ -78,14 +78,14 @@ static void evaluate(const tribo_context *ctx, const double *v, const double *fe
         double used[TRIBO_CHUNK];
         struct tangent d[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
-        const struct contacts c = tribo_contacts_from(&ctx->contacts, i);
+        const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
         used_feq(ctx, i, n, v, feq, used);
         cut_all(n, used);
         if (f) {
-            ctx->law->force(&c, n, v + i, used, f + i);
+            ctx->set.law->force(&c, n, v + i, used, f + i);
         }
         if (df_dv || df_dfeq || df_dlimit) {
-            ctx->law->tangent(&c, n, v + i, used, d);
+            ctx->set.law->tangent(&c, n, v + i, used, d);
             hand_out(n, d, df_dv ? df_dv + i : NULL, df_dfeq ? df_dfeq + i : NULL, df_dlimit ? df_dlimit + i : NULL);
         }
     }
@@ -125,22 +125,22 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (!ctx->law->remembers) {
+    if (!ctx->set.law->remembers) {
         return tribo_check_finite(ctx, "v", v, ctx->n);
     }
     const int status = check_force(ctx, v, feq);
     if (status) {
         return status;
     }
-    ctx->linearized = 0;
+    ctx->last.linearized = 0;
     for (size_t i = 0; i < ctx->n; i++) {
         const unsigned char before = ctx->moving[i];
-        if (fabs(v[i]) > tribo_epsilon_of(&ctx->contacts, i)) {
+        if (fabs(v[i]) > tribo_epsilon_of(&ctx->follow.contacts, i)) {
             ctx->moving[i] = 1;
-        } else if (fabs(feq[i]) <= ctx->limit[i]) {
+        } else if (fabs(feq[i]) <= ctx->set.limit[i]) {
             ctx->moving[i] = 0;
         }
-        ctx->marks += ctx->moving[i] != before;
+        ctx->count.marks += ctx->moving[i] != before;
     }
     return TRIBO_OK;
 }

@@ -36,14 +36,14 @@ TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const doub
 
 void tribo_write_modes(tribo_context *ctx)
 {
-    for (size_t i = 0, k = 0; ctx->modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
-        if (ctx->last.stored[k] != NONE_STORED || ctx->chunk[k].least == 0.0) {
-            find_modes(tribo_chunk_size(ctx, i), ctx->f + i, ctx->limit + i, ctx->holds, ctx->last.of + i);
-            ctx->last.stored[k] = SOME_STORED;
-            ctx->last.all_stored = 0;
+    for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
+        if (ctx->last.did.stored[k] != NONE_STORED || ctx->follow.chunk[k].least == 0.0) {
+            find_modes(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->set.limit + i, ctx->last.holds, ctx->last.did.of + i);
+            ctx->last.did.stored[k] = SOME_STORED;
+            ctx->last.did.all_stored = 0;
         }
     }
-    ctx->modes = ctx->modes == NO_MODES ? NO_MODES : MODES_WRITTEN;
+    ctx->last.modes = ctx->last.modes == NO_MODES ? NO_MODES : MODES_WRITTEN;
 }
 
 int tribo_get_modes(const tribo_context *ctx, signed char *mode)
@@ -54,15 +54,15 @@ int tribo_get_modes(const tribo_context *ctx, signed char *mode)
     if (!mode && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "mode is NULL");
     }
-    if (ctx->modes == NO_MODES) {
+    if (ctx->last.modes == NO_MODES) {
         return tribo_fail(ctx, TRIBO_ERR_STATE,
                           "no tribo_balance or tribo_step_force since the last tribo_solve_box or operator");
     }
     if (ctx->n) {
-        memcpy(mode, ctx->last.of, ctx->n);
+        memcpy(mode, ctx->last.did.of, ctx->n);
     }
-    if (ctx->modes == MODES_IN_FORCES) {
-        find_modes(ctx->n, ctx->f, ctx->limit, ctx->holds, mode);
+    if (ctx->last.modes == MODES_IN_FORCES) {
+        find_modes(ctx->n, ctx->last.f, ctx->set.limit, ctx->last.holds, mode);
     }
     return TRIBO_OK;
 }
@@ -70,11 +70,11 @@ int tribo_get_modes(const tribo_context *ctx, signed char *mode)
 static size_t count_stuck(const tribo_context *ctx)
 {
     size_t stuck = 0;
-    for (size_t i = 0; ctx->modes == MODES_IN_FORCES && i < ctx->n; i++) {
-        stuck += mode_of(ctx->last.of[i], ctx->f[i], ctx->limit[i], ctx->holds) == 0;
+    for (size_t i = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i++) {
+        stuck += mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->set.limit[i], ctx->last.holds) == 0;
     }
-    for (size_t i = 0; ctx->modes == MODES_WRITTEN && i < ctx->n; i++) {
-        stuck += ctx->last.of[i] == 0;
+    for (size_t i = 0; ctx->last.modes == MODES_WRITTEN && i < ctx->n; i++) {
+        stuck += ctx->last.did.of[i] == 0;
     }
     return stuck;
 }
@@ -89,14 +89,14 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     }
     const size_t counts[] = {
         [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
-        [TRIBO_COUNT_RANK] = ctx->rank,
+        [TRIBO_COUNT_RANK] = ctx->last.rank,
         [TRIBO_COUNT_ISLANDS] = ctx->op->islands,
-        [TRIBO_COUNT_SOLVES] = ctx->solves,
-        [TRIBO_COUNT_SKIPPED] = ctx->skipped,
+        [TRIBO_COUNT_SOLVES] = ctx->count.solves,
+        [TRIBO_COUNT_SKIPPED] = ctx->count.skipped,
         [TRIBO_COUNT_FACTORIZATIONS] = ctx->memory.problem.work.factorizations,
         [TRIBO_COUNT_UPDATES] = ctx->memory.problem.work.updates,
-        [TRIBO_COUNT_MEMORY] = ctx->marks,
-        [TRIBO_COUNT_REUSED] = ctx->reused,
+        [TRIBO_COUNT_MEMORY] = ctx->count.marks,
+        [TRIBO_COUNT_REUSED] = ctx->count.reused,
     };
     if (which < 0 || which >= (int)(sizeof counts / sizeof *counts)) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);
@@ -112,17 +112,17 @@ static double max_rate(const tribo_context *ctx)
 {
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
-        if (ctx->limit[i] > 0.0) {
-            rate = greater(rate, product(tribo_slope_of(&ctx->contacts, i), ctx->op->diagonal[i]));
+        if (ctx->set.limit[i] > 0.0) {
+            rate = greater(rate, product(tribo_slope_of(&ctx->follow.contacts, i), ctx->op->diagonal[i]));
         }
     }
-    if (!ctx->law->uses_feq) {
+    if (!ctx->set.law->uses_feq) {
         return product(0.5 * rate, ctx->op->growth);
     }
-    if (!ctx->law->relaxes) {
+    if (!ctx->set.law->relaxes) {
         return 0.0;
     }
-    return ctx->coupling == TRIBO_PARTITION ? product(rate, ctx->op->growth) : rate;
+    return ctx->set.coupling == TRIBO_PARTITION ? product(rate, ctx->op->growth) : rate;
 }
 
 int tribo_get_real(const tribo_context *ctx, int which, double *value)
@@ -134,7 +134,7 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
     }
     if (which == TRIBO_REAL_RESIDUAL) {
-        *value = ctx->residual;
+        *value = ctx->last.residual;
         return TRIBO_OK;
     }
     if (which != TRIBO_REAL_MAX_RATE && which != TRIBO_REAL_MAX_STEP) {

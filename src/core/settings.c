@@ -9,17 +9,17 @@
 /* Whether epsilon follows limits and operator. */
 static int epsilon_follows(const tribo_context *ctx)
 {
-    return ctx->step > 0.0 && ctx->op->diagonal;
+    return ctx->set.step > 0.0 && ctx->op->diagonal;
 }
 
 /* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
 static void follow_step(tribo_context *ctx)
 {
-    const double time = quotient(ctx->step, ctx->lambda_dt);
+    const double time = quotient(ctx->set.step, ctx->set.lambda_dt);
     for (size_t i = 0; i < ctx->n; i++) {
         const double half = greater(product(ctx->op->diagonal[i], time), DBL_MIN);
-        ctx->width[i] = 2.0 * half;
-        ctx->rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+        ctx->set.width[i] = 2.0 * half;
+        ctx->set.rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
     }
 }
 
@@ -34,34 +34,34 @@ static double largest_of(size_t n, const double *x)
 
 static void find_widths(tribo_context *ctx)
 {
-    const double *factor = epsilon_follows(ctx) ? ctx->width : ctx->rate;
-    ctx->steepest = 1.0;
+    const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
+    ctx->follow.steepest = 1.0;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        ctx->chunk[k].widest = largest_of(n, ctx->width + i);
-        ctx->steepest = greater(ctx->steepest, largest_of(n, factor + i));
+        ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
+        ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
     }
 }
 
 /* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
 static void cut_far(tribo_context *ctx)
 {
-    struct contacts *c = &ctx->contacts;
+    struct contacts *c = &ctx->follow.contacts;
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->cut_limit[i] = lesser(ctx->limit[i], TRIBO_FAR);
+        ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
     }
     for (size_t g = 0; g < ctx->op->groups; g++) {
         const struct box_qp *p = tribo_problem(ctx, g);
         for (size_t k = 0; k < p->group->size; k++) {
-            ctx->cut_limit[p->member[k]] = lesser(ctx->limit[p->member[k]], tribo_most(p, k));
+            ctx->follow.cut_limit[p->member[k]] = lesser(ctx->set.limit[p->member[k]], tribo_most(p, k));
         }
     }
-    const double *factor = c->follows ? ctx->width : ctx->rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
+    const double *factor = c->follows ? ctx->set.width : ctx->set.rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->cut_factor[i] = lesser(factor[i], far / greater(ctx->cut_limit[i], 1.0));
+        ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
     }
-    c->bound = ctx->cut_limit;
-    *(c->follows ? &c->width : &c->rate) = ctx->cut_factor;
+    c->bound = ctx->follow.cut_limit;
+    *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
 }
 
 /* No epsilon of the chunk's contacts that are not open is larger; negative if there are none. */
@@ -77,16 +77,16 @@ static double band_of(const struct chunk *chunk, int follows)
 void tribo_refresh_limits(tribo_context *ctx)
 {
     const int follows = epsilon_follows(ctx);
-    ctx->largest = 0.0;
+    ctx->follow.largest = 0.0;
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->largest = greater(ctx->largest, ctx->chunk[k].largest);
-        ctx->chunk[k].band = band_of(&ctx->chunk[k], follows);
+        ctx->follow.largest = greater(ctx->follow.largest, ctx->follow.chunk[k].largest);
+        ctx->follow.chunk[k].band = band_of(&ctx->follow.chunk[k], follows);
     }
-    ctx->contacts = (struct contacts){ctx->limit, ctx->limit, ctx->width, ctx->rate, ctx->moving, follows};
-    if (ctx->largest > lesser(ctx->op->most, TRIBO_FAR / ctx->steepest)) {
+    ctx->follow.contacts = (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows};
+    if (ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);
     }
-    ctx->linearized = 0;
+    ctx->last.linearized = 0;
     ctx->revision++;
 }
 
@@ -108,8 +108,8 @@ int tribo_set_law(tribo_context *ctx, int law)
     if (!l) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
     }
-    ctx->law = l;
-    ctx->linearized = 0;
+    ctx->set.law = l;
+    ctx->last.linearized = 0;
     ctx->revision++;
     memset(ctx->moving, 0, ctx->n);
     return TRIBO_OK;
@@ -123,7 +123,7 @@ int tribo_get_law(const tribo_context *ctx, int *law)
     if (!law) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "law is NULL");
     }
-    *law = ctx->law->id;
+    *law = ctx->set.law->id;
     return TRIBO_OK;
 }
 
@@ -139,7 +139,7 @@ int tribo_set_limit(tribo_context *ctx, const double *limit)
     tribo_write_modes(ctx);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        tribo_take_limits(n, limit + i, ctx->limit + i, &ctx->chunk[k]);
+        tribo_take_limits(n, limit + i, ctx->set.limit + i, &ctx->follow.chunk[k]);
     }
     tribo_refresh_limits(ctx);
     return TRIBO_OK;
@@ -158,10 +158,10 @@ int tribo_set_limit_all(tribo_context *ctx, double limit)
     }
     tribo_write_modes(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->limit[i] = limit;
+        ctx->set.limit[i] = limit;
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->chunk[k].least = ctx->chunk[k].largest = limit;
+        ctx->follow.chunk[k].least = ctx->follow.chunk[k].largest = limit;
     }
     tribo_refresh_limits(ctx);
     return TRIBO_OK;
@@ -175,7 +175,7 @@ int tribo_get_limit(const tribo_context *ctx, double *limit)
     if (!limit && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "limit is NULL");
     }
-    tribo_copy(limit, ctx->limit, ctx->n);
+    tribo_copy(limit, ctx->set.limit, ctx->n);
     return TRIBO_OK;
 }
 
@@ -192,7 +192,7 @@ int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "epsilon is NULL");
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        epsilon[i] = tribo_epsilon_of(&ctx->contacts, i);
+        epsilon[i] = tribo_epsilon_of(&ctx->follow.contacts, i);
     }
     return TRIBO_OK;
 }
@@ -207,10 +207,10 @@ int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
         return status;
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->width[i] = epsilon[i];
-        ctx->rate[i] = tribo_rate(epsilon[i]);
+        ctx->set.width[i] = epsilon[i];
+        ctx->set.rate[i] = tribo_rate(epsilon[i]);
     }
-    ctx->step = 0.0;
+    ctx->set.step = 0.0;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
@@ -236,10 +236,10 @@ int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
         return status;
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        ctx->width[i] = epsilon;
-        ctx->rate[i] = tribo_rate(epsilon);
+        ctx->set.width[i] = epsilon;
+        ctx->set.rate[i] = tribo_rate(epsilon);
     }
-    ctx->step = 0.0;
+    ctx->set.step = 0.0;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
@@ -256,8 +256,8 @@ int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt)
     if (status) {
         return status;
     }
-    ctx->step = dt;
-    ctx->lambda_dt = lambda_dt;
+    ctx->set.step = dt;
+    ctx->set.lambda_dt = lambda_dt;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
@@ -270,8 +270,8 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
     if (coupling != TRIBO_CONSISTENT && coupling != TRIBO_PARTITION) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
     }
-    ctx->coupling = coupling;
-    ctx->linearized = 0;
+    ctx->set.coupling = coupling;
+    ctx->last.linearized = 0;
     ctx->revision++;
     return TRIBO_OK;
 }
@@ -284,7 +284,7 @@ int tribo_get_coupling(const tribo_context *ctx, int *coupling)
     if (!coupling) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "coupling is NULL");
     }
-    *coupling = ctx->coupling;
+    *coupling = ctx->set.coupling;
     return TRIBO_OK;
 }
 
@@ -296,8 +296,8 @@ int tribo_set_sharing(tribo_context *ctx, int sharing)
     if (sharing != TRIBO_SHARE_LEAST && sharing != TRIBO_SHARE_LAST) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST nor TRIBO_SHARE_LAST", sharing);
     }
-    ctx->sharing = sharing;
-    ctx->linearized = 0;
+    ctx->set.sharing = sharing;
+    ctx->last.linearized = 0;
     ctx->revision++;
     return TRIBO_OK;
 }
@@ -310,6 +310,6 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
     if (!sharing) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "sharing is NULL");
     }
-    *sharing = ctx->sharing;
+    *sharing = ctx->set.sharing;
     return TRIBO_OK;
 }

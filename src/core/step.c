@@ -56,11 +56,11 @@ TRIBO_SIMD static int any_within_reach(size_t n, double scale, const double *res
 static double largest_around(const tribo_context *ctx, size_t k)
 {
     if (ctx->op->span >= TRIBO_CHUNK) {
-        return ctx->largest;
+        return ctx->follow.largest;
     }
-    const double before = k > 0 ? ctx->chunk[k - 1].largest : 0.0;
-    const double behind = k + 1 < tribo_chunks(ctx->n) ? ctx->chunk[k + 1].largest : 0.0;
-    return greater(ctx->chunk[k].largest, greater(before, behind));
+    const double before = k > 0 ? ctx->follow.chunk[k - 1].largest : 0.0;
+    const double behind = k + 1 < tribo_chunks(ctx->n) ? ctx->follow.chunk[k + 1].largest : 0.0;
+    return greater(ctx->follow.chunk[k].largest, greater(before, behind));
 }
 
 /* Finds the groups in which a contact may take part, chunk by chunk: in a large scene most have none. */
@@ -95,7 +95,7 @@ static struct limits limits_of(const tribo_context *ctx, const struct box_qp *p)
 {
     struct limits l = {TRIBO_FAR, 0.0, p->step};
     for (size_t k = 0; k < p->group->size; k++) {
-        l.of[k] = ctx->contacts.bound[p->member[k]];
+        l.of[k] = ctx->follow.contacts.bound[p->member[k]];
         l.least = lesser(l.least, l.of[k]);
         l.largest = greater(l.largest, l.of[k]);
     }
@@ -124,14 +124,14 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
     const struct limits l = limits_of(ctx, p);
     size_t behind = p->group->size;
     p->count = 0;
-    p->far = ctx->far;
+    p->far = ctx->last.far;
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
         const double lo = lower_of(&c->b, i), hi = c->b.upper[i];
         if (lo < hi && (c->b.lower || within_reach(ctx, p, k, c, &l))) {
             p->near[p->count++] = k;
-            p->lo[k] = ctx->far ? tribo_cut(p, k, lo) : lo;
-            p->hi[k] = ctx->far ? tribo_cut(p, k, hi) : hi;
+            p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
+            p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
             p->q[k] = cut(c->scale * c->v[i]);
         } else {
             p->near[--behind] = k;
@@ -147,7 +147,7 @@ static int solve_for(tribo_context *ctx, struct box_qp *p, const struct bounds *
     const int status = tribo_solve_group(ctx, p);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
-        ctx->f[i] = clamp(p->x[k], lower_of(b, i), b->upper[i]);
+        ctx->last.f[i] = clamp(p->x[k], lower_of(b, i), b->upper[i]);
     }
     return status;
 }
@@ -178,10 +178,10 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
 /* Solves for all contacts. */
 static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
 {
-    const int estimates = !b.lower && ctx->largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
+    const int estimates = !b.lower && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
     const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, estimates};
     tribo_store_all(ctx);
-    box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->f);
+    box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
     if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
@@ -189,9 +189,9 @@ static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds
     if (status) {
         return status;
     }
-    ctx->skipped += ctx->op->islands - ctx->memory.nsolved;
+    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
-    tribo_copy(f, ctx->f, ctx->n);
+    tribo_copy(f, ctx->last.f, ctx->n);
     return TRIBO_OK;
 }
 
@@ -215,10 +215,10 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
     tribo_begin_call(ctx);
-    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->limit}, f);
+    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, f);
     if (!status) {
-        ctx->modes = MODES_IN_FORCES;
-        ctx->holds = 1.0;
+        ctx->last.modes = MODES_IN_FORCES;
+        ctx->last.holds = 1.0;
     }
     return status;
 }
@@ -246,6 +246,6 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
     tribo_begin_call(ctx);
-    ctx->far = most > TRIBO_ROOM * ctx->op->most;
+    ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
     return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, f);
 }

@@ -6,21 +6,21 @@
 /* What every contact's law says at the last balance, which was at v. */
 static void linearize_laws(tribo_context *ctx, const double *v)
 {
-    ctx->law->tangent(&ctx->contacts, ctx->n, v, ctx->feq, ctx->tangent);
-    tribo_copy(ctx->v, v, ctx->n);
-    ctx->linearized = 1;
+    ctx->set.law->tangent(&ctx->follow.contacts, ctx->n, v, ctx->last.feq, ctx->last.tangent);
+    tribo_copy(ctx->last.v, v, ctx->n);
+    ctx->last.linearized = 1;
 }
 
 /* How the force of contact i, at place k, follows its own velocity where it is not balanced. */
 static double own_rate(const tribo_context *ctx, const struct box_qp *p, size_t k, size_t i)
 {
-    if (ctx->last.of[i] != STORED) {
-        return ctx->tangent[i].dv;
+    if (ctx->last.did.of[i] != STORED) {
+        return ctx->last.tangent[i].dv;
     }
     /* the bound of a relaxing law moves with v while it is not at the other limit */
-    const double slope = tribo_slope_of(&ctx->contacts, i), kappa = slope * ctx->v[i];
+    const double slope = tribo_slope_of(&ctx->follow.contacts, i), kappa = slope * ctx->last.v[i];
     const int moves =
-        ctx->law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->limit[i];
+        ctx->set.law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->set.limit[i];
     return moves ? -slope : 0.0;
 }
 
@@ -54,7 +54,7 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
 static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const double *dv, const double *da,
                           double *df)
 {
-    const int partition = ctx->coupling == TRIBO_PARTITION;
+    const int partition = ctx->set.coupling == TRIBO_PARTITION;
     p->far = 1; /* derivatives may be anything */
     const size_t *member = p->member, size = p->group->size;
     double *rhs = p->noise;
@@ -64,24 +64,24 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
                      pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
         df[k] = p->at[k] == FREE ? 0.0 : clamp(product(own_rate(ctx, p, k, i), dv[k]), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
-        if (!partition && ctx->law->relaxes) {
-            rhs[k] += r * clamp(product(tribo_slope_of(&ctx->contacts, i), dv[k]), -most, most);
+        if (!partition && ctx->set.law->relaxes) {
+            rhs[k] += r * clamp(product(tribo_slope_of(&ctx->follow.contacts, i), dv[k]), -most, most);
         }
     }
     follow_free(p, vectors, rhs, df);
     if (partition) {
         for (size_t k = 0; k < size; k++) {
-            const struct tangent *d = &ctx->tangent[member[k]];
+            const struct tangent *d = &ctx->last.tangent[member[k]];
             df[k] = p->at[k] == FREE ? d->dfeq * df[k] + product(d->dv, dv[k]) : df[k];
         }
-    } else if (ctx->law->remembers) {
+    } else if (ctx->set.law->remembers) {
         /* the forces so far are those that f_eq balances; the law itself has another derivative where f_eq is beyond the limit */
         memcpy(p->step, df, size * sizeof *df);
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            const struct tangent *d = &ctx->tangent[i];
+            const struct tangent *d = &ctx->last.tangent[i];
             const double r = ctx->op->diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
-            df[k] = product(d->dv, dv[k]) - (ctx->last.of[i] == STORED ? d->dfeq * quotient(sum, r) : 0.0);
+            df[k] = product(d->dv, dv[k]) - (ctx->last.did.of[i] == STORED ? d->dfeq * quotient(sum, r) : 0.0);
         }
     }
 }
@@ -89,10 +89,10 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
 /* Contacts for which nothing was solved. Where friction moves nothing, the force jumps as a changes its sign. */
 static double alone_product(const tribo_context *ctx, size_t i, double dv, double da)
 {
-    const struct tangent *d = &ctx->tangent[i];
+    const struct tangent *d = &ctx->last.tangent[i];
     const double r = ctx->op->diagonal[i];
     const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
-    const int follows = balanced && ctx->limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
+    const int follows = balanced && ctx->set.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
     return product(d->dv, dv) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
 }
 
@@ -157,7 +157,7 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
     if (!df && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "df is NULL");
     }
-    if (!ctx->linearized) {
+    if (!ctx->last.linearized) {
         return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance_tangent since the last balance or change");
     }
     for (size_t i = 0; i < ctx->n; i++) {

@@ -68,7 +68,7 @@ static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
     tribo_memory_free(&ctx->memory);
     ctx->op = op;
     ctx->memory = *m;
-    ctx->modes = NO_MODES;
+    ctx->last.modes = NO_MODES;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
