@@ -27,8 +27,9 @@
  *
  * Threads. Functions of a const context may be called by several threads on one context (if two of them fail at the
  * same time, the message is that of one of them, or, from compilers other than GCC and Clang, a mixture; it is to be read when
- * none of them is at work). Everything else wants one context a thread: tribo_clone. Memory is allocated by tribo_create,
- * tribo_clone and tribo_set_operator_... only.
+ * none of them is at work). Everything else wants one context a thread: tribo_clone. From compilers other than GCC and Clang
+ * copies of one context are made, given another operator, and destroyed by one thread at a time. Memory is allocated by
+ * tribo_create, tribo_clone and tribo_set_operator_... only.
  *
  * Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397,
  * doi:10.1115/1.1760564, "the paper" below. All functions: since 1.0, unless said otherwise.
@@ -161,7 +162,8 @@ typedef struct tribo_context tribo_context;
  * TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
 
-/* A copy with the same settings and memory, and nothing shared. */
+/* A copy with the same settings and memory. Neither sees what becomes of the other; the operator, which no call changes, takes
+ * its memory once for both. */
 TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 
 /* Releases a context; NULL is fine. */

@@ -8,27 +8,26 @@
  * sliding ones; then it solves for the groups in which it found one near stick. */
 #include <float.h>
 
-#include "internal.h"
+#include "context.h"
 
-static void begin(tribo_context *ctx)
+void tribo_begin_call(tribo_context *ctx)
 {
-    for (size_t k = 0; k < ctx->op.touches; k++) {
-        ctx->op.awake[ctx->op.touched[k]] = 0;
+    for (size_t k = 0; k < ctx->memory.nsolved; k++) {
+        ctx->memory.solved[ctx->memory.solved_list[k]] = 0;
     }
-    ctx->op.touches = 0;
-    ctx->far = ctx->largest > TRIBO_ROOM * ctx->op.most;
-    ctx->limit_then = ctx->limit;
-    ctx->rank = 0;
-    ctx->balanced = 0;
-    ctx->linearized = 0;
+    ctx->memory.nsolved = 0;
+    ctx->last.far = ctx->follow.largest > TRIBO_ROOM * ctx->op->most;
+    ctx->last.rank = 0;
+    ctx->last.modes = NO_MODES;
+    ctx->last.linearized = 0;
 }
 
 /* For shares that go on from these forces, also in groups that no solver saw. */
-static void remember(tribo_context *ctx)
+void tribo_remember_forces(tribo_context *ctx)
 {
-    for (size_t g = 0; ctx->sharing == TRIBO_SHARE_PREVIOUS && g < ctx->op.groups; g++) {
-        struct program *p = tribo_op_program(&ctx->op, g);
-        for (size_t k = 0; !ctx->op.awake[g] && k < p->island->size; k++) {
+    for (size_t g = 0; ctx->set.sharing == TRIBO_SHARE_PREVIOUS && g < ctx->op->groups; g++) {
+        struct box_qp *p = tribo_problem(ctx, g);
+        for (size_t k = 0; !ctx->memory.solved[g] && k < p->group->size; k++) {
             p->x[k] = tribo_carried(ctx, p, k);
             p->at[k] = p->at[k] == FREE ? FREE : AWAY;
         }
@@ -36,29 +35,30 @@ static void remember(tribo_context *ctx)
 }
 
 /* The groups with a contact near stick among those from i to end. */
-static void find_groups(tribo_context *ctx, size_t i, size_t end)
+static void find_near_groups(tribo_context *ctx, size_t i, size_t end)
 {
-    struct op *op = &ctx->op;
-    for (size_t n; (n = tribo_next_near(ctx->last.state, &i, end)) > 0; i += n) {
+    const struct delassus *op = ctx->op;
+    struct memory *m = &ctx->memory;
+    for (size_t n; (n = tribo_next_near(ctx->last.did.of, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
             const size_t g = op->group_of[k];
-            if (g != TRIBO_ALONE && !op->awake[g]) {
-                op->awake[g] = 1;
-                op->touched[op->touches++] = g;
+            if (g != TRIBO_ALONE && !m->solved[g]) {
+                m->solved[g] = 1;
+                m->solved_list[m->nsolved++] = g;
             }
         }
     }
 }
 
-struct program *tribo_collect(tribo_context *ctx, size_t k)
+struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
 {
-    struct program *p = tribo_op_program(&ctx->op, k);
+    struct box_qp *p = tribo_problem(ctx, k);
     const size_t *member = p->member;
-    size_t behind = p->island->size;
+    size_t behind = p->group->size;
     p->count = 0;
-    p->far = ctx->far;
-    for (size_t i = 0; i < p->island->size; i++) {
-        if (ctx->last.state[member[i]] == NEAR) {
+    p->far = ctx->last.far;
+    for (size_t i = 0; i < p->group->size; i++) {
+        if (ctx->last.did.of[member[i]] == STORED) {
             p->near[p->count++] = i;
         } else {
             p->near[--behind] = i;
@@ -68,135 +68,133 @@ struct program *tribo_collect(tribo_context *ctx, size_t k)
     return p;
 }
 
-/* Solves the program of a group; q, lo and hi are set. */
-static int solve(tribo_context *ctx, struct program *p)
+/* Solves the problem of a group; q, lo and hi are set. */
+int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
 {
-    const struct island *is = p->island;
+    const struct group *g = p->group;
     const size_t *member = p->member;
     const struct work before = p->work;
-    for (size_t e = 0; is->nullity && e < p->count; e++) {
+    for (size_t e = 0; g->nullity && e < p->count; e++) {
         const size_t i = p->near[e];
-        p->unit[i] = ctx->op.diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
+        p->unit[i] = ctx->op->diagonal[member[i]] * (0.5 * p->hi[i] - 0.5 * p->lo[i]);
     }
-    ctx->solves++;
+    ctx->count.solves++;
     if (!tribo_box_solve(p)) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contacts near stick around contact %zu",
                           p->count, member[p->near[0]]);
     }
-    if (is->nullity && ctx->sharing == TRIBO_SHARE_LEAST_NORM) {
+    if (g->nullity && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
         tribo_box_share(p);
     }
-    ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
-    ctx->rank += is->rank;
+    ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
+    ctx->last.rank += p->sets->rank;
     return TRIBO_OK;
 }
 
 /* kappa, see above. */
 static double relaxation(const tribo_context *ctx, size_t i, const double *v)
 {
-    return ctx->law->relaxes ? ctx->slope[i] * v[i] : 0.0;
+    return ctx->set.law->relaxes ? tribo_slope_of(&ctx->follow.contacts, i) * v[i] : 0.0;
 }
 
 /* f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii, with f as the solver finds it. */
-static int solve_consistent(tribo_context *ctx, struct program *p, const double *v, const double *a)
+static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
     const size_t *member = p->member;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double limit = ctx->bound[i], kappa = relaxation(ctx, i, v);
+        const double limit = ctx->follow.contacts.bound[i], kappa = relaxation(ctx, i, v);
         p->lo[k] = kappa < 0.0 ? lesser(limit, -limit - kappa) : -limit;
         p->hi[k] = kappa > 0.0 ? greater(-limit, limit - kappa) : limit;
-        p->q[k] = cut(a[i]) + ctx->op.diagonal[i] * kappa;
+        p->q[k] = cut(a[i]) + ctx->op->diagonal[i] * kappa;
     }
-    const int status = solve(ctx, p);
+    const int status = tribo_solve_group(ctx, p);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double beyond = quotient(p->gradient[k], ctx->op.diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
-        ctx->residual = greater(ctx->residual, fabs(p->x[k] - to) / greater(ctx->bound[i], DBL_MIN));
+        const double beyond = quotient(p->gradient[k], ctx->op->diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
+        ctx->last.residual = greater(ctx->last.residual, fabs(p->x[k] - to) / greater(ctx->follow.contacts.bound[i], DBL_MIN));
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
-        ctx->feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
+        ctx->last.feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
     }
     return status;
 }
 
-static int solve_partition(tribo_context *ctx, struct program *p, const double *a)
+static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *a)
 {
-    const struct island *is = p->island;
     const size_t *member = p->member;
     const struct work before = p->work;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         p->q[k] = cut(a[i]);
-        p->unit[k] = ctx->op.diagonal[i] * ctx->bound[i];
+        p->unit[k] = ctx->op->diagonal[i] * ctx->follow.contacts.bound[i];
     }
-    ctx->solves++;
+    ctx->count.solves++;
     const int consistent = tribo_box_linear(p);
-    ctx->reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
+    ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double off = fabs(quotient(p->gradient[k], ctx->op.diagonal[i]));
-        ctx->residual = greater(ctx->residual, quotient(off, greater(ctx->limit[i], DBL_MIN)));
-        ctx->feq[i] = p->x[k];
+        const double off = fabs(quotient(p->gradient[k], ctx->op->diagonal[i]));
+        ctx->last.residual = greater(ctx->last.residual, quotient(off, greater(ctx->set.limit[i], DBL_MIN)));
+        ctx->last.feq[i] = p->x[k];
     }
-    ctx->rank += is->rank;
+    ctx->last.rank += p->sets->rank;
     if (consistent) {
         return TRIBO_OK;
     }
     return tribo_fail(ctx, TRIBO_ERR_INCONSISTENT,
                       "no f_eq balances the %zu contacts near stick around contact %zu: rank %zu, and a is outside its range",
-                      p->count, member[p->near[0]], is->rank);
+                      p->count, member[p->near[0]], p->sets->rank);
 }
 
 /* The law's forces of the near contacts of a group, run by run of neighbours. */
-static void near_forces(tribo_context *ctx, const struct program *p, const double *v)
+static void near_forces(tribo_context *ctx, const struct box_qp *p, const double *v)
 {
-    const struct contacts all = tribo_contacts(ctx);
     const size_t *member = p->member;
     for (size_t e = 0, run; e < p->count; e += run) {
         const size_t i = member[p->near[e]];
-        const struct contacts c = tribo_contacts_from(&all, i);
+        const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
         for (run = 1; e + run < p->count && member[p->near[e + run]] == i + run;) {
             run++;
         }
-        ctx->law->force(&c, run, v + i, ctx->feq + i, ctx->f + i);
+        ctx->set.law->force(&c, run, v + i, ctx->last.feq + i, ctx->last.f + i);
     }
 }
 
 /* f_eq of the contacts in groups that no solver saw. */
 static void feq_of_others(tribo_context *ctx, const double *a)
 {
-    for (size_t g = 0; g < ctx->op.groups; g++) {
-        struct program *p = tribo_op_program(&ctx->op, g);
-        const size_t *member = p->member, size = p->island->size;
+    for (size_t g = 0; g < ctx->op->groups; g++) {
+        struct box_qp *p = tribo_problem(ctx, g);
+        const size_t *member = p->member, size = p->group->size;
         for (size_t k = 0; k < size; k++) {
             p->step[k] = tribo_carried(ctx, p, k);
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!(ctx->op.awake[g] && ctx->last.state[i] == NEAR) && ctx->limit[i] > 0.0) {
-                ctx->feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op.diagonal[i]);
+            if (!(ctx->memory.solved[g] && ctx->last.did.of[i] == STORED) && ctx->set.limit[i] > 0.0) {
+                ctx->last.feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
             }
         }
     }
 }
 
-static int balance(tribo_context *ctx, const double *v, const double *a, int wanted)
+static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
-    begin(ctx);
-    ctx->residual = 0.0;
+    tribo_begin_call(ctx);
+    ctx->last.residual = 0.0;
     tribo_forces_alone(ctx, v, a, wanted);
-    for (size_t i = 0, k = 0; !ctx->kept && i < ctx->n; i += TRIBO_CHUNK, k++) {
-        if (ctx->last.kind[k] == MIXED) {
-            find_groups(ctx, i, i + tribo_chunk_size(ctx, i));
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        if (ctx->last.did.stored[k] == SOME_STORED) {
+            find_near_groups(ctx, i, i + tribo_chunk_size(ctx, i));
         }
     }
     int status = TRIBO_OK;
-    for (size_t k = 0; k < ctx->op.touches; k++) {
-        if (k + 2 < ctx->op.touches) {
-            tribo_op_expect(&ctx->op, ctx->op.touched[k + 2]);
+    for (size_t k = 0; k < ctx->memory.nsolved; k++) {
+        if (k + 2 < ctx->memory.nsolved) {
+            tribo_memory_expect(ctx->op, &ctx->memory, ctx->memory.solved_list[k + 2]);
         }
-        struct program *p = tribo_collect(ctx, ctx->op.touched[k]);
-        const int one = ctx->coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
+        struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
+        const int one = ctx->set.coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
         if (one == TRIBO_ERR_NO_CONVERGENCE) {
             return one;
         }
@@ -212,151 +210,24 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         return TRIBO_ERR_NULL;
     }
     int status = tribo_need_operator(ctx);
-    status = status ? status : tribo_look(ctx, v, a);
+    status = status ? status : tribo_classify(ctx, v, a);
     if (status) {
         return status;
     }
-    status = balance(ctx, v, a, feq != NULL);
+    status = balance_all(ctx, v, a, feq != NULL);
     if (status == TRIBO_ERR_NO_CONVERGENCE) {
         return status;
     }
-    ctx->skipped += ctx->op.islands - ctx->op.touches;
-    remember(ctx);
-    ctx->balanced = 1;
-    ctx->holds = ctx->law->id == TRIBO_SMOOTH ? tanh(1.0) : 1.0;
+    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
+    tribo_remember_forces(ctx);
+    ctx->last.modes = MODES_IN_FORCES;
+    ctx->last.holds = ctx->set.law->holds;
     if (feq) {
         feq_of_others(ctx, a);
-        tribo_copy(feq, ctx->feq, ctx->n);
+        tribo_copy(feq, ctx->last.feq, ctx->n);
     }
     if (f) {
         tribo_forces(ctx, f);
     }
     return status;
-}
-
-/* ---------------------------------------------------------------------------------------------- step force and box */
-
-/* Forces of contacts that share no body. */
-TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, const double *restrict r, const double *lower,
-                                 const double *upper, double *restrict f)
-{
-    for (size_t i = 0; lower && i < n; i++) {
-        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), lower[i], upper[i]);
-    }
-    for (size_t i = 0; !lower && i < n; i++) {
-        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), -upper[i], upper[i]);
-    }
-}
-
-/* The box over all contacts, with v = dt a; lower NULL: -upper. Contacts whose bounds leave no choice take no part in the solver,
- * nor do those that are pulled harder than reach, what the others could do, if it is given. */
-static int box(tribo_context *ctx, double dt, const double *v, const double *lower, const double *upper, const double *reach,
-               double *f)
-{
-    const double scale = ctx->op.groups ? quotient(1.0, dt) : 0.0;
-    ctx->kept = 1;
-    box_alone(ctx->n, dt, v, ctx->op.diagonal, lower, upper, ctx->f);
-    for (size_t i = 0; ctx->op.groups > 0 && i < ctx->n; i++) {
-        const int chooses = (lower ? lower[i] : -upper[i]) < upper[i];
-        ctx->last.state[i] = chooses && !(reach && fabs(scale * v[i]) > reach[i]) ? NEAR : BACK;
-    }
-    if (ctx->op.groups) {
-        find_groups(ctx, 0, ctx->n);
-    }
-    for (size_t g = 0; g < ctx->op.touches; g++) {
-        struct program *p = tribo_collect(ctx, ctx->op.touched[g]);
-        const size_t *member = p->member;
-        for (size_t e = 0; e < p->count; e++) {
-            const size_t k = p->near[e], i = member[k];
-            const double lo = lower ? lower[i] : -upper[i];
-            p->lo[k] = ctx->far ? tribo_cut(p, k, lo) : lo;
-            p->hi[k] = ctx->far ? tribo_cut(p, k, upper[i]) : upper[i];
-            p->q[k] = cut(scale * v[i]);
-        }
-        const int status = solve(ctx, p);
-        if (status) {
-            return status;
-        }
-        for (size_t e = 0; e < p->count; e++) {
-            const size_t k = p->near[e], i = member[k];
-            ctx->f[i] = clamp(p->x[k], lower ? lower[i] : -upper[i], upper[i]);
-        }
-    }
-    ctx->skipped += ctx->op.islands - ctx->op.touches;
-    remember(ctx);
-    tribo_copy(f, ctx->f, ctx->n);
-    return TRIBO_OK;
-}
-
-/* The most that friction can do to the contacts, while the limits stay as they are. */
-static const double *reaches(tribo_context *ctx)
-{
-    struct op *op = &ctx->op;
-    for (size_t g = 0; !op->reaches && g < op->groups; g++) {
-        struct program *p = tribo_op_program(op, g);
-        const size_t *member = p->member, size = p->island->size;
-        for (size_t k = 0; k < size; k++) {
-            p->step[k] = ctx->bound[member[k]];
-        }
-        for (size_t k = 0; k < size; k++) {
-            tribo_row_dot(p, k, p->step, &op->reach[member[k]]);
-        }
-    }
-    op->reaches = 1;
-    return op->reach;
-}
-
-int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!isfinite(dt)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
-    }
-    if (dt <= 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
-    }
-    int status = tribo_need_operator(ctx);
-    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
-    if (status) {
-        return status;
-    }
-    if (!f && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
-    }
-    begin(ctx);
-    status = box(ctx, dt, vfree, NULL, ctx->limit, ctx->op.groups ? reaches(ctx) : NULL, f);
-    if (!status) {
-        ctx->balanced = 1;
-        ctx->holds = 1.0;
-    }
-    return status;
-}
-
-int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = tribo_need_operator(ctx);
-    status = status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
-    status = status ? status : tribo_check_finite(ctx, "lower", lower, ctx->n);
-    status = status ? status : tribo_check_finite(ctx, "upper", upper, ctx->n);
-    if (status) {
-        return status;
-    }
-    double most = 0.0;
-    for (size_t i = 0; i < ctx->n; i++) {
-        if (lower[i] > upper[i]) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "lower[%zu] = %g is above upper[%zu] = %g", i, lower[i], i, upper[i]);
-        }
-        most = greater(most, greater(upper[i], -lower[i]));
-    }
-    if (!f && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
-    }
-    begin(ctx);
-    ctx->far = most > TRIBO_ROOM * ctx->op.most;
-    return box(ctx, 1.0, a, lower, upper, NULL, f);
 }

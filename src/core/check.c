@@ -1,7 +1,7 @@
 /* Checks of arguments. */
 #include <math.h>
 
-#include "internal.h"
+#include "context.h"
 
 /* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
 TRIBO_SIMD int tribo_all_finite(const double *x, size_t n)
@@ -38,18 +38,26 @@ int tribo_check_finite(const tribo_context *ctx, const char *name, const double 
     return TRIBO_OK;
 }
 
+TRIBO_SIMD static int none_negative(const double *x, size_t n)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t i = 0; i < n; i++) {
+        any |= x[i] < 0.0 ? -1 : 0;
+    }
+    return !any;
+}
+
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     const int status = tribo_check_finite(ctx, name, x, n);
-    if (status) {
+    if (status || none_negative(x, n)) {
         return status;
     }
-    for (size_t i = 0; i < n; i++) {
-        if (x[i] < 0.0) {
-            return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "%s[%zu] = %g is negative", name, i, x[i]);
-        }
+    size_t i = 0;
+    while (!(x[i] < 0.0)) {
+        i++;
     }
-    return TRIBO_OK;
+    return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "%s[%zu] = %g is negative", name, i, x[i]);
 }
 
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n)

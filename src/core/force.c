@@ -1,7 +1,7 @@
 /* Forces of contacts whose f_eq is known. */
 #include <math.h>
 
-#include "internal.h"
+#include "context.h"
 
 /* f_eq as laws read it: where it does not matter it need not be finite, nor even be set. */
 TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const double *restrict band, const double *restrict feq,
@@ -18,8 +18,10 @@ TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const doub
 /* The same for the n contacts from i on. */
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
-    if (ctx->law->uses_feq) {
-        select_feq(n, v + i, ctx->law->sticks_in_band ? ctx->epsilon + i : NULL, feq + i, used);
+    if (ctx->set.law->uses_feq) {
+        double room[TRIBO_CHUNK];
+        const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
+        select_feq(n, v + i, band, feq + i, used);
     } else {
         memset(used, 0, n * sizeof *used);
     }
@@ -32,14 +34,14 @@ TRIBO_SIMD static void cut_all(size_t n, double *x)
     }
 }
 
-static int check(const tribo_context *ctx, const double *v, const double *feq)
+static int check_force(const tribo_context *ctx, const double *v, const double *feq)
 {
     int status = tribo_need_epsilon(ctx);
     status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
     if (status) {
         return status;
     }
-    if (!feq && ctx->n && ctx->law->uses_feq) {
+    if (!feq && ctx->n && ctx->set.law->uses_feq) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
     }
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
@@ -72,19 +74,18 @@ static void hand_out(size_t n, const struct tangent *d, double *df_dv, double *d
 static void evaluate(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
                      double *df_dlimit)
 {
-    const struct contacts all = tribo_contacts(ctx);
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double used[TRIBO_CHUNK];
         struct tangent d[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
-        const struct contacts c = tribo_contacts_from(&all, i);
+        const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
         used_feq(ctx, i, n, v, feq, used);
         cut_all(n, used);
         if (f) {
-            ctx->law->force(&c, n, v + i, used, f + i);
+            ctx->set.law->force(&c, n, v + i, used, f + i);
         }
         if (df_dv || df_dfeq || df_dlimit) {
-            ctx->law->tangent(&c, n, v + i, used, d);
+            ctx->set.law->tangent(&c, n, v + i, used, d);
             hand_out(n, d, df_dv ? df_dv + i : NULL, df_dfeq ? df_dfeq + i : NULL, df_dlimit ? df_dlimit + i : NULL);
         }
     }
@@ -95,7 +96,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check(ctx, v, feq);
+    const int status = check_force(ctx, v, feq);
     if (status) {
         return status;
     }
@@ -112,7 +113,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check(ctx, v, feq);
+    const int status = check_force(ctx, v, feq);
     if (!status) {
         evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
     }
@@ -124,22 +125,22 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (!ctx->law->remembers) {
+    if (!ctx->set.law->remembers) {
         return tribo_check_finite(ctx, "v", v, ctx->n);
     }
-    const int status = check(ctx, v, feq);
+    const int status = check_force(ctx, v, feq);
     if (status) {
         return status;
     }
-    ctx->linearized = 0;
+    ctx->last.linearized = 0;
     for (size_t i = 0; i < ctx->n; i++) {
         const unsigned char before = ctx->moving[i];
-        if (fabs(v[i]) > ctx->epsilon[i]) {
+        if (fabs(v[i]) > tribo_epsilon_of(&ctx->follow.contacts, i)) {
             ctx->moving[i] = 1;
-        } else if (fabs(feq[i]) <= ctx->limit[i]) {
+        } else if (fabs(feq[i]) <= ctx->set.limit[i]) {
             ctx->moving[i] = 0;
         }
-        ctx->marks += ctx->moving[i] != before;
+        ctx->count.marks += ctx->moving[i] != before;
     }
     return TRIBO_OK;
 }

@@ -1,50 +1,49 @@
 /* How the forces of coupled contacts follow velocities and accelerations. With the sets of contacts that the last balance found
  * this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or f_eq, stay
  * balanced, the others as their law or their bound tells. */
-#include "internal.h"
+#include "context.h"
 
 /* What every contact's law says at the last balance, which was at v. */
-static void linearize(tribo_context *ctx, const double *v)
+static void linearize_laws(tribo_context *ctx, const double *v)
 {
-    const struct contacts c = tribo_contacts(ctx);
-    ctx->law->tangent(&c, ctx->n, v, ctx->feq, ctx->tangent);
-    tribo_copy(ctx->v, v, ctx->n);
-    ctx->linearized = 1;
+    ctx->set.law->tangent(&ctx->follow.contacts, ctx->n, v, ctx->last.feq, ctx->last.tangent);
+    tribo_copy(ctx->last.v, v, ctx->n);
+    ctx->last.linearized = 1;
 }
 
 /* How the force of contact i, at place k, follows its own velocity where it is not balanced. */
-static double own_rate(const tribo_context *ctx, const struct program *p, size_t k, size_t i)
+static double own_rate(const tribo_context *ctx, const struct box_qp *p, size_t k, size_t i)
 {
-    if (ctx->last.state[i] != NEAR) {
-        return ctx->tangent[i].dv;
+    if (ctx->last.did.of[i] != STORED) {
+        return ctx->last.tangent[i].dv;
     }
     /* the bound of a relaxing law moves with v while it is not at the other limit */
-    const double kappa = ctx->slope[i] * ctx->v[i];
+    const double slope = tribo_slope_of(&ctx->follow.contacts, i), kappa = slope * ctx->last.v[i];
     const int moves =
-        ctx->law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->limit[i];
-    return moves ? -ctx->slope[i] : 0.0;
+        ctx->set.law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->set.limit[i];
+    return moves ? -slope : 0.0;
 }
 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */
-static void follow(struct program *p, size_t vectors, const double *rhs, double *df)
+static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, double *df)
 {
-    const size_t rank = p->island->rank, all = rank + p->island->dependents;
+    const size_t rank = p->sets->rank, all = rank + p->sets->dependents;
     double ignored;
     for (size_t k = 0; k < all; k++) {
         df[p->order[k]] = 0.0;
     }
-    /* the second pass takes away what rounding left; of a graded island it would see nothing but the rounding of df */
-    for (int pass = 0; pass < (p->island->graded ? 1 : 2); pass++) {
+    /* the second pass takes away what rounding left; of a graded group it would see nothing but the rounding of df */
+    for (int pass = 0; pass < (p->group->graded ? 1 : 2); pass++) {
         for (size_t k = 0; k < all; k++) {
             const size_t i = p->order[k];
             p->step[i] = -(tribo_row_dot(p, i, df, &ignored) + rhs[i]);
         }
-        tribo_project(p, vectors, p->step);
+        tribo_null_project(p, vectors, p->step);
         tribo_factor_solve(p, p->step);
         for (size_t k = rank; k < all; k++) {
             p->step[p->order[k]] = 0.0;
         }
-        tribo_project(p, vectors, p->step);
+        tribo_null_project(p, vectors, p->step);
         for (size_t k = 0; k < all; k++) {
             df[p->order[k]] += p->step[p->order[k]];
         }
@@ -52,54 +51,54 @@ static void follow(struct program *p, size_t vectors, const double *rhs, double 
 }
 
 /* df [size] of a group that was solved for, from dv and da [size], all by place. */
-static void group_product(const tribo_context *ctx, struct program *p, size_t vectors, const double *dv, const double *da,
+static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const double *dv, const double *da,
                           double *df)
 {
-    const int partition = ctx->coupling == TRIBO_PARTITION;
+    const int partition = ctx->set.coupling == TRIBO_PARTITION;
     p->far = 1; /* derivatives may be anything */
-    const size_t *member = p->member, size = p->island->size;
+    const size_t *member = p->member, size = p->group->size;
     double *rhs = p->noise;
     for (size_t k = 0; k < size; k++) {
         const size_t i = member[k];
-        const double r = ctx->op.diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
+        const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
                      pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
         df[k] = p->at[k] == FREE ? 0.0 : clamp(product(own_rate(ctx, p, k, i), dv[k]), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
-        if (!partition && ctx->law->relaxes) {
-            rhs[k] += r * clamp(product(ctx->slope[i], dv[k]), -most, most);
+        if (!partition && ctx->set.law->relaxes) {
+            rhs[k] += r * clamp(product(tribo_slope_of(&ctx->follow.contacts, i), dv[k]), -most, most);
         }
     }
-    follow(p, vectors, rhs, df);
+    follow_free(p, vectors, rhs, df);
     if (partition) {
         for (size_t k = 0; k < size; k++) {
-            const struct tangent *d = &ctx->tangent[member[k]];
+            const struct tangent *d = &ctx->last.tangent[member[k]];
             df[k] = p->at[k] == FREE ? d->dfeq * df[k] + product(d->dv, dv[k]) : df[k];
         }
-    } else if (ctx->law->remembers) {
+    } else if (ctx->set.law->remembers) {
         /* the forces so far are those that f_eq balances; the law itself has another derivative where f_eq is beyond the limit */
         memcpy(p->step, df, size * sizeof *df);
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            const struct tangent *d = &ctx->tangent[i];
-            const double r = ctx->op.diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
-            df[k] = product(d->dv, dv[k]) - (ctx->last.state[i] == NEAR ? d->dfeq * quotient(sum, r) : 0.0);
+            const struct tangent *d = &ctx->last.tangent[i];
+            const double r = ctx->op->diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
+            df[k] = product(d->dv, dv[k]) - (ctx->last.did.of[i] == STORED ? d->dfeq * quotient(sum, r) : 0.0);
         }
     }
 }
 
 /* Contacts for which nothing was solved. Where friction moves nothing, the force jumps as a changes its sign. */
-static double alone(const tribo_context *ctx, size_t i, double dv, double da)
+static double alone_product(const tribo_context *ctx, size_t i, double dv, double da)
 {
-    const struct tangent *d = &ctx->tangent[i];
-    const double r = ctx->op.diagonal[i];
-    const int balanced = !ctx->op.groups || ctx->op.group_of[i] == TRIBO_ALONE;
-    const int follows = balanced && ctx->limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
+    const struct tangent *d = &ctx->last.tangent[i];
+    const double r = ctx->op->diagonal[i];
+    const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
+    const int follows = balanced && ctx->set.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
     return product(d->dv, dv) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
 }
 
-static void touched_columns(tribo_context *ctx, struct program *p, double *df_dv, double *df_da)
+static void solved_columns(tribo_context *ctx, struct box_qp *p, double *df_dv, double *df_da)
 {
-    const size_t *member = p->member, size = p->island->size;
+    const size_t *member = p->member, size = p->group->size;
     const size_t vectors = tribo_null_basis(p);
     double *zero = p->lo, *unit = p->hi, *df = p->gradient;
     memset(zero, 0, size * sizeof *zero);
@@ -127,7 +126,7 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
         return status;
     }
     const size_t n = ctx->n;
-    linearize(ctx, v);
+    linearize_laws(ctx, v);
     for (int by_v = 0; by_v < 2; by_v++) {
         double *out = by_v ? df_dv : df_da;
         if (out) {
@@ -135,12 +134,12 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
                 out[k] = 0.0;
             }
             for (size_t i = 0; i < n; i++) {
-                out[i * n + i] = alone(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0);
+                out[i * n + i] = alone_product(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0);
             }
         }
     }
-    for (size_t k = 0; (df_dv || df_da) && k < ctx->op.touches; k++) {
-        touched_columns(ctx, tribo_collect(ctx, ctx->op.touched[k]), df_dv, df_da);
+    for (size_t k = 0; (df_dv || df_da) && k < ctx->memory.nsolved; k++) {
+        solved_columns(ctx, tribo_collect(ctx, ctx->memory.solved_list[k]), df_dv, df_da);
     }
     return TRIBO_OK;
 }
@@ -158,15 +157,15 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
     if (!df && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "df is NULL");
     }
-    if (!ctx->linearized) {
+    if (!ctx->last.linearized) {
         return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance_tangent since the last balance or change");
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        df[i] = alone(ctx, i, dv ? dv[i] : 0.0, da ? da[i] : 0.0);
+        df[i] = alone_product(ctx, i, dv ? dv[i] : 0.0, da ? da[i] : 0.0);
     }
-    for (size_t g = 0; g < ctx->op.touches; g++) {
-        struct program *p = tribo_collect(ctx, ctx->op.touched[g]);
-        const size_t *member = p->member, size = p->island->size;
+    for (size_t g = 0; g < ctx->memory.nsolved; g++) {
+        struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[g]);
+        const size_t *member = p->member, size = p->group->size;
         for (size_t k = 0; k < size; k++) {
             p->lo[k] = dv ? dv[member[k]] : 0.0;
             p->hi[k] = da ? da[member[k]] : 0.0;

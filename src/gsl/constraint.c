@@ -1,5 +1,5 @@
 #include "constraint.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <float.h>
 #include <math.h>

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "driver.h"
-#include "../real.h"
-#include "../simd.h"
+#include "../common/real.h"
+#include "../common/simd.h"
 
 static const struct method automatic;
 

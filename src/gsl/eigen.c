@@ -1,5 +1,5 @@
 #include "eigen.h"
-#include "../real.h"
+#include "../common/real.h"
 #include "linalg.h"
 
 #include <complex.h>

@@ -1,6 +1,6 @@
 #include "events.h"
-#include "../real.h"
-#include "../twofold.h"
+#include "../common/real.h"
+#include "../common/twofold.h"
 
 #include <float.h>
 #include <math.h>

@@ -2,7 +2,7 @@
  * bounds of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b, the
  * interval becomes shorter: up to where the quintics have their first zero, or by half. */
 #include "first_zero.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <float.h>
 #include <math.h>

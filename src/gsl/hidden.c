@@ -2,7 +2,7 @@
  * other contacts hold the light body: then a pivot of R is as small as m/M, though rows of J are independent. */
 #include "constraint.h"
 #include "hidden.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <float.h>
 #include <math.h>

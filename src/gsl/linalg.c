@@ -1,5 +1,5 @@
 #include "linalg.h"
-#include "../simd.h"
+#include "../common/simd.h"
 
 #include <math.h>
 #include <stdlib.h>

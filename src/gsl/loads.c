@@ -1,7 +1,7 @@
 /* What comes from outside and changes with time: loads on the structure, motion of the bases, limits that follow a table. */
 #include "system.h"
-#include "../real.h"
-#include "../twofold.h"
+#include "../common/real.h"
+#include "../common/twofold.h"
 
 #include <math.h>
 #include <stdlib.h>

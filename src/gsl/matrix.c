@@ -1,6 +1,6 @@
 #include "matrix.h"
-#include "../real.h"
-#include "../simd.h"
+#include "../common/real.h"
+#include "../common/simd.h"
 
 #include <float.h>
 #include <math.h>

@@ -7,7 +7,7 @@
 
 #include "spectrum.h"
 #include "step_form.h"
-#include "../real.h"
+#include "../common/real.h"
 
 struct central {
     struct step_form common;

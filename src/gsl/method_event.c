@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "events.h"
-#include "../real.h"
-#include "../simd.h"
+#include "../common/real.h"
+#include "../common/simd.h"
 
 struct event {
     tribo_driver *drv;

@@ -9,7 +9,7 @@
 
 #include "events.h"
 #include "modal_motion.h"
-#include "../real.h"
+#include "../common/real.h"
 
 /* Decompositions are dropped when they take more than this. */
 #define CACHE_BYTES ((size_t)256 << 20)

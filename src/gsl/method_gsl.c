@@ -10,7 +10,7 @@
 #include "driver.h"
 #include "gsl_step.h"
 #include "spectrum.h"
-#include "../real.h"
+#include "../common/real.h"
 
 /* While all contacts rest, nothing moves, and an estimate sees no error however long the step: this long in terms of the
  * fastest motion of structure and loads it may be. */

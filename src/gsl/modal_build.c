@@ -1,5 +1,5 @@
 #include "modal_build.h"
-#include "../real.h"
+#include "../common/real.h"
 #include "normal_modes.h"
 
 #include <math.h>

@@ -1,6 +1,6 @@
 /* Exponents of the free motion in the modes. */
 #include "modal_build.h"
-#include "../real.h"
+#include "../common/real.h"
 #include "eigen.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 #include "modal_motion.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "../real.h"
+#include "../common/real.h"
 
 /* Bases that part from each other by no more than this part of their motion go together. */
 #define NO_MOTION 1e-14

@@ -1,5 +1,5 @@
 #include "quintic.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <math.h>
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "driver.h"
-#include "../simd.h"
+#include "../common/simd.h"
 
 struct rk4 {
     double *k, *sum, *stage; /* [dimension] slope, weighted sum of slopes, state of a stage */

@@ -1,7 +1,7 @@
 /* Lanczos' method for the highest eigenvalue, in the metric W in which the matrices are symmetric. Contacts at rest only lower
  * it. */
 #include "spectrum.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <float.h>
 #include <math.h>

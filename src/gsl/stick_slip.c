@@ -9,7 +9,7 @@
  * At last an independent set of those at rest is chosen to hold. */
 #include "constraint.h"
 #include "stick_slip.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <float.h>
 #include <math.h>

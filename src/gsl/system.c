@@ -1,5 +1,5 @@
 #include "system.h"
-#include "../real.h"
+#include "../common/real.h"
 
 #include <math.h>
 #include <stdarg.h>

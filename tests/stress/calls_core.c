@@ -4,7 +4,7 @@
  *
  * As a program of its own: calls_core [-n <strings>] [-s <seed>] [<file>...] runs the strings in the files, and so many random
  * ones. With libFuzzer, in the root of the tree: clang -g -O1 -fsanitize=fuzzer,address,undefined -DTRIBO_FUZZER -Iinclude
- * tests/stress/calls_core.c src/core/[a-z]*.c -lm
+ * tests/stress/calls_core.c $(find src/common src/core -name '*.c') -lm
  *   ./a.out tests/stress/corpus */
 #include <fenv.h>
 #include <float.h>

@@ -245,5 +245,87 @@ TEST(symmetric_to_rounding)
     assert_all_close(f[0], f[1], 2, 2.0 * DBL_EPSILON);
 }
 
+/* M^-1 of a mass matrix that is tridiagonal, 4 and 1, by elimination. */
+static int solve_mass(size_t ndof, const double *force, double *acceleration, void *data)
+{
+    double pivot[64];
+    int *calls = data;
+    if (--*calls < 0) {
+        return 7;
+    }
+    for (size_t i = 0; i < ndof; i++) {
+        pivot[i] = 4.0 - (i ? 1.0 / pivot[i - 1] : 0.0);
+        acceleration[i] = force[i] - (i ? acceleration[i - 1] / pivot[i - 1] : 0.0);
+    }
+    for (size_t i = ndof; i-- > 0;) {
+        acceleration[i] = (acceleration[i] - (i + 1 < ndof ? acceleration[i + 1] : 0.0)) / pivot[i];
+    }
+    return 0;
+}
+
+/* R from J and M^-1 is that which gives the same forces as the dense one. */
+TEST(consistent_mass)
+{
+    struct random g = random_of(_i);
+    const size_t n = 2 + below(&g, 20), ndof = n + below(&g, 30);
+    size_t first[30] = {0}, col[64];
+    double val[64], v[30], a[30], f[30], want[30], limit[30], column[64], force[64], *r = calloc(n * n, sizeof *r);
+    for (size_t i = 0; i < n; i++) {
+        col[2 * i] = i;
+        val[2 * i] = uniform(&g, 0.5, 2.0);
+        col[2 * i + 1] = (i + 1 + below(&g, ndof - 1)) % ndof;
+        val[2 * i + 1] = uniform(&g, -1.0, 1.0);
+        first[i + 1] = 2 * i + 2;
+        v[i] = below(&g, 2) ? 0.0 : uniform(&g, -1.5, 1.5);
+        a[i] = uniform(&g, -1.0, 1.0);
+        limit[i] = uniform(&g, 0.1, 2.0);
+    }
+    for (size_t j = 0; j < n; j++) {
+        int calls = 1;
+        memset(force, 0, sizeof force);
+        force[col[2 * j]] += val[2 * j];
+        force[col[2 * j + 1]] += val[2 * j + 1];
+        solve_mass(ndof, force, column, &calls);
+        for (size_t i = 0; i < n; i++) {
+            r[i * n + j] = val[2 * i] * column[col[2 * i]] + val[2 * i + 1] * column[col[2 * i + 1]];
+        }
+    }
+    for (int dense = 0; dense < 2; dense++) {
+        tribo_context *c;
+        int calls = (int)n;
+        assert_ok(tribo_create(&c, n));
+        assert_ok(dense ? tribo_set_operator_dense(c, r)
+                        : tribo_set_operator_callback(c, ndof, solve_mass, &calls, first, col, val));
+        assert_ok(tribo_set_limit(c, limit));
+        assert_ok(tribo_set_epsilon_all(c, 1.0));
+        assert_ok(tribo_balance(c, v, a, NULL, dense ? want : f));
+        tribo_destroy(c);
+    }
+    assert_all_close(f, want, n, 1e-12);
+    free(r);
+}
+
+/* The callback's failure is told, and nothing changes. */
+TEST(callback_fails)
+{
+    const size_t first[] = {0, 1, 2}, col[] = {0, 1};
+    const double val[] = {1.0, 1.0}, diagonal[] = {3.0, 5.0};
+    double v[2] = {0.0, 0.0}, a[2] = {0.3, 0.5}, f[2];
+    int calls = 1;
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_operator_diagonal(c, diagonal));
+    assert_status(tribo_set_operator_callback(c, 2, solve_mass, &calls, first, col, val), TRIBO_ERR_CALLBACK);
+    assert_says(tribo_message(c), "apply answered 7 for contact 1");
+    assert_status(tribo_set_operator_callback(c, 2, NULL, &calls, first, col, val), TRIBO_ERR_NULL);
+    assert_says(tribo_message(c), "apply is NULL");
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    assert_close(f[0], -0.1, 1e-16);
+    assert_close(f[1], -0.1, 1e-16);
+    tribo_destroy(c);
+}
+
 TEST_MAIN("operators", {forms_agree, 60}, {forms_replace_each_other, 12}, {diagonal_in_any_form, 10}, {many_islands, 1},
-          {products_are_accepted, 100}, {negative_eigenvalues_are_refused, 1}, {symmetric_to_rounding, 1})
+          {products_are_accepted, 100}, {negative_eigenvalues_are_refused, 1}, {symmetric_to_rounding, 1}, {consistent_mass, 40},
+          {callback_fails, 1})

@@ -1,3 +1,5 @@
+#include <stdlib.h>
+
 #include "problem.h"
 
 struct recipe recipe_random(struct random *g, size_t most, double decades)
@@ -111,4 +113,35 @@ double real_of(const tribo_context *c, int which)
     double value;
     assert_ok(tribo_get_real(c, which, &value));
     return value;
+}
+
+tribo_context *problem_chain(size_t n, size_t islands, int coupling)
+{
+    const size_t all = n * islands;
+    size_t *first = malloc((all + 1) * sizeof *first), *col = malloc(3 * all * sizeof *col), k = 0;
+    double *val = malloc(3 * all * sizeof *val);
+    tribo_context *c;
+    first[0] = 0;
+    for (size_t i = 0; i < all; i++) {
+        if (i % n > 0) {
+            col[k] = i - 1;
+            val[k++] = -1.0;
+        }
+        col[k] = i;
+        val[k++] = 2.0;
+        if (i % n + 1 < n) {
+            col[k] = i + 1;
+            val[k++] = -1.0;
+        }
+        first[i + 1] = k;
+    }
+    assert_ok(tribo_create(&c, all));
+    assert_ok(tribo_set_operator_csr(c, first, col, val));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    assert_ok(tribo_set_epsilon_all(c, 1.0));
+    assert_ok(tribo_set_coupling(c, coupling));
+    free(first);
+    free(col);
+    free(val);
+    return c;
 }

@@ -31,6 +31,9 @@ struct recipe recipe_regular(struct random *g, size_t most);
 struct problem problem_create(struct random *g, const struct recipe *recipe);
 tribo_context *problem_context(const struct problem *p, int law, int coupling);
 
+/* A chain of n contacts between bodies of mass 1: tridiagonal R. */
+tribo_context *problem_chain(size_t n, size_t islands, int coupling);
+
 /* (a + R f)_i; without its own force, f_eq of contact i; and what rounding may make of that. */
 long double acceleration(const struct problem *p, size_t i, const double *f);
 double balancing(const struct problem *p, size_t i, const double *f);

@@ -1,4 +1,5 @@
 /* Derivatives of the coupled balance against differences, in random directions. */
+#include <stdlib.h>
 #include <string.h>
 
 #include "problem.h"
@@ -172,4 +173,61 @@ TEST(immovable)
     }
 }
 
-TEST_MAIN("tangents", {tangents, 24}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2})
+/* An open contact has no derivatives, whatever epsilon is. */
+TEST(tangents_of_open_contacts)
+{
+    const double r[] = {2.0, 1.0, 1.0, 2.0}, limit[] = {1.0, 0.0}, v[] = {0.0, 0.0}, a[] = {0.1, 0.1};
+    const double want_dv[] = {-50.0, 0.0, 0.0, 0.0}, want_da[] = {-0.5, 0.0, 0.0, 0.0};
+    double f[2], dv[4], da[4];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_epsilon_step(c, 0.01, 1.0));
+    assert_ok(tribo_balance_tangent(c, v, a, NULL, f, dv, da));
+    assert_all_close(dv, want_dv, 4, 1e-12);
+    assert_all_close(da, want_da, 4, 1e-15);
+    tribo_destroy(c);
+}
+
+/* The product is the matrices' product, for every law and coupling, groups and single contacts. */
+TEST(product_of_tangents)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2;
+    const struct recipe recipe = recipe_random(&g, USUAL, 0.3);
+    const struct problem p = problem_create(&g, &recipe);
+    const size_t n = p.n;
+    double *dv = malloc(n * n * sizeof *dv), *da = malloc(n * n * sizeof *da), x[LARGEST], y[LARGEST], df[LARGEST];
+    tribo_context *c = problem_context(&p, law, coupling);
+    assert_status(tribo_tangent_product(c, p.v, p.a, df), TRIBO_ERR_STATE);
+    const int status = tribo_balance_tangent(c, p.v, p.a, NULL, NULL, dv, da);
+    if (status != TRIBO_ERR_INCONSISTENT) {
+        assert_ok(status);
+        for (size_t i = 0; i < n; i++) {
+            x[i] = uniform(&g, -1.0, 1.0);
+            y[i] = uniform(&g, -1.0, 1.0);
+        }
+        for (int part = 1; part < 4; part++) {
+            assert_ok(tribo_tangent_product(c, part & 1 ? x : NULL, part & 2 ? y : NULL, df));
+            for (size_t i = 0; i < n; i++) {
+                double want = 0.0, size = 0.0;
+                for (size_t j = 0; j < n; j++) {
+                    const double terms[] = {part & 1 ? dv[i * n + j] * x[j] : 0.0, part & 2 ? da[i * n + j] * y[j] : 0.0};
+                    want += terms[0] + terms[1];
+                    size += fabs(terms[0]) + fabs(terms[1]);
+                }
+                assert_close(df[i], want, 1e-9 * size);
+            }
+        }
+        assert_ok(tribo_set_limit(c, p.limit));
+        assert_status(tribo_tangent_product(c, x, y, df), TRIBO_ERR_STATE);
+        assert_says(tribo_message(c), "tribo_balance_tangent");
+    }
+    tribo_destroy(c);
+    free(dv);
+    free(da);
+}
+
+TEST_MAIN("tangents", {tangents, 24}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2}, {tangents_of_open_contacts, 1},
+          {product_of_tangents, 120})

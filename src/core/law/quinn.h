@@ -5,15 +5,18 @@
 #include "law.h"
 
 /* Outside the band the middle line would say what the last one says up to rounding, but slope v may overflow there. */
-static inline double quinn_force(double v, double feq, double limit, double epsilon, double slope)
+static inline double quinn_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
+    (void)moving;
     const int inside = fabs(v) <= epsilon;
     const double f = clamp(clamp(feq, -limit, limit) - slope * (inside ? v : 0.0), -limit, limit);
     return inside ? f : sliding(v, limit);
 }
 
-static inline struct tangent quinn_tangent(double v, double feq, double limit, double epsilon, double slope, double follows)
+static inline struct tangent quinn_tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
+                                           double follows)
 {
+    (void)moving;
     if (fabs(v) > epsilon) {
         return (struct tangent){0.0, 0.0, -sign(v)};
     }

@@ -1,9 +1,9 @@
-#include "rows.h"
+#include "csr.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-void tribo_rows_free(struct rows *a)
+void tribo_csr_free(struct csr *a)
 {
     free(a->first);
     free(a->col);
@@ -11,7 +11,7 @@ void tribo_rows_free(struct rows *a)
     memset(a, 0, sizeof *a);
 }
 
-int tribo_rows_create(struct rows *a, size_t n, size_t entries)
+int tribo_csr_create(struct csr *a, size_t n, size_t entries)
 {
     a->n = n;
     a->first = calloc(n + 1, sizeof *a->first);
@@ -20,13 +20,13 @@ int tribo_rows_create(struct rows *a, size_t n, size_t entries)
     if (a->first && a->col && a->val) {
         return 1;
     }
-    tribo_rows_free(a);
+    tribo_csr_free(a);
     return 0;
 }
 
-int tribo_rows_transpose(struct rows *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val)
+int tribo_csr_transpose(struct csr *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val)
 {
-    if (!tribo_rows_create(b, columns, rowptr[n])) {
+    if (!tribo_csr_create(b, columns, rowptr[n])) {
         return 0;
     }
     for (size_t k = 0; k < rowptr[n]; k++) {
@@ -49,7 +49,7 @@ int tribo_rows_transpose(struct rows *b, size_t n, size_t columns, const size_t 
     return 1;
 }
 
-double *tribo_rows_entry(const struct rows *a, size_t i, size_t j)
+double *tribo_csr_entry(const struct csr *a, size_t i, size_t j)
 {
     size_t lo = a->first[i], hi = a->first[i + 1];
     while (lo < hi) {
@@ -68,7 +68,7 @@ double *tribo_rows_entry(const struct rows *a, size_t i, size_t j)
 
 /* The columns that row i of J diag(w) J' has entries in; t is J'. seen [n] keeps i + 1 for each. With sum [n], adds up
  * the entries too. */
-static size_t product_row(size_t i, const struct rows *t, const double *w, const size_t *rowptr, const size_t *col,
+static size_t product_row(size_t i, const struct csr *t, const double *w, const size_t *rowptr, const size_t *col,
                           const double *val, size_t *seen, size_t *column, double *sum)
 {
     size_t count = 0;
@@ -88,12 +88,12 @@ static size_t product_row(size_t i, const struct rows *t, const double *w, const
     return count;
 }
 
-int tribo_rows_product(struct rows *a, size_t n, const struct rows *t, const double *w, const size_t *rowptr, const size_t *col,
-                       const double *val)
+int tribo_csr_product(struct csr *a, size_t n, const struct csr *t, const double *w, const size_t *rowptr, const size_t *col,
+                      const double *val)
 {
     size_t *seen = calloc(n + 1, sizeof *seen), *column = malloc((n + 1) * sizeof *column);
     double *sum = malloc((n + 1) * sizeof *sum);
-    struct rows unsorted = {0};
+    struct csr unsorted = {0};
     int done = 0;
     if (seen && column && sum) {
         size_t entries = 0;
@@ -101,7 +101,7 @@ int tribo_rows_product(struct rows *a, size_t n, const struct rows *t, const dou
             entries += product_row(i, t, w, rowptr, col, val, seen, column, sum);
         }
         memset(seen, 0, n * sizeof *seen);
-        if (tribo_rows_create(&unsorted, n, entries)) {
+        if (tribo_csr_create(&unsorted, n, entries)) {
             for (size_t i = 0; i < n; i++) {
                 const size_t count = product_row(i, t, w, rowptr, col, val, seen, column, sum);
                 const size_t first = unsorted.first[i];
@@ -112,8 +112,8 @@ int tribo_rows_product(struct rows *a, size_t n, const struct rows *t, const dou
                 unsorted.first[i + 1] = first + count;
             }
             /* it is symmetric, and transposing sorts */
-            done = tribo_rows_transpose(a, n, n, unsorted.first, unsorted.col, unsorted.val);
-            tribo_rows_free(&unsorted);
+            done = tribo_csr_transpose(a, n, n, unsorted.first, unsorted.col, unsorted.val);
+            tribo_csr_free(&unsorted);
         }
     }
     free(seen);

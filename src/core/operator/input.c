@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "internal.h"
-#include "rows.h"
+#include "../context.h"
+#include "../../common/csr.h"
 
 /* Entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
 #define ASYMMETRY 1e-10
@@ -16,10 +16,10 @@
 #define NEGLIGIBLE 1e-17
 
 /* Makes a exactly symmetric, or says where it is not. diagonal [n] is workspace. */
-static int symmetrize(const tribo_context *ctx, const struct rows *a, double *diagonal)
+static int symmetrize(const tribo_context *ctx, const struct csr *a, double *diagonal)
 {
     for (size_t i = 0; i < a->n; i++) {
-        const double *r = tribo_rows_entry(a, i, i);
+        const double *r = tribo_csr_entry(a, i, i);
         diagonal[i] = r ? *r : 0.0;
         if (diagonal[i] < 0.0) {
             return tribo_fail(ctx, TRIBO_ERR_INDEFINITE, "r: the diagonal entry of contact %zu is %g", i, diagonal[i]);
@@ -28,7 +28,7 @@ static int symmetrize(const tribo_context *ctx, const struct rows *a, double *di
     for (size_t i = 0; i < a->n; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             const size_t j = a->col[k];
-            double *other = j == i ? &a->val[k] : tribo_rows_entry(a, j, i);
+            double *other = j == i ? &a->val[k] : tribo_csr_entry(a, j, i);
             const double x = a->val[k], y = other ? *other : 0.0;
             const double size = sqrt(diagonal[i]) * sqrt(diagonal[j]);
             if (!isfinite(x)) {
@@ -59,15 +59,16 @@ static int out_of_memory(const tribo_context *ctx)
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contacts", ctx->n);
 }
 
-/* The new operator is right: it takes the old one's place. */
-static int install(tribo_context *ctx, struct op *op)
+/* The new operator is right: it takes the old one's place, and its memory that of the old one's. */
+static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 {
-    op->program.work.factorizations += ctx->op.program.work.factorizations;
-    op->program.work.updates += ctx->op.program.work.updates;
-    tribo_op_free(&ctx->op);
-    ctx->op = *op;
-    ctx->balanced = 0;
-    ctx->linearized = 0;
+    m->problem.work.factorizations += ctx->memory.problem.work.factorizations;
+    m->problem.work.updates += ctx->memory.problem.work.updates;
+    tribo_operator_release(ctx->op);
+    tribo_memory_free(&ctx->memory);
+    ctx->op = op;
+    ctx->memory = *m;
+    ctx->last.modes = NO_MODES;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
@@ -89,22 +90,29 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
 {
     int status = check_owner(ctx);
     status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
-    struct op op;
+    const double none = 0.0;
+    struct delassus *op;
+    struct memory m = {0};
     if (status) {
         return status;
     }
-    return tribo_op_diagonal(&op, ctx->n, r) ? install(ctx, &op) : out_of_memory(ctx);
+    if (!tribo_operator_diagonal(&op, ctx->n, r ? r : &none)) {
+        tribo_operator_release(op);
+        return out_of_memory(ctx);
+    }
+    return install(ctx, op, &m);
 }
 
 /* Takes a, sorted rows with finite entries, as the operator. Frees a. from: what they came from, if that is known. */
-static int install_rows(tribo_context *ctx, struct rows *a, const struct inertia *from)
+static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia *from)
 {
-    struct op op = {0};
+    struct delassus *op;
+    struct memory m;
     struct flaw flaw;
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
     int status = diagonal ? symmetrize(ctx, a, diagonal) : out_of_memory(ctx);
     if (!status) {
-        status = tribo_op_create(&op, a, from, &flaw);
+        status = tribo_operator_create(&op, &m, a, from, &flaw);
         if (status == TRIBO_ERR_UNSUPPORTED) {
             tribo_fail(ctx, status,
                        "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contacts",
@@ -113,11 +121,11 @@ static int install_rows(tribo_context *ctx, struct rows *a, const struct inertia
             tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contacts",
                        flaw.pivot, flaw.contact, flaw.group);
         } else {
-            status = status ? out_of_memory(ctx) : install(ctx, &op);
+            status = status ? out_of_memory(ctx) : install(ctx, op, &m);
         }
     }
     free(diagonal);
-    tribo_rows_free(a);
+    tribo_csr_free(a);
     return status;
 }
 
@@ -142,8 +150,8 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
             entries += r[i * n + j] != 0.0;
         }
     }
-    struct rows a;
-    if (!tribo_rows_create(&a, n, entries)) {
+    struct csr a;
+    if (!tribo_csr_create(&a, n, entries)) {
         return out_of_memory(ctx);
     }
     size_t k = 0;
@@ -192,7 +200,7 @@ static int check_rows(const tribo_context *ctx, size_t n, size_t columns, const 
 }
 
 /* In the transposed matrix equal columns of a row have become neighbours. */
-static int check_duplicates(const tribo_context *ctx, const struct rows *t)
+static int check_duplicates(const tribo_context *ctx, const struct csr *t)
 {
     for (size_t j = 0; j < t->n; j++) {
         for (size_t k = t->first[j] + 1; k < t->first[j + 1]; k++) {
@@ -211,32 +219,32 @@ int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_
     if (status) {
         return status;
     }
-    struct rows t, a;
-    if (!tribo_rows_transpose(&t, ctx->n, ctx->n, rowptr, col, val)) {
+    struct csr t, a;
+    if (!tribo_csr_transpose(&t, ctx->n, ctx->n, rowptr, col, val)) {
         return out_of_memory(ctx);
     }
     status = check_duplicates(ctx, &t);
-    if (!status && !tribo_rows_transpose(&a, t.n, t.n, t.first, t.col, t.val)) {
+    if (!status && !tribo_csr_transpose(&a, t.n, t.n, t.first, t.col, t.val)) {
         status = out_of_memory(ctx);
     }
-    tribo_rows_free(&t);
+    tribo_csr_free(&t);
     return status ? status : install_rows(ctx, &a, NULL);
 }
 
 /* J [n][ndof] in compressed rows is right; t is J'. */
 static int read_direction(const tribo_context *ctx, size_t ndof, const size_t *rowptr, const size_t *col, const double *val,
-                          struct rows *t)
+                          struct csr *t)
 {
     int status = check_rows(ctx, ctx->n, ndof, rowptr, col, val);
     if (status) {
         return status;
     }
-    if (!tribo_rows_transpose(t, ctx->n, ndof, rowptr, col, val)) {
+    if (!tribo_csr_transpose(t, ctx->n, ndof, rowptr, col, val)) {
         return out_of_memory(ctx);
     }
     status = check_duplicates(ctx, t);
     if (status) {
-        tribo_rows_free(t);
+        tribo_csr_free(t);
     }
     return status;
 }
@@ -251,16 +259,16 @@ int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inver
     if (ndof >= SIZE_MAX / 64) {
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
-    struct rows t, a;
+    struct csr t, a;
     status = tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
     status = status ? status : read_direction(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
     const struct inertia from = {inverse_mass, rowptr, col, val, &t};
-    const int done = tribo_rows_product(&a, ctx->n, &t, inverse_mass, rowptr, col, val);
+    const int done = tribo_csr_product(&a, ctx->n, &t, inverse_mass, rowptr, col, val);
     status = done ? install_rows(ctx, &a, &from) : out_of_memory(ctx);
-    tribo_rows_free(&t);
+    tribo_csr_free(&t);
     return status;
 }
 
@@ -299,7 +307,7 @@ static int find_column(const tribo_context *ctx, const struct solver *m, size_t 
 }
 
 /* Appends the entries of a column to a, which has room for so many and gets more. */
-static int append(struct rows *a, size_t *room, size_t j, const double *column)
+static int append_column(struct csr *a, size_t *room, size_t j, const double *column)
 {
     const size_t n = a->n;
     if (*room - a->first[j] < n) {
@@ -324,11 +332,11 @@ static int append(struct rows *a, size_t *room, size_t j, const double *column)
 }
 
 /* Entries that are nothing beside the diagonal go. */
-static void drop_negligible(struct rows *a, double *diagonal)
+static void drop_negligible(struct csr *a, double *diagonal)
 {
     size_t kept = 0, k = 0;
     for (size_t i = 0; i < a->n; i++) {
-        const double *r = tribo_rows_entry(a, i, i);
+        const double *r = tribo_csr_entry(a, i, i);
         diagonal[i] = r ? fabs(*r) : 0.0;
     }
     for (size_t i = 0; i < a->n; i++) {
@@ -357,15 +365,15 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
     if (ndof >= SIZE_MAX / 64) {
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
-    struct rows t, a;
+    struct csr t, a;
     status = read_direction(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
-    tribo_rows_free(&t);
+    tribo_csr_free(&t);
     size_t room = ctx->n;
     double *work = calloc(2 * ndof + ctx->n + 1, sizeof *work);
-    if (!work || !tribo_rows_create(&a, ctx->n, room)) {
+    if (!work || !tribo_csr_create(&a, ctx->n, room)) {
         free(work);
         return out_of_memory(ctx);
     }
@@ -373,12 +381,12 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
     const struct solver m = {ndof, apply, data, work, work + ndof};
     for (size_t j = 0; !status && j < ctx->n; j++) {
         status = find_column(ctx, &m, j, rowptr, col, val, column);
-        if (!status && !append(&a, &room, j, column)) {
+        if (!status && !append_column(&a, &room, j, column)) {
             status = out_of_memory(ctx);
         }
     }
     if (status) {
-        tribo_rows_free(&a);
+        tribo_csr_free(&a);
     } else {
         drop_negligible(&a, column);
         status = install_rows(ctx, &a, NULL);

@@ -1,20 +1,20 @@
-/* The factor of an island whose R is kept as a square block. Rows are appended and deleted in O(rank^2), and contacts that depend
+/* The factor of a group whose R is kept as a square block. Rows are appended and deleted in O(rank^2), and contacts that depend
  * on those in the factor wait beside it. A pivot that is small, but not zero to rounding, is not trusted: then everything is
  * factorized anew with the largest pivots first, which is where the rank is decided.
  *
  * Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk. */
-#include "island.h"
+#include "box.h"
 
 #include <math.h>
 #include <string.h>
 
-static double scaled(const struct program *p, size_t i, size_t j)
+static double dense_entry(const struct box_qp *p, size_t i, size_t j)
 {
-    return p->scale[i] * p->r[i * p->island->size + j] * p->scale[j];
+    return p->scale[i] * p->r[i * p->group->size + j] * p->scale[j];
 }
 
 /* Four sums side by side, since one would have to be added up in order. */
-static double dot(const double *x, const double *y, size_t n)
+static double dense_row_dot(const double *x, const double *y, size_t n)
 {
     double sum[4] = {0.0};
     size_t i = 0;
@@ -30,60 +30,60 @@ static double dot(const double *x, const double *y, size_t n)
 }
 
 /* row [rank] = L^-1 (column of contact i); returns the pivot that i would have. */
-static double column(const struct program *p, size_t i, double *row)
+static double dense_column(const struct box_qp *p, size_t i, double *row)
 {
-    const size_t rank = p->island->rank, size = p->island->size;
-    double pivot = scaled(p, i, i);
+    const size_t rank = p->sets->rank, size = p->group->size;
+    double pivot = dense_entry(p, i, i);
     for (size_t k = 0; k < rank; k++) {
         const double *l = p->l + k * size;
-        row[k] = (scaled(p, i, p->order[k]) - dot(l, row, k)) * l[k];
+        row[k] = (dense_entry(p, i, p->order[k]) - dense_row_dot(l, row, k)) * l[k];
         pivot -= row[k] * row[k];
     }
     return pivot;
 }
 
 /* Appends i to the independent contacts or to the dependents. Returns 0 if it is not clear which. */
-static int append(struct program *p, size_t i)
+static int dense_append(struct box_qp *p, size_t i)
 {
-    struct island *is = p->island;
-    double *row = p->l + is->rank * is->size;
-    const double pivot = column(p, i, row), relative = pivot / scaled(p, i, i);
-    p->order[is->rank + is->dependents] = i;
-    if (relative <= tribo_resolution(is->rank + 1)) {
-        is->dependents++;
+    const struct group *g = p->group;
+    double *row = p->l + p->sets->rank * g->size;
+    const double pivot = dense_column(p, i, row), relative = pivot / dense_entry(p, i, i);
+    p->order[p->sets->rank + p->sets->dependents] = i;
+    if (relative <= tribo_resolution(p->sets->rank + 1)) {
+        p->sets->dependents++;
     } else if (relative <= TRIBO_DOUBTFUL) {
         return 0;
     } else {
-        row[is->rank] = 1.0 / sqrt(pivot);
+        row[p->sets->rank] = 1.0 / sqrt(pivot);
         /* the first dependent makes room at the end of the independent ones */
-        p->order[is->rank + is->dependents] = p->order[is->rank];
-        p->order[is->rank++] = i;
+        p->order[p->sets->rank + p->sets->dependents] = p->order[p->sets->rank];
+        p->order[p->sets->rank++] = i;
     }
     return 1;
 }
 
-void tribo_dense_add(struct program *p, size_t i)
+void tribo_dense_add(struct box_qp *p, size_t i)
 {
-    if (!append(p, i)) {
-        tribo_factor_rebuild(p, NULL);
+    if (!dense_append(p, i)) {
+        tribo_dense_rebuild(p, NULL);
     }
 }
 
 /* Row at leaves the factor: the rows below move up, their diagonal to the right of the new one, and rotations of neighbouring
  * columns make the matrix triangular again. */
-static void take_out(struct program *p, size_t at)
+static void dense_take_out(struct box_qp *p, size_t at)
 {
-    struct island *is = p->island;
-    const size_t size = is->size;
-    is->rank--;
-    for (size_t k = at; k < is->rank; k++) {
+    const struct group *g = p->group;
+    const size_t size = g->size;
+    p->sets->rank--;
+    for (size_t k = at; k < p->sets->rank; k++) {
         memcpy(p->l + k * size, p->l + (k + 1) * size, (k + 2) * sizeof *p->l);
     }
-    for (size_t k = at; k < is->rank; k++) {
+    for (size_t k = at; k < p->sets->rank; k++) {
         double *l = p->l + k * size;
         const double a = l[k], b = 1.0 / l[k + 1], length = sqrt(a * a + b * b), c = a / length, s = b / length;
         l[k] = 1.0 / length;
-        for (size_t below = k + 1; below < is->rank; below++) {
+        for (size_t below = k + 1; below < p->sets->rank; below++) {
             double *m = p->l + below * size;
             const double x = m[k], y = m[k + 1];
             m[k] = c * x + s * y;
@@ -92,34 +92,33 @@ static void take_out(struct program *p, size_t at)
     }
 }
 
-void tribo_dense_remove(struct program *p, size_t i)
+void tribo_dense_remove(struct box_qp *p, size_t i)
 {
-    struct island *is = p->island;
-    const size_t all = is->rank + is->dependents;
+    const size_t all = p->sets->rank + p->sets->dependents;
     size_t at = 0;
     while (p->order[at] != i) {
         at++;
     }
     memmove(p->order + at, p->order + at + 1, (all - at - 1) * sizeof *p->order);
-    if (at >= is->rank) {
-        is->dependents--;
+    if (at >= p->sets->rank) {
+        p->sets->dependents--;
         return;
     }
-    take_out(p, at);
+    dense_take_out(p, at);
     /* what depended on the one that left may be independent now */
-    const size_t waiting = is->dependents;
-    is->dependents = 0;
+    const size_t waiting = p->sets->dependents;
+    p->sets->dependents = 0;
     for (size_t d = 0; d < waiting; d++) {
-        if (!append(p, p->order[is->rank + is->dependents])) {
-            tribo_factor_rebuild(p, NULL);
+        if (!dense_append(p, p->order[p->sets->rank + p->sets->dependents])) {
+            tribo_dense_rebuild(p, NULL);
             return;
         }
     }
 }
 
-void tribo_dense_exchange(const struct program *p, double *l, size_t all, size_t k, size_t other)
+void tribo_dense_exchange(const struct box_qp *p, double *l, size_t all, size_t k, size_t other)
 {
-    const size_t size = p->island->size;
+    const size_t size = p->group->size;
     for (size_t j = 0; j < all; j++) {
         if (j != k && j != other) {
             double *a = j < k ? &l[k * size + j] : &l[j * size + k];
@@ -134,9 +133,9 @@ void tribo_dense_exchange(const struct program *p, double *l, size_t all, size_t
     l[other * size + other] = x;
 }
 
-double tribo_dense_leftover(const struct program *p, size_t k, size_t all, size_t *where)
+double tribo_dense_leftover(const struct box_qp *p, size_t k, size_t all, size_t *where)
 {
-    const size_t size = p->island->size;
+    const size_t size = p->group->size;
     double most = 0.0;
     for (size_t i = k; i < all; i++) {
         for (size_t j = k; j <= i; j++) {
@@ -150,7 +149,7 @@ double tribo_dense_leftover(const struct program *p, size_t k, size_t all, size_
     return most;
 }
 
-size_t tribo_dense_order(struct program *p)
+size_t tribo_dense_order(struct box_qp *p)
 {
     size_t all = 0;
     for (size_t e = 0; e < p->count; e++) {
@@ -162,14 +161,15 @@ size_t tribo_dense_order(struct program *p)
 }
 
 /* Cholesky factorization with the largest pivot next, so that the rank is revealed. */
-double tribo_dense_rebuild(struct program *p, size_t *where)
+double tribo_dense_rebuild(struct box_qp *p, size_t *where)
 {
-    struct island *is = p->island;
-    const size_t size = is->size, all = tribo_dense_order(p);
+    const struct group *g = p->group;
+    const size_t size = g->size, all = tribo_dense_order(p);
     size_t k = 0;
+    p->work.factorizations++;
     for (size_t i = 0; i < all; i++) {
         for (size_t j = 0; j <= i; j++) {
-            p->l[i * size + j] = scaled(p, p->order[i], p->order[j]);
+            p->l[i * size + j] = dense_entry(p, p->order[i], p->order[j]);
         }
     }
     for (; k < all; k++) {
@@ -198,18 +198,18 @@ double tribo_dense_rebuild(struct program *p, size_t *where)
             }
         }
     }
-    is->rank = k;
-    is->dependents = all - k;
+    p->sets->rank = k;
+    p->sets->dependents = all - k;
     return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
 }
 
-void tribo_dense_solve(const struct program *p, double *step)
+void tribo_dense_solve(const struct box_qp *p, double *step)
 {
-    const size_t rank = p->island->rank, size = p->island->size;
+    const size_t rank = p->sets->rank, size = p->group->size;
     double *y = p->row;
     for (size_t i = 0; i < rank; i++) {
         const double *l = p->l + i * size;
-        y[i] = (p->scale[p->order[i]] * step[p->order[i]] - dot(l, y, i)) * l[i];
+        y[i] = (p->scale[p->order[i]] * step[p->order[i]] - dense_row_dot(l, y, i)) * l[i];
     }
     for (size_t i = rank; i-- > 0;) {
         const double *l = p->l + i * size, x = y[i] * l[i];

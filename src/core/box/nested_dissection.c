@@ -3,20 +3,20 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "sparse.h"
+#include "factor_sparse.h"
 
 /* Parts this small are not split. */
 #define LEAF 24
 
 struct graph {
-    const struct rows *r;
+    const struct csr *r;
     size_t *node;         /* parts are pieces of it */
     size_t *list, *level; /* of a search; nodes in the order found, and their distance from the start */
     size_t *mark, stamp;  /* mark[i] = stamp: in the part, and not found yet */
 };
 
 /* Appends what hangs together with start to list[count ...]; returns its new length. */
-static size_t search(struct graph *g, size_t start, size_t count)
+static size_t search_breadth_first(struct graph *g, size_t start, size_t count)
 {
     size_t next = count;
     g->list[count++] = start;
@@ -36,7 +36,7 @@ static size_t search(struct graph *g, size_t start, size_t count)
     return count;
 }
 
-static void mark(struct graph *g, size_t begin, size_t end)
+static void mark_part(struct graph *g, size_t begin, size_t end)
 {
     g->stamp++;
     for (size_t k = begin; k < end; k++) {
@@ -69,18 +69,18 @@ struct part {
 };
 
 /* Orders a part, and puts those that are left to order on the stack. */
-static void split(struct graph *g, struct part part, struct part *stack, size_t *depth)
+static void dissect(struct graph *g, struct part part, struct part *stack, size_t *depth)
 {
     size_t *node = g->node + part.begin, count = 0, pieces = 0, from = 0, to = 0;
     const size_t size = part.end - part.begin;
     if (size <= LEAF) {
         return;
     }
-    mark(g, part.begin, part.end);
+    mark_part(g, part.begin, part.end);
     for (size_t k = 0; k < size; k++) {
         if (g->mark[node[k]] == g->stamp) {
             const size_t begin = count;
-            count = search(g, node[k], count);
+            count = search_breadth_first(g, node[k], count);
             pieces++;
             if (count - begin < size) {
                 stack[(*depth)++] = (struct part){part.begin + begin, part.begin + count};
@@ -92,8 +92,8 @@ static void split(struct graph *g, struct part part, struct part *stack, size_t 
         return;
     }
     /* once more from the far end, which makes more and smaller levels */
-    mark(g, part.begin, part.end);
-    search(g, node[size - 1], 0);
+    mark_part(g, part.begin, part.end);
+    search_breadth_first(g, node[size - 1], 0);
     if (!find_level(g, size, &from, &to)) {
         return;
     }
@@ -104,7 +104,7 @@ static void split(struct graph *g, struct part part, struct part *stack, size_t 
     stack[(*depth)++] = (struct part){part.begin + from, part.begin + from + size - to};
 }
 
-int tribo_sparse_order(const struct rows *r, size_t *place)
+int tribo_nested_dissection(const struct csr *r, size_t *place)
 {
     struct graph g = {.r = r, .node = place};
     struct part *stack = malloc((r->n + 2) * sizeof *stack);
@@ -119,7 +119,7 @@ int tribo_sparse_order(const struct rows *r, size_t *place)
         stack[0] = (struct part){0, r->n};
         while (depth > 0) {
             depth--;
-            split(&g, stack[depth], stack, &depth);
+            dissect(&g, stack[depth], stack, &depth);
         }
     }
     const int done = stack && g.list && g.mark;

@@ -1,70 +1,71 @@
-/* The factor of a graded island: one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double the
+/* The factor of a graded group: one of whose contacts touches a light body and a heavy one. In R = J M^-1 J' as a double the
  * light body's 1/m hides the heavy one's 1/M, but for the digits that are left, and with them what friction does to it. So R, its
  * factor, and the forces of the free contacts are kept to twice as many digits, which are enough for masses that differ by 1e18.
  *
  * Changes of the stick set factorize anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in dense.c. */
-#include "island.h"
+#include "box.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "../real.h"
-#include "../twofold.h"
+#include "../../common/real.h"
+#include "../../common/twofold.h"
 
 /* Numbers up to this are worked with: what solves make of them is below TWOFOLD_FAR. */
 #define FITS 1e100
 
-static struct twofold entry(const struct program *p, size_t i, size_t j)
+static struct twofold graded_entry(const struct box_qp *p, size_t i, size_t j)
 {
-    const size_t at = i * p->island->size + j;
+    const size_t at = i * p->group->size + j;
     return twofold_scale((struct twofold){p->r[at], p->r_low[at]}, p->scale[i] * p->scale[j]);
 }
 
-static struct twofold factor(const struct program *p, size_t i, size_t j)
+static struct twofold graded_factor(const struct box_qp *p, size_t i, size_t j)
 {
-    const size_t at = i * p->island->size + j;
+    const size_t at = i * p->group->size + j;
     return (struct twofold){p->l[at], p->l_low[at]};
 }
 
-static void set_factor(const struct program *p, size_t i, size_t j, struct twofold x)
+static void graded_set_factor(const struct box_qp *p, size_t i, size_t j, struct twofold x)
 {
-    const size_t at = i * p->island->size + j;
+    const size_t at = i * p->group->size + j;
     p->l[at] = x.hi;
     p->l_low[at] = x.lo;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- rebuild */
 
-static void load(struct program *p, size_t all)
+static void graded_load(struct box_qp *p, size_t all)
 {
     for (size_t i = 0; i < all; i++) {
         for (size_t j = 0; j <= i; j++) {
-            set_factor(p, i, j, entry(p, p->order[i], p->order[j]));
+            graded_set_factor(p, i, j, graded_entry(p, p->order[i], p->order[j]));
         }
     }
 }
 
-static void eliminate(struct program *p, size_t all, size_t k)
+static void graded_eliminate(struct box_qp *p, size_t all, size_t k)
 {
-    const struct twofold inverse = twofold_inverse_root(factor(p, k, k));
-    set_factor(p, k, k, inverse);
+    const struct twofold inverse = twofold_inverse_root(graded_factor(p, k, k));
+    graded_set_factor(p, k, k, inverse);
     for (size_t i = k + 1; i < all; i++) {
-        set_factor(p, i, k, twofold_times(factor(p, i, k), inverse));
+        graded_set_factor(p, i, k, twofold_times(graded_factor(p, i, k), inverse));
     }
     for (size_t i = k + 1; i < all; i++) {
-        const struct twofold x = factor(p, i, k);
+        const struct twofold x = graded_factor(p, i, k);
         for (size_t j = k + 1; x.hi != 0.0 && j <= i; j++) {
-            set_factor(p, i, j, twofold_minus(factor(p, i, j), twofold_times(x, factor(p, j, k))));
+            graded_set_factor(p, i, j, twofold_minus(graded_factor(p, i, j), twofold_times(x, graded_factor(p, j, k))));
         }
     }
 }
 
-double tribo_graded_rebuild(struct program *p, size_t *where)
+double tribo_graded_rebuild(struct box_qp *p, size_t *where)
 {
-    struct island *is = p->island;
-    const size_t size = is->size, all = tribo_dense_order(p);
+    const struct group *g = p->group;
+    const size_t size = g->size, all = tribo_dense_order(p);
     size_t k = 0;
-    load(p, all);
+    p->work.factorizations++;
+    graded_load(p, all);
     for (; k < all; k++) {
         size_t best = k;
         for (size_t i = k + 1; i < all; i++) {
@@ -80,27 +81,27 @@ double tribo_graded_rebuild(struct program *p, size_t *where)
             p->order[k] = p->order[best];
             p->order[best] = i;
         }
-        eliminate(p, all, k);
+        graded_eliminate(p, all, k);
     }
-    is->rank = k;
-    is->dependents = all - k;
+    p->sets->rank = k;
+    p->sets->dependents = all - k;
     return where ? tribo_dense_leftover(p, k, all, where) : 0.0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ solve */
 
 /* y -= l_kj x */
-static struct twofold subtract(const struct program *p, struct twofold y, size_t k, size_t j, struct twofold x)
+static struct twofold graded_subtract(const struct box_qp *p, struct twofold y, size_t k, size_t j, struct twofold x)
 {
-    return twofold_minus(y, twofold_times(factor(p, k, j), x));
+    return twofold_minus(y, twofold_times(graded_factor(p, k, j), x));
 }
 
 /* A power of 2 that brings step to sizes that may be worked with. */
-static double unit_of(const struct program *p, const double *step)
+static double graded_unit(const struct box_qp *p, const double *step)
 {
     double most = 1.0;
     int e;
-    for (size_t k = 0; k < p->island->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         most = greater(most, product(fabs(step[i]), greater(p->scale[i], 1.0)));
     }
@@ -108,17 +109,17 @@ static double unit_of(const struct program *p, const double *step)
     return most > FITS ? ldexp(1.0, -e) : 1.0;
 }
 
-void tribo_graded_solve(const struct program *p, double *step, double *low)
+void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
 {
-    const size_t rank = p->island->rank;
-    const double unit = unit_of(p, step);
+    const size_t rank = p->sets->rank;
+    const double unit = graded_unit(p, step);
     for (size_t k = 0; k < rank; k++) {
         const size_t i = p->order[k];
         struct twofold y = twofold_scale((struct twofold){unit * step[i], unit * low[i]}, p->scale[i]);
         for (size_t j = 0; j < k; j++) {
-            y = subtract(p, y, k, j, (struct twofold){step[p->order[j]], low[p->order[j]]});
+            y = graded_subtract(p, y, k, j, (struct twofold){step[p->order[j]], low[p->order[j]]});
         }
-        y = twofold_times(y, factor(p, k, k));
+        y = twofold_times(y, graded_factor(p, k, k));
         step[i] = y.hi;
         low[i] = y.lo;
     }
@@ -126,9 +127,9 @@ void tribo_graded_solve(const struct program *p, double *step, double *low)
         const size_t i = p->order[k];
         struct twofold y = {step[i], low[i]};
         for (size_t j = k + 1; j < rank; j++) {
-            y = subtract(p, y, j, k, (struct twofold){step[p->order[j]], low[p->order[j]]});
+            y = graded_subtract(p, y, j, k, (struct twofold){step[p->order[j]], low[p->order[j]]});
         }
-        y = twofold_times(y, factor(p, k, k));
+        y = twofold_times(y, graded_factor(p, k, k));
         step[i] = y.hi;
         low[i] = y.lo;
     }
@@ -139,11 +140,11 @@ void tribo_graded_solve(const struct program *p, double *step, double *low)
     }
 }
 
-void tribo_graded_null_vector(const struct program *p, size_t d, double *y)
+void tribo_graded_null_vector(const struct box_qp *p, size_t d, double *y)
 {
-    const size_t size = p->island->size;
+    const size_t size = p->group->size;
     double *low = p->row;
-    for (size_t k = 0; k < p->island->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         y[i] = -p->r[d * size + i];
         low[i] = -p->r_low[d * size + i];
@@ -154,10 +155,10 @@ void tribo_graded_null_vector(const struct program *p, size_t d, double *y)
 
 /* --------------------------------------------------------------------------------------------------------- gradient */
 
-int tribo_graded_fits(const struct program *p, int bounded)
+int tribo_graded_fits(const struct box_qp *p, int bounded)
 {
     double most = 0.0;
-    for (size_t e = 0; e < p->island->size; e++) {
+    for (size_t e = 0; e < p->group->size; e++) {
         const size_t i = p->near[e];
         const int near = e < p->count;
         const double x = !near ? fabs(p->x[i]) : bounded ? greater(fabs(p->lo[i]), fabs(p->hi[i])) : 0.0;
@@ -166,14 +167,14 @@ int tribo_graded_fits(const struct program *p, int bounded)
     return most <= FITS;
 }
 
-double tribo_graded_gradient(const struct program *p, size_t i, double *low, double *size)
+double tribo_graded_gradient(const struct box_qp *p, size_t i, double *low, double *size)
 {
     const double own = 1.0 / p->scale[i];
     struct twofold sum = {p->scale[i] * p->q[i], 0.0};
     *size = 0.0;
-    for (size_t j = 0; j < p->island->size; j++) {
+    for (size_t j = 0; j < p->group->size; j++) {
         const struct twofold x = twofold_scale((struct twofold){p->x[j], p->low[j]}, 1.0 / p->scale[j]),
-                             term = twofold_times(entry(p, i, j), x);
+                             term = twofold_times(graded_entry(p, i, j), x);
         sum = twofold_add(sum, term);
         *size += fabs(term.hi);
     }
@@ -182,10 +183,10 @@ double tribo_graded_gradient(const struct program *p, size_t i, double *low, dou
     return own * sum.hi;
 }
 
-void tribo_graded_newton(struct program *p)
+void tribo_graded_newton(struct box_qp *p)
 {
     double size;
-    for (size_t k = 0; k < p->island->rank; k++) {
+    for (size_t k = 0; k < p->sets->rank; k++) {
         const size_t i = p->order[k];
         p->step[i] = -tribo_graded_gradient(p, i, &p->step_low[i], &size);
         p->step_low[i] *= -1.0;
@@ -193,7 +194,7 @@ void tribo_graded_newton(struct program *p)
     tribo_graded_solve(p, p->step, p->step_low);
 }
 
-double tribo_graded_move(struct program *p, size_t i, double length)
+double tribo_graded_move(struct box_qp *p, size_t i, double length)
 {
     const struct twofold step = twofold_times((struct twofold){p->step[i], p->step_low[i]}, (struct twofold){length, 0.0}),
                          x = twofold_add((struct twofold){p->x[i], p->low[i]}, step);

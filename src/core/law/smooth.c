@@ -1,21 +1,21 @@
 /* The smooth companion of the velocity-limited law; creeps like it. */
 #include "law.h"
 
-static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double smooth_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)feq, (void)slope, (void)moving;
     return -limit * tanh(quotient(v, epsilon));
 }
 
-static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
-                                     double follows)
+static inline struct tangent smooth_tangent(double v, double feq, double limit, double epsilon, double slope,
+                                            unsigned char moving, double follows)
 {
     (void)feq, (void)limit, (void)moving;
     const double x = quotient(v, epsilon), t = tanh(x), cosh_2 = (1.0 - t) * (1.0 + t);
     return (struct tangent){-0.5 * slope * cosh_2, 0.0, -t + follows * x * cosh_2};
 }
 
-TRIBO_LAW_LOOPS
+TRIBO_LAW_LOOPS(smooth)
 
 const struct law tribo_law_smooth = {
     .id = 2,
@@ -23,6 +23,7 @@ const struct law tribo_law_smooth = {
     .reference = "hyperbolic tangent, as in the smooth laws that D. D. Quinn, J. Vib. Acoust. 126 (2004) 391, "
                  "cites as references 13 and 14",
     .sticks_in_band = 1,
-    .force = force_all,
-    .tangent = tangent_all,
+    .holds = 0.7615941559557649, /* tanh(1), at |v| = epsilon */
+    .force = smooth_force_all,
+    .tangent = smooth_tangent_all,
 };

@@ -2,7 +2,9 @@
 #include <float.h>
 #include <string.h>
 
-#include "internal.h"
+#include "tribo/tribo.h"
+
+#include "law.h"
 
 static const struct law *const laws[] = {
     [TRIBO_COULOMB] = &tribo_law_coulomb, [TRIBO_VELOCITY_LIMITED] = &tribo_law_velocity_limited,
@@ -86,9 +88,10 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     if (epsilon <= 0.0) {
         return TRIBO_ERR_NOT_POSITIVE;
     }
-    const double slope = tribo_slope(lesser(limit, TRIBO_FAR), epsilon), read = needs_feq ? cut(feq) : 0.0;
+    const double bound = lesser(limit, TRIBO_FAR), read = needs_feq ? cut(feq) : 0.0;
+    const double rate = lesser(tribo_rate(epsilon), TRIBO_FAR / greater(bound, 1.0));
     const unsigned char moving = 1;
-    const struct contacts c = {&limit, &epsilon, &slope, &moving, 0.0};
+    const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0};
     struct tangent d;
     l->force(&c, 1, &v, &read, f);
     l->tangent(&c, 1, &v, &read, &d);

@@ -1,7 +1,7 @@
 /* Quinn's law, second order also where a contact is driven through v = 0 without stick: there, for r = |f_eq|/N > 1, the
  * law's xi is scaled by g(r), which makes the time to cross the band exact for constant load. It holds for contacts
  * that came in sliding (moving); contacts that break away from stick keep Quinn's form, which is better for them. */
-#include "law_quinn.h"
+#include "quinn.h"
 
 /* g(r) = r - (r^2-1)/2 ln((r+1)/(r-1)) and g'(r) = 2 - r ln((r+1)/(r-1)), for r >= 1. */
 static void crossing(double r, double *g, double *dg)
@@ -32,21 +32,21 @@ static int reverses(double v, double feq, double limit, double epsilon, unsigned
     return moving && fabs(v) <= epsilon && fabs(feq) > limit && limit > 0.0;
 }
 
-static double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static double reversal_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     if (!reverses(v, feq, limit, epsilon, moving)) {
-        return quinn_force(v, feq, limit, epsilon, slope);
+        return quinn_force(v, feq, limit, epsilon, slope, moving);
     }
     double g, dg;
     crossing(quotient(fabs(feq), limit), &g, &dg);
     return clamp(sign(feq) * g * limit - slope * v, -limit, limit);
 }
 
-static struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
-                              double follows)
+static struct tangent reversal_tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
+                                       double follows)
 {
     if (!reverses(v, feq, limit, epsilon, moving)) {
-        return quinn_tangent(v, feq, limit, epsilon, slope, follows);
+        return quinn_tangent(v, feq, limit, epsilon, slope, moving, follows);
     }
     double g, dg;
     const double r = quotient(fabs(feq), limit);
@@ -58,7 +58,7 @@ static struct tangent tangent(double v, double feq, double limit, double epsilon
     return (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * 2.0 * quotient(v, epsilon)};
 }
 
-TRIBO_LAW_LOOPS
+TRIBO_LAW_LOOPS(reversal)
 
 const struct law tribo_law_quinn_reversal = {
     .id = 5,
@@ -68,6 +68,7 @@ const struct law tribo_law_quinn_reversal = {
     .sticks_in_band = 1,
     .relaxes = 1,
     .remembers = 1,
-    .force = force_all,
-    .tangent = tangent_all,
+    .holds = 1.0,
+    .force = reversal_force_all,
+    .tangent = reversal_tangent_all,
 };

@@ -1,14 +1,14 @@
 /* Coulomb's law itself, with f_eq at rest: Quinn (2004), Eq. 1 and 2. */
 #include "law.h"
 
-static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double coulomb_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)epsilon, (void)slope, (void)moving;
     return v != 0.0 ? sliding(v, limit) : clamp(feq, -limit, limit);
 }
 
-static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
-                                     double follows)
+static inline struct tangent coulomb_tangent(double v, double feq, double limit, double epsilon, double slope,
+                                             unsigned char moving, double follows)
 {
     (void)epsilon, (void)slope, (void)moving, (void)follows;
     if (v != 0.0) {
@@ -18,7 +18,7 @@ static inline struct tangent tangent(double v, double feq, double limit, double 
     return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
 }
 
-TRIBO_LAW_LOOPS
+TRIBO_LAW_LOOPS(coulomb)
 
 const struct law tribo_law_coulomb = {
     .id = 0,
@@ -26,6 +26,7 @@ const struct law tribo_law_coulomb = {
     .reference = "C. A. de Coulomb (1785); with f_eq at rest: D. D. Quinn, J. Vib. Acoust. 126 (2004) 391, Eq. 1-2, "
                  "doi:10.1115/1.1760564",
     .uses_feq = 1,
-    .force = force_all,
-    .tangent = tangent_all,
+    .holds = 1.0,
+    .force = coulomb_force_all,
+    .tangent = coulomb_tangent_all,
 };

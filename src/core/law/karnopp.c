@@ -1,14 +1,14 @@
 /* Karnopp's threshold velocity, below which the contact counts as at rest: Quinn (2004), reference 2 and Fig. 2. */
 #include "law.h"
 
-static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double karnopp_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)slope, (void)moving;
     return fabs(v) > epsilon ? sliding(v, limit) : clamp(feq, -limit, limit);
 }
 
-static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
-                                     double follows)
+static inline struct tangent karnopp_tangent(double v, double feq, double limit, double epsilon, double slope,
+                                             unsigned char moving, double follows)
 {
     (void)slope, (void)moving, (void)follows;
     if (fabs(v) > epsilon) {
@@ -18,7 +18,7 @@ static inline struct tangent tangent(double v, double feq, double limit, double 
     return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
 }
 
-TRIBO_LAW_LOOPS
+TRIBO_LAW_LOOPS(karnopp)
 
 const struct law tribo_law_karnopp = {
     .id = 3,
@@ -26,6 +26,7 @@ const struct law tribo_law_karnopp = {
     .reference = "D. Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100, doi:10.1115/1.3140698",
     .uses_feq = 1,
     .sticks_in_band = 1,
-    .force = force_all,
-    .tangent = tangent_all,
+    .holds = 1.0,
+    .force = karnopp_force_all,
+    .tangent = karnopp_tangent_all,
 };

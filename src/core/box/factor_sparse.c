@@ -1,16 +1,16 @@
-/* The factor of a large island with few entries: R = L D L' over the free contacts, for an order of elimination and with the
+/* The factor of a large group with few entries: R = L D L' over the free contacts, for an order of elimination and with the
  * entries of L that R as a whole asks for, both found once. Contacts that are not in the factor have zeros there. One that enters
  * or leaves changes its row and column of L, and what lies behind it on the way to the root of the elimination tree (Davis and
  * Hager 2005, SIAM J. Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
  *
- * "Place" is where a contact stands in its island, "position" where it stands in the order of elimination. */
-#include "sparse.h"
+ * "Place" is where a contact stands in its group, "position" where it stands in the order of elimination. */
+#include "factor_sparse.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../real.h"
+#include "../../common/real.h"
 
 /* A dense factor of this many contacts is affordable where a sparse one is not trusted. */
 #define DENSE_UP_TO 2048
@@ -18,12 +18,10 @@
 void tribo_sparse_free(struct sparse *s)
 {
     if (s) {
-        tribo_rows_free(&s->r);
+        tribo_csr_free(&s->r);
         free(s->position);
         free(s->column);
         free(s->row_of);
-        free(s->l);
-        free(s->d);
         free(s);
     }
 }
@@ -31,24 +29,20 @@ void tribo_sparse_free(struct sparse *s)
 /* What depends on the number of contacts, or of slots. */
 static int allocate_contacts(struct sparse *s, size_t size)
 {
-    s->position = malloc(3 * size * sizeof *s->position);
+    s->position = malloc(2 * size * sizeof *s->position);
     s->column = calloc(2 * (size + 1), sizeof *s->column);
-    s->d = calloc(2 * size, sizeof *s->d);
-    if (!s->position || !s->column || !s->d) {
+    if (!s->position || !s->column) {
         return 0;
     }
     s->place = s->position + size;
-    s->index = s->position + 2 * size;
     s->row = s->column + size + 1;
-    s->w = s->d + size;
     return 1;
 }
 
 static int allocate_slots(struct sparse *s, size_t slots)
 {
     s->row_of = malloc((3 * slots + 1) * sizeof *s->row_of);
-    s->l = calloc(slots + 1, sizeof *s->l);
-    if (!s->row_of || !s->l) {
+    if (!s->row_of) {
         return 0;
     }
     s->column_of = s->row_of + slots;
@@ -56,38 +50,20 @@ static int allocate_slots(struct sparse *s, size_t slots)
     return 1;
 }
 
-static int copy_rows(struct rows *to, const struct rows *from)
+size_t tribo_sparse_slots(const struct sparse *s)
+{
+    return s->column[s->r.n];
+}
+
+static int copy_rows(struct csr *to, const struct csr *from)
 {
     const size_t entries = from->first[from->n];
-    if (!tribo_rows_create(to, from->n, entries)) {
+    if (!tribo_csr_create(to, from->n, entries)) {
         return 0;
     }
     memcpy(to->first, from->first, (from->n + 1) * sizeof *to->first);
     memcpy(to->col, from->col, entries * sizeof *to->col);
     memcpy(to->val, from->val, entries * sizeof *to->val);
-    return 1;
-}
-
-int tribo_sparse_clone(struct sparse **s, const struct sparse *from)
-{
-    *s = NULL;
-    if (!from) {
-        return 1;
-    }
-    const size_t size = from->r.n, slots = from->column[size];
-    struct sparse *c = calloc(1, sizeof *c);
-    if (!c || !copy_rows(&c->r, &from->r) || !allocate_contacts(c, size) || !allocate_slots(c, slots)) {
-        tribo_sparse_free(c);
-        return 0;
-    }
-    memcpy(c->position, from->position, 3 * size * sizeof *c->position);
-    memcpy(c->column, from->column, 2 * (size + 1) * sizeof *c->column);
-    memcpy(c->row_of, from->row_of, 3 * slots * sizeof *c->row_of);
-    memcpy(c->l, from->l, slots * sizeof *c->l);
-    memcpy(c->d, from->d, 2 * size * sizeof *c->d);
-    c->change = from->change;
-    c->rebuild = from->rebuild;
-    *s = c;
     return 1;
 }
 
@@ -113,7 +89,7 @@ static void find_tree(const struct sparse *s, size_t *parent, size_t *ancestor)
 
 /* Walks the entries of L row by row: counts those of every column in count [size] (added to what is there), or if fill puts them
  * at these slots, and counts on. seen [size] is workspace. */
-static void walk(struct sparse *s, const size_t *parent, size_t *seen, size_t *count, int fill)
+static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, size_t *count, int fill)
 {
     memset(seen, 0xff, s->r.n * sizeof *seen);
     for (size_t k = 0; k < s->r.n; k++) {
@@ -152,15 +128,14 @@ static void fill_rows(struct sparse *s, size_t *count)
 }
 
 /* What a change and a new factor cost, in entries of L visited: a change goes from its column to the root. */
-static void estimate(struct sparse *s, const size_t *parent)
+static void sparse_estimate(struct sparse *s, const size_t *parent, double *path)
 {
     for (size_t j = s->r.n; j-- > 0;) {
         const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
-        s->w[j] = entries + (parent[j] == NONE ? 0.0 : s->w[parent[j]]);
-        s->change += s->w[j] / (double)s->r.n;
+        path[j] = entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
+        s->change += path[j] / (double)s->r.n;
         s->rebuild += 0.5 * entries * entries;
     }
-    memset(s->w, 0, s->r.n * sizeof *s->w);
 }
 
 /* 1; 0 if a dense factor is better; -1 if out of memory. */
@@ -168,32 +143,36 @@ static int find_pattern(struct sparse *s)
 {
     const size_t size = s->r.n;
     size_t *parent = malloc(3 * size * sizeof *parent);
-    if (!parent) {
+    double *path = malloc(size * sizeof *path);
+    if (!parent || !path) {
+        free(parent);
+        free(path);
         return -1;
     }
     size_t *seen = parent + size, *count = parent + 2 * size;
     find_tree(s, parent, seen);
     memset(count, 0, size * sizeof *count);
-    walk(s, parent, seen, count, 0);
+    sparse_walk(s, parent, seen, count, 0);
     for (size_t j = 0; j < size; j++) {
         s->column[j + 1] = s->column[j] + count[j];
         count[j] = s->column[j];
     }
     const int good = s->column[size] > size * size / 8 ? 0 : allocate_slots(s, s->column[size]) ? 1 : -1;
     if (good > 0) {
-        walk(s, parent, seen, count, 1);
+        sparse_walk(s, parent, seen, count, 1);
         fill_rows(s, count);
-        estimate(s, parent);
+        sparse_estimate(s, parent, path);
     }
     free(parent);
+    free(path);
     return good;
 }
 
 /* ------------------------------------------------------------------------------------------------------- rows of R */
 
-double tribo_sparse_dot(const struct program *p, size_t i, const double *x, double *size)
+double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size)
 {
-    const struct rows *r = &p->island->sparse->r;
+    const struct csr *r = &p->group->sparse->r;
     double sum = 0.0, all = 0.0;
     for (size_t e = r->first[i]; e < r->first[i + 1]; e++) {
         const double term = r->val[e] * x[r->col[e]];
@@ -204,10 +183,10 @@ double tribo_sparse_dot(const struct program *p, size_t i, const double *x, doub
     return sum;
 }
 
-void tribo_sparse_spread(const struct program *p, size_t i, double factor, double *y)
+void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y)
 {
-    const struct rows *r = &p->island->sparse->r;
-    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+    const struct csr *r = &p->group->sparse->r;
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         y[p->order[k]] = 0.0;
     }
     for (size_t e = r->first[i]; e < r->first[i + 1]; e++) {
@@ -221,63 +200,65 @@ void tribo_sparse_spread(const struct program *p, size_t i, double factor, doubl
 
 /* Row k of L, by elimination with the rows before it that are in the factor. Returns its pivot. Of the contacts that are free but
  * not in the factor, *left gets the largest entry that elimination leaves. */
-static double eliminate(const struct program *p, size_t k, double *left)
+static double sparse_eliminate(const struct box_qp *p, size_t k, double *left)
 {
-    struct sparse *s = p->island->sparse;
+    const struct sparse *s = p->group->sparse;
     const size_t i = s->place[k];
     double pivot = 0.0;
     for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
         const size_t j = s->position[s->r.col[e]];
         if (j <= k) {
-            s->w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
+            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
         }
     }
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
         const size_t j = s->column_of[t];
-        const double y = s->w[j];
-        s->w[j] = 0.0;
-        s->l[s->slot[t]] = y * s->d[j];
-        if (s->d[j] == 0.0) {
+        const double y = p->sparse.w[j];
+        p->sparse.w[j] = 0.0;
+        p->sparse.l[s->slot[t]] = y * p->sparse.d[j];
+        if (p->sparse.d[j] == 0.0) {
             *left = p->at[s->place[j]] == FREE ? greater(*left, fabs(y)) : *left;
         } else if (y != 0.0) {
             for (size_t q = s->column[j]; q < s->slot[t]; q++) {
-                s->w[s->row_of[q]] -= s->l[q] * y;
+                p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * y;
             }
-            pivot -= s->l[s->slot[t]] * y;
+            pivot -= p->sparse.l[s->slot[t]] * y;
         }
     }
-    pivot += s->w[k];
-    s->w[k] = 0.0;
+    pivot += p->sparse.w[k];
+    p->sparse.w[k] = 0.0;
     return pivot;
 }
 
-static void clear_row(struct sparse *s, size_t k)
+static void sparse_clear_row(const struct box_qp *p, size_t k)
 {
+    const struct sparse *s = p->group->sparse;
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
-        s->l[s->slot[t]] = 0.0;
+        p->sparse.l[s->slot[t]] = 0.0;
     }
 }
 
-double tribo_sparse_rebuild(struct program *p, size_t *where)
+double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
 {
-    struct island *is = p->island;
-    struct sparse *s = is->sparse;
-    const size_t size = is->size;
+    const struct group *g = p->group;
+    const struct sparse *s = g->sparse;
+    const size_t size = g->size;
     size_t waiting = size; /* dependents gather at the end of order */
     double most = 0.0;
-    memset(s->l, 0, s->column[size] * sizeof *s->l);
-    memset(s->d, 0, size * sizeof *s->d);
-    is->rank = 0;
+    p->work.factorizations++;
+    memset(p->sparse.l, 0, s->column[size] * sizeof *p->sparse.l);
+    memset(p->sparse.d, 0, size * sizeof *p->sparse.d);
+    p->sets->rank = 0;
     for (size_t k = 0; k < size; k++) {
         const size_t i = s->place[k];
         double left = 0.0;
         if (p->at[i] != FREE) {
             continue;
         }
-        const double pivot = eliminate(p, k, &left);
+        const double pivot = sparse_eliminate(p, k, &left);
         if (pivot > TRIBO_SPARSE_ZERO) {
-            s->d[k] = 1.0 / pivot;
-            p->order[is->rank++] = i;
+            p->sparse.d[k] = 1.0 / pivot;
+            p->order[p->sets->rank++] = i;
         } else {
             left = greater(left, fabs(pivot));
             p->order[--waiting] = i;
@@ -287,33 +268,33 @@ double tribo_sparse_rebuild(struct program *p, size_t *where)
         }
         most = greater(most, left);
     }
-    is->dependents = size - waiting;
-    memmove(p->order + is->rank, p->order + waiting, is->dependents * sizeof *p->order);
-    for (size_t d = 0; d < is->dependents; d++) {
-        clear_row(s, s->position[p->order[is->rank + d]]);
+    p->sets->dependents = size - waiting;
+    memmove(p->order + p->sets->rank, p->order + waiting, p->sets->dependents * sizeof *p->order);
+    for (size_t d = 0; d < p->sets->dependents; d++) {
+        sparse_clear_row(p, s->position[p->order[p->sets->rank + d]]);
     }
-    for (size_t k = 0; k < is->rank + is->dependents; k++) {
-        s->index[p->order[k]] = k;
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        p->sparse.index[p->order[k]] = k;
     }
     return most;
 }
 
-void tribo_sparse_solve(const struct program *p, double *step)
+void tribo_sparse_solve(const struct box_qp *p, double *step)
 {
-    const struct sparse *s = p->island->sparse;
-    const size_t size = p->island->size;
+    const struct sparse *s = p->group->sparse;
+    const size_t size = p->group->size;
     double *y = p->row;
     for (size_t j = 0; j < size; j++) {
-        y[j] = s->d[j] == 0.0 ? 0.0 : y[j] + p->scale[s->place[j]] * step[s->place[j]];
+        y[j] = p->sparse.d[j] == 0.0 ? 0.0 : y[j] + p->scale[s->place[j]] * step[s->place[j]];
         for (size_t q = s->column[j]; y[j] != 0.0 && q < s->column[j + 1]; q++) {
-            y[s->row_of[q]] -= s->l[q] * y[j];
+            y[s->row_of[q]] -= p->sparse.l[q] * y[j];
         }
     }
     for (size_t j = size; j-- > 0;) {
-        if (s->d[j] != 0.0) {
-            double x = y[j] * s->d[j];
+        if (p->sparse.d[j] != 0.0) {
+            double x = y[j] * p->sparse.d[j];
             for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
-                x -= s->l[q] * y[s->row_of[q]];
+                x -= p->sparse.l[q] * y[s->row_of[q]];
             }
             y[j] = x;
             step[s->place[j]] = p->scale[s->place[j]] * x;
@@ -324,74 +305,75 @@ void tribo_sparse_solve(const struct program *p, double *step)
 
 /* L D L' += alpha w w' behind position k, w being in the workspace, with entries where column k of L may have some. Returns 0 if
  * that would leave a pivot without sign. */
-static int modify(struct sparse *s, size_t k, double alpha)
+static int sparse_modify(const struct box_qp *p, size_t k, double alpha)
 {
+    const struct sparse *s = p->group->sparse;
     int good = 1;
     for (size_t j = k; s->column[j] < s->column[j + 1];) {
         j = s->row_of[s->column[j]]; /* the parent in the elimination tree */
-        const double x = s->w[j];
-        s->w[j] = 0.0;
-        if (x == 0.0 || s->d[j] == 0.0 || !good) {
+        const double x = p->sparse.w[j];
+        p->sparse.w[j] = 0.0;
+        if (x == 0.0 || p->sparse.d[j] == 0.0 || !good) {
             continue;
         }
-        const double before = 1.0 / s->d[j], after = before + alpha * x * x;
+        const double before = 1.0 / p->sparse.d[j], after = before + alpha * x * x;
         good = after > TRIBO_SPARSE_ZERO;
         if (!good) {
             continue;
         }
         const double beta = alpha * x / after;
         alpha *= before / after;
-        s->d[j] = 1.0 / after;
+        p->sparse.d[j] = 1.0 / after;
         for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
-            s->w[s->row_of[q]] -= x * s->l[q];
-            s->l[q] += beta * s->w[s->row_of[q]];
+            p->sparse.w[s->row_of[q]] -= x * p->sparse.l[q];
+            p->sparse.l[q] += beta * p->sparse.w[s->row_of[q]];
         }
     }
     return good;
 }
 
 /* Row and column k of L, for a contact that enters; its own pivot is positive. */
-static int enter(struct program *p, size_t k)
+static int sparse_enter(struct box_qp *p, size_t k)
 {
-    struct sparse *s = p->island->sparse;
+    const struct sparse *s = p->group->sparse;
     const size_t i = s->place[k];
     double ignored = 0.0;
-    const double pivot = eliminate(p, k, &ignored);
+    const double pivot = sparse_eliminate(p, k, &ignored);
     if (!(pivot > TRIBO_SPARSE_ZERO)) {
         return 0;
     }
-    s->d[k] = 1.0 / pivot;
+    p->sparse.d[k] = 1.0 / pivot;
     for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
         const size_t j = s->position[s->r.col[e]];
         if (j > k) {
-            s->w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
+            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
         }
     }
     for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
         const size_t j = s->column_of[t], slot = s->slot[t];
-        const double x = s->l[slot] / (s->d[j] == 0.0 ? 1.0 : s->d[j]); /* where d is 0 l is, too */
+        const double x = p->sparse.l[slot] / (p->sparse.d[j] == 0.0 ? 1.0 : p->sparse.d[j]); /* where d is 0 l is, too */
         for (size_t q = slot + 1; x != 0.0 && q < s->column[j + 1]; q++) {
-            s->w[s->row_of[q]] -= s->l[q] * x;
+            p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * x;
         }
     }
     for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
         const size_t j = s->row_of[q];
-        s->l[q] = s->d[j] == 0.0 ? 0.0 : s->w[j] * s->d[k];
-        s->w[j] = s->l[q];
+        p->sparse.l[q] = p->sparse.d[j] == 0.0 ? 0.0 : p->sparse.w[j] * p->sparse.d[k];
+        p->sparse.w[j] = p->sparse.l[q];
     }
-    return modify(s, k, -pivot);
+    return sparse_modify(p, k, -pivot);
 }
 
-static void put(struct program *p, size_t at, size_t i)
+static void sparse_put(struct box_qp *p, size_t at, size_t i)
 {
     p->order[at] = i;
-    p->island->sparse->index[i] = at;
+    p->sparse.index[i] = at;
 }
 
 /* Whether contact i depends on those in the factor: by the pivot that it would have as the last one. */
-static int depends(struct program *p, size_t i)
+static int sparse_depends(struct box_qp *p, size_t i)
 {
-    const struct sparse *s = p->island->sparse;
+    const struct sparse *s = p->group->sparse;
     const size_t row = s->r.first[i], end = s->r.first[i + 1];
     double own = 0.0, pivot = 0.0, size = 0.0;
     tribo_sparse_spread(p, i, 1.0, p->step);
@@ -401,7 +383,7 @@ static int depends(struct program *p, size_t i)
         const double x = s->r.val[e];
         if (j == i) {
             own = x;
-        } else if (s->d[s->position[j]] != 0.0) {
+        } else if (p->sparse.d[s->position[j]] != 0.0) {
             pivot -= x * p->step[j];
             size += fabs(x * p->step[j]);
         }
@@ -409,56 +391,56 @@ static int depends(struct program *p, size_t i)
     return own + pivot <= 2.0 * TRIBO_SPARSE_ZERO * (own + size);
 }
 
-void tribo_sparse_add(struct program *p, size_t i)
+void tribo_sparse_add(struct box_qp *p, size_t i)
 {
-    struct island *is = p->island;
-    if (is->nullity && depends(p, i)) {
-        put(p, is->rank + is->dependents++, i);
-    } else if (enter(p, is->sparse->position[i])) {
+    const struct group *g = p->group;
+    if (g->nullity && sparse_depends(p, i)) {
+        sparse_put(p, p->sets->rank + p->sets->dependents++, i);
+    } else if (sparse_enter(p, g->sparse->position[i])) {
         /* the first dependent makes room at the end of the independent ones */
-        if (is->dependents) {
-            put(p, is->rank + is->dependents, p->order[is->rank]);
+        if (p->sets->dependents) {
+            sparse_put(p, p->sets->rank + p->sets->dependents, p->order[p->sets->rank]);
         }
-        put(p, is->rank++, i);
+        sparse_put(p, p->sets->rank++, i);
     } else {
-        tribo_factor_rebuild(p, NULL);
+        tribo_sparse_rebuild(p, NULL);
     }
 }
 
-void tribo_sparse_remove(struct program *p, size_t i)
+void tribo_sparse_remove(struct box_qp *p, size_t i)
 {
-    struct island *is = p->island;
-    struct sparse *s = is->sparse;
-    const size_t k = s->position[i], at = s->index[i], waiting = is->dependents, work = p->work.factorizations;
-    if (at >= is->rank) {
-        is->dependents--;
-        put(p, at, p->order[is->rank + is->dependents]);
+    const struct group *g = p->group;
+    const struct sparse *s = g->sparse;
+    const size_t k = s->position[i], at = p->sparse.index[i], waiting = p->sets->dependents, work = p->work.factorizations;
+    if (at >= p->sets->rank) {
+        p->sets->dependents--;
+        sparse_put(p, at, p->order[p->sets->rank + p->sets->dependents]);
         return;
     }
-    is->rank--;
-    put(p, at, p->order[is->rank]);
+    p->sets->rank--;
+    sparse_put(p, at, p->order[p->sets->rank]);
     if (waiting) {
-        put(p, is->rank, p->order[is->rank + waiting]);
+        sparse_put(p, p->sets->rank, p->order[p->sets->rank + waiting]);
     }
-    clear_row(s, k);
+    sparse_clear_row(p, k);
     for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
-        s->w[s->row_of[q]] = s->l[q];
-        s->l[q] = 0.0;
+        p->sparse.w[s->row_of[q]] = p->sparse.l[q];
+        p->sparse.l[q] = 0.0;
     }
-    const double pivot = 1.0 / s->d[k];
-    s->d[k] = 0.0;
-    modify(s, k, pivot);
+    const double pivot = 1.0 / p->sparse.d[k];
+    p->sparse.d[k] = 0.0;
+    sparse_modify(p, k, pivot);
     /* what depended on it may be independent now */
-    is->dependents = 0;
+    p->sets->dependents = 0;
     for (size_t d = 0; d < waiting && p->work.factorizations == work; d++) {
-        tribo_sparse_add(p, p->order[is->rank + is->dependents]);
+        tribo_sparse_add(p, p->order[p->sets->rank + p->sets->dependents]);
     }
 }
 
-int tribo_sparse_many(const struct program *p, size_t changes)
+int tribo_sparse_many(const struct box_qp *p, size_t changes)
 {
-    const struct sparse *s = p->island->sparse;
-    const double search = p->island->nullity ? 2.0 * (double)s->column[s->r.n] : 0.0;
+    const struct sparse *s = p->group->sparse;
+    const double search = p->group->nullity ? 2.0 * (double)s->column[s->r.n] : 0.0;
     /* measured: an entry visited by a change takes a little longer than one visited by a new factor */
     return (double)changes * (1.25 * s->change + search) > s->rebuild;
 }
@@ -469,28 +451,34 @@ int tribo_sparse_many(const struct program *p, size_t changes)
 static int well_conditioned(struct sparse *s)
 {
     const size_t size = s->r.n;
-    struct island island = {.size = size, .sparse = s};
-    double least = 1.0, most = 1.0, *scale = malloc(size * sizeof *scale); /* of 1/pivot, which is 0 where there is none */
-    struct program p = {.island = &island, .scale = scale, .at = calloc(size, 1), .order = malloc(size * sizeof *p.order)};
-    const int memory = scale && p.at && p.order;
+    const struct group group = {.size = size, .sparse = s};
+    struct sets sets = {0};
+    double least = 1.0, most = 1.0; /* of 1/pivot, which is 0 where there is none */
+    double *values = calloc(tribo_sparse_slots(s) + 3 * size, sizeof *values);
+    size_t *places = malloc(2 * size * sizeof *places);
+    signed char *at = calloc(size, 1);
+    const int memory = values && places && at;
     if (memory) {
+        double *scale = values + 2 * size;
+        const struct sparse_factor factor = {.l = values + 3 * size, .d = values, .w = values + size, .index = places};
+        struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .at = at, .order = places + size, .sparse = factor};
         for (size_t i = 0; i < size; i++) {
-            const double *diagonal = tribo_rows_entry(&s->r, i, i);
+            const double *diagonal = tribo_csr_entry(&s->r, i, i);
             scale[i] = tribo_scale(diagonal ? *diagonal : 0.0);
         }
         tribo_sparse_rebuild(&p, NULL);
         for (size_t k = 0; k < size; k++) {
-            least = lesser(least, s->d[k]);
-            most = greater(most, s->d[k]);
+            least = lesser(least, factor.d[k]);
+            most = greater(most, factor.d[k]);
         }
     }
-    free(scale);
-    free(p.at);
-    free(p.order);
+    free(values);
+    free(places);
+    free(at);
     return memory ? least > 0.0 && most * TRIBO_DOUBTFUL < 1.0 : -1;
 }
 
-int tribo_sparse_create(struct sparse **s, const struct rows *r)
+int tribo_sparse_create(struct sparse **s, const struct csr *r)
 {
     const size_t size = r->n;
     *s = NULL;
@@ -498,7 +486,7 @@ int tribo_sparse_create(struct sparse **s, const struct rows *r)
         return 1;
     }
     struct sparse *c = calloc(1, sizeof *c);
-    int good = c && copy_rows(&c->r, r) && allocate_contacts(c, size) && tribo_sparse_order(r, c->place) ? 1 : -1;
+    int good = c && copy_rows(&c->r, r) && allocate_contacts(c, size) && tribo_nested_dissection(r, c->place) ? 1 : -1;
     for (size_t k = 0; good > 0 && k < size; k++) {
         c->position[c->place[k]] = k;
     }

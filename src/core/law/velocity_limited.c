@@ -1,7 +1,7 @@
 /* A viscous damper near v = 0: Martins and Oden (1987); Quinn (2004), Eq. 3. Creeps under any load. */
 #include "law.h"
 
-static inline double force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double limited_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)feq, (void)moving;
     const int inside = fabs(v) <= epsilon;
@@ -9,8 +9,8 @@ static inline double force(double v, double feq, double limit, double epsilon, d
     return inside ? f : sliding(v, limit);
 }
 
-static inline struct tangent tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
-                                     double follows)
+static inline struct tangent limited_tangent(double v, double feq, double limit, double epsilon, double slope,
+                                             unsigned char moving, double follows)
 {
     (void)feq, (void)moving, (void)limit;
     if (fabs(v) > epsilon) {
@@ -19,7 +19,7 @@ static inline struct tangent tangent(double v, double feq, double limit, double 
     return (struct tangent){-0.5 * slope, 0.0, -(1.0 - follows) * quotient(v, epsilon)};
 }
 
-TRIBO_LAW_LOOPS
+TRIBO_LAW_LOOPS(limited)
 
 const struct law tribo_law_velocity_limited = {
     .id = 1,
@@ -27,6 +27,7 @@ const struct law tribo_law_velocity_limited = {
     .reference = "J. A. C. Martins and J. T. Oden, Nonlinear Anal. 11 (1987) 407, doi:10.1016/0362-546X(87)90055-1; "
                  "D. D. Quinn (2004), Eq. 3",
     .sticks_in_band = 1,
-    .force = force_all,
-    .tangent = tangent_all,
+    .holds = 1.0,
+    .force = limited_force_all,
+    .tangent = limited_tangent_all,
 };

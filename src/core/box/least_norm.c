@@ -4,64 +4,64 @@
  * It is where the objective |x|^2 is least in the box along the null space of R over the contacts that have no gradient. That
  * takes a primal active set method once more: basis holds the null space, its first vectors the directions in which the contacts
  * at a bound do not move. */
-#include "island.h"
+#include "box.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-void tribo_null_vector(const struct program *p, size_t d, double *y)
+void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
 {
-    const struct island *is = p->island;
-    if (is->graded) {
+    const struct group *g = p->group;
+    if (g->graded) {
         tribo_graded_null_vector(p, d, y);
     } else {
         tribo_row_spread(p, d, -1.0, y);
         tribo_factor_solve(p, y);
     }
-    for (size_t k = is->rank; k < is->rank + is->dependents; k++) {
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
         y[p->order[k]] = p->order[k] == d ? 1.0 : 0.0;
     }
 }
 
-static double dot(const struct program *p, const double *x, const double *y)
+static double free_dot(const struct box_qp *p, const double *x, const double *y)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         sum += x[p->order[k]] * y[p->order[k]];
     }
     return sum;
 }
 
 /* y += factor x */
-static void add(const struct program *p, double factor, const double *x, double *y)
+static void free_add(const struct box_qp *p, double factor, const double *x, double *y)
 {
-    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         y[p->order[k]] += factor * x[p->order[k]];
     }
 }
 
-void tribo_project(const struct program *p, size_t k, double *y)
+void tribo_null_project(const struct box_qp *p, size_t k, double *y)
 {
     for (size_t j = 0; j < k; j++) {
-        const double *b = p->basis + j * p->island->size;
-        add(p, -dot(p, b, y), b, y);
+        const double *b = p->basis + j * p->group->size;
+        free_add(p, -free_dot(p, b, y), b, y);
     }
 }
 
-size_t tribo_null_basis(struct program *p)
+size_t tribo_null_basis(struct box_qp *p)
 {
-    const size_t vectors = p->island->dependents;
+    const size_t vectors = p->sets->dependents;
     if (vectors > p->redundant) {
         return 0;
     }
     for (size_t j = 0; j < vectors; j++) {
-        double *b = p->basis + j * p->island->size;
-        tribo_null_vector(p, p->order[p->island->rank + j], b);
-        tribo_project(p, j, b);
-        tribo_project(p, j, b);
-        const double length = sqrt(dot(p, b, b));
-        for (size_t k = 0; k < p->island->rank + vectors; k++) {
+        double *b = p->basis + j * p->group->size;
+        tribo_null_vector(p, p->order[p->sets->rank + j], b);
+        tribo_null_project(p, j, b);
+        tribo_null_project(p, j, b);
+        const double length = sqrt(free_dot(p, b, b));
+        for (size_t k = 0; k < p->sets->rank + vectors; k++) {
             b[p->order[k]] /= length;
         }
     }
@@ -69,9 +69,9 @@ size_t tribo_null_basis(struct program *p)
 }
 
 /* A reflection of the first vectors, after which only the last of them moves contact i. */
-static void hold(struct program *p, size_t vectors, size_t i)
+static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
 {
-    const size_t size = p->island->size, last = vectors - 1;
+    const size_t size = p->group->size, last = vectors - 1;
     double *u = p->row, square = 0.0;
     for (size_t j = 0; j < vectors; j++) {
         u[j] = p->basis[j * size + i];
@@ -80,7 +80,7 @@ static void hold(struct program *p, size_t vectors, size_t i)
     const double length = sqrt(square);
     u[last] += u[last] < 0.0 ? -length : length;
     const double scale = length * fabs(u[last]); /* u'u/2 */
-    for (size_t k = 0; scale > 0.0 && k < p->island->rank + p->island->dependents; k++) {
+    for (size_t k = 0; scale > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
         double *column = p->basis + p->order[k], sum = 0.0;
         for (size_t j = 0; j < vectors; j++) {
             sum += u[j] * column[j * size];
@@ -96,25 +96,25 @@ static void hold(struct program *p, size_t vectors, size_t i)
 }
 
 /* step = the way to least norm that the first vectors leave. */
-static void aim(struct program *p, size_t vectors)
+static void aim_at_least(struct box_qp *p, size_t vectors)
 {
-    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
     }
     for (size_t j = 0; j < vectors; j++) {
-        const double *b = p->basis + j * p->island->size;
-        add(p, -dot(p, b, p->x), b, p->step);
+        const double *b = p->basis + j * p->group->size;
+        free_add(p, -free_dot(p, b, p->x), b, p->step);
     }
 }
 
 /* Of the free x: scaled, since their squares may overflow. */
-static double norm(const struct program *p)
+static double free_norm(const struct box_qp *p)
 {
     double most = DBL_MIN, sum = 0.0;
-    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         most = greater(most, fabs(p->x[p->order[k]]));
     }
-    for (size_t k = 0; k < p->island->rank + p->island->dependents; k++) {
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         const double part = p->x[p->order[k]] / most;
         sum += part * part;
     }
@@ -122,29 +122,29 @@ static double norm(const struct program *p)
 }
 
 /* Lets one of the held contacts go, if its x then moves off its bound. */
-static int release(struct program *p, size_t vectors, size_t *held)
+static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
 {
-    const double noise = tribo_resolution(p->island->size) * norm(p);
+    const double noise = tribo_resolution(p->group->size) * free_norm(p);
     for (size_t tried = 0; tried < *held; tried++) {
         const size_t i = p->held[0], others = *held - 1;
         memmove(p->held, p->held + 1, others * sizeof *p->held);
         for (size_t h = 0; h < others; h++) {
-            hold(p, vectors - h, p->held[h]);
+            hold_contact(p, vectors - h, p->held[h]);
         }
-        aim(p, vectors - others);
+        aim_at_least(p, vectors - others);
         if (p->x[i] <= p->lo[i] ? p->step[i] > noise : p->step[i] < -noise) {
             *held = others;
             return 1;
         }
         p->held[others] = i;
-        hold(p, vectors - others, i);
+        hold_contact(p, vectors - others, i);
     }
     return 0;
 }
 
-int tribo_split(struct program *p)
+int tribo_least_norm(struct box_qp *p)
 {
-    const size_t size = p->island->size;
+    const size_t size = p->group->size;
     /* those at a bound that nothing pushes against may share, too */
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
@@ -155,12 +155,12 @@ int tribo_split(struct program *p)
     const size_t vectors = tribo_null_basis(p);
     size_t held = 0;
     for (size_t round = 0; vectors && round < 20 * (size + vectors); round++) {
-        aim(p, vectors - held);
+        aim_at_least(p, vectors - held);
         const size_t hit = tribo_box_advance(p, 1.0);
         if (hit < size && held < vectors) {
-            hold(p, vectors - held, hit);
+            hold_contact(p, vectors - held, hit);
             p->held[held++] = hit;
-        } else if (!release(p, vectors, &held)) {
+        } else if (!release_contact(p, vectors, &held)) {
             break;
         }
     }

@@ -4,24 +4,21 @@
 
 #include <stdint.h>
 
-#include "island.h"
-#include "rows.h"
+#include "box.h"
+#include "../../common/csr.h"
 
 #define NONE SIZE_MAX
 
 struct sparse {
-    struct rows r;            /* by place */
+    struct csr r;             /* by place */
     size_t *position, *place; /* [size] of a place; at a position */
     size_t *column, *row;     /* [size + 1] column j of L has the slots column[j] to column[j + 1] - 1; rows alike */
     size_t *row_of;           /* [slots] rows ascending within a column */
     size_t *column_of, *slot; /* [slots] by rows: the columns, ascending, and the slots */
-    double *l, *d;            /* [slots]; [size] 1/d, 0 for contacts that are not in the factor */
-    double *w;                /* [size] workspace, zero between calls */
-    size_t *index;            /* [size] where a free contact stands in the program's order */
     double change, rebuild;   /* cost of a change, on average, and of a new factor */
 };
 
 /* An order of elimination that keeps L sparse: place [size] by position. 1, or 0 if out of memory. */
-int tribo_sparse_order(const struct rows *r, size_t *place);
+int tribo_nested_dissection(const struct csr *r, size_t *place);
 
 #endif

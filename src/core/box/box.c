@@ -1,0 +1,284 @@
+/* The box-constrained quadratic program of a group, min 1/2 x'Rx + q'x with lo <= x <= hi, which Coulomb's law comes down to:
+ * an x inside its box has no gradient, and the gradient at a bound pushes against it.
+ *
+ *     begin with the sets of the last call
+ *     repeat  x = the solution with these sets; who is outside its box goes to the bound, who pulls away from its bound is freed
+ *     until   no set changes, or patience ends
+ *     if it has ended: change one contact at a time, down the objective, until no gradient pulls
+ *     if contacts are redundant: x = the solution of least norm
+ *
+ * Whole sets change at once at first (the primal-dual active set method of
+ * Hintermueller, Ito and Kunisch 2002, SIAM J. Optim. 13, 865, doi:10.1137/S1052623401383558): usually none does, and the call
+ * costs a solve and a look at the gradient. That method may cycle; then a primal active set method finishes, in which every
+ * change lowers the objective. Either ends only when the gradient shows that x is the solution, up to its own rounding. */
+#include "box.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+/* Takes the gradient of the independent x, which is found, to zero. */
+static void box_refine(struct box_qp *p)
+{
+    for (int pass = 0; pass < 4 && !tribo_box_settled(p, 1.0); pass++) {
+        tribo_box_newton(p);
+        for (size_t k = 0; k < p->sets->rank; k++) {
+            const size_t i = p->order[k];
+            p->x[i] = tribo_box_moved(p, i);
+        }
+        tribo_box_gradients(p, 0);
+    }
+}
+
+static int outside(double x, double lo, double hi)
+{
+    return (x > hi) - (x < lo);
+}
+
+/* Where each x wants to be, in p->to. Returns whether that is where it is. */
+static int box_revise(struct box_qp *p)
+{
+    const struct group *g = p->group;
+    memcpy(p->to, p->at, g->size);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && (double)p->at[i] * p->gradient[i] > tribo_box_tolerance(p, i)) {
+            p->to[i] = FREE;
+        }
+    }
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        const size_t i = p->order[k];
+        p->to[i] = (signed char)outside(p->x[i], p->lo[i], p->hi[i]);
+    }
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
+        const size_t i = p->order[k];
+        if (fabs(p->gradient[i]) > tribo_box_tolerance(p, i)) {
+            p->to[i] = p->gradient[i] > 0.0 ? AT_LOWER : AT_UPPER;
+        }
+    }
+    return memcmp(p->to, p->at, g->size) == 0;
+}
+
+static void put_at_bounds(struct box_qp *p)
+{
+    tribo_box_forget_low(p);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = p->at[i] == AT_LOWER ? p->lo[i] : p->at[i] == AT_UPPER ? p->hi[i] : p->x[i];
+    }
+    for (size_t d = 0; d < p->sets->dependents; d++) {
+        const size_t i = p->order[p->sets->rank + d];
+        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
+    }
+}
+
+/* x with the sets as they are; if rounding has gathered in the factor over many changes, with a new one. */
+static void box_solve_sets(struct box_qp *p, int first)
+{
+    put_at_bounds(p);
+    tribo_box_gradients(p, first);
+    box_refine(p);
+    if (!tribo_box_settled(p, TRIBO_SETTLED)) {
+        tribo_factor_rebuild(p, NULL);
+        put_at_bounds(p);
+        tribo_box_gradients(p, 0);
+        box_refine(p);
+    }
+}
+
+/* Patience as with block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21, 587): it ends when the number of changes has
+ * reached no new low for a while. */
+static int box_primal_dual(struct box_qp *p)
+{
+    size_t least = SIZE_MAX;
+    for (int patience = 10, first = 1; patience > 0; patience--, first = 0) {
+        box_solve_sets(p, first);
+        if (box_revise(p)) {
+            return 1;
+        }
+        const size_t changes = tribo_box_change_all(p);
+        if (changes < least) {
+            least = changes;
+            patience = 11;
+        }
+    }
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------ primal active set */
+
+/* Moves x along step, as tribo_box_advance does; a contact that meets a bound stays there. Returns 1 if one did. */
+static int box_move(struct box_qp *p, double longest)
+{
+    const size_t hit = tribo_box_advance(p, longest);
+    if (hit == p->group->size) {
+        return 0;
+    }
+    tribo_box_change(p, hit, p->step[hit] > 0.0 ? AT_UPPER : AT_LOWER);
+    return 1;
+}
+
+/* error [size] = what rounding leaves of doubt about the x of the free contacts. */
+static void find_doubt(const struct box_qp *p, double *error)
+{
+    memset(error, 0, p->group->size * sizeof *error);
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        const size_t i = p->order[k];
+        error[i] = p->noise[i] * p->scale[i] * p->scale[i];
+    }
+}
+
+/* A contact whose gradient is farthest beyond rounding, its own and that of the others' x: a dependent one, or one at a bound
+ * that should leave it. size if there is none. */
+static size_t box_worst(const struct box_qp *p, int dependent)
+{
+    const struct group *g = p->group;
+    size_t found = g->size;
+    double most = 1.0;
+    find_doubt(p, p->spare[0]);
+    for (size_t e = 0; e < (dependent ? p->sets->dependents : p->count); e++) {
+        const size_t i = dependent ? p->order[p->sets->rank + e] : p->near[e];
+        const double pull = dependent ? fabs(p->gradient[i]) : p->lo[i] < p->hi[i] ? (double)p->at[i] * p->gradient[i] : 0.0;
+        double doubt = 0.0;
+        if (pull > tribo_box_tolerance(p, i)) {
+            tribo_row_dot(p, i, p->spare[0], &doubt);
+        }
+        const double excess = quotient(pull, greater(tribo_box_tolerance(p, i) + doubt, DBL_MIN));
+        if (excess > most) {
+            most = excess;
+            found = i;
+        }
+    }
+    return found;
+}
+
+/* Down along the null vector in which the dependent d moves by 1, as far as a bound; or, where R is not quite singular, to the
+ * bottom. */
+static int box_slide(struct box_qp *p, size_t d)
+{
+    double size;
+    const double pull = p->gradient[d];
+    memset(p->step, 0, p->group->size * sizeof *p->step);
+    memset(p->step_low, 0, p->group->size * sizeof *p->step_low);
+    tribo_null_vector(p, d, p->step);
+    for (size_t k = 0; pull > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
+        p->step[p->order[k]] *= -1.0;
+    }
+    const double curvature = fabs(tribo_row_dot(p, d, p->step, &size));
+    return box_move(p, quotient(fabs(pull), greater(greater(curvature, tribo_resolution(p->group->size) * size), DBL_MIN)));
+}
+
+/* 1 if something moved as far as a bound. */
+static int box_descend(struct box_qp *p)
+{
+    tribo_box_gradients(p, 0);
+    tribo_box_newton(p);
+    return box_move(p, 1.0);
+}
+
+/* Every round lowers the objective, or takes an x out of the set, so that no set comes back. */
+static int box_primal(struct box_qp *p)
+{
+    memcpy(p->to, p->at, p->group->size);
+    tribo_box_forget_low(p);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
+        p->to[i] = p->x[i] <= p->lo[i] ? AT_LOWER : p->x[i] >= p->hi[i] ? AT_UPPER : FREE;
+    }
+    tribo_box_change_all(p);
+    for (size_t round = 0; round < 100 + 20 * p->count; round++) {
+        if (box_descend(p)) {
+            continue;
+        }
+        tribo_box_gradients(p, 0);
+        const size_t d = box_worst(p, 1);
+        if (d < p->group->size) {
+            box_slide(p, d);
+            continue;
+        }
+        if (box_descend(p)) {
+            continue;
+        }
+        tribo_box_gradients(p, 0);
+        const size_t i = box_worst(p, 0);
+        if (i < p->group->size) {
+            tribo_box_change(p, i, FREE);
+        } else if (tribo_box_settled(p, TRIBO_SETTLED)) {
+            return 1;
+        } else {
+            tribo_factor_rebuild(p, NULL);
+        }
+    }
+    return 0;
+}
+
+/* How far x is from the fixed point, in parts of what may be rounding. */
+static double box_violation(const struct box_qp *p)
+{
+    double most = 0.0;
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
+        const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
+        most = greater(most, quotient(fabs(off), greater(p->noise[i], DBL_MIN)));
+    }
+    return most;
+}
+
+static void box_restore(struct box_qp *p, const double *x)
+{
+    tribo_box_forget_low(p);
+    for (size_t e = 0; e < p->count; e++) {
+        p->x[p->near[e]] = x[p->near[e]];
+    }
+    tribo_box_gradients(p, 0);
+}
+
+static int box_inside(const struct box_qp *p)
+{
+    int all = 1;
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        const size_t i = p->order[k];
+        all &= p->lo[i] <= p->x[i] && p->x[i] <= p->hi[i];
+    }
+    return all;
+}
+
+int tribo_box_solve(struct box_qp *p)
+{
+    for (size_t e = 0; (p->far || p->sets->far) && e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
+    }
+    p->sets->far = p->far;
+    tribo_box_begin(p, 1);
+    tribo_box_enter(p, 1);
+    return box_primal_dual(p) || box_primal(p);
+}
+
+/* The rounding of shares may be much to a contact that carries little: then it is taken away again, where the boxes have room for
+ * that, and otherwise the contacts share as they did before. */
+void tribo_box_share(struct box_qp *p)
+{
+    double *before = p->spare[0], *split = p->spare[1];
+    memcpy(before, p->x, p->group->size * sizeof *before);
+    if (!tribo_least_norm(p)) {
+        return;
+    }
+    memcpy(split, p->x, p->group->size * sizeof *split);
+    tribo_box_gradients(p, 0);
+    box_refine(p);
+    if (!box_inside(p)) {
+        box_restore(p, split);
+    }
+    const double after = box_violation(p);
+    if (after > TRIBO_SETTLED) {
+        memcpy(split, p->x, p->group->size * sizeof *split);
+        box_restore(p, before);
+        if (box_violation(p) > after) {
+            box_restore(p, split);
+        }
+    }
+}

@@ -1,0 +1,250 @@
+/* What a call learns of all contacts before it solves for any. In a large scene most slide, of which the direction is all that
+ * there is to know, and reading and writing memory is all that they cost: so every array is passed over as seldom as can be, in
+ * chunks that stay in the first-level cache. What a call learns takes the last call's place once v and a are found good. */
+#include "context.h"
+
+/* Whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
+TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t i = 0; i < n; i++) {
+        any |= fabs(v[i]) <= band ? -1 : 0;
+    }
+    return any != 0;
+}
+
+TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, signed char *restrict did)
+{
+    for (size_t i = 0; i < n; i++) {
+        did[i] = v[i] > 0.0 ? FORTH : BACK;
+    }
+}
+
+/* The same, and contacts near stick if all have one band: BACK, STORED and FORTH count -1, 0, 1. */
+TRIBO_SIMD static void find_states(size_t n, const double *restrict v, double band, signed char *restrict did)
+{
+    for (size_t i = 0; i < n; i++) {
+        did[i] = (signed char)((v[i] > band) + (v[i] >= -band) - 1);
+    }
+}
+
+/* The same with each contact's own band, or 0 if band is NULL, and open ones are not near stick. */
+TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const double *restrict band, const double *restrict limit,
+                                 signed char *restrict did)
+{
+    for (size_t i = 0; band && i < n; i++) {
+        const int near = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
+        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? FORTH : BACK);
+    }
+    for (size_t i = 0; !band && i < n; i++) {
+        const int near = (v[i] == 0.0) & (limit[i] > 0.0);
+        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? FORTH : BACK);
+    }
+}
+
+/* f_eq of contacts that share no body. */
+TRIBO_SIMD static void feq_alone(size_t n, const double *restrict r, const double *restrict a, double *restrict feq)
+{
+    for (size_t i = 0; i < n; i++) {
+        feq[i] = quotient(-a[i], r[i]);
+    }
+}
+
+TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, double *restrict feq)
+{
+    for (size_t i = 0; i < n; i++) {
+        feq[i] = limit[i] > 0.0 ? feq[i] : 0.0;
+    }
+}
+
+/* The same for chunk k, which begins with contact i; 0 for open ones. */
+static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, const double *a)
+{
+    feq_alone(n, ctx->op->diagonal + i, a + i, ctx->last.feq + i);
+    if (ctx->follow.chunk[k].least == 0.0) {
+        no_feq_if_open(n, ctx->set.limit + i, ctx->last.feq + i);
+    }
+}
+
+TRIBO_SIMD static void force_of_slips(size_t n, const signed char *restrict did, const double *restrict limit, double *restrict f)
+{
+    for (size_t i = 0; i < n; i++) {
+        f[i] = did[i] == FORTH ? -limit[i] : limit[i];
+    }
+}
+
+TRIBO_SIMD static void force_of_alike_slips(size_t n, const signed char *restrict did, double limit, double *restrict f)
+{
+    for (size_t i = 0; i < n; i++) {
+        f[i] = did[i] == FORTH ? -limit : limit;
+    }
+}
+
+/* The chunk after next will soon be read, or written. */
+static void expect(const tribo_context *ctx, const double *x, size_t i, int written)
+{
+    if (ctx->n - i > 2 * TRIBO_CHUNK) {
+        tribo_expect(x + i + 2 * TRIBO_CHUNK, tribo_chunk_size(ctx, i + 2 * TRIBO_CHUNK) * sizeof *x, written);
+    }
+}
+
+enum { LANES = 4 }; /* side by side, since one would have to be found in order */
+
+TRIBO_SIMD void tribo_take_limits(size_t n, const double *restrict from, double *restrict to, struct chunk *chunk)
+{
+    double least[LANES], largest[LANES];
+    size_t i = 0;
+    for (size_t k = 0; k < LANES; k++) {
+        least[k] = largest[k] = from[0];
+    }
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            to[i + k] = from[i + k];
+            least[k] = lesser(least[k], from[i + k]);
+            largest[k] = greater(largest[k], from[i + k]);
+        }
+    }
+    for (; i < n; i++) {
+        to[i] = from[i];
+        least[0] = lesser(least[0], from[i]);
+        largest[0] = greater(largest[0], from[i]);
+    }
+    chunk->least = lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
+    chunk->largest = greater(greater(largest[0], largest[1]), greater(largest[2], largest[3]));
+}
+
+TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
+                                     double *restrict epsilon)
+{
+    for (size_t i = 0; i < n; i++) {
+        epsilon[i] = tribo_epsilon(1, width[i], bound[i]);
+    }
+}
+
+const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, double *room)
+{
+    if (!c->follows) {
+        return c->width + i;
+    }
+    find_epsilons(n, c->width + i, c->bound + i, room);
+    return room;
+}
+
+static int check_motion(const tribo_context *ctx, const double *v, const double *a)
+{
+    const int status = tribo_check_finite(ctx, "v", v, ctx->n);
+    return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
+}
+
+size_t tribo_next_near(const signed char *did, size_t *i, size_t end)
+{
+    const signed char *found = memchr(did + *i, STORED, end - *i);
+    size_t n = 0;
+    *i = found ? (size_t)(found - did) : end;
+    while (*i + n < end && did[*i + n] == STORED) {
+        n++;
+    }
+    return n;
+}
+
+/* Of the contacts of a chunk that are in its band those that are near stick. */
+static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t end, signed char *did)
+{
+    double room[TRIBO_CHUNK];
+    for (size_t n; (n = tribo_next_near(did, &i, end)) > 0; i += n) {
+        const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
+        find_near(n, v + i, band, ctx->set.limit + i, did + i);
+    }
+}
+
+void tribo_store_all(tribo_context *ctx)
+{
+    if (!ctx->last.did.all_stored) {
+        memset(ctx->last.did.of, STORED, ctx->n);
+        memset(ctx->last.did.stored, ALL_STORED, tribo_chunks(ctx->n));
+        ctx->last.did.all_stored = 1;
+    }
+}
+
+int tribo_classify(tribo_context *ctx, const double *v, const double *a)
+{
+    struct deeds now = ctx->spare;
+    const int few = !ctx->op->groups && ctx->n <= TRIBO_CHUNK; /* whose laws are asked sooner than what they do is found */
+    if (!v || !a || few || !ctx->set.law->uses_feq) {
+        const int status = check_motion(ctx, v, a);
+        if (!status) {
+            tribo_store_all(ctx);
+        }
+        return status;
+    }
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        const double band = ctx->set.law->sticks_in_band ? ctx->follow.chunk[k].band : lesser(ctx->follow.chunk[k].band, 0.0);
+        expect(ctx, v, i, 0);
+        expect(ctx, a, i, 0);
+        if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
+            return check_motion(ctx, v, a);
+        }
+        const int any = any_in_band(n, v + i, band);
+        now.stored[k] = !any ? NONE_STORED : ctx->op->groups ? SOME_STORED : ALL_STORED;
+        if (now.stored[k] == ALL_STORED) {
+            memset(now.of + i, STORED, n); /* or not: the law will tell */
+        } else if (now.stored[k] == SOME_STORED) {
+            find_states(n, v + i, band, now.of + i);
+            narrow(ctx, v, i, i + n, now.of);
+        } else {
+            find_directions(n, v + i, now.of + i);
+        }
+    }
+    now.all_stored = 0;
+    ctx->spare = ctx->last.did;
+    ctx->last.did = now;
+    return TRIBO_OK;
+}
+
+void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted)
+{
+    const int some = ctx->op->islands > ctx->op->groups;
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        const int asked = ctx->last.did.stored[k] == ALL_STORED || (some && ctx->last.did.stored[k] == SOME_STORED);
+        if (wanted || (asked && ctx->set.law->uses_feq)) {
+            find_feq(ctx, k, i, n, a);
+        }
+        if (asked) {
+            const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+            ctx->set.law->force(&c, n, v + i, ctx->last.feq + i, ctx->last.f + i);
+        }
+    }
+}
+
+/* The same of the n contacts of chunk k, from i on, which do not all store it. */
+static void forces_of_slips(const tribo_context *ctx, size_t k, size_t i, size_t n, double *f)
+{
+    const signed char *did = ctx->last.did.of;
+    if (ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest) {
+        force_of_slips(n, did + i, ctx->set.limit + i, f + i);
+    } else {
+        force_of_alike_slips(n, did + i, ctx->follow.chunk[k].largest, f + i);
+    }
+    for (size_t j = i, near; ctx->last.did.stored[k] == SOME_STORED && (near = tribo_next_near(did, &j, i + n)) > 0; j += near) {
+        tribo_copy(f + j, ctx->last.f + j, near);
+    }
+}
+
+void tribo_forces(const tribo_context *ctx, double *f)
+{
+    if (ctx->last.did.all_stored) {
+        tribo_copy(f, ctx->last.f, ctx->n);
+        return;
+    }
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        expect(ctx, f, i, 1);
+        if (ctx->last.did.stored[k] == ALL_STORED) {
+            memcpy(f + i, ctx->last.f + i, n * sizeof *f);
+        } else {
+            forces_of_slips(ctx, k, i, n, f);
+        }
+    }
+}

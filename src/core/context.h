@@ -1,0 +1,207 @@
+/* What the files of src/core share. */
+#ifndef TRIBO_CONTEXT_H
+#define TRIBO_CONTEXT_H
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "tribo/tribo.h"
+
+#include "operator/operator.h"
+#include "law/law.h"
+#include "../common/compiler.h"
+#include "../common/real.h"
+
+struct message;
+
+/* Contacts that are looked at together: few enough that in a large scene most chunks have none near stick, and all that is read
+ * of them stays in the first-level cache. */
+#define TRIBO_CHUNK 128
+
+/* What of a chunk's contacts changes with settings only. */
+struct chunk {
+    double least, largest; /* limit */
+    double widest;         /* width */
+    double band;           /* no epsilon of a contact that is not open is larger; negative if all are open */
+};
+
+static inline size_t tribo_chunks(size_t n)
+{
+    return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
+}
+
+/* What a contact did in the last call that found forces: it slid towards v < 0 or v > 0, which is to say that its force is its
+ * limit; or its force is stored in f. Before limits change modes take the place of that, with the same numbers (see
+ * tribo_get_slip): 0 for stuck, and OPEN. */
+enum { BACK = -1, STORED = 0, FORTH = 1, OPEN = 2 };
+
+/* Of how many contacts of a chunk the force is stored; of all only if they say so. */
+enum { NONE_STORED, SOME_STORED, ALL_STORED };
+
+struct deeds {
+    signed char *of;       /* [n] */
+    unsigned char *stored; /* [chunks] in the same piece of memory */
+    int all_stored;        /* the forces of all contacts are */
+};
+
+/* What is known of the modes of the last call: nothing, or they follow from forces and limits, or they are written down. */
+enum { NO_MODES, MODES_IN_FORCES, MODES_WRITTEN };
+
+/* What the caller set. */
+struct settings {
+    const struct law *law;
+    int coupling, sharing;
+    double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
+    double *limit;          /* [n] */
+    double *width, *rate;   /* [n] see law.h; of an epsilon that follows the operator, what follows from that */
+};
+
+/* What follows from settings and operator. */
+struct following {
+    struct contacts contacts;       /* all of them, as laws see them; of far limits with what is cut: */
+    double *cut_limit, *cut_factor; /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
+    double largest, steepest;       /* limit; and factor, or 1 */
+    struct chunk *chunk;            /* [chunks] */
+};
+
+/* What the last call found. */
+struct last {
+    struct deeds did;
+    double *feq, *f;         /* [n] f where it is stored */
+    double *v;               /* [n] velocities, and the law's derivatives there, after tribo_balance_tangent */
+    struct tangent *tangent; /* [n] */
+    int modes;               /* NO_MODES, ... */
+    double holds;            /* a contact is stuck if |f| is less than this part of the limit */
+    int linearized;          /* tangent is that of the last call */
+    int far;                 /* a limit or a bound was so large that solutions may be beyond op->most */
+    double residual;
+    size_t rank;
+};
+
+/* What adds up since tribo_create, but for what the solver counts. */
+struct counters {
+    size_t solves, reused, skipped, marks;
+};
+
+struct tribo_context {
+    size_t n;
+    const char *owner; /* of the operator; NULL: the caller */
+    struct settings set;
+    struct following follow;
+    struct delassus *op;   /* constant; clones have it in common */
+    struct memory memory;  /* of the groups, from call to call */
+    unsigned char *moving; /* [n] reversal memory */
+    struct last last;
+    struct deeds spare; /* room for the next call */
+    struct counters count;
+    size_t revision; /* counts changes of settings and operator */
+    struct message *message;
+};
+
+/* message.c: keeps the text for tribo_message and returns status. */
+int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)
+#if defined(TRIBO_GNU_C)
+    __attribute__((format(printf, 3, 4)))
+#endif
+    ;
+struct message *tribo_message_create(void);
+
+/* Contacts of the chunk that begins with i. */
+static inline size_t tribo_chunk_size(const tribo_context *ctx, size_t i)
+{
+    return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
+}
+
+/* check.c */
+int tribo_all_finite(const double *x, size_t n);
+
+/* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
+int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
+
+/* TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
+int tribo_fail_without_operator(const tribo_context *ctx); /* context.c */
+
+static inline int tribo_need_operator(const tribo_context *ctx)
+{
+    return ctx->op->diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
+}
+
+static inline int tribo_need_epsilon(const tribo_context *ctx)
+{
+    return ctx->set.step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
+}
+
+/* settings.c: brings what follows from settings and operator up to date: after a change of limits; or of anything, then with
+ * width and rate of an epsilon that follows the operator. */
+void tribo_refresh_limits(tribo_context *ctx);
+void tribo_refresh(tribo_context *ctx);
+
+/* classify.c: copies the limits of a chunk's contacts, n > 0, and finds the least and the largest. */
+void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk);
+
+/* Returns epsilon of the n contacts from i on, n <= TRIBO_CHUNK; room [n]. */
+const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, double *room);
+
+/* All forces of this call will be stored. */
+void tribo_store_all(tribo_context *ctx);
+
+/* Checks v and a, and finds the contacts near stick; a status, and on failure all is as after the last call. */
+int tribo_classify(tribo_context *ctx, const double *v, const double *a);
+
+/* f of contacts that need no solver, where ctx->last.f is to hold it, and their f_eq, or that of all contacts if wanted, as if
+ * all were alone. */
+void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
+
+/* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
+size_t tribo_next_near(const signed char *did, size_t *i, size_t end);
+
+/* The forces of all contacts, f [n], while limits are those of the balance; or of one. */
+void tribo_forces(const tribo_context *ctx, double *f);
+
+static inline double tribo_force_of(const tribo_context *ctx, size_t i)
+{
+    const int did = ctx->last.did.of[i];
+    return did == STORED ? ctx->last.f[i] : did == FORTH ? -ctx->set.limit[i] : ctx->set.limit[i];
+}
+
+/* queries.c: writes modes down, before limits change. */
+void tribo_write_modes(tribo_context *ctx);
+
+/* The force of the contact at place k of a group as the solver takes it. */
+static inline double tribo_carried(const tribo_context *ctx, const struct box_qp *p, size_t k)
+{
+    const double f = tribo_force_of(ctx, p->member[k]);
+    return ctx->last.far ? tribo_cut(p, k, f) : f;
+}
+
+/* Views of group k. */
+static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
+{
+    return tribo_memory_problem(ctx->op, &ctx->memory, k);
+}
+
+/* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */
+void tribo_begin_call(tribo_context *ctx);
+
+/* Solves the problem of a group; q, lo and hi are set. */
+int tribo_solve_group(tribo_context *ctx, struct box_qp *p);
+
+/* Keeps forces for shares that go on from them, also in groups that no solver saw. */
+void tribo_remember_forces(tribo_context *ctx);
+
+/* The contacts of group k in the problem's order, those near stick first. */
+struct box_qp *tribo_collect(tribo_context *ctx, size_t k);
+
+/* memcpy, but fine with NULL for no elements. */
+static inline void tribo_copy(double *to, const double *from, size_t n)
+{
+    if (n) {
+        memcpy(to, from, n * sizeof *to);
+    }
+}
+
+#endif

@@ -1,0 +1,531 @@
+/* The operator as it is kept: the islands of R's graph, found once, with room for everything that is ever done with them. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "operator.h"
+#include "../../common/csr.h"
+#include "../../common/simd.h"
+#include "../../common/twofold.h"
+
+/* Smaller groups are dense, whatever their entries. */
+#define SPARSE_FROM 128
+
+/* A group whose contacts touch bodies with masses so far apart is kept to twice as many digits, if a pivot of R is small, too. */
+#define GRADED_FROM 1e3
+#define GRADED_PIVOT 1e-4
+
+/* That is worth its cost in groups so small, and does up to this; in larger ones masses must not differ more than that. */
+#define GRADED_TO 256
+#define GRADED_MOST 1e18
+#define GRADED_MOST_LARGE 1e10
+
+#if defined(TRIBO_GNU_C)
+#define COUNT(references, change) __atomic_add_fetch(&(references), (change), __ATOMIC_ACQ_REL)
+#else
+#define COUNT(references, change) ((references) += (change))
+#endif
+
+struct delassus *tribo_operator_share(struct delassus *op)
+{
+    COUNT(op->references, (size_t)1);
+    return op;
+}
+
+void tribo_operator_release(struct delassus *op)
+{
+    if (!op || COUNT(op->references, SIZE_MAX) > 0) { /* one less */
+        return;
+    }
+    for (size_t k = 0; op->group && k < op->groups; k++) {
+        tribo_sparse_free(op->group[k].sparse);
+    }
+    free(op->diagonal);
+    free(op->group);
+    free(op->group_of);
+    free(op->member);
+    free(op->row_sum);
+    free(op->fixed);
+    free(op);
+}
+
+void tribo_memory_free(struct memory *m)
+{
+    struct box_qp *p = &m->problem;
+    free(m->solved);
+    free(m->solved_list);
+    free(m->sets);
+    free(m->store);
+    free(p->near);
+    free(p->held);
+    free(p->to);
+    free(p->q);
+    free(p->basis);
+    *m = (struct memory){0};
+}
+
+int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
+{
+    struct delassus *o = calloc(1, sizeof *o);
+    *op = o;
+    if (!o) {
+        return 0;
+    }
+    *o = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0};
+    if (!r) {
+        return 1;
+    }
+    o->diagonal = malloc((n + 1) * sizeof *o->diagonal);
+    for (size_t i = 0; o->diagonal && i < n; i++) {
+        o->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
+    }
+    return o->diagonal != NULL;
+}
+
+/* What is constant of a group, and what a memory keeps of it, in doubles, which are as large as everything else. */
+static size_t fixed_by(const struct group *g)
+{
+    return 2 * g->size + (g->sparse ? 0 : (g->graded ? 2 : 1) * g->size * g->size);
+}
+
+static size_t kept_by(const struct group *g)
+{
+    return 3 * g->size + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : (g->graded ? 2 : 1) * g->size * g->size);
+}
+
+struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k)
+{
+    struct box_qp *p = &m->problem;
+    const struct group *g = &op->group[k];
+    const size_t size = g->size;
+    double *fixed = op->fixed + g->fixed;
+    p->group = g;
+    p->sets = &m->sets[k];
+    p->member = op->member + g->first;
+    p->scale = fixed;
+    p->terms = (void *)(fixed + size);
+    p->r = fixed + 2 * size;
+    p->r_low = p->r + size * size;
+    p->x = m->store + g->kept;
+    p->order = (void *)(p->x + size);
+    p->at = (void *)(p->x + 2 * size);
+    p->l = p->x + 3 * size;
+    p->l_low = p->l + size * size;
+    if (g->sparse) {
+        p->sparse = (struct sparse_factor){p->l + 3 * size, p->l, p->l + size, (void *)(p->l + 2 * size)};
+    }
+    p->redundant = op->basis / size;
+    return p;
+}
+
+void tribo_memory_expect(const struct delassus *op, const struct memory *m, size_t k)
+{
+    enum { MOST = 1024 }; /* what there is beyond will come by itself */
+    const size_t fixed = fixed_by(&op->group[k]) * sizeof *op->fixed, kept = kept_by(&op->group[k]) * sizeof *m->store;
+    tribo_expect(op->fixed + op->group[k].fixed, fixed < MOST ? fixed : MOST, 0);
+    tribo_expect(m->store + op->group[k].kept, kept < MOST ? kept : MOST, 0);
+}
+
+static int allocate_problem(struct box_qp *p, size_t largest)
+{
+    enum { VECTORS = 13 };
+    const size_t s = largest + 1;
+    p->near = malloc(s * sizeof *p->near);
+    p->held = malloc(s * sizeof *p->held);
+    p->to = malloc(s);
+    p->q = calloc(VECTORS * s, sizeof *p->q);
+    if (!p->near || !p->held || !p->to || !p->q) {
+        return 0;
+    }
+    double **const vector[] = {&p->lo,   &p->hi,   &p->gradient, &p->noise, &p->low,      &p->first,
+                               &p->unit, &p->step, &p->step_low, &p->row,   &p->spare[0], &p->spare[1]};
+    for (size_t k = 0; k < VECTORS - 1; k++) {
+        *vector[k] = p->q + (k + 1) * s;
+    }
+    return 1;
+}
+
+/* A memory of nothing yet, but for room for null vectors, which is known when ranks are. */
+static int allocate_memory(struct memory *m, const struct delassus *op)
+{
+    m->solved = calloc(op->groups, 1);
+    m->solved_list = malloc(op->groups * sizeof *m->solved_list);
+    m->sets = calloc(op->groups, sizeof *m->sets);
+    m->store = calloc(op->kept_size + 1, sizeof *m->store);
+    return m->solved && m->solved_list && m->sets && m->store && allocate_problem(&m->problem, op->largest);
+}
+
+static int allocate_basis(struct memory *m, const struct delassus *op)
+{
+    m->problem.basis = malloc((op->basis + 1) * sizeof *m->problem.basis);
+    return m->problem.basis != NULL;
+}
+
+static void find_basis(struct delassus *op)
+{
+    for (size_t k = 0; k < op->groups; k++) {
+        const struct group *g = &op->group[k];
+        size_t redundant = g->nullity;
+        if (g->sparse && redundant > TRIBO_SPARSE_REDUNDANT) {
+            redundant = TRIBO_SPARSE_REDUNDANT;
+        }
+        op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
+    }
+}
+
+static int allocate_groups(struct delassus *op, size_t n, size_t groups)
+{
+    op->group_of = malloc(n * sizeof *op->group_of);
+    op->group = calloc(groups, sizeof *op->group);
+    op->member = malloc(n * sizeof *op->member);
+    op->row_sum = calloc(n, sizeof *op->row_sum);
+    return op->member && op->row_sum && op->group_of && op->group;
+}
+
+int tribo_memory_copy(struct memory *to, const struct memory *from, const struct delassus *op)
+{
+    *to = (struct memory){0};
+    to->problem.work = from->problem.work;
+    if (!op->groups) {
+        return 1;
+    }
+    if (!allocate_memory(to, op) || !allocate_basis(to, op)) {
+        return 0;
+    }
+    memcpy(to->solved, from->solved, op->groups);
+    memcpy(to->solved_list, from->solved_list, from->nsolved * sizeof *to->solved_list);
+    to->nsolved = from->nsolved;
+    memcpy(to->sets, from->sets, op->groups * sizeof *to->sets);
+    memcpy(to->store, from->store, op->kept_size * sizeof *to->store);
+    return 1;
+}
+
+/* ------------------------------------------------------------------------------------------------------ finding them */
+
+static size_t root_of(size_t *parent, size_t i)
+{
+    while (parent[i] != i) {
+        parent[i] = parent[parent[i]];
+        i = parent[i];
+    }
+    return i;
+}
+
+/* Numbers the islands in the order of their first contact: label [n]. parent [n] is workspace. */
+static size_t find_islands(const struct csr *a, size_t *label, size_t *parent)
+{
+    for (size_t i = 0; i < a->n; i++) {
+        parent[i] = i;
+    }
+    for (size_t i = 0; i < a->n; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            if (a->val[k] != 0.0) {
+                const size_t p = root_of(parent, i), q = root_of(parent, a->col[k]);
+                parent[p > q ? p : q] = p > q ? q : p;
+            }
+        }
+    }
+    size_t islands = 0;
+    for (size_t i = 0; i < a->n; i++) {
+        label[i] = parent[i] == i ? islands++ : label[root_of(parent, i)];
+    }
+    return islands;
+}
+
+/* Makes groups of the islands of more than one contact. place [n] gets where a contact stands in its group; count [islands] is
+ * workspace. */
+static int find_groups(struct delassus *op, size_t n, const size_t *label, size_t *place, size_t *count)
+{
+    size_t members = 0;
+    if (!allocate_groups(op, n, op->islands)) {
+        return 0;
+    }
+    memset(count, 0, op->islands * sizeof *count);
+    for (size_t i = 0; i < n; i++) {
+        op->group_of[i] = TRIBO_ALONE;
+        op->row_sum[i] = -1.0;
+        place[i] = count[label[i]]++;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (count[label[i]] > 1 && place[i] == 0) {
+            op->group[op->groups].size = count[label[i]];
+            op->group_of[i] = op->groups++;
+            /* the others of the group learn it from their first */
+            count[label[i]] = op->group_of[i];
+        } else if (place[i] > 0) {
+            op->group_of[i] = count[label[i]];
+        }
+    }
+    for (size_t k = 0; k < op->groups; k++) {
+        op->group[k].first = members;
+        members += op->group[k].size;
+        op->largest = op->group[k].size > op->largest ? op->group[k].size : op->largest;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (op->group_of[i] != TRIBO_ALONE) {
+            op->member[op->group[op->group_of[i]].first + place[i]] = i;
+        }
+    }
+    return 1;
+}
+
+/* The rows of a group by place, if it may be worth to keep it sparse. */
+static int make_sparse(struct group *g, const struct csr *a, const size_t *member, const size_t *place)
+{
+    struct csr own;
+    size_t entries = 0;
+    for (size_t p = 0; p < g->size; p++) {
+        entries += a->first[member[p] + 1] - a->first[member[p]];
+    }
+    if (!tribo_csr_create(&own, g->size, entries)) {
+        return 0;
+    }
+    entries = 0;
+    for (size_t p = 0; p < g->size; p++) {
+        for (size_t e = a->first[member[p]]; e < a->first[member[p] + 1]; e++) {
+            if (a->val[e] != 0.0) {
+                own.col[entries] = place[a->col[e]];
+                own.val[entries++] = a->val[e];
+            }
+        }
+        own.first[p + 1] = entries;
+    }
+    const int done = tribo_sparse_create(&g->sparse, &own);
+    tribo_csr_free(&own);
+    return done;
+}
+
+static double diagonal_of(const struct csr *a, size_t i)
+{
+    const double *entry = tribo_csr_entry(a, i, i);
+    return entry ? *entry : 0.0;
+}
+
+/* y = D^-1 |R| x, x [n] being positive. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz
+ * 1942), more closely with every call on the last y. */
+static double grow(const struct delassus *op, const struct csr *a, const double *x, double *y)
+{
+    double most = 1.0;
+    for (size_t i = 0; i < a->n; i++) {
+        double sum = 0.0;
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            sum += fabs(a->val[e]) * x[a->col[e]];
+        }
+        y[i] = greater(x[i], quotient(sum, op->diagonal[i]));
+        most = greater(most, y[i] / x[i]);
+    }
+    return most;
+}
+
+/* 0 if out of memory. */
+static int find_growth(struct delassus *op, const struct csr *a)
+{
+    enum { FEW = 4, MANY = 8 }; /* for the largest eigenvalue of contacts in a row, to 2% whatever the masses */
+    double before = HUGE_VAL, *x = malloc((2 * a->n + 1) * sizeof *x);
+    for (size_t i = 0; x && i < a->n; i++) {
+        x[i] = 1.0 / sqrt(op->diagonal[i]);
+    }
+    for (int k = 0; x && (k < FEW || (k < MANY && op->growth < 0.999 * before)); k++) {
+        before = op->growth;
+        op->growth = k % 2 ? grow(op, a, x + a->n, x) : grow(op, a, x, x + a->n);
+    }
+    free(x);
+    return x != NULL;
+}
+
+/* How much the shares J_ik^2 w_k of bodies in R_ii differ: the largest over the smallest. */
+static double spread_of(const struct inertia *from, size_t i)
+{
+    double least = HUGE_VAL, most = 0.0;
+    for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
+        const double x = fabs(from->val[e]), root = x * sqrt(from->w[from->col[e]]);
+        if (root > 0.0) {
+            least = lesser(least, root);
+            most = greater(most, root);
+        }
+    }
+    const double ratio = most > 0.0 ? quotient(most, least) : 1.0;
+    return ratio < 1e150 ? ratio * ratio : TRIBO_FAR;
+}
+
+/* Whether the group may have to be graded. Returns 0 if the masses differ too much for it: then flaw says where. */
+static int find_grading(struct group *g, const struct inertia *from, const size_t *member, struct flaw *flaw)
+{
+    double most = 1.0;
+    for (size_t c = 0; from && c < g->size; c++) {
+        const double spread = spread_of(from, member[c]);
+        if (spread > most) {
+            most = spread;
+            *flaw = (struct flaw){member[c], g->size, spread};
+        }
+    }
+    g->graded = most > GRADED_FROM && g->size <= GRADED_TO;
+    return most <= (g->graded ? GRADED_MOST : GRADED_MOST_LARGE);
+}
+
+/* Everything is free. Returns what is left, as tribo_factor_rebuild does. */
+static double factorize_all(struct box_qp *p, size_t *where)
+{
+    p->count = p->group->size;
+    for (size_t i = 0; i < p->count; i++) {
+        p->near[i] = i;
+        p->at[i] = FREE;
+    }
+    return tribo_factor_rebuild(p, where);
+}
+
+/* 1 if R as it is filled in has a pivot so small that its rounding counts. */
+static int loses_digits(struct box_qp *p)
+{
+    const struct group *g = p->group;
+    size_t where;
+    factorize_all(p, &where);
+    const double last = p->sets->rank ? p->l[(p->sets->rank - 1) * (g->size + 1)] : 1.0; /* the root of its inverse */
+    return p->sets->rank < g->size || 1.0 < GRADED_PIVOT * last * last;
+}
+
+/* R of a graded group to twice as many digits: r and r_low. */
+static void fill_graded(const struct box_qp *p, double *r, double *r_low, const struct inertia *from, const size_t *member,
+                        const size_t *place)
+{
+    const size_t size = p->group->size;
+    memset(r, 0, size * size * sizeof *r);
+    for (size_t c = 0; c < size; c++) {
+        const size_t i = member[c];
+        for (size_t e = from->rowptr[i]; e < from->rowptr[i + 1]; e++) {
+            const size_t dof = from->col[e];
+            const struct twofold x = twofold_product(from->val[e], from->w[dof]);
+            for (size_t k = from->t->first[dof]; x.hi != 0.0 && k < from->t->first[dof + 1]; k++) {
+                const size_t at = c * size + place[from->t->col[k]];
+                const struct twofold term = twofold_times(x, (struct twofold){from->t->val[k], 0.0}),
+                                     sum = twofold_add((struct twofold){r[at], r_low[at]}, term);
+                r[at] = sum.hi;
+                r_low[at] = sum.lo;
+            }
+        }
+    }
+}
+
+static void fill_group(struct delassus *op, struct memory *m, size_t k, const struct csr *a, const struct inertia *from,
+                       const size_t *place)
+{
+    struct box_qp *p = tribo_memory_problem(op, m, k);
+    struct group *g = &op->group[k];
+    double *scale = op->fixed + g->fixed, *r = scale + 2 * g->size;
+    size_t *terms = (void *)(scale + g->size);
+    const size_t span = p->member[g->size - 1] - p->member[0];
+    op->span = span > op->span ? span : op->span;
+    g->lightest = HUGE_VAL;
+    g->terms = 0;
+    for (size_t c = 0; c < g->size; c++) {
+        const size_t i = p->member[c];
+        p->at[c] = AWAY;
+        op->row_sum[i] = 0.0;
+        scale[c] = tribo_scale(op->diagonal[i]);
+        g->lightest = lesser(g->lightest, scale[c]);
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            terms[c] += a->val[e] != 0.0;
+            op->row_sum[i] += lesser(fabs(a->val[e]), TRIBO_FAR);
+            if (a->val[e] != 0.0 && !g->sparse) {
+                r[c * g->size + place[a->col[e]]] = a->val[e];
+            }
+        }
+        g->terms = terms[c] > g->terms ? terms[c] : g->terms;
+    }
+    if (g->graded) {
+        g->graded = 0;
+        g->graded = loses_digits(p);
+        if (g->graded) {
+            fill_graded(p, r, r + g->size * g->size, from, p->member, place);
+        }
+    }
+    for (size_t c = 0; c < g->size; c++) {
+        op->largest_sum = greater(op->largest_sum, op->row_sum[p->member[c]]);
+        op->most = lesser(op->most, tribo_most(p, c));
+    }
+}
+
+/* The ranks of all groups. */
+static int check_definite(struct delassus *op, struct memory *m, struct flaw *flaw)
+{
+    for (size_t k = 0; k < op->groups; k++) {
+        struct box_qp *p = tribo_memory_problem(op, m, k);
+        struct group *g = &op->group[k];
+        size_t where = 0;
+        const double left = factorize_all(p, &where);
+        const double zero = g->sparse ? TRIBO_SPARSE_ZERO : g->graded ? TRIBO_GRADED_ZERO : tribo_resolution(g->size);
+        if (fabs(left) > 16.0 * zero) {
+            *flaw = (struct flaw){p->member[where], g->size, left};
+            return TRIBO_ERR_INDEFINITE;
+        }
+        g->nullity = p->sets->dependents;
+        memset(p->at, AWAY, g->size);
+        tribo_factor_rebuild(p, NULL);
+    }
+    m->problem.work.factorizations = 0;
+    find_basis(op);
+    return TRIBO_OK;
+}
+
+static int create_groups(struct delassus *op, struct memory *m, const struct csr *a, const struct inertia *from,
+                         const size_t *place, struct flaw *flaw)
+{
+    for (size_t k = 0; k < op->groups; k++) {
+        struct group *g = &op->group[k];
+        const size_t *member = op->member + g->first;
+        if (!find_grading(g, from, member, flaw)) {
+            return TRIBO_ERR_UNSUPPORTED;
+        }
+        if (!g->graded && g->size > SPARSE_FROM && !make_sparse(g, a, member, place)) {
+            return TRIBO_ERR_MEMORY;
+        }
+        g->fixed = op->fixed_size;
+        g->kept = op->kept_size;
+        op->fixed_size += fixed_by(g);
+        op->kept_size += kept_by(g);
+    }
+    op->fixed = calloc(op->fixed_size + 1, sizeof *op->fixed);
+    if (!op->fixed || !allocate_memory(m, op)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    for (size_t k = 0; k < op->groups; k++) {
+        fill_group(op, m, k, a, from, place);
+    }
+    const int status = check_definite(op, m, flaw);
+    return status || allocate_basis(m, op) ? status : TRIBO_ERR_MEMORY;
+}
+
+int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const struct inertia *from,
+                          struct flaw *flaw)
+{
+    const size_t n = a->n;
+    int status = TRIBO_ERR_MEMORY;
+    size_t *label = malloc((n + 1) * sizeof *label), *count = malloc((n + 1) * sizeof *count),
+           *place = malloc((n + 1) * sizeof *place);
+    double *diagonal = malloc((n + 1) * sizeof *diagonal);
+    struct delassus *op = NULL;
+    *m = (struct memory){0};
+    for (size_t i = 0; diagonal && i < n; i++) {
+        diagonal[i] = diagonal_of(a, i);
+    }
+    if (label && count && place && diagonal && tribo_operator_diagonal(&op, n, diagonal)) {
+        op->islands = find_islands(a, label, place);
+        if (op->islands == n) {
+            status = TRIBO_OK;
+        } else if (find_growth(op, a) && find_groups(op, n, label, place, count)) {
+            status = create_groups(op, m, a, from, place, flaw);
+        }
+    }
+    if (status) {
+        tribo_operator_release(op);
+        tribo_memory_free(m);
+        op = NULL;
+    }
+    *created = op;
+    free(label);
+    free(count);
+    free(place);
+    free(diagonal);
+    return status;
+}

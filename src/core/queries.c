@@ -1,0 +1,149 @@
+/* What a context tells of its last call, and of itself. */
+#include <math.h>
+
+#include "context.h"
+#include "../common/simd.h"
+
+int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!ncontact) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "ncontact is NULL");
+    }
+    *ncontact = ctx->n;
+    return TRIBO_OK;
+}
+
+/* The force alone tells: only where a law holds the contact is it less than the limit. (The smooth law never reaches the limit;
+ * it counts as holding where |v| < epsilon.) */
+static inline signed char mode_of(signed char did, double f, double limit, double holds)
+{
+    const double edge = holds * limit;
+    const int open = !(limit > 0.0), stored = (f <= -edge) - (f >= edge), mode = did + (did == STORED) * stored;
+    return (signed char)(mode * !open + OPEN * open); /* no choice: that is what makes loops of it fast */
+}
+
+/* Modes take the place of what contacts did. */
+TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const double *restrict limit, double holds,
+                                  signed char *restrict did)
+{
+    for (size_t i = 0; i < n; i++) {
+        did[i] = mode_of(did[i], f[i], limit[i], holds);
+    }
+}
+
+void tribo_write_modes(tribo_context *ctx)
+{
+    for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
+        if (ctx->last.did.stored[k] != NONE_STORED || ctx->follow.chunk[k].least == 0.0) {
+            find_modes(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->set.limit + i, ctx->last.holds, ctx->last.did.of + i);
+            ctx->last.did.stored[k] = SOME_STORED;
+            ctx->last.did.all_stored = 0;
+        }
+    }
+    ctx->last.modes = ctx->last.modes == NO_MODES ? NO_MODES : MODES_WRITTEN;
+}
+
+int tribo_get_slip(const tribo_context *ctx, signed char *mode)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!mode && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "mode is NULL");
+    }
+    if (ctx->last.modes == NO_MODES) {
+        return tribo_fail(ctx, TRIBO_ERR_STATE,
+                          "no tribo_balance or tribo_step_force since the last tribo_solve_box or operator");
+    }
+    if (ctx->n) {
+        memcpy(mode, ctx->last.did.of, ctx->n);
+    }
+    if (ctx->last.modes == MODES_IN_FORCES) {
+        find_modes(ctx->n, ctx->last.f, ctx->set.limit, ctx->last.holds, mode);
+    }
+    return TRIBO_OK;
+}
+
+static size_t count_stuck(const tribo_context *ctx)
+{
+    size_t stuck = 0;
+    for (size_t i = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i++) {
+        stuck += mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->set.limit[i], ctx->last.holds) == 0;
+    }
+    for (size_t i = 0; ctx->last.modes == MODES_WRITTEN && i < ctx->n; i++) {
+        stuck += ctx->last.did.of[i] == 0;
+    }
+    return stuck;
+}
+
+int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!value) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
+    }
+    const size_t counts[] = {
+        [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
+        [TRIBO_COUNT_RANK] = ctx->last.rank,
+        [TRIBO_COUNT_ISLANDS] = ctx->op->islands,
+        [TRIBO_COUNT_SOLVES] = ctx->count.solves,
+        [TRIBO_COUNT_SKIPPED] = ctx->count.skipped,
+        [TRIBO_COUNT_FACTORIZATIONS] = ctx->memory.problem.work.factorizations,
+        [TRIBO_COUNT_UPDATES] = ctx->memory.problem.work.updates,
+        [TRIBO_COUNT_REVERSALS] = ctx->count.marks,
+        [TRIBO_COUNT_REUSED] = ctx->count.reused,
+    };
+    if (which < 0 || which >= (int)(sizeof counts / sizeof *counts)) {
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);
+    }
+    *value = counts[which];
+    return TRIBO_OK;
+}
+
+/* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
+ * 2N/epsilon, or half of it for the laws that are dampers near v = 0. The eigenvalues of that are at most the largest s_i R_ii
+ * times the largest eigenvalue of D^-1 R, for any set of contacts near stick. */
+static double max_rate(const tribo_context *ctx)
+{
+    double rate = 0.0;
+    for (size_t i = 0; i < ctx->n; i++) {
+        if (ctx->set.limit[i] > 0.0) {
+            rate = greater(rate, product(tribo_slope_of(&ctx->follow.contacts, i), ctx->op->diagonal[i]));
+        }
+    }
+    if (!ctx->set.law->uses_feq) {
+        return product(0.5 * rate, ctx->op->growth);
+    }
+    if (!ctx->set.law->relaxes) {
+        return 0.0;
+    }
+    return ctx->set.coupling == TRIBO_PARTITION ? product(rate, ctx->op->growth) : rate;
+}
+
+int tribo_get_real(const tribo_context *ctx, int which, double *value)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!value) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
+    }
+    if (which == TRIBO_REAL_RESIDUAL) {
+        *value = ctx->last.residual;
+        return TRIBO_OK;
+    }
+    if (which != TRIBO_REAL_MAX_RATE && which != TRIBO_REAL_MAX_STEP) {
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no real quantity", which);
+    }
+    const int status = tribo_need_operator(ctx);
+    if (!status) {
+        const double rate = max_rate(ctx);
+        *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
+    }
+    return status;
+}

@@ -1,0 +1,315 @@
+/* What a caller sets: law, limits, epsilon, coupling, sharing; and what follows from it. Nothing but bounds follows from limits,
+ * which change more often than everything else. */
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "context.h"
+
+/* Whether epsilon follows limits and operator. */
+static int epsilon_follows(const tribo_context *ctx)
+{
+    return ctx->set.step > 0.0 && ctx->op->diagonal;
+}
+
+/* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
+static void follow_step(tribo_context *ctx)
+{
+    const double time = quotient(ctx->set.step, ctx->set.lambda_dt);
+    for (size_t i = 0; i < ctx->n; i++) {
+        const double half = greater(product(ctx->op->diagonal[i], time), DBL_MIN);
+        ctx->set.width[i] = 2.0 * half;
+        ctx->set.rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+    }
+}
+
+static double largest_of(size_t n, const double *x)
+{
+    double largest = x[0];
+    for (size_t i = 1; i < n; i++) {
+        largest = greater(largest, x[i]);
+    }
+    return largest;
+}
+
+static void find_widths(tribo_context *ctx)
+{
+    const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
+    ctx->follow.steepest = 1.0;
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
+        ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
+    }
+}
+
+/* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
+static void cut_far(tribo_context *ctx)
+{
+    struct contacts *c = &ctx->follow.contacts;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
+    }
+    for (size_t g = 0; g < ctx->op->groups; g++) {
+        const struct box_qp *p = tribo_problem(ctx, g);
+        for (size_t k = 0; k < p->group->size; k++) {
+            ctx->follow.cut_limit[p->member[k]] = lesser(ctx->set.limit[p->member[k]], tribo_most(p, k));
+        }
+    }
+    const double *factor = c->follows ? ctx->set.width : ctx->set.rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
+    }
+    c->bound = ctx->follow.cut_limit;
+    *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
+}
+
+/* No epsilon of the chunk's contacts that are not open is larger; negative if there are none. */
+static double band_of(const struct chunk *chunk, int follows)
+{
+    if (chunk->largest == 0.0) {
+        return -1.0;
+    }
+    const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
+    return widest < TRIBO_FAR ? widest : DBL_MAX;
+}
+
+void tribo_refresh_limits(tribo_context *ctx)
+{
+    const int follows = epsilon_follows(ctx);
+    ctx->follow.largest = 0.0;
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->follow.largest = greater(ctx->follow.largest, ctx->follow.chunk[k].largest);
+        ctx->follow.chunk[k].band = band_of(&ctx->follow.chunk[k], follows);
+    }
+    ctx->follow.contacts = (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows};
+    if (ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
+        cut_far(ctx);
+    }
+    ctx->last.linearized = 0;
+    ctx->revision++;
+}
+
+void tribo_refresh(tribo_context *ctx)
+{
+    if (epsilon_follows(ctx)) {
+        follow_step(ctx);
+    }
+    find_widths(ctx);
+    tribo_refresh_limits(ctx);
+}
+
+int tribo_set_law(tribo_context *ctx, int law)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const struct law *l = tribo_law(law);
+    if (!l) {
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
+    }
+    ctx->set.law = l;
+    ctx->last.linearized = 0;
+    ctx->revision++;
+    memset(ctx->moving, 0, ctx->n);
+    return TRIBO_OK;
+}
+
+int tribo_get_law(const tribo_context *ctx, int *law)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!law) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "law is NULL");
+    }
+    *law = ctx->set.law->id;
+    return TRIBO_OK;
+}
+
+int tribo_set_limit(tribo_context *ctx, const double *limit)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_check_nonnegative(ctx, "limit", limit, ctx->n);
+    if (status) {
+        return status;
+    }
+    tribo_write_modes(ctx);
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        tribo_take_limits(n, limit + i, ctx->set.limit + i, &ctx->follow.chunk[k]);
+    }
+    tribo_refresh_limits(ctx);
+    return TRIBO_OK;
+}
+
+int tribo_set_limit_all(tribo_context *ctx, double limit)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!isfinite(limit)) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "limit = %g is not finite", limit);
+    }
+    if (limit < 0.0) {
+        return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "limit = %g is negative", limit);
+    }
+    tribo_write_modes(ctx);
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->set.limit[i] = limit;
+    }
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->follow.chunk[k].least = ctx->follow.chunk[k].largest = limit;
+    }
+    tribo_refresh_limits(ctx);
+    return TRIBO_OK;
+}
+
+int tribo_get_limit(const tribo_context *ctx, double *limit)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!limit && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "limit is NULL");
+    }
+    tribo_copy(limit, ctx->set.limit, ctx->n);
+    return TRIBO_OK;
+}
+
+int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_need_epsilon(ctx);
+    if (status) {
+        return status;
+    }
+    if (!epsilon && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "epsilon is NULL");
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        epsilon[i] = tribo_epsilon_of(&ctx->follow.contacts, i);
+    }
+    return TRIBO_OK;
+}
+
+int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_check_positive(ctx, "epsilon", epsilon, ctx->n);
+    if (status) {
+        return status;
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->set.width[i] = epsilon[i];
+        ctx->set.rate[i] = tribo_rate(epsilon[i]);
+    }
+    ctx->set.step = 0.0;
+    tribo_refresh(ctx);
+    return TRIBO_OK;
+}
+
+static int check_scalar(const tribo_context *ctx, const char *name, double x)
+{
+    if (!isfinite(x)) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, x);
+    }
+    if (x <= 0.0) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, x);
+    }
+    return TRIBO_OK;
+}
+
+int tribo_set_epsilon_all(tribo_context *ctx, double epsilon)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = check_scalar(ctx, "epsilon", epsilon);
+    if (status) {
+        return status;
+    }
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->set.width[i] = epsilon;
+        ctx->set.rate[i] = tribo_rate(epsilon);
+    }
+    ctx->set.step = 0.0;
+    tribo_refresh(ctx);
+    return TRIBO_OK;
+}
+
+int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_scalar(ctx, "dt", dt);
+    if (!status) {
+        status = check_scalar(ctx, "lambda_dt", lambda_dt);
+    }
+    if (status) {
+        return status;
+    }
+    ctx->set.step = dt;
+    ctx->set.lambda_dt = lambda_dt;
+    tribo_refresh(ctx);
+    return TRIBO_OK;
+}
+
+int tribo_set_coupling(tribo_context *ctx, int coupling)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (coupling != TRIBO_CONSISTENT && coupling != TRIBO_PARTITION) {
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
+    }
+    ctx->set.coupling = coupling;
+    ctx->last.linearized = 0;
+    ctx->revision++;
+    return TRIBO_OK;
+}
+
+int tribo_get_coupling(const tribo_context *ctx, int *coupling)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!coupling) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "coupling is NULL");
+    }
+    *coupling = ctx->set.coupling;
+    return TRIBO_OK;
+}
+
+int tribo_set_sharing(tribo_context *ctx, int sharing)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (sharing != TRIBO_SHARE_LEAST_NORM && sharing != TRIBO_SHARE_PREVIOUS) {
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST_NORM nor TRIBO_SHARE_PREVIOUS", sharing);
+    }
+    ctx->set.sharing = sharing;
+    ctx->last.linearized = 0;
+    ctx->revision++;
+    return TRIBO_OK;
+}
+
+int tribo_get_sharing(const tribo_context *ctx, int *sharing)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!sharing) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "sharing is NULL");
+    }
+    *sharing = ctx->set.sharing;
+    return TRIBO_OK;
+}

@@ -1,0 +1,251 @@
+/* The force over a time step, and the box-constrained problem for laws of the caller's own. */
+#include <float.h>
+
+#include "context.h"
+
+/* Forces of contacts that share no body. */
+TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, const double *restrict r, const double *lower,
+                                 const double *upper, double *restrict f)
+{
+    for (size_t i = 0; lower && i < n; i++) {
+        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), lower[i], upper[i]);
+    }
+    for (size_t i = 0; !lower && i < n; i++) {
+        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), -upper[i], upper[i]);
+    }
+}
+
+/* Bounds of all contacts; lower NULL: -upper. */
+struct bounds {
+    const double *lower, *upper;
+};
+
+static inline double lower_of(const struct bounds *b, size_t i)
+{
+    return b->lower ? b->lower[i] : -b->upper[i];
+}
+
+/* A call: its bounds, and how hard a contact is pulled, which is scale v. */
+struct call {
+    struct bounds b;
+    double scale;
+    const double *v;
+    int estimates; /* the pull tells something, and what limits can do against it is found from the sums of R's rows first */
+};
+
+/* Sums of rows and limits up to this make numbers of each other. */
+#define ESTIMATED 1e150
+
+/* Whether a contact is pulled harder than forces of this limit can hold it, through a row of R with this sum. */
+static inline int out_of_reach(double scale, double v, double row_sum, double limit)
+{
+    return fabs(scale * v) > row_sum * limit;
+}
+
+TRIBO_SIMD static int any_within_reach(size_t n, double scale, const double *restrict v, const double *restrict row_sum,
+                                       double largest)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t i = 0; i < n; i++) {
+        any |= out_of_reach(scale, v[i], row_sum[i], largest) ? 0 : -1;
+    }
+    return any != 0;
+}
+
+/* At least the largest limit in any group with a contact in chunk k. */
+static double largest_around(const tribo_context *ctx, size_t k)
+{
+    if (ctx->op->span >= TRIBO_CHUNK) {
+        return ctx->follow.largest;
+    }
+    const double before = k > 0 ? ctx->follow.chunk[k - 1].largest : 0.0;
+    const double behind = k + 1 < tribo_chunks(ctx->n) ? ctx->follow.chunk[k + 1].largest : 0.0;
+    return greater(ctx->follow.chunk[k].largest, greater(before, behind));
+}
+
+/* Finds the groups in which a contact may take part, chunk by chunk: in a large scene most have none. */
+static void find_candidates(tribo_context *ctx, const struct call *c)
+{
+    const struct delassus *op = ctx->op;
+    struct memory *m = &ctx->memory;
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        const double largest = largest_around(ctx, k);
+        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->scale, c->v + i, op->row_sum + i, largest))) {
+            continue;
+        }
+        for (size_t j = i; j < i + n; j++) {
+            const size_t g = op->group_of[j];
+            if (g != TRIBO_ALONE && !m->solved[g] &&
+                !(c->estimates && out_of_reach(c->scale, c->v[j], op->row_sum[j], largest))) {
+                m->solved[g] = 1;
+                m->solved_list[m->nsolved++] = g;
+            }
+        }
+    }
+}
+
+/* The limits of a group, by place, and what they are at least and at most. */
+struct limits {
+    double least, largest;
+    double *of;
+};
+
+static struct limits limits_of(const tribo_context *ctx, const struct box_qp *p)
+{
+    struct limits l = {TRIBO_FAR, 0.0, p->step};
+    for (size_t k = 0; k < p->group->size; k++) {
+        l.of[k] = ctx->follow.contacts.bound[p->member[k]];
+        l.least = lesser(l.least, l.of[k]);
+        l.largest = greater(l.largest, l.of[k]);
+    }
+    return l;
+}
+
+/* Whether friction could hold the contact at place k: limits that are all the same need no look at the row. */
+static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t k, const struct call *c, const struct limits *l)
+{
+    const double v = c->v[p->member[k]], row_sum = c->estimates ? ctx->op->row_sum[p->member[k]] : 0.0;
+    const int may = !c->estimates | !out_of_reach(c->scale, v, row_sum, l->largest);
+    const int sure = c->estimates & !out_of_reach(c->scale, v, row_sum, l->least);
+    double reach;
+    if (may == sure) {
+        return may;
+    }
+    tribo_row_dot(p, k, l->of, &reach);
+    return !(fabs(c->scale * v) > reach);
+}
+
+/* Sets the problem of a group: its contacts in the problem's order, those that take part first. Contacts whose bounds leave no
+ * choice do not, nor do those of Coulomb's law that are out of reach. */
+static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
+{
+    struct box_qp *p = tribo_problem(ctx, g);
+    const struct limits l = limits_of(ctx, p);
+    size_t behind = p->group->size;
+    p->count = 0;
+    p->far = ctx->last.far;
+    for (size_t k = 0; k < p->group->size; k++) {
+        const size_t i = p->member[k];
+        const double lo = lower_of(&c->b, i), hi = c->b.upper[i];
+        if (lo < hi && (c->b.lower || within_reach(ctx, p, k, c, &l))) {
+            p->near[p->count++] = k;
+            p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
+            p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
+            p->q[k] = cut(c->scale * c->v[i]);
+        } else {
+            p->near[--behind] = k;
+            p->x[k] = tribo_carried(ctx, p, k);
+        }
+    }
+    return p;
+}
+
+/* Solves for the contacts of a group that take part; there are some. */
+static int solve_for(tribo_context *ctx, struct box_qp *p, const struct bounds *b)
+{
+    const int status = tribo_solve_group(ctx, p);
+    for (size_t e = 0; !status && e < p->count; e++) {
+        const size_t k = p->near[e], i = p->member[k];
+        ctx->last.f[i] = clamp(p->x[k], lower_of(b, i), b->upper[i]);
+    }
+    return status;
+}
+
+/* Solves for the groups that are candidates, of which those stay that a contact takes part in; after a failure none of the rest.
+ */
+static int solve_candidates(tribo_context *ctx, const struct call *c)
+{
+    struct memory *m = &ctx->memory;
+    const size_t candidates = m->nsolved;
+    int status = TRIBO_OK;
+    m->nsolved = 0;
+    for (size_t k = 0; k < candidates; k++) {
+        const size_t g = m->solved_list[k];
+        if (k + 2 < candidates) {
+            tribo_memory_expect(ctx->op, m, m->solved_list[k + 2]);
+        }
+        struct box_qp *p = status ? NULL : pose(ctx, g, c);
+        m->solved[g] = p && p->count > 0;
+        if (m->solved[g]) {
+            m->solved_list[m->nsolved++] = g;
+            status = solve_for(ctx, p, &c->b);
+        }
+    }
+    return status;
+}
+
+/* Solves for all contacts. */
+static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
+{
+    const int estimates = !b.lower && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
+    const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, estimates};
+    tribo_store_all(ctx);
+    box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
+    if (ctx->op->groups) {
+        find_candidates(ctx, &c);
+    }
+    const int status = solve_candidates(ctx, &c);
+    if (status) {
+        return status;
+    }
+    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
+    tribo_remember_forces(ctx);
+    tribo_copy(f, ctx->last.f, ctx->n);
+    return TRIBO_OK;
+}
+
+int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!isfinite(dt)) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
+    }
+    if (dt <= 0.0) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
+    }
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    if (status) {
+        return status;
+    }
+    if (!f && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
+    }
+    tribo_begin_call(ctx);
+    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, f);
+    if (!status) {
+        ctx->last.modes = MODES_IN_FORCES;
+        ctx->last.holds = 1.0;
+    }
+    return status;
+}
+
+int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "a", a, ctx->n);
+    status = status ? status : tribo_check_finite(ctx, "lower", lower, ctx->n);
+    status = status ? status : tribo_check_finite(ctx, "upper", upper, ctx->n);
+    if (status) {
+        return status;
+    }
+    double most = 0.0;
+    for (size_t i = 0; i < ctx->n; i++) {
+        if (lower[i] > upper[i]) {
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "lower[%zu] = %g is above upper[%zu] = %g", i, lower[i], i, upper[i]);
+        }
+        most = greater(most, greater(upper[i], -lower[i]));
+    }
+    if (!f && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
+    }
+    tribo_begin_call(ctx);
+    ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
+    return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, f);
+}
