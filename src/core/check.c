@@ -73,3 +73,9 @@ int tribo_check_positive(const tribo_context *ctx, const char *name, const doubl
     }
     return TRIBO_OK;
 }
+
+int tribo_fail_without_operator(const tribo_context *ctx)
+{
+    return tribo_fail(ctx, TRIBO_ERR_STATE,
+                      "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
+}

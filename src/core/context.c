@@ -136,9 +136,3 @@ int tribo_set_owner(tribo_context *ctx, const char *owner)
     ctx->owner = owner;
     return TRIBO_OK;
 }
-
-int tribo_fail_without_operator(const tribo_context *ctx)
-{
-    return tribo_fail(ctx, TRIBO_ERR_STATE,
-                      "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");
-}

@@ -123,7 +123,7 @@ int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const do
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
 /* TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
-int tribo_fail_without_operator(const tribo_context *ctx); /* context.c */
+int tribo_fail_without_operator(const tribo_context *ctx);
 
 static inline int tribo_need_operator(const tribo_context *ctx)
 {

@@ -2,10 +2,9 @@
  * an x inside its box has no gradient, and the gradient at a bound pushes against it.
  *
  *     begin with the sets of the last call
- *     repeat  x = the solution with these sets; who is outside its box goes to the bound, who pulls away from its bound is freed
- *     until   no set changes, or patience ends
- *     if it has ended: change one contact at a time, down the objective, until no gradient pulls
- *     if contacts are redundant: x = the solution of least norm
+ *     repeat  x = the solution with these sets; what is outside its box goes to the bound, what pulls away from its bound is
+ * freed until   no set changes, or patience ends if it has ended: change one contact at a time, down the objective, until no
+ * gradient pulls if contacts are redundant: x = the solution of least norm
  *
  * Whole sets change at once at first (the primal-dual active set method of
  * Hintermueller, Ito and Kunisch 2002, SIAM J. Optim. 13, 865, doi:10.1137/S1052623401383558): usually none does, and the call

@@ -130,7 +130,12 @@ static inline double tribo_resolution(size_t n)
 }
 
 /* A power of 2 that takes a diagonal entry to between 1/2 and 2, from both sides. */
-double tribo_scale(double diagonal);
+static inline double tribo_scale(double diagonal)
+{
+    int e;
+    frexp(diagonal, &e);
+    return ldexp(1.0, -(e >= 0 ? e / 2 : -((1 - e) / 2)));
+}
 
 /* ---- factor */
 

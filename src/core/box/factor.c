@@ -8,13 +8,6 @@
 #include "../../common/real.h"
 #include "../../common/simd.h"
 
-double tribo_scale(double diagonal)
-{
-    int e;
-    frexp(diagonal, &e);
-    return ldexp(1.0, -(e >= 0 ? e / 2 : -((1 - e) / 2)));
-}
-
 void tribo_factor_add(struct box_qp *p, size_t i)
 {
     if (p->group->graded) {

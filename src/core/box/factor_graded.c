@@ -2,7 +2,7 @@
  * light body's 1/m hides the heavy one's 1/M, but for the digits that are left, and with them what friction does to it. So R, its
  * factor, and the forces of the free contacts are kept to twice as many digits, which are enough for masses that differ by 1e18.
  *
- * Changes of the stick set factorize anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in dense.c. */
+ * Changes of the stick set factorize anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in factor_dense.c. */
 #include "box.h"
 
 #include <math.h>

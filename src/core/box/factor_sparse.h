@@ -1,4 +1,4 @@
-/* What sparse.c and order.c share. */
+/* What factor_sparse.c and nested_dissection.c share. */
 #ifndef TRIBO_SPARSE_H
 #define TRIBO_SPARSE_H
 

@@ -38,8 +38,8 @@ struct delassus {
 /* What a context keeps of the groups from call to call, and its workspace. */
 struct memory {
     unsigned char *solved; /* [groups] solved for in the last call */
-    size_t *solved_list;   /* [groups] which these are, */
-    size_t nsolved;        /* so many */
+    size_t *solved_list;   /* [nsolved] which these are */
+    size_t nsolved;
     struct sets *sets;     /* [groups] */
     double *store;         /* [kept_size] group by group */
     struct box_qp problem; /* workspace of the largest group, with views of one */
