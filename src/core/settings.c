@@ -294,7 +294,8 @@ int tribo_set_sharing(tribo_context *ctx, int sharing)
         return TRIBO_ERR_NULL;
     }
     if (sharing != TRIBO_SHARE_LEAST_NORM && sharing != TRIBO_SHARE_PREVIOUS) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST_NORM nor TRIBO_SHARE_PREVIOUS", sharing);
+        return tribo_fail(ctx, TRIBO_ERR_RANGE, "sharing = %d is neither TRIBO_SHARE_LEAST_NORM nor TRIBO_SHARE_PREVIOUS",
+                          sharing);
     }
     ctx->set.sharing = sharing;
     ctx->last.linearized = 0;

@@ -34,7 +34,7 @@ void tribo_loads_free(tribo_system *sys)
     free_table(&sys->limits);
 }
 
-/* ---------------------------------------------------------------------------------------------------------------------- copies */
+/* ------------------------------------------------------------------------------------------------------------------- copies */
 
 /* A copy of the table; 0 if out of memory. */
 static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)

@@ -1,5 +1,5 @@
-/* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt < 2/omega_max.
- * Damping acts on the velocity of half a step before. */
+/* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
+ * 2/omega_max. Damping acts on the velocity of half a step before. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>

@@ -40,9 +40,9 @@ TEST(creation)
     tribo_system_destroy(sys);
 }
 
-/* Methods with fixed steps prepare at the beginning, so that nothing has happened when that fails, and nothing is allocated later.
- * Exact and event prepare what they need for contacts that stick when they first do, and GSL allocates in all steps of implicit
- * ones: where they end there is a good state, from which another run comes as close as its tolerance says. */
+/* Methods with fixed steps prepare at the beginning, so that nothing has happened when that fails, and nothing is allocated
+ * later. Exact and event prepare what they need for contacts that stick when they first do, and GSL allocates in all steps of
+ * implicit ones: where they end there is a good state, from which another run comes as close as its tolerance says. */
 TEST(advance)
 {
     const char *method = tribo_method_name(_i);

@@ -142,10 +142,10 @@ static int make_graded(tribo_system **sys, tribo_driver **drv)
 static const struct {
     const char *name;
     int (*make)(tribo_system **sys, tribo_driver **drv);
-} makers[] = {{"chain", make_chain},       {"belt", make_belt},       {"oscillator", make_oscillator}, {"full", make_full},
-              {"diagonal", make_diagonal}, {"reduced", make_reduced}, {"driver", make_driver},         {"loaded", make_loaded},
-              {"exact", make_exact},       {"coupled", make_coupled}, {"graded", make_graded},
-              {"copy", make_copy},         {"full copy", make_full_copy}};
+} makers[] = {{"chain", make_chain},        {"belt", make_belt},       {"oscillator", make_oscillator}, {"full", make_full},
+              {"diagonal", make_diagonal},  {"reduced", make_reduced}, {"driver", make_driver},         {"loaded", make_loaded},
+              {"exact", make_exact},        {"coupled", make_coupled}, {"graded", make_graded},         {"copy", make_copy},
+              {"full copy", make_full_copy}};
 
 /* Fails one allocation after the other, until there are no more. */
 TEST(failures)
