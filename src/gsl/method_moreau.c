@@ -1,6 +1,6 @@
 /* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law at the end of the step, the mean of the
- * loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for any
- * dt. */
+ * loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for
+ * any dt. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
