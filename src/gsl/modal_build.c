@@ -1,4 +1,4 @@
-#include "modal_build.h"
+#include "modal_parts.h"
 #include "../common/real.h"
 #include "normal_modes.h"
 
@@ -15,73 +15,17 @@
 /* Damping that is not more than so many times the rounding of its terms is none. */
 #define ROUNDING 8.0
 
-/* ------------------------------------------------------------------------------------------------------------ memory */
-
-/* Zeroed memory that belongs to a list. NULL if there is none left. */
-static void *take(void **list, size_t *bytes, size_t count, size_t size)
-{
-    void **block = calloc(1, sizeof *block + (count + 1) * size);
-    if (!block) {
-        return NULL;
-    }
-    *block = *list;
-    *list = block;
-    *bytes += (count + 1) * size;
-    return block + 1;
-}
-
-static void give_back(void *list)
-{
-    while (list) {
-        void *next = *(void **)list;
-        free(list);
-        list = next;
-    }
-}
-
-double *tribo_modal_keep(struct build *b, size_t count)
-{
-    return take(&b->h->memory, &b->h->bytes, count, sizeof(double));
-}
-
-size_t *tribo_modal_keep_indices(struct build *b, size_t count)
-{
-    return take(&b->h->memory, &b->h->bytes, count, sizeof(size_t));
-}
-
-unsigned char *tribo_modal_keep_bytes(struct build *b, size_t count)
-{
-    return take(&b->h->memory, &b->h->bytes, count, 1);
-}
-
-struct output *tribo_modal_keep_outputs(struct build *b, size_t count)
-{
-    return take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->output);
-}
-
-double *tribo_modal_scratch(struct build *b, size_t count)
-{
-    size_t ignored = 0;
-    return take(&b->scratch, &ignored, count, sizeof(double));
-}
-
-size_t *tribo_modal_scratch_indices(struct build *b, size_t count)
-{
-    size_t ignored = 0;
-    return take(&b->scratch, &ignored, count, sizeof(size_t));
-}
-
 void tribo_modal_free(struct modal *h)
 {
     if (h) {
-        give_back(h->memory);
+        tribo_modal_give_back(h->memory);
         free(h);
     }
 }
 
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
-static int list_rest(struct build *b, const unsigned char *holds)
+static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
     b->rest = tribo_modal_scratch_indices(b, b->sys->ncontact);
     for (size_t i = 0; b->rest && i < b->sys->ncontact; i++) {
@@ -99,31 +43,6 @@ static int list_rest(struct build *b, const unsigned char *holds)
         return 0;
     }
     return 1;
-}
-
-void tribo_modal_add_mass(const struct build *b, double factor, const double *x, double *to)
-{
-    if (b->sys->metric.rows) {
-        tribo_matrix_multiply_add(&b->sys->metric, factor, x, to);
-    } else {
-        tribo_add(to, factor, x, b->n);
-    }
-}
-
-void tribo_modal_hold(const struct build *b, const double *force, double *f)
-{
-    tribo_constraints_react(&b->ties, force, f);
-    for (size_t p = 0; p < b->h->rest; p++) {
-        f[p] /= tribo_system_weight(b->sys, b->rest[p]);
-    }
-}
-
-void tribo_modal_react(const struct build *b, double *force, double *f)
-{
-    for (size_t k = 0; k < b->h->modes; k++) {
-        tribo_add(force, -tribo_dot(b->phi + k * b->n, force, b->n), b->psi + k * b->n, b->n);
-    }
-    tribo_modal_hold(b, force, f);
 }
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
@@ -145,7 +64,7 @@ static const struct matrix *force_matrix(const tribo_system *sys, const struct m
     return done ? own : NULL;
 }
 
-static int find_forces(struct build *b)
+static int find_forces(struct modal_build *b)
 {
     const tribo_system *sys = b->sys;
     b->stiffness = force_matrix(sys, &sys->elastic, &sys->stiffness, &b->own_stiffness);
@@ -154,7 +73,7 @@ static int find_forces(struct build *b)
 }
 
 /* Factor of Z'WZ. Returns a status. */
-static int factorize_mass(struct build *b, const struct matrix *z, struct cholesky *c)
+static int factorize_mass(struct modal_build *b, const struct matrix *z, struct cholesky *c)
 {
     const size_t m = z->cols;
     double *mass = tribo_modal_scratch(b, m * m), pivot = 0.0;
@@ -172,7 +91,7 @@ static int factorize_mass(struct build *b, const struct matrix *z, struct choles
 }
 
 /* What to say of modes that were not found. */
-static int modes_failed(const struct build *b, int status, const struct doubt *doubt)
+static int modes_failed(const struct modal_build *b, int status, const struct doubt *doubt)
 {
     switch (status) {
     case TRIBO_ERR_NOT_FINITE:
@@ -191,7 +110,7 @@ static int modes_failed(const struct build *b, int status, const struct doubt *d
     }
 }
 
-static int find_modes(struct build *b)
+static int find_modes(struct modal_build *b)
 {
     struct matrix z = {0};
     struct cholesky own = {0};
@@ -217,7 +136,7 @@ static int find_modes(struct build *b)
 }
 
 /* W phi, K phi and C phi. */
-static int multiply_modes(struct build *b)
+static int multiply_modes(struct modal_build *b)
 {
     const size_t n = b->n, m = b->h->modes;
     b->psi = tribo_modal_scratch(b, m * n);
@@ -238,7 +157,7 @@ static int multiply_modes(struct build *b)
 }
 
 /* 1 if the modes share damping c [modes][modes] that is neither negligible beside their own nor rounding. */
-static int damping_couples(const struct build *b, const double *c, const double *root)
+static int damping_couples(const struct modal_build *b, const double *c, const double *root)
 {
     const size_t n = b->n, m = b->h->modes;
     for (size_t k = 0; k < m; k++) {
@@ -255,7 +174,7 @@ static int damping_couples(const struct build *b, const double *c, const double 
 }
 
 /* Damping of the modes, each by itself, or coupled. */
-static int find_damping(struct build *b)
+static int find_damping(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes;
@@ -289,7 +208,7 @@ static int find_damping(struct build *b)
     return 1;
 }
 
-static int find_drifts(struct build *b)
+static int find_drifts(struct modal_build *b)
 {
     struct modal *h = b->h;
     h->drifts = tribo_modal_keep_bytes(b, h->modes);
@@ -302,7 +221,7 @@ static int find_drifts(struct build *b)
 /* ------------------------------------------------------------------------------------------------------- structures */
 
 /* Keeps modes and belt velocities for the degrees of freedom that move. */
-static int compress(struct build *b)
+static int compress(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes, s = h->harmonics;
@@ -342,10 +261,10 @@ static int compress(struct build *b)
     return 1;
 }
 
-static int build(struct build *b, const signed char *mode, const unsigned char *holds)
+static int build(struct modal_build *b, const signed char *mode, const unsigned char *holds)
 {
     struct modal *h = b->h;
-    h->key = take(&h->memory, &h->bytes, b->sys->ncontact, 1);
+    h->key = (signed char *)tribo_modal_keep_bytes(b, b->sys->ncontact);
     for (size_t i = 0; h->key && i < b->sys->ncontact; i++) {
         h->key[i] = (signed char)((mode[i] == 0) + holds[i]);
     }
@@ -368,9 +287,9 @@ static int build(struct build *b, const signed char *mode, const unsigned char *
 
 int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *mode, const unsigned char *holds)
 {
-    struct build b = {.sys = sys, .n = sys->ndof, .h = calloc(1, sizeof *b.h)};
+    struct modal_build b = {.sys = sys, .n = sys->ndof, .h = calloc(1, sizeof *b.h)};
     int status = b.h ? build(&b, mode, holds) : TRIBO_ERR_MEMORY;
-    give_back(b.scratch);
+    tribo_modal_give_back(b.scratch);
     tribo_constraints_free(&b.ties);
     tribo_matrix_free(&b.own_stiffness);
     tribo_matrix_free(&b.own_damping);

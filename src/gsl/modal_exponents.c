@@ -1,5 +1,5 @@
 /* Exponents of the free motion in the modes. */
-#include "modal_build.h"
+#include "modal_parts.h"
 #include "../common/real.h"
 #include "eigen.h"
 
@@ -15,12 +15,12 @@
 /* So much of an exponent may be wrong. */
 #define KNOWN 1e-8
 
-static int unsupported(const struct build *b, const char *why)
+static int unsupported(const struct modal_build *b, const char *why)
 {
     return tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
 }
 
-static int exponents_decoupled(struct build *b)
+static int exponents_decoupled(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes;
@@ -109,7 +109,7 @@ static int all_known(const struct modal *h, const double *s, const double *re, c
 
 /* Exponents, and how they and eta make each other, from eigenvectors x (see eigen.h) and the inverse of the matrix that has them
  * in columns. */
-static int keep_exponents(struct build *b, const double *s, const double *re, const double *im, const double *x,
+static int keep_exponents(struct modal_build *b, const double *s, const double *re, const double *im, const double *x,
                           const double *inverse)
 {
     struct modal *h = b->h;
@@ -151,7 +151,7 @@ static int keep_exponents(struct build *b, const double *s, const double *re, co
 }
 
 /* Inverse of the matrix that has the vectors x in columns. Returns a status. */
-static int invert(const struct build *b, const double *x, double *lu, size_t *pivot, double *inverse)
+static int invert(const struct modal_build *b, const double *x, double *lu, size_t *pivot, double *inverse)
 {
     const size_t size = 2 * b->h->modes;
     for (size_t i = 0; i < size; i++) {
@@ -167,7 +167,7 @@ static int invert(const struct build *b, const double *x, double *lu, size_t *pi
     return TRIBO_OK;
 }
 
-static int exponents_coupled(struct build *b)
+static int exponents_coupled(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, size = 2 * m;
@@ -197,7 +197,7 @@ static int exponents_coupled(struct build *b)
     return status ? status : keep_exponents(b, s, re, im, x, inverse);
 }
 
-int tribo_modal_exponents(struct build *b)
+int tribo_modal_exponents(struct modal_build *b)
 {
     return b->h->coupling ? exponents_coupled(b) : exponents_decoupled(b);
 }

@@ -1,5 +1,5 @@
 /* What the motion in the modes means for contacts. */
-#include "modal_build.h"
+#include "modal_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,7 +10,7 @@
 #define NO_MOTION 1e-14
 
 /* Adds what a contact gets from position (eta) and velocity (eta') amplitudes of mode k. */
-static void output_mode(const struct build *b, struct output *w, size_t k, double position, double velocity)
+static void output_mode(const struct modal_build *b, struct output *w, size_t k, double position, double velocity)
 {
     const struct modal *h = b->h;
     const size_t m = h->modes;
@@ -30,7 +30,7 @@ static void output_mode(const struct build *b, struct output *w, size_t k, doubl
     }
 }
 
-static int create_output(struct build *b, struct output *w, size_t contact)
+static int create_output(struct modal_build *b, struct output *w, size_t contact)
 {
     const size_t p = b->h->exponents, s = b->h->harmonics, m = b->h->modes;
     double *x = tribo_modal_keep(b, 4 * p + 4 * s + m);
@@ -47,7 +47,7 @@ static double sixth_power(double x)
     return x * x * x * x * x * x;
 }
 
-static void finish_output(const struct build *b, struct output *w)
+static void finish_output(const struct modal_build *b, struct output *w)
 {
     for (size_t p = 0; p < b->h->exponents; p++) {
         w->size[p] = hypot(w->cr[p], w->ci[p]);
@@ -71,7 +71,7 @@ static double largest(const double *x, const double *y, size_t n)
 
 /* What the belts make of v_i = J_i q' - b_i, in all harmonics; what is only rounding of their motion is left out. Returns whether
  * there is anything. */
-static int output_belts(const struct build *b, struct output *w, size_t i)
+static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 {
     const struct matrix *j = &b->sys->direction;
     int any = 0;
@@ -98,7 +98,7 @@ static int output_belts(const struct build *b, struct output *w, size_t i)
 }
 
 /* v_i = J_i q' - b_i. */
-static int output_sliding(struct build *b, struct output *w, size_t i)
+static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 {
     if (!create_output(b, w, i)) {
         return 0;
@@ -118,7 +118,7 @@ static int output_sliding(struct build *b, struct output *w, size_t i)
 }
 
 /* The same of a contact that rests by itself: the modes do not move it, but its base may part from those that hold. */
-static int output_parting(struct build *b, struct output *all, size_t *used, size_t i)
+static int output_parting(struct modal_build *b, struct output *all, size_t *used, size_t i)
 {
     struct output *w = &all[*used];
     if (!create_output(b, w, i)) {
@@ -138,7 +138,7 @@ struct holding {
 };
 
 /* Mode k, with K phi_k = omega_k^2 W phi_k + J_I'f, and so with damping. */
-static void hold_mode(const struct build *b, struct holding *f, size_t k)
+static void hold_mode(const struct modal_build *b, struct holding *f, size_t k)
 {
     const struct modal *h = b->h;
     const size_t n = b->n, s = h->rest;
@@ -157,7 +157,7 @@ static void hold_mode(const struct build *b, struct holding *f, size_t k)
 }
 
 /* A harmonic load. */
-static void hold_load(const struct build *b, struct holding *f, const struct harmonic *wave)
+static void hold_load(const struct modal_build *b, struct holding *f, const struct harmonic *wave)
 {
     for (int part = 0; part < 2; part++) {
         memset(f->load, 0, b->n * sizeof *f->load);
@@ -169,7 +169,7 @@ static void hold_load(const struct build *b, struct holding *f, const struct har
 }
 
 /* Belts that move y [2][ndof], displaced by y/(i Omega), accelerated by i Omega y. */
-static void hold_motion(const struct build *b, struct holding *f, double omega, const double *const *y)
+static void hold_motion(const struct modal_build *b, struct holding *f, double omega, const double *const *y)
 {
     for (int part = 0; part < 2; part++) {
         const double turn = part ? 1.0 : -1.0;
@@ -181,7 +181,7 @@ static void hold_motion(const struct build *b, struct holding *f, double omega, 
     }
 }
 
-static void hold_harmonic(const struct build *b, struct holding *f, size_t w)
+static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t w)
 {
     const struct harmonic *wave = &b->sys->harmonic[w];
     const size_t n = b->n, s = b->h->rest;
@@ -197,7 +197,7 @@ static void hold_harmonic(const struct build *b, struct holding *f, size_t w)
     tribo_modal_react(b, f->force[1], f->wave_i + w * s);
 }
 
-static int find_holding(struct build *b, struct holding *f)
+static int find_holding(struct modal_build *b, struct holding *f)
 {
     const struct modal *h = b->h;
     const size_t n = b->n, m = h->modes, s = h->rest;
@@ -237,7 +237,7 @@ static int changes(const struct modal *h, const struct holding *f, size_t p)
 }
 
 /* Outputs of those contacts that hold and do not always carry the same. */
-static int output_held(struct build *b, struct output *all, size_t *used)
+static int output_held(struct modal_build *b, struct output *all, size_t *used)
 {
     struct modal *h = b->h;
     struct holding f;
@@ -266,7 +266,7 @@ static int output_held(struct build *b, struct output *all, size_t *used)
     return 1;
 }
 
-int tribo_modal_outputs(struct build *b)
+int tribo_modal_outputs(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t c = b->sys->ncontact;

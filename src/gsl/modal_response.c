@@ -1,5 +1,5 @@
 /* Harmonics: what they do to the modes, and the response to that. */
-#include "modal_build.h"
+#include "modal_parts.h"
 
 #include <math.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #define UNDAMPED 1e-9
 
 /* y [ndof] = velocities from the b [rest] of the contacts that hold, in which the modes have no part. */
-static void belt_velocities(const struct build *b, const double *x, double *y)
+static void belt_velocities(const struct modal_build *b, const double *x, double *y)
 {
     tribo_constraints_follow(&b->ties, x, y);
     for (size_t k = 0; k < b->h->modes; k++) {
@@ -20,7 +20,7 @@ static void belt_velocities(const struct build *b, const double *x, double *y)
 }
 
 /* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
-void tribo_modal_base_part(const struct build *b, const struct harmonic *w, int part, double *x)
+void tribo_modal_base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
 {
     for (size_t p = 0; p < b->h->rest; p++) {
         x[p] = 0.0;
@@ -33,7 +33,7 @@ void tribo_modal_base_part(const struct build *b, const struct harmonic *w, int 
 }
 
 /* Forcing of eta by each harmonic, and what the held contacts are moved by. */
-int tribo_modal_forcing(struct build *b)
+int tribo_modal_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes, count = b->sys->harmonics;
@@ -98,7 +98,7 @@ int tribo_modal_forcing(struct build *b)
 }
 
 /* Response of modes of which each has damping of its own. */
-static void respond_alone(struct build *b, size_t w)
+static void respond_alone(struct modal_build *b, size_t w)
 {
     struct modal *h = b->h;
     const double omega = b->sys->harmonic[w].omega;
@@ -116,7 +116,7 @@ static void respond_alone(struct build *b, size_t w)
 }
 
 /* Response of modes that damping couples: real and imaginary parts are the unknowns. a [2 modes][2 modes], x [2 modes]. */
-static int respond_together(struct build *b, size_t w, double *a, double *x, size_t *pivot)
+static int respond_together(struct modal_build *b, size_t w, double *a, double *x, size_t *pivot)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, size = 2 * m;
@@ -145,7 +145,7 @@ static int respond_together(struct build *b, size_t w, double *a, double *x, siz
 }
 
 /* Response of eta to the harmonics, (diag(omega^2) - Omega^2 + i Omega C~) x = g. */
-int tribo_modal_response(struct build *b)
+int tribo_modal_response(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, count = h->harmonics, size = h->coupling ? 2 * m : 0;

@@ -324,28 +324,3 @@ int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, con
     }
     return build(sys, &m);
 }
-
-/* --------------------------------------------------------------------------------------------------------------------- forces */
-
-void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to)
-{
-    if (sys->modes) {
-        for (size_t j = 0; j < sys->ndof; j++) {
-            to[j] = 0.0;
-        }
-        for (size_t i = 0; i < sys->given; i++) {
-            for (size_t j = 0; j < sys->ndof; j++) {
-                to[j] += sys->modes[i * sys->ndof + j] * force[i];
-            }
-        }
-        return;
-    }
-    memcpy(to, force, sys->ndof * sizeof *to);
-    if (sys->factor.factor) {
-        tribo_half_solve(&sys->factor, to, 1);
-        tribo_half_solve_back(&sys->factor, to, 1);
-    }
-    for (size_t i = 0; !sys->factor.factor && !sys->loads_accelerate && i < sys->ndof; i++) {
-        to[i] *= 1.0 / tribo_matrix_get(&sys->metric, i, i);
-    }
-}

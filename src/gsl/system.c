@@ -4,119 +4,35 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-static int right_hand_side(double t, const double y[], double dydt[], void *params);
-
-int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
-                       struct matrix *direction, struct matrix *response)
+int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
 {
-    tribo_system *s = calloc(1, sizeof *s);
-    int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
-    double *work = status ? NULL : calloc(6 * (ncontact + 1) + ndof, sizeof *work);
-    if (!work) {
-        tribo_system_destroy(s);
-        tribo_matrix_free(stiffness);
-        tribo_matrix_free(damping);
-        tribo_matrix_free(direction);
-        tribo_matrix_free(response);
-        return status ? status : TRIBO_ERR_MEMORY;
+    char text[200];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    return tribo_set_message(sys->contacts, status, text);
+}
+
+int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
+{
+    if (!isfinite(t)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
     }
-    s->ndof = ndof;
-    s->ncontact = ncontact;
-    s->given = ndof;
-    s->stiffness = *stiffness;
-    s->damping = *damping;
-    s->direction = *direction;
-    s->response = *response;
-    s->power = 1.0;
-    s->time = NAN;
-    s->v = work;
-    s->a = work + (ncontact + 1);
-    s->f = work + 2 * (ncontact + 1);
-    s->feq = work + 3 * (ncontact + 1);
-    s->dv_dt = work + 4 * (ncontact + 1);
-    s->given_limit = work + 5 * (ncontact + 1);
-    s->acceleration = work + 6 * (ncontact + 1);
-    s->odeiv2 = (gsl_odeiv2_system){right_hand_side, tribo_jacobian, 2 * ndof + 1, s};
-    *sys = s;
+    if (!y) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
+    }
+    for (size_t i = 0; i < 2 * sys->ndof + 1; i++) {
+        if (!isfinite(y[i])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g is not finite", i, y[i]);
+        }
+    }
     return TRIBO_OK;
 }
 
-/* What tribo_system_build does not make. 1, or 0 if out of memory. */
-static int copy_rest(tribo_system *to, const tribo_system *sys)
-{
-    tribo_destroy(to->contacts);
-    to->contacts = NULL;
-    to->power = sys->power;
-    to->revision = sys->revision;
-    to->given = sys->given;
-    to->loads_accelerate = sys->loads_accelerate;
-    memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
-    const size_t entries = sys->given * sys->ndof;
-    to->modes = sys->modes ? malloc(entries * sizeof *to->modes) : NULL;
-    to->omega = sys->omega ? malloc(sys->ndof * sizeof *to->omega) : NULL;
-    if (!to->modes != !sys->modes || !to->omega != !sys->omega) {
-        return 0;
-    }
-    if (to->modes) {
-        memcpy(to->modes, sys->modes, entries * sizeof *to->modes);
-        memcpy(to->omega, sys->omega, sys->ndof * sizeof *to->omega);
-    }
-    return tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
-           tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->metric, &sys->metric) &&
-           tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);
-}
-
-int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!copy) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "copy is NULL");
-    }
-    tribo_system *to = NULL;
-    struct matrix a[4] = {{0}};
-    const struct matrix *from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response};
-    int done = 1;
-    for (size_t k = 0; done && k < 4; k++) {
-        done = tribo_matrix_copy(&a[k], from[k]);
-    }
-    for (size_t k = 0; !done && k < 4; k++) {
-        tribo_matrix_free(&a[k]);
-    }
-    done = done && tribo_system_build(&to, sys->ndof, sys->ncontact, &a[0], &a[1], &a[2], &a[3]) == TRIBO_OK;
-    if (!done || !copy_rest(to, sys)) {
-        tribo_system_destroy(to);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degrees of freedom", sys->ndof);
-    }
-    *copy = to;
-    return TRIBO_OK;
-}
-
-void tribo_system_destroy(tribo_system *sys)
-{
-    if (!sys) {
-        return;
-    }
-    tribo_destroy(sys->contacts);
-    tribo_matrix_free(&sys->stiffness);
-    tribo_matrix_free(&sys->damping);
-    tribo_matrix_free(&sys->direction);
-    tribo_matrix_free(&sys->response);
-    tribo_loads_free(sys);
-    tribo_matrix_free(&sys->elastic);
-    tribo_matrix_free(&sys->viscous);
-    tribo_matrix_free(&sys->metric);
-    tribo_cholesky_free(&sys->factor);
-    free(sys->modes);
-    free(sys->omega);
-    free(sys->v);
-    free(sys->dense);
-    free(sys);
-}
+/* -------------------------------------------------------------------------------------------------------------------- queries */
 
 size_t tribo_system_revision(const tribo_system *sys)
 {
@@ -151,7 +67,30 @@ const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)
     return sys ? &sys->odeiv2 : NULL;
 }
 
-/* --------------------------------------------------------------------------------------------------------------------- motion */
+/* ------------------------------------------------------------------------------------------------------------------ structure */
+
+void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to)
+{
+    if (sys->modes) {
+        for (size_t j = 0; j < sys->ndof; j++) {
+            to[j] = 0.0;
+        }
+        for (size_t i = 0; i < sys->given; i++) {
+            for (size_t j = 0; j < sys->ndof; j++) {
+                to[j] += sys->modes[i * sys->ndof + j] * force[i];
+            }
+        }
+        return;
+    }
+    memcpy(to, force, sys->ndof * sizeof *to);
+    if (sys->factor.factor) {
+        tribo_half_solve(&sys->factor, to, 1);
+        tribo_half_solve_back(&sys->factor, to, 1);
+    }
+    for (size_t i = 0; !sys->factor.factor && !sys->loads_accelerate && i < sys->ndof; i++) {
+        to[i] *= 1.0 / tribo_matrix_get(&sys->metric, i, i);
+    }
+}
 
 double tribo_system_fastest(const tribo_system *sys)
 {
@@ -200,132 +139,4 @@ void tribo_system_snap(const tribo_system *sys, const signed char *loose, const 
             x[j->col[to]] = (base[i] - j->val[from] * x[j->col[from]]) / j->val[to];
         }
     }
-}
-
-void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
-{
-    const size_t n = sys->ndof;
-    tribo_system_set_time(sys, t);
-    memset(acceleration, 0, n * sizeof *acceleration);
-    tribo_system_loads(sys, 0, 0, 1.0, acceleration);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
-    }
-    memset(v, 0, sys->ncontact * sizeof *v);
-    memset(a, 0, sys->ncontact * sizeof *a);
-    if (sys->base_harmonics) {
-        tribo_system_loads(sys, 1, 0, -1.0, v);
-        tribo_system_loads(sys, 1, 1, -1.0, a);
-    }
-    tribo_matrix_multiply_add(&sys->direction, 1.0, y + n, v);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
-}
-
-/* Completes dydt from the forces. */
-static void add_forces(const tribo_system *sys, const double *y, double *dydt)
-{
-    const size_t n = sys->ndof;
-    memcpy(dydt, y + n, n * sizeof *dydt);
-    tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, dydt + n);
-    double power = 0.0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        power += sys->f[i] * sys->v[i];
-    }
-    dydt[2 * n] = -sys->power * power;
-}
-
-static int right_hand_side(double t, const double y[], double dydt[], void *params)
-{
-    tribo_system *sys = params;
-    sys->evaluations++;
-    tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
-    sys->status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
-    if (sys->status) {
-        /* a step that is too long may overflow, and a shorter one not */
-        return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
-    }
-    add_forces(sys, y, dydt);
-    return GSL_SUCCESS;
-}
-
-int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
-{
-    int law;
-    tribo_get_law(sys->contacts, &law);
-    if (law != TRIBO_QUINN_REVERSAL) {
-        right_hand_side(t, y, dydt, sys);
-        return sys->status;
-    }
-    sys->evaluations++;
-    tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
-    sys->status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, sys->f);
-    if (!sys->status) {
-        /* the forces stay: where a mark changes, the law's two forms agree */
-        sys->status = tribo_accept(sys->contacts, sys->v, sys->feq);
-        add_forces(sys, y, dydt);
-    }
-    return sys->status;
-}
-
-/* --------------------------------------------------------------------------------------------------------- queries */
-
-int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
-{
-    char text[200];
-    va_list args;
-    va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
-    va_end(args);
-    return tribo_set_message(sys->contacts, status, text);
-}
-
-int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
-{
-    if (!isfinite(t)) {
-        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
-    }
-    if (!y) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
-    }
-    for (size_t i = 0; i < 2 * sys->ndof + 1; i++) {
-        if (!isfinite(y[i])) {
-            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g is not finite", i, y[i]);
-        }
-    }
-    return TRIBO_OK;
-}
-
-/* v and a of a state, after checking it. */
-static int contacts_at(tribo_system *sys, double t, const double *y)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    const int status = tribo_system_check_state(sys, t, y);
-    if (!status) {
-        tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
-    }
-    return status;
-}
-
-int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
-{
-    int status = contacts_at(sys, t, y);
-    if (!status) {
-        status = tribo_balance(sys->contacts, sys->v, sys->a, feq, f);
-    }
-    if (!status && v) {
-        memcpy(v, sys->v, sys->ncontact * sizeof *v);
-    }
-    return status;
-}
-
-int tribo_system_accept(tribo_system *sys, double t, const double *y)
-{
-    int status = contacts_at(sys, t, y);
-    if (!status) {
-        status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL);
-    }
-    return status ? status : tribo_accept(sys->contacts, sys->v, sys->feq);
 }

@@ -117,7 +117,7 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
 /* dydt with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
 
-/* structure.c: to [ndof] = M^-1 force, force [given]. */
+/* to [ndof] = M^-1 force, force [given]. */
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to);
 
 /* jacobian.c: of odeiv2. */

@@ -1,12 +1,12 @@
-/* What is needed only while a modal structure is built, and what the parts of that share. */
-#ifndef TRIBO_MODAL_BUILD_H
-#define TRIBO_MODAL_BUILD_H
+/* What is needed only while a modal structure is built (modal_build.c), and what the parts of that share. */
+#ifndef TRIBO_MODAL_PARTS_H
+#define TRIBO_MODAL_PARTS_H
 
 #include "constraint.h"
 #include "modal.h"
 
 /* Vectors of the whole structure: [ndof], modes of it [modes][ndof]. */
-struct build {
+struct modal_build {
     tribo_system *sys;
     struct modal *h;
     size_t n;
@@ -22,30 +22,31 @@ struct build {
 };
 
 /* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
-double *tribo_modal_keep(struct build *b, size_t count);
-size_t *tribo_modal_keep_indices(struct build *b, size_t count);
-unsigned char *tribo_modal_keep_bytes(struct build *b, size_t count);
-struct output *tribo_modal_keep_outputs(struct build *b, size_t count);
-double *tribo_modal_scratch(struct build *b, size_t count);
-size_t *tribo_modal_scratch_indices(struct build *b, size_t count);
+double *tribo_modal_keep(struct modal_build *b, size_t count);
+size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count);
+unsigned char *tribo_modal_keep_bytes(struct modal_build *b, size_t count);
+struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count);
+double *tribo_modal_scratch(struct modal_build *b, size_t count);
+size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
+void tribo_modal_give_back(void *list);
 
 /* to [ndof] += factor W x. */
-void tribo_modal_add_mass(const struct build *b, double factor, const double *x, double *to);
+void tribo_modal_add_mass(const struct modal_build *b, double factor, const double *x, double *to);
 
 /* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. The other one takes out of force first what moves the
  * modes instead. */
-void tribo_modal_hold(const struct build *b, const double *force, double *f);
-void tribo_modal_react(const struct build *b, double *force, double *f);
+void tribo_modal_hold(const struct modal_build *b, const double *force, double *f);
+void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
 /* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
-void tribo_modal_base_part(const struct build *b, const struct harmonic *w, int part, double *x);
+void tribo_modal_base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x);
 
 /* The exponents of eta. Returns a status. */
-int tribo_modal_exponents(struct build *b);
+int tribo_modal_exponents(struct modal_build *b);
 
 /* These return 0 if out of memory, or with the status of another failure in b. */
-int tribo_modal_forcing(struct build *b);
-int tribo_modal_response(struct build *b);
-int tribo_modal_outputs(struct build *b);
+int tribo_modal_forcing(struct modal_build *b);
+int tribo_modal_response(struct modal_build *b);
+int tribo_modal_outputs(struct modal_build *b);
 
 #endif

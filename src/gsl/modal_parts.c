@@ -1,0 +1,85 @@
+#include "modal_parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Zeroed memory that belongs to a list. NULL if there is none left. */
+static void *take(void **list, size_t *bytes, size_t count, size_t size)
+{
+    void **block = calloc(1, sizeof *block + (count + 1) * size);
+    if (!block) {
+        return NULL;
+    }
+    *block = *list;
+    *list = block;
+    *bytes += (count + 1) * size;
+    return block + 1;
+}
+
+void tribo_modal_give_back(void *list)
+{
+    while (list) {
+        void *next = *(void **)list;
+        free(list);
+        list = next;
+    }
+}
+
+double *tribo_modal_keep(struct modal_build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, sizeof(double));
+}
+
+size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, sizeof(size_t));
+}
+
+unsigned char *tribo_modal_keep_bytes(struct modal_build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, 1);
+}
+
+struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->output);
+}
+
+double *tribo_modal_scratch(struct modal_build *b, size_t count)
+{
+    size_t ignored = 0;
+    return take(&b->scratch, &ignored, count, sizeof(double));
+}
+
+size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
+{
+    size_t ignored = 0;
+    return take(&b->scratch, &ignored, count, sizeof(size_t));
+}
+
+/* ----------------------------------------------------------------------------------------------------- the contacts that hold */
+
+void tribo_modal_add_mass(const struct modal_build *b, double factor, const double *x, double *to)
+{
+    if (b->sys->metric.rows) {
+        tribo_matrix_multiply_add(&b->sys->metric, factor, x, to);
+    } else {
+        tribo_add(to, factor, x, b->n);
+    }
+}
+
+void tribo_modal_hold(const struct modal_build *b, const double *force, double *f)
+{
+    tribo_constraints_react(&b->ties, force, f);
+    for (size_t p = 0; p < b->h->rest; p++) {
+        f[p] /= tribo_system_weight(b->sys, b->rest[p]);
+    }
+}
+
+void tribo_modal_react(const struct modal_build *b, double *force, double *f)
+{
+    for (size_t k = 0; k < b->h->modes; k++) {
+        tribo_add(force, -tribo_dot(b->phi + k * b->n, force, b->n), b->psi + k * b->n, b->n);
+    }
+    tribo_modal_hold(b, force, f);
+}
