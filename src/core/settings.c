@@ -64,7 +64,6 @@ static void cut_far(tribo_context *ctx)
     *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
 }
 
-/* No epsilon of the chunk's contacts that are not open is larger; negative if there are none. */
 static double band_of(const struct chunk *chunk, int follows)
 {
     if (chunk->largest == 0.0) {

@@ -1,5 +1,5 @@
 /* What a friction law is: a record in the registry, a force and its derivatives for one contact, and the loops over
- * contacts that the TRIBO_LAW macro makes of them. To add a law, write one file like quinn.c, and add its record to
+ * contacts that TRIBO_LAW_LOOPS makes of them. To add a law, write one file like quinn.c, and add its record to
  * registry.c and its number to tribo.h. */
 #ifndef TRIBO_LAW_H
 #define TRIBO_LAW_H
@@ -46,8 +46,8 @@ static inline struct contacts tribo_contacts_from(const struct contacts *c, size
     return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i, c->moving + i, c->follows};
 }
 
-/* The same of one contact, of which follows is not known to the compiler: factors are chosen, not products, which might overflow
- * where they are not wanted. */
+/* epsilon and slope of contact i, where follows is no constant: factors are chosen, not products, which might overflow where they
+ * are not wanted. */
 static inline double tribo_epsilon_of(const struct contacts *c, size_t i)
 {
     return greater(c->width[i] * (c->follows ? c->bound[i] : 1.0), c->follows ? DBL_MIN : 0.0);

@@ -1,4 +1,4 @@
-/* The operator as it is kept: the islands of R's graph, found once, with room for everything that is ever done with them. */
+/* The operator as it is kept, the connected parts of R's graph found once; and the memory of contexts that goes with it. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
