@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "normal_modes.h"
-#include "structure.h"
+#include "model.h"
 
 /* What to say of modes that were not found. */
 static int modes_failed(const struct model *m, int status, const struct doubt *doubt)

@@ -1,31 +1,9 @@
 /* Linear structures from their matrices: as they are if the mass matrix is diagonal, and solved for the accelerations if not. */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_blas.h>
-
-#include "hidden.h"
-#include "structure.h"
-
-int tribo_model_fail(const struct model *m, int status, const char *format, ...)
-{
-    if (m->message && m->size) {
-        va_list args;
-        va_start(args, format);
-        vsnprintf(m->message, m->size, format, args);
-        va_end(args);
-    }
-    return status;
-}
-
-int tribo_model_no_memory(const struct model *m)
-{
-    return tribo_model_fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degrees of freedom and %zu contacts", m->ndof,
-                            m->ncontact);
-}
+#include "model.h"
 
 static int check(const struct model *m)
 {
@@ -50,21 +28,6 @@ static int check(const struct model *m)
     return TRIBO_OK;
 }
 
-int tribo_model_factorize(const struct model *m, struct cholesky *c)
-{
-    size_t where;
-    double pivot;
-    switch (tribo_cholesky_create(c, &m->mass, &where, &pivot)) {
-    case TRIBO_OK:
-        return TRIBO_OK;
-    case TRIBO_ERR_INDEFINITE:
-        return tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "mass is not positive definite: pivot %g at degree of freedom %zu",
-                                pivot, where);
-    default:
-        return tribo_model_no_memory(m);
-    }
-}
-
 /* --------------------------------------------------------------------------------------------------------------- the two ways */
 
 /* J' [ndof][ncontact], dense. */
@@ -77,50 +40,6 @@ static double *transposed_direction(const struct model *m)
         }
     }
     return x;
-}
-
-/* Whether R, of a system whose mass matrix is not diagonal, tells all that it should. */
-static int check_operator(const struct model *m, const tribo_system *sys, const double *r)
-{
-    const size_t n = sys->ndof;
-    const struct matrix *b = &sys->response;
-    struct hidden where;
-    double *x = calloc(m->ncontact * n + 1, sizeof *x);
-    for (size_t d = 0; x && d < n; d++) {
-        for (size_t k = b->first[d]; k < b->first[d + 1]; k++) {
-            x[b->col[k] * n + d] = b->val[k];
-        }
-    }
-    const int hidden = x ? tribo_hidden(&sys->direction, &sys->metric, x, r, &where) : -1;
-    free(x);
-    if (hidden < 0) {
-        return tribo_model_no_memory(m);
-    }
-    return hidden ? tribo_model_fail(
-                        m, TRIBO_ERR_UNSUPPORTED,
-                        "mass: contact %zu touches bodies of which one is %g times as light; make the mass matrix diagonal",
-                        where.contact, where.spread)
-                  : TRIBO_OK;
-}
-
-int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z, size_t n)
-{
-    const size_t c = m->ncontact;
-    double *r = calloc(c * c + 1, sizeof *r);
-    if (!r) {
-        return tribo_model_no_memory(m);
-    }
-    if (c) {
-        gsl_matrix_view rv = gsl_matrix_view_array(r, c, c), zv = gsl_matrix_view_array(z, n, c);
-        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &zv.matrix, &zv.matrix, 0.0, &rv.matrix);
-    }
-    int status = m->nmode ? TRIBO_OK : check_operator(m, sys, r);
-    if (!status) {
-        status = tribo_set_operator_dense(sys->contacts, r);
-        status = status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
-    }
-    free(r);
-    return status;
 }
 
 /* The system owns the mass matrix and its factor from now on. */

@@ -10,7 +10,7 @@
  * Hintermueller, Ito and Kunisch 2002, SIAM J. Optim. 13, 865, doi:10.1137/S1052623401383558): usually none does, and the call
  * costs a solve and a look at the gradient. That method may cycle; then a primal active set method finishes, in which every
  * change lowers the objective. Either ends only when the gradient shows that x is the solution, up to its own rounding. */
-#include "box.h"
+#include "box_qp.h"
 
 #include <float.h>
 #include <math.h>

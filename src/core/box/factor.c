@@ -1,5 +1,5 @@
 /* The factor of R over the free contacts of a group, and the rows of R, whichever way they are kept. */
-#include "box.h"
+#include "box_qp.h"
 
 #include <float.h>
 #include <math.h>

@@ -3,7 +3,7 @@
  * factorized anew with the largest pivots first, which is where the rank is decided.
  *
  * Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk. */
-#include "box.h"
+#include "box_qp.h"
 
 #include <math.h>
 #include <string.h>

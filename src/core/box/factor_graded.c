@@ -3,7 +3,7 @@
  * factor, and the forces of the free contacts are kept to twice as many digits, which are enough for masses that differ by 1e18.
  *
  * Changes of the stick set factorize anew. Row k of l holds l_k0, ... l_k,k-1 and 1/l_kk, as in factor_dense.c. */
-#include "box.h"
+#include "box_qp.h"
 
 #include <math.h>
 #include <string.h>

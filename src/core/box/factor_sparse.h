@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include "box.h"
+#include "box_qp.h"
 #include "../../common/csr.h"
 
 #define NONE SIZE_MAX

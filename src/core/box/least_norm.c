@@ -4,7 +4,7 @@
  * It is where the objective |x|^2 is least in the box along the null space of R over the contacts that have no gradient. That
  * takes a primal active set method once more: basis holds the null space, its first vectors the directions in which the contacts
  * at a bound do not move. */
-#include "box.h"
+#include "box_qp.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The linear system of the partition coupling, R x + q = 0 over the near contacts, all of them free: the solution of least norm,
  * or, where there is none, the least-squares one. */
-#include "box.h"
+#include "box_qp.h"
 
 #include <float.h>
 #include <math.h>

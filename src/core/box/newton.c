@@ -1,6 +1,6 @@
 /* The gradient of a group's problem, what of it may be rounding, and Newton's step over the free contacts that takes it to zero.
  */
-#include "box.h"
+#include "box_qp.h"
 
 #include <float.h>
 #include <math.h>
@@ -70,4 +70,10 @@ void tribo_box_begin(struct box_qp *p, int bounded)
     for (size_t e = 0; p->twofold && e < p->count; e++) {
         p->pull = greater(p->pull, fabs(p->q[p->near[e]]));
     }
+}
+
+double tribo_box_moved(struct box_qp *p, size_t i)
+{
+    const double x = p->twofold ? tribo_graded_move(p, i, 1.0) : p->x[i] + p->step[i];
+    return p->far ? tribo_cut(p, i, x) : cut(x);
 }

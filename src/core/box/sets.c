@@ -1,6 +1,6 @@
 /* The stick sets of a group: which contacts are free and which at a bound, how they change and with them the factor, and how much
  * gradient a contact may have before it changes its place. */
-#include "box.h"
+#include "box_qp.h"
 
 #include <float.h>
 #include <math.h>

@@ -262,11 +262,7 @@ void tribo_box_gradients(struct box_qp *p, int first);
 void tribo_box_newton(struct box_qp *p);
 
 /* Returns where the step takes x. */
-static inline double tribo_box_moved(struct box_qp *p, size_t i)
-{
-    const double x = p->twofold ? tribo_graded_move(p, i, 1.0) : p->x[i] + p->step[i];
-    return p->far ? tribo_cut(p, i, x) : cut(x);
-}
+double tribo_box_moved(struct box_qp *p, size_t i);
 
 /* Whether the gradient of the independent x is at most so many times its rounding. */
 static inline int tribo_box_settled(const struct box_qp *p, double noises)

@@ -1,6 +1,6 @@
 /* A structure on its way from the caller's matrices to a system. */
-#ifndef TRIBO_STRUCTURE_H
-#define TRIBO_STRUCTURE_H
+#ifndef TRIBO_MODEL_H
+#define TRIBO_MODEL_H
 
 #include "system.h"
 
