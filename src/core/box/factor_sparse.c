@@ -3,6 +3,11 @@
  * or leaves changes its row and column of L, and what lies behind it on the way to the root of the elimination tree (Davis and
  * Hager 2005, SIAM J. Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
  *
+ *     all anew     for k in the order: row k of L by elimination with the rows before it; what is left is its pivot, in D
+ *     k enters     row k so; column k from R and those rows; L D L' -= pivot times the square of column k, behind k
+ *     k leaves     L D L' += pivot times the square of column k, behind k; row and column k become zero
+ *     += a w w'    for j on the way from k to the root: a new pivot and column j, and w without what column j takes of it
+ *
  * "Place" is where a contact stands in its group, "position" where it stands in the order of elimination. */
 #include "factor_sparse.h"
 
