@@ -36,6 +36,7 @@
 !>   TRBNAM(IH, NAME, IERR)                          NAME of the law
 !>   TRBGLW(IH, LAW, IERR)                                                             LAW
 !>   TRBLIM(IH, N, FMUN, IERR)                       FMUN(N) limits mu*N >= 0
+!>   TRBNLD(IH, N, FMU, FN, IERR)                    FMU(N) >= 0, FN(N) normal loads   the limits FMU*max(FN, 0)
 !>   TRBLM1(IH, FMUN, IERR)                          FMUN one for all
 !>   TRBGLM(IH, N, FMUN, IERR)                                                         FMUN(N)
 !>   TRBEPS(IH, N, EPS, IERR)                        EPS(N) > 0
@@ -418,6 +419,18 @@ subroutine trblim(ih, n, fmun, ierr)
   call find(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%set_limit(fmun(:n), ierr)
 end subroutine trblim
+
+subroutine trbnld(ih, n, fmu, fn, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: fmu(*), fn(*)
+  integer, intent(out) :: ierr
+  type(tribo_context), pointer :: c
+
+  call find(ih, c, ierr, n)
+  if (ierr == TRIBO_OK) call c%set_normal_load(fmu(:n), fn(:n), ierr)
+end subroutine trbnld
 
 subroutine trblm1(ih, fmun, ierr)
   use tribo_fixed

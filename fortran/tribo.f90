@@ -100,6 +100,7 @@ module tribo
     procedure :: get_law
     procedure, private :: set_limit_each, set_limit_all
     generic :: set_limit => set_limit_each, set_limit_all
+    procedure :: set_normal_load
     procedure :: get_limit
     procedure, private :: set_epsilon_each, set_epsilon_all
     generic :: set_epsilon => set_epsilon_each, set_epsilon_all
@@ -232,6 +233,13 @@ module tribo
       real(c_double), intent(in) :: limit(*)
       integer(c_int) :: status
     end function c_set_limit
+
+    function c_set_normal_load(ctx, mu, load) result(status) bind(c, name='tribo_set_normal_load')
+      import :: c_ptr, c_double, c_int
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in) :: mu(*), load(*)
+      integer(c_int) :: status
+    end function c_set_normal_load
 
     function c_set_limit_all(ctx, limit) result(status) bind(c, name='tribo_set_limit_all')
       import :: c_ptr, c_double, c_int
@@ -709,6 +717,21 @@ contains
     if (w%status == TRIBO_OK) w%status = c_set_limit(w%ctx, limit)
     call finish(w, stat, errmsg)
   end subroutine set_limit_each
+
+  !> The limits that normal loads give, mu*max(load, 0): where a load is 0 or negative the contact has lifted off.
+  subroutine set_normal_load(this, mu, load, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: mu(:), load(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    call expect_size(w, 'mu', mu, w%n)
+    call expect_size(w, 'load', load, w%n)
+    if (w%status == TRIBO_OK) w%status = c_set_normal_load(w%ctx, mu, load)
+    call finish(w, stat, errmsg)
+  end subroutine set_normal_load
 
   subroutine set_limit_all(this, limit, stat, errmsg)
     class(tribo_context), intent(inout) :: this

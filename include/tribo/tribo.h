@@ -197,6 +197,10 @@ TRIBO_API int tribo_set_limit(tribo_context *ctx, const double *limit);
 TRIBO_API int tribo_set_limit_all(tribo_context *ctx, double limit);
 TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);
 
+/* The limits that normal loads give: limit = mu max(load, 0). mu [n] in, finite and >= 0; load [n] in, finite: where it is 0 or
+ * negative the contact has lifted off, and is open. Returns as tribo_set_limit; limits beyond 1e300 are cut to it. */
+TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *load);
+
 /* Velocity scale of the regularized laws. epsilon [n] in, > 0, in units of v. */
 TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
 TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);

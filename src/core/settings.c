@@ -144,6 +144,29 @@ int tribo_set_limit(tribo_context *ctx, const double *limit)
     return TRIBO_OK;
 }
 
+int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *load)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = tribo_check_nonnegative(ctx, "mu", mu, ctx->n);
+    status = status ? status : tribo_check_finite(ctx, "load", load, ctx->n);
+    if (status) {
+        return status;
+    }
+    tribo_write_modes(ctx);
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        double limit[TRIBO_CHUNK];
+        for (size_t j = 0; j < n; j++) {
+            limit[j] = product(greater(load[i + j], 0.0), mu[i + j]);
+        }
+        tribo_take_limits(n, limit, ctx->set.limit + i, &ctx->follow.chunk[k]);
+    }
+    tribo_refresh_limits(ctx);
+    return TRIBO_OK;
+}
+
 int tribo_set_limit_all(tribo_context *ctx, double limit)
 {
     if (!ctx) {

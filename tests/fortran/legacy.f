@@ -97,6 +97,9 @@ C     Where things begin in W and IWORK
       CALL CMPT('TRBMSG', TEXT)
       CALL SETTIN(IH)
       CALL QUERY(IH)
+      CALL TRBNLD(IH, N, W(LE), W(LF), IERR)
+      CALL CMPI('TRBNLD', IERR)
+      CALL SETTIN(IH)
       CALL TRBLIM(IH, N, W(LF), IERR)
       CALL CMPI('TRBLIM', IERR)
       CALL TRBEPS(IH, N, W(LE), IERR)
@@ -529,6 +532,8 @@ C     A number of contacts that is not that of the handle
 C     Values
       CALL TRBLIM(IH, N, NEG, IERR)
       CALL WANTED('TRBLIM', IH, IERR, 3, 'limit(3) = -1 is negative')
+      CALL TRBNLD(IH, N, NEG, X, IERR)
+      CALL WANTED('TRBNLD', IH, IERR, 3, 'mu(3) = -1 is negative')
       CALL TRBLM1(IH, -2D0, IERR)
       CALL WANTED('TRBLM1', IH, IERR, 3, 'limit = -2 is negative')
       CALL TRBMSG(IH, SAYS, IERR)

@@ -188,6 +188,8 @@ void scene_play(void)
     put_text(tribo_message(c));
     settings(c);
     queries(c);
+    put_one(tribo_set_normal_load(c, scene_epsilon, scene_limit));
+    settings(c);
     put_one(tribo_set_limit(c, scene_limit));
     put_one(tribo_set_epsilon(c, scene_epsilon));
     settings(c);

@@ -446,6 +446,47 @@ TEST(messages)
     tribo_destroy(c);
 }
 
+/* limit = mu max(load, 0), and nothing changes on an error. */
+TEST(normal_loads)
+{
+    enum { N = 300 };
+    double mu[N], load[N], got[N], f[N], v[N], a[N];
+    struct random g = random_of(1);
+    tribo_context *c = create(N);
+    for (size_t i = 0; i < N; i++) {
+        mu[i] = i % 7 ? uniform(&g, 0.0, 1.0) : 0.0;
+        load[i] = i % 5 ? uniform(&g, -1.0, 2.0) : 0.0;
+        v[i] = 1.0;
+        a[i] = 0.0;
+        got[i] = 1.0;
+    }
+    assert_ok(tribo_set_operator_diagonal(c, got));
+    assert_ok(tribo_set_normal_load(c, mu, load));
+    assert_ok(tribo_get_limit(c, got));
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+    for (size_t i = 0; i < N; i++) {
+        assert_exact(got[i], mu[i] * fmax(load[i], 0.0));
+        assert_exact(f[i], -got[i]);
+    }
+    mu[260] = -0.5;
+    assert_status(tribo_set_normal_load(c, mu, load), TRIBO_ERR_NEGATIVE);
+    assert_says(tribo_message(c), "mu[260] = -0.5 is negative");
+    mu[260] = 0.5;
+    load[3] = NAN;
+    assert_status(tribo_set_normal_load(c, mu, load), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_message(c), "load[3]");
+    assert_status(tribo_set_normal_load(c, NULL, load), TRIBO_ERR_NULL);
+    assert_status(tribo_set_normal_load(c, mu, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_set_normal_load(NULL, mu, load), TRIBO_ERR_NULL);
+    assert_ok(tribo_get_limit(c, f));
+    assert_all_exact(f, got, N);
+    mu[3] = load[3] = 1e200;
+    assert_ok(tribo_set_normal_load(c, mu, load));
+    assert_ok(tribo_get_limit(c, f));
+    assert_close(f[3], 1e300, 1e285);
+    tribo_destroy(c);
+}
+
 /* Another number after every call that sets something, and the same after others, and after calls that fail. */
 TEST(revisions)
 {
@@ -486,4 +527,4 @@ TEST(revisions)
 
 TEST_MAIN("context", {defaults, 1}, {no_operator, 1}, {owned_operator, 1}, {settings, 1}, {epsilon_step, 1},
           {epsilon_step_without_division, 1}, {open_contacts, 24}, {opening_contacts, 1}, {no_contacts, 1}, {no_feq, 2},
-          {clones, 1}, {versions, 1}, {texts_of_statuses, 1}, {messages, 1}, {revisions, 1})
+          {clones, 1}, {versions, 1}, {texts_of_statuses, 1}, {messages, 1}, {normal_loads, 1}, {revisions, 1})
