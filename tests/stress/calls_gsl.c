@@ -7,7 +7,7 @@
  * with libFuzzer, from the project's folder:
  *
  *     clang -std=c99 -g -O1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all -DTRIBO_FUZZER -Iinclude \
- *         tests/stress/calls_gsl.c src/core/[a-z]*.c src/gsl/[a-z]*.c -lgsl -lgslcblas -lm -o /tmp/calls_gsl &&
+ *         tests/stress/calls_gsl.c $(find src -name '*.c') -lgsl -lgslcblas -lm -o /tmp/calls_gsl &&
  *         /tmp/calls_gsl -max_total_time=600 /tmp tests/stress/corpus_gsl
  *
  * New strings go to the first folder. */

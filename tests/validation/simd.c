@@ -1,4 +1,4 @@
-/* Numbers that every kernel of src/simd.h has a part in, to the last bit: the same program with the variants for several
+/* Numbers that every kernel of src/common/simd.h has a part in, to the last bit: the same program with the variants for several
  * instruction sets and without any must print the same. */
 #include <stdio.h>
 #include <stdlib.h>
