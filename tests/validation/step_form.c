@@ -431,7 +431,7 @@ TEST(synchronous)
 
 /* ---------------------------------------------------------------------------------------------------------------- tables */
 
-/* The closed forms of tests/validation/event.c: load 0, 2, 0 at t = 0, 2, 4 on limit 1; and limit 2, 0, 0 at t = 0, 2, 3 under load 1. */
+/* Closed forms as in the suite event: load 0, 2, 0 at t = 0, 2, 4 on limit 1; and limit 2, 0, 0 at t = 0, 2, 3 under load 1. */
 TEST(tables)
 {
     const double time[] = {0.0, 2.0, 4.0}, value[] = {0.0, 2.0, 0.0}, limit_time[] = {0.0, 2.0, 3.0}, limit[] = {2.0, 0.0, 0.0};
