@@ -233,26 +233,9 @@ int tribo_driver_real(const tribo_driver *drv, int which, double *value)
 
 /* ------------------------------------------------------------------------------------------------------------- states */
 
-/* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
-TRIBO_SIMD static int all_finite(const double *x, size_t n)
-{
-    enum { SUMS = 8 };
-    double sum[SUMS] = {0.0};
-    size_t i = 0;
-    for (; i + SUMS <= n; i += SUMS) {
-        for (size_t k = 0; k < SUMS; k++) {
-            sum[k] += x[i + k] - x[i + k];
-        }
-    }
-    for (; i < n; i++) {
-        sum[0] += x[i] - x[i];
-    }
-    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
-}
-
 int tribo_driver_check(tribo_driver *drv, const double *y)
 {
-    if (all_finite(y, tribo_system_dimension(drv->sys))) {
+    if (tribo_dense_finite(y, tribo_system_dimension(drv->sys))) {
         return TRIBO_OK;
     }
     size_t i = 0;

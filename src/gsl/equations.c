@@ -154,17 +154,10 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->given = sys->given;
     to->loads_accelerate = sys->loads_accelerate;
     memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
-    const size_t entries = sys->given * sys->ndof;
-    to->modes = sys->modes ? malloc(entries * sizeof *to->modes) : NULL;
-    to->omega = sys->omega ? malloc(sys->ndof * sizeof *to->omega) : NULL;
-    if (!to->modes != !sys->modes || !to->omega != !sys->omega) {
-        return 0;
-    }
-    if (to->modes) {
-        memcpy(to->modes, sys->modes, entries * sizeof *to->modes);
-        memcpy(to->omega, sys->omega, sys->ndof * sizeof *to->omega);
-    }
-    return tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
+    int done = 1;
+    to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);
+    to->omega = tribo_copy_of(sys->omega, sys->ndof, sizeof *to->omega, &done);
+    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
            tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->metric, &sys->metric) &&
            tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);
 }

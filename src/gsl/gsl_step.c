@@ -43,15 +43,6 @@ struct gsl_step {
     signed char *mode; /* [2][ncontact] what contacts do where the step begins; workspace */
 };
 
-static double largest(const double *x, size_t n)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        most = greater(most, fabs(x[i]));
-    }
-    return most;
-}
-
 /* ------------------------------------------------------------------------------------------------------------- memory */
 
 struct request {
@@ -129,8 +120,8 @@ static int passes_a_change(const struct gsl_step *g, double part)
 static void leave_out_rounding(const struct gsl_step *g, const double *y, double *slope)
 {
     const size_t n = g->sys->ndof;
-    const double way = largest(y, n) + g->h * largest(y + n, n);
-    const double size[] = {way, way / g->h, fabs(y[2 * n]) + way * largest(g->sys->f, g->sys->ncontact)};
+    const double way = tribo_largest(y, n) + g->h * tribo_largest(y + n, n);
+    const double size[] = {way, way / g->h, fabs(y[2 * n]) + way * tribo_largest(g->sys->f, g->sys->ncontact)};
     for (size_t i = 0; i <= 2 * n; i++) {
         const double least = NEGLIGIBLE * lesser(g->tolerance[i], ROUNDING * size[i / n]);
         slope[i] = fabs(slope[i]) * g->h < least ? 0.0 : slope[i];
@@ -197,7 +188,7 @@ static int is_regular(struct gsl_step *g)
     const size_t count = g->kind->type == &gsl_odeiv2_step_msbdf && order < g->kind->matrices ? order : g->kind->matrices;
     for (size_t i = 0; i < count && g->h != g->regular; i++) {
         fill_matrix(g, g->kind->c[i] * g->h);
-        if (largest(g->matrix, size * size) > LARGEST_ENTRY || !(tribo_lu_create(g->matrix, size, g->pivot) > 0.0) ||
+        if (tribo_largest(g->matrix, size * size) > LARGEST_ENTRY || !(tribo_lu_create(g->matrix, size, g->pivot) > 0.0) ||
             !pivots_are_sure(g->matrix, size)) {
             return 0;
         }

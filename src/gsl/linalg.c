@@ -1,4 +1,5 @@
 #include "linalg.h"
+#include "../common/real.h"
 #include "../common/simd.h"
 
 #include <math.h>
@@ -28,13 +29,30 @@ void tribo_add(double *to, double factor, const double *x, size_t n)
     }
 }
 
-int tribo_dense_finite(const double *x, size_t n)
+double tribo_largest(const double *x, size_t n)
 {
-    double sum = 0.0;
+    double most = 0.0;
     for (size_t i = 0; i < n; i++) {
-        sum += 0.0 * x[i];
+        most = greater(most, fabs(x[i]));
     }
-    return sum == 0.0;
+    return most;
+}
+
+/* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
+TRIBO_SIMD int tribo_dense_finite(const double *x, size_t n)
+{
+    enum { SUMS = 8 };
+    double sum[SUMS] = {0.0};
+    size_t i = 0;
+    for (; i + SUMS <= n; i += SUMS) {
+        for (size_t k = 0; k < SUMS; k++) {
+            sum[k] += x[i + k] - x[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        sum[0] += x[i] - x[i];
+    }
+    return sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7])) == 0.0;
 }
 
 /* c += f[0] b + f[1] (b + n) + ..., four rows of b of length n. */
@@ -78,24 +96,13 @@ void tribo_cholesky_free(struct cholesky *c)
     memset(c, 0, sizeof *c);
 }
 
-/* count times size bytes, or NULL for NULL; *done becomes 0 if out of memory. */
-static void *copy_of(const void *from, size_t count, size_t size, int *done)
-{
-    void *to = from ? malloc(count * size + 1) : NULL;
-    if (to) {
-        memcpy(to, from, count * size);
-    }
-    *done &= to || !from;
-    return to;
-}
-
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
 {
     int done = 1;
     c->n = from->n;
-    c->factor = copy_of(from->factor, from->n * from->n, sizeof *c->factor, &done);
-    c->order = copy_of(from->order, from->n, sizeof *c->order, &done);
-    c->root = copy_of(from->root, from->n, sizeof *c->root, &done);
+    c->factor = tribo_copy_of(from->factor, from->n * from->n, sizeof *c->factor, &done);
+    c->order = tribo_copy_of(from->order, from->n, sizeof *c->order, &done);
+    c->root = tribo_copy_of(from->root, from->n, sizeof *c->root, &done);
     return done;
 }
 

@@ -4,8 +4,9 @@
 
 #include "matrix.h"
 
-/* x'y; to += factor x; 1 if no x is an infinity or a NaN. All [n]. */
+/* x'y; the largest |x_i|; to += factor x; 1 if no x is an infinity or a NaN. All [n]. */
 double tribo_dot(const double *x, const double *y, size_t n);
+double tribo_largest(const double *x, size_t n);
 void tribo_add(double *to, double factor, const double *x, size_t n);
 int tribo_dense_finite(const double *x, size_t n);
 

@@ -39,48 +39,33 @@ void tribo_loads_free(tribo_system *sys)
 /* A copy of the table; 0 if out of memory. */
 static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
 {
+    int done = 1;
     t->knots = knots;
-    t->time = malloc((knots + 1) * sizeof *t->time);
-    t->value = malloc((knots * columns + 1) * sizeof *t->value);
-    if (!t->time || !t->value) {
-        return 0;
-    }
-    memcpy(t->time, time, knots * sizeof *time);
-    memcpy(t->value, value, knots * columns * sizeof *value);
-    return 1;
+    t->time = tribo_copy_of(time, knots, sizeof *t->time, &done);
+    t->value = tribo_copy_of(value, knots * columns, sizeof *t->value, &done);
+    return done;
 }
 
 static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
 {
-    const size_t bytes = from->count * sizeof *from->cosine;
+    int done = 1;
     *to = *from;
-    to->index = malloc(from->count * sizeof *to->index + 1);
-    to->cosine = malloc(bytes + 1);
-    to->sine = malloc(bytes + 1);
-    if (!to->index || !to->cosine || !to->sine) {
-        return 0;
-    }
-    memcpy(to->index, from->index, from->count * sizeof *to->index);
-    memcpy(to->cosine, from->cosine, bytes);
-    memcpy(to->sine, from->sine, bytes);
-    return 1;
+    to->index = tribo_copy_of(from->index, from->count, sizeof *to->index, &done);
+    to->cosine = tribo_copy_of(from->cosine, from->count, sizeof *to->cosine, &done);
+    to->sine = tribo_copy_of(from->sine, from->count, sizeof *to->sine, &done);
+    return done;
 }
 
 /* With so many columns; pattern [ndof], if there is one. */
 static int copy_table(struct table *to, const struct table *from, size_t columns, size_t ndof)
 {
+    int done = 1;
     *to = (struct table){0};
-    if (!from->knots) {
-        return 1;
+    if (from->knots) {
+        done = create_table(to, from->knots, columns, from->time, from->value);
+        to->pattern = tribo_copy_of(from->pattern, ndof, sizeof *to->pattern, &done);
     }
-    if (!create_table(to, from->knots, columns, from->time, from->value)) {
-        return 0;
-    }
-    to->pattern = from->pattern ? malloc(ndof * sizeof *to->pattern) : NULL;
-    if (to->pattern) {
-        memcpy(to->pattern, from->pattern, ndof * sizeof *to->pattern);
-    }
-    return to->pattern || !from->pattern;
+    return done;
 }
 
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
@@ -134,12 +119,17 @@ static void follow_limits(tribo_system *sys)
     sys->ours += sys->seen - before;
 }
 
+/* An angle so small has the cosine 1 and is its own sine. */
+#define TINY_ANGLE 1e-8
+
 /* The harmonic at t + low. What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
 static void turn(struct harmonic *h, double t, double low)
 {
     const double angle = h->omega * t,
                  rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
-    const double c = cos(angle), s = sin(angle), x = cos(rest), y = sin(rest);
+    const double c = cos(angle), s = sin(angle);
+    const int tiny = fabs(rest) < TINY_ANGLE;
+    const double x = tiny ? 1.0 : cos(rest), y = tiny ? rest : sin(rest);
     h->cos_t = c * x - s * y;
     h->sin_t = s * x + c * y;
 }

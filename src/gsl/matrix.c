@@ -118,6 +118,16 @@ int tribo_matrix_identity(struct matrix *a, size_t n)
     return speed_up(a);
 }
 
+void *tribo_copy_of(const void *from, size_t count, size_t size, int *done)
+{
+    void *to = from ? malloc(count * size + 1) : NULL;
+    if (to) {
+        memcpy(to, from, count * size);
+    }
+    *done &= to || !from;
+    return to;
+}
+
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
 {
     if (!from->first) {
@@ -350,6 +360,17 @@ double *tribo_matrix_to_dense(const struct matrix *a)
     for (size_t i = 0; dense && i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             dense[i * a->cols + a->col[k]] = a->val[k];
+        }
+    }
+    return dense;
+}
+
+double *tribo_matrix_transpose_to_dense(const struct matrix *a)
+{
+    double *dense = calloc(a->rows * a->cols + 1, sizeof *dense);
+    for (size_t i = 0; dense && i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            dense[a->col[k] * a->rows + i] = a->val[k];
         }
     }
     return dense;

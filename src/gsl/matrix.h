@@ -23,6 +23,10 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
 int tribo_matrix_identity(struct matrix *a, size_t n);
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
+
+/* A copy of count things of so many bytes, NULL for NULL. *done becomes 0 if out of memory. */
+void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);
+
 void tribo_matrix_free(struct matrix *a);
 
 /* y += factor A x. */
@@ -43,6 +47,9 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
 
 /* The entries [rows][cols], or NULL if out of memory; the caller frees them. */
 double *tribo_matrix_to_dense(const struct matrix *a);
+
+/* The same of the transpose: [cols][rows]. */
+double *tribo_matrix_transpose_to_dense(const struct matrix *a);
 
 /* Multiplies row i by factor[i]. 1, or 0 if out of memory. */
 int tribo_matrix_scale_rows(struct matrix *a, const double *factor);

@@ -152,15 +152,6 @@ static int expand(struct event *e, double t, const double *y)
     return TRIBO_OK;
 }
 
-static double largest(const double *x, size_t n)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        most = greater(most, fabs(x[i]));
-    }
-    return most;
-}
-
 /* The error that a step may have in something of this size: not less than its rounding. */
 static double wanted(const tribo_driver *drv, double size)
 {
@@ -173,11 +164,11 @@ static double step_length(const struct event *e)
     const struct stick_slip *m = &e->events.stick_slip;
     const tribo_driver *drv = e->drv;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
-    const double q = wanted(drv, largest(e->q, n)), u = wanted(drv, largest(e->u, n)), d = wanted(drv, fabs(e->d[0]));
+    const double q = wanted(drv, tribo_largest(e->q, n)), u = wanted(drv, tribo_largest(e->u, n)), d = wanted(drv, fabs(e->d[0]));
     const double most = e->fastest > 0.0 ? 0.5 * (double)(e->order + 1) / e->fastest : HUGE_VAL;
     double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
-        double term = greater(largest(e->q + k * n, n) / q, greater(largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
+        double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
             /* forces of contacts at rest to the same part of their limit, or of what it becomes */
             const double limit = m->limit[i] + (m->limit_rate[i] != 0.0 ? fabs(m->limit_rate[i]) * lesser(most, DBL_MAX) : 0.0);
@@ -252,7 +243,7 @@ static double parts_of_velocity(const struct event *e, size_t i, double h)
         lever += fabs(j->val[d]);
     }
     for (size_t k = 0; k <= e->order; k++) {
-        size += lever * largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
+        size += lever * tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
         power *= h;
     }
     return size;

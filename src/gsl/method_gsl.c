@@ -149,21 +149,12 @@ static double longest(const struct adaptive *a, const tribo_driver *drv)
     return h;
 }
 
-static double largest(const double *x, size_t n)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        most = greater(most, fabs(x[i]));
-    }
-    return most;
-}
-
 /* Displacements, velocities and the energy, each relative to the largest of their kind. A status: no step is short enough for an
  * error below rounding. */
 static int find_tolerance(const struct adaptive *a, tribo_driver *drv, double t, const double *y)
 {
     const size_t n = drv->sys->ndof, dimension = 2 * n + 1;
-    const double q = drv->abstol + drv->reltol * largest(y, n), u = drv->abstol + drv->reltol * largest(y + n, n);
+    const double q = drv->abstol + drv->reltol * tribo_largest(y, n), u = drv->abstol + drv->reltol * tribo_largest(y + n, n);
     for (size_t d = 0; d < n; d++) {
         a->tolerance[d] = q;
         a->tolerance[n + d] = lesser(u, a->cap[d]);

@@ -159,7 +159,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
         return status;
     }
     free(m->response);
-    m->response = calloc(c * n + 1, sizeof *m->response);
+    m->response = tribo_matrix_transpose_to_dense(&sys->response);
     double *r = calloc(c * c + 1, sizeof *r);
     if (!m->contacts && tribo_create(&m->contacts, c)) {
         m->contacts = NULL;
@@ -167,11 +167,6 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
     if (!m->response || !r || !m->contacts) {
         free(r);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
-    }
-    for (size_t d = 0; d < n; d++) {
-        for (size_t k = sys->response.first[d]; k < sys->response.first[d + 1]; k++) {
-            m->response[sys->response.col[k] * n + d] = sys->response.val[k];
-        }
     }
     for (size_t j = 0; j < c; j++) {
         double *column = m->response + j * n;

@@ -50,15 +50,6 @@ int tribo_modal_motion_reserve(struct modal_motion *x)
 
 /* ------------------------------------------------------------------------------------------------------------------- later on */
 
-static double dot(const double *x, const double *y, size_t n)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
-
 /* (e^{delta tau} - 1)/delta. */
 static void ramp_up(double dr, double di, double tau, double *re, double *im)
 {
@@ -392,7 +383,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     }
     for (size_t k = 0; k < m; k++) {
         if (h->omega2[k] != 0.0) {
-            x->off[k] -= (h->coupling ? dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
+            x->off[k] -= (h->coupling ? tribo_dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
         }
     }
     for (size_t k = 0; k < m; k++) {
@@ -413,8 +404,8 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
             x->zr[p] = h->ar[p] * q + h->br[p] * u;
             x->zi[p] = h->ai[p] * q + h->bi[p] * u;
         } else {
-            x->zr[p] = dot(h->ar + p * m, x->now, m) + dot(h->br + p * m, x->work, m);
-            x->zi[p] = dot(h->ai + p * m, x->now, m) + dot(h->bi + p * m, x->work, m);
+            x->zr[p] = tribo_dot(h->ar + p * m, x->now, m) + tribo_dot(h->br + p * m, x->work, m);
+            x->zi[p] = tribo_dot(h->ai + p * m, x->now, m) + tribo_dot(h->bi + p * m, x->work, m);
         }
     }
 }

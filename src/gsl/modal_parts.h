@@ -38,9 +38,6 @@ void tribo_modal_add_mass(const struct modal_build *b, double factor, const doub
 void tribo_modal_hold(const struct modal_build *b, const double *force, double *f);
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
-/* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
-void tribo_modal_base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x);
-
 /* The exponents of eta. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);
 

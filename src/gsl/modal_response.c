@@ -20,7 +20,7 @@ static void belt_velocities(const struct modal_build *b, const double *x, double
 }
 
 /* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
-void tribo_modal_base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
+static void base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
 {
     for (size_t p = 0; p < b->h->rest; p++) {
         x[p] = 0.0;
@@ -60,7 +60,7 @@ int tribo_modal_forcing(struct modal_build *b)
             }
         }
         for (int part = 0; wave->moves_base && part < 2; part++) {
-            tribo_modal_base_part(b, wave, part, x);
+            base_part(b, wave, part, x);
             belt_velocities(b, x, y[part]);
         }
         for (int part = 0; wave->moves_base && part < 2; part++) {

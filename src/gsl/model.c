@@ -42,15 +42,8 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c)
 /* Whether R, of a system whose mass matrix is not diagonal, tells all that it should. */
 static int check_operator(const struct model *m, const tribo_system *sys, const double *r)
 {
-    const size_t n = sys->ndof;
-    const struct matrix *b = &sys->response;
     struct hidden where;
-    double *x = calloc(m->ncontact * n + 1, sizeof *x);
-    for (size_t d = 0; x && d < n; d++) {
-        for (size_t k = b->first[d]; k < b->first[d + 1]; k++) {
-            x[b->col[k] * n + d] = b->val[k];
-        }
-    }
+    double *x = tribo_matrix_transpose_to_dense(&sys->response);
     const int hidden = x ? tribo_hidden(&sys->direction, &sys->metric, x, r, &where) : -1;
     free(x);
     if (hidden < 0) {

@@ -21,15 +21,6 @@ struct lanczos {
     double *alpha, *beta;                    /* [MOST_VECTORS] */
 };
 
-static double dot(const double *x, const double *y, size_t n)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < n; i++) {
-        sum += x[i] * y[i];
-    }
-    return sum;
-}
-
 static void apply_metric(const tribo_system *sys, const double *x, double *y)
 {
     if (sys->metric.rows == 0) {
@@ -70,7 +61,7 @@ static int symmetric_damping(struct lanczos *l)
         memset(l->next, 0, l->n * sizeof *l->next);
         tribo_matrix_multiply_add(&sys->damping, 1.0, k ? l->v : l->before, l->next);
         apply_metric(sys, l->next, l->w_next);
-        sum[k] = dot(k ? l->before : l->v, l->w_next, l->n);
+        sum[k] = tribo_dot(k ? l->before : l->v, l->w_next, l->n);
         for (size_t i = 0; i < l->n; i++) {
             size += fabs(l->w_next[i]);
         }
@@ -115,12 +106,12 @@ static int extend(struct lanczos *l, size_t k, double size)
 {
     const size_t n = l->n;
     apply(l, l->v, l->next);
-    l->alpha[k] = dot(l->wv, l->next, n);
+    l->alpha[k] = tribo_dot(l->wv, l->next, n);
     for (size_t i = 0; i < n; i++) {
         l->next[i] -= l->alpha[k] * l->v[i] + (k ? l->beta[k - 1] * l->before[i] : 0.0);
     }
     apply_metric(l->sys, l->next, l->w_next);
-    const double square = dot(l->next, l->w_next, n);
+    const double square = tribo_dot(l->next, l->w_next, n);
     l->beta[k] = square > 0.0 ? sqrt(square) : 0.0;
     if (!(l->beta[k] > 1e-13 * size)) {
         return 0;
@@ -139,7 +130,7 @@ static double iterate(struct lanczos *l)
     double value = 0.0, last = -HUGE_VAL, size = 0.0;
     scatter(l->v, l->n, 3);
     apply_metric(l->sys, l->v, l->wv);
-    const double length = sqrt(dot(l->v, l->wv, l->n));
+    const double length = sqrt(tribo_dot(l->v, l->wv, l->n));
     for (size_t i = 0; i < l->n; i++) {
         l->v[i] /= length;
         l->wv[i] /= length;

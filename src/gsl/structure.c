@@ -30,18 +30,6 @@ static int check(const struct model *m)
 
 /* --------------------------------------------------------------------------------------------------------------- the two ways */
 
-/* J' [ndof][ncontact], dense. */
-static double *transposed_direction(const struct model *m)
-{
-    double *x = calloc(m->ndof * m->ncontact + 1, sizeof *x);
-    for (size_t i = 0; x && i < m->ncontact; i++) {
-        for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
-            x[m->direction.col[k] * m->ncontact + i] = m->direction.val[k];
-        }
-    }
-    return x;
-}
-
 /* The system owns the mass matrix and its factor from now on. */
 static void give_mass(struct model *m, tribo_system *sys, struct cholesky *c)
 {
@@ -59,7 +47,7 @@ static int build_diagonal(struct model *m, tribo_system **sys)
     if (status) {
         return status;
     }
-    double *inverse = malloc(n * sizeof *inverse), *entries = transposed_direction(m);
+    double *inverse = malloc(n * sizeof *inverse), *entries = tribo_matrix_transpose_to_dense(&m->direction);
     struct matrix b = {0};
     status = inverse && entries && tribo_matrix_from_dense(&b, n, m->ncontact, entries) ? TRIBO_OK : tribo_model_no_memory(m);
     free(entries);
@@ -108,7 +96,7 @@ static int build_solved(struct model *m, tribo_system **sys)
     if (status) {
         return status;
     }
-    double *z = transposed_direction(m), *x = transposed_direction(m);
+    double *z = tribo_matrix_transpose_to_dense(&m->direction), *x = tribo_matrix_transpose_to_dense(&m->direction);
     struct matrix b = {0}, ak = {0}, ac = {0};
     int done = z && x && solve_matrix(&c, &m->stiffness, &ak) && (!m->damping.rows || solve_matrix(&c, &m->damping, &ac));
     if (done && m->ncontact) {

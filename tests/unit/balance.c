@@ -223,15 +223,6 @@ TEST(partition_is_consistent_unsaturated)
     }
 }
 
-/* Contacts 0 and 1 are the same, contact 2 pulls on both; all stuck. */
-static const struct problem twins = {
-    .n = 3,
-    .r = {2.0, 2.0, 1.0, 2.0, 2.0, 1.0, 1.0, 1.0, 1.0},
-    .limit = {5.0, 5.0, 5.0},
-    .epsilon = {0.1, 0.1, 0.1},
-    .v = {0.0, 0.0, 0.0},
-};
-
 TEST(partition_redundant_in_range)
 {
     struct problem p = twins;

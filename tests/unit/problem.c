@@ -145,3 +145,11 @@ tribo_context *problem_chain(size_t n, size_t islands, int coupling)
     free(val);
     return c;
 }
+
+const struct problem twins = {
+    .n = 3,
+    .r = {2.0, 2.0, 1.0, 2.0, 2.0, 1.0, 1.0, 1.0, 1.0},
+    .limit = {5.0, 5.0, 5.0},
+    .epsilon = {0.1, 0.1, 0.1},
+    .v = {0.0, 0.0, 0.0},
+};

@@ -45,4 +45,7 @@ double law_force(int law, double v, double feq, double limit, double epsilon);
 size_t count_of(const tribo_context *c, int which);
 double real_of(const tribo_context *c, int which);
 
+/* Contacts 0 and 1 are the same, contact 2 pulls on both; all stuck. */
+extern const struct problem twins;
+
 #endif

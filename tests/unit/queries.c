@@ -8,14 +8,6 @@ struct answer {
     double feq[LARGEST], f[LARGEST];
 };
 
-static const struct problem twins = {
-    .n = 3,
-    .r = {2.0, 2.0, 1.0, 2.0, 2.0, 1.0, 1.0, 1.0, 1.0},
-    .limit = {5.0, 5.0, 5.0},
-    .epsilon = {0.1, 0.1, 0.1},
-    .v = {0.0, 0.0, 0.0},
-};
-
 TEST(modes)
 {
     struct random g = random_of(_i);
