@@ -5,7 +5,8 @@
  * As a program of its own: calls_core [-n <strings>] [-s <seed>] [<file>...] runs the strings in the files, and so many random
  * ones. With libFuzzer, in the root of the tree: clang -g -O1 -fsanitize=fuzzer,address,undefined -DTRIBO_FUZZER -Iinclude
  * tests/stress/calls_core.c $(find src/common src/core -name '*.c') -lm
- *   ./a.out tests/stress/corpus */
+ *   ./a.out /tmp/new tests/stress/corpus
+ * New strings go to the first folder. */
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
