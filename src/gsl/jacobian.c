@@ -98,9 +98,9 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
     memset(sys->a, 0, m * sizeof *sys->a);
     memset(df_dt, 0, m * sizeof *df_dt);
-    tribo_system_loads(sys, 0, 1, 1.0, d.load);
-    tribo_system_loads(sys, 1, 1, -1.0, sys->dv_dt);
-    tribo_system_loads(sys, 1, 2, -1.0, sys->a);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, d.load);
+    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, sys->dv_dt);
+    tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
     multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
     multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
