@@ -58,7 +58,7 @@ module tribo_gsl
     procedure :: clone => clone_system
     procedure, private :: linear_dense, linear_sparse
     generic :: linear => linear_dense, linear_sparse
-    procedure :: add_load, add_base_motion, add_load_table
+    procedure :: add_load, add_base_motion, add_load_table, add_limit
     procedure :: clear_loads
     procedure :: set_limit_table, set_damping_ratio
     procedure :: get_frequencies, expand
@@ -184,6 +184,13 @@ module tribo_gsl
       real(c_double), value :: omega
       integer(c_int) :: status
     end function c_add_base_motion
+
+    function c_add_limit(sys, omega, cosine, sine) result(status) bind(c, name='tribo_system_add_limit')
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: sys, cosine, sine
+      real(c_double), value :: omega
+      integer(c_int) :: status
+    end function c_add_limit
 
     function c_clear_loads(sys) result(status) bind(c, name='tribo_system_clear_loads')
       import :: c_int, c_ptr
@@ -660,6 +667,26 @@ contains
     call finish(w, stat, errmsg)
   end subroutine add_base_motion
 
+  !> Adds a harmonic to the limits, limit(t) = max(0, ... + cosine*cos(omega*t) + sine*sin(omega*t)), e.g. of a normal load that
+  !! changes: mu times it. At 0 the contact has lifted off. What is set in the context, or the table's, is what they are added to.
+  subroutine add_limit(this, omega, cosine, sine, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    real(dp), intent(in) :: omega
+    real(dp), intent(in), optional, contiguous, target :: cosine(:), sine(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(held_system), pointer :: held
+    type(work) :: w
+    type(c_ptr) :: at(2)
+
+    call find_system(this, held, w)
+    at = c_null_ptr
+    if (present(cosine)) call find_input(w, 'cosine', cosine, w%n, at(1))
+    if (present(sine)) call find_input(w, 'sine', sine, w%n, at(2))
+    if (w%status == TRIBO_OK) w%status = c_add_limit(held%sys, omega, at(1), at(2))
+    call finish(w, stat, errmsg)
+  end subroutine add_limit
+
   !> Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay.
   subroutine clear_loads(this, stat, errmsg)
     class(tribo_system), intent(inout) :: this
@@ -691,8 +718,8 @@ contains
   end subroutine add_load_table
 
   !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside, instead of
-  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends: limits are again those that
-  !> the context had before.
+  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends, and harmonics of the limits
+  !> do: limits are again those that the context had before.
   subroutine set_limit_table(this, time, limit, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: time(:), limit(:,:)

@@ -128,21 +128,26 @@ static void find_given_limits(tribo_system *sys)
     memcpy(sys->put_limit, sys->v, bytes);
 }
 
+void tribo_system_put_limits(tribo_system *sys, double later)
+{
+    const size_t before = tribo_revision(sys->contacts);
+    tribo_system_limits(sys, sys->put_limit, sys->feq);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        sys->put_limit[i] = clamp(sys->put_limit[i] + later * sys->feq[i], 0.0, DBL_MAX);
+    }
+    tribo_set_limit(sys->contacts, sys->put_limit);
+    sys->seen = tribo_revision(sys->contacts);
+    sys->ours += sys->seen - before;
+}
+
 /* Makes the limits of the context those of the time set. */
 static void follow_limits(tribo_system *sys)
 {
     if (sys->seen != tribo_revision(sys->contacts)) {
         find_given_limits(sys);
     }
-    const size_t before = tribo_revision(sys->contacts);
     sys->limits.at = knot_at(&sys->limits, sys->time);
-    tribo_system_limits(sys, sys->put_limit, sys->a);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        sys->put_limit[i] = clamp(sys->put_limit[i], 0.0, DBL_MAX);
-    }
-    tribo_set_limit(sys->contacts, sys->put_limit);
-    sys->seen = tribo_revision(sys->contacts);
-    sys->ours += sys->seen - before;
+    tribo_system_put_limits(sys, 0.0);
 }
 
 /* An angle so small has the cosine 1 and is its own sine. */

@@ -22,15 +22,15 @@ struct event {
     double tolerance; /* relative */
     double fastest;   /* bound on the frequencies of the motion */
     size_t revision;
-    double tau, length;    /* where go() was; that of the step, and what bounds hold for */
-    double *q, *u;         /* [order + 1][ndof] coefficients of the powers of time */
-    double *watch;         /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
-    double *limit;         /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
-    size_t terms;          /* so many rows of them are not zero */
-    double *d;             /* [order + 1] dissipated energy */
-    double *size, *bend;   /* [ncontact] bounds of what is watched, and of its sixth derivative; */
+    double tau, length;              /* where go() was; that of the step, and what bounds hold for */
+    double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
+    double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
+    double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
+    size_t terms;                    /* so many rows of them are not zero */
+    double *d;                       /* [order + 1] dissipated energy */
+    double *size, *bend;             /* [ncontact] bounds of what is watched, and of its sixth derivative; */
     double *limit_size, *limit_bend; /* [ncontact] the same of limits */
-    double *cosine, *sine; /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
+    double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
 };
 

@@ -47,8 +47,8 @@ struct modal {
     double *rr, *ri;           /* eta = Re(r z), coupled only: [modes][exponents] */
     size_t *owner;             /* the mode of an exponent, if not coupled (then r = 1) */
 
-    size_t given, harmonics; /* as many as the system has, and in its order; and with those of single contacts after them */
-    struct forcing *forcing; /* [harmonics] */
+    size_t given, harmonics;   /* as many as the system has, and in its order; and with those of single contacts after them */
+    struct forcing *forcing;   /* [harmonics] */
     double *gr, *gi, *xr, *xi; /* [harmonics][modes] forcing and response of eta */
     double *yr, *yi;           /* [given][moving] velocities from the belts that hold */
     double *y0;                /* [moving] the same from belts of constant speed */

@@ -19,11 +19,11 @@ struct modal_motion {
     double *wr, *wi, *w1r, *w1i, *w2r, *w2i; /* [exponents] z and its derivatives at tau */
     double *growth, *growth6;                /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
     size_t room;
-    double *cos_t, *sin_t, *cos_0, *sin_0;   /* [harmonics] at t0 + tau, at t0; of contacts times the direction of the force */
-    double *now, *work;                      /* [modes] eta and eta' at tau; workspace */
-    double *dq;                              /* [ndof] by how much q has changed at tau */
-    double *start, *ramp;                    /* [ncontact] velocity of a sliding contact, as far as it is linear in time */
-    double longest;                          /* so long do bounds hold */
+    double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] at t0 + tau, at t0; of contacts times the direction of the force */
+    double *now, *work;                    /* [modes] eta and eta' at tau; workspace */
+    double *dq;                            /* [ndof] by how much q has changed at tau */
+    double *start, *ramp;                  /* [ncontact] velocity of a sliding contact, as far as it is linear in time */
+    double longest;                        /* so long do bounds hold */
 };
 
 /* 1, or 0 if out of memory. tribo_modal_motion_free takes what failed too. */

@@ -100,6 +100,9 @@ int tribo_system_limits_vary(const tribo_system *sys);
 /* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 
+/* Tells the context the limits of the time set, and what their rates make of them in a time so much later. */
+void tribo_system_put_limits(tribo_system *sys, double later);
+
 /* By how much harmonics change the limit of contact i at most; 0 for one that they leave alone. */
 double tribo_system_swing(const tribo_system *sys, size_t i);
 

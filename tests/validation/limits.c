@@ -350,8 +350,8 @@ TEST(methods_agree)
 /* The steppers of GSL, on an oscillator that sticks, slips and flies. */
 TEST(steppers)
 {
-    static const char *const all[] = {"rk2",    "rk4",    "rkf45",  "rkck",  "rk8pd",  "rk1imp",
-                                      "rk2imp", "rk4imp", "bsimp",  "msbdf", "msadams"};
+    static const char *const all[] = {"rk2",    "rk4",    "rkf45", "rkck",  "rk8pd",  "rk1imp",
+                                      "rk2imp", "rk4imp", "bsimp", "msbdf", "msadams"};
     double want[3] = {0.0};
     for (size_t k = 0; k <= COUNT(all); k++) {
         double y[3] = {0.0};
