@@ -138,9 +138,10 @@ static void expand_energy(struct event *e)
     const size_t c = e->sys->ncontact;
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
-        for (size_t i = 0; i < c; i++) {
-            for (size_t j = 0; (m->slip[i] == 1 || m->slip[i] == -1) && j <= k && j < e->terms; j++) {
-                power += m->slip[i] * e->limit[j * c + i] * e->watch[(k - j) * c + i];
+        for (size_t j = 0; j <= k && j < e->terms; j++) {
+            const double *limit = e->limit + j * c, *v = e->watch + (k - j) * c;
+            for (size_t i = 0; i < c; i++) {
+                power += m->slip[i] == 1 || m->slip[i] == -1 ? m->slip[i] * limit[i] * v[i] : 0.0;
             }
         }
         e->d[k + 1] = e->sys->power * power / (double)(k + 1);
@@ -299,6 +300,7 @@ static void set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const double h = e->length;
+    const int varies = e->terms > 1;
     tribo_events_clear_guards(&e->events);
     find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
     find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
@@ -310,10 +312,11 @@ static void set_guards(struct event *e)
             e->size[i] = parts_of_velocity(e, i, h);
             tribo_events_guard_part(&e->events, i, g);
         }
-        g.limit = 1.0;
+        g.limit = varies;
+        g.offset = varies ? 0.0 : m->limit[i];
         if (m->holds[i] && e->size[i] >= 2.0 * e->limit[i] - e->limit_size[i]) {
             tribo_events_guard_stick(&e->events, i, g);
-        } else if (limit_tells(m, i, e->terms > 1)) {
+        } else if (limit_tells(m, i, varies)) {
             tribo_events_guard_limit(&e->events, i, g);
         }
     }

@@ -92,25 +92,20 @@ static void move_to(void *motion, double tau, const double *from, double *to)
     tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
 }
 
-static void add_sample(struct sample *to, double factor, struct sample x)
-{
-    to->g += factor * x.g;
-    to->d += factor * x.d;
-    to->e += factor * x.e;
-}
-
 /* A guard where go() was. */
 static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct modal_motion *x = &((const struct exact *)motion)->motion;
-    struct sample sum = {g->offset, 0.0, 0.0};
+    struct sample v = {0.0, 0.0, 0.0};
     if (g->output) {
-        add_sample(&sum, g->side, tribo_modal_motion_output(x, g->output, g->start, g->ramp));
+        v = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
     }
+    v = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
     if (g->limit != 0.0) {
-        add_sample(&sum, g->limit, tribo_modal_motion_limit(x, g->contact));
+        const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+        v = (struct sample){v.g + g->limit * limit.g, v.d + g->limit * limit.d, v.e + g->limit * limit.e};
     }
-    return sum;
+    return v;
 }
 
 /* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */

@@ -6,20 +6,6 @@
 
 #include <math.h>
 
-double tribo_modal_motion_steady_force(const struct modal_motion *x, size_t i)
-{
-    const tribo_system *sys = x->sys;
-    if (sys->limit_harmonics == 0) {
-        return x->contacts->force[i];
-    }
-    double limit = sys->given_limit[i];
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *w = &sys->harmonic[s];
-        limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
-    }
-    return tribo_stick_slip_follows(x->contacts, i) * limit;
-}
-
 /* A harmonic of a limit from t0 on, Re(a e^{i Omega t}), as it goes until tau: turn = i Omega tau. */
 struct tide {
     double complex a, turn;
@@ -95,12 +81,7 @@ static double limit_work(const struct modal_motion *x, size_t i, const struct ou
     return sum;
 }
 
-static int slides(const struct modal_motion *x, size_t i)
-{
-    return x->contacts->slip[i] == 1 || x->contacts->slip[i] == -1;
-}
-
-/* The work of steady forces: times J dq, */
+/* The work of steady forces: their size times the distance slid, J dq, */
 static double steady_work(const struct modal_motion *x, size_t i)
 {
     const struct matrix *j = &x->sys->direction;
@@ -108,32 +89,31 @@ static double steady_work(const struct modal_motion *x, size_t i)
     for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
         way += j->val[e] * x->dq[j->col[e]];
     }
-    return tribo_modal_motion_steady_force(x, i) * way;
+    return x->steady[i] * way;
 }
 
-/* and times the way of the belts. */
+/* minus the way of the belts. */
 static double belt_work(const struct modal_motion *x, const struct harmonic *w, size_t s, double tau)
 {
     double work = 0.0;
     for (size_t e = 0; e < w->count; e++) {
         const double c = w->cosine[e], d = w->sine[e];
-        if (slides(x, w->index[e])) {
-            const double way =
-                w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
-            work += tribo_modal_motion_steady_force(x, w->index[e]) * way;
-        }
+        const double way =
+            w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
+        work += x->contacts->slip[w->index[e]] ? x->steady[w->index[e]] * way : 0.0;
     }
     return work;
 }
 
 double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau)
 {
+    const signed char *slip = x->contacts->slip;
     double energy = 0.0;
     for (size_t o = 0; o < x->h->sliding; o++) {
         const struct output *v = &x->h->output[o];
-        if (slides(x, v->contact)) {
-            energy -= steady_work(x, v->contact);
-            energy += x->contacts->slip[v->contact] * limit_work(x, v->contact, v, tau);
+        energy -= slip[v->contact] ? steady_work(x, v->contact) : 0.0;
+        if (x->sys->limit_harmonics && (slip[v->contact] == 1 || slip[v->contact] == -1)) {
+            energy += slip[v->contact] * limit_work(x, v->contact, v, tau);
         }
     }
     for (size_t s = 0; s < x->h->given; s++) {

@@ -15,7 +15,7 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
                                 &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
     double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
-    double *work = malloc((10 * n + 20 * n + 2 * sys->ncontact + 1) * sizeof *work);
+    double *work = malloc((10 * n + 20 * n + 3 * sys->ncontact + 1) * sizeof *work);
     if (!work) {
         return 0;
     }
@@ -26,6 +26,7 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     x->sys = sys;
     x->start = work + 30 * n;
     x->ramp = x->start + sys->ncontact;
+    x->steady = x->ramp + sys->ncontact;
     x->contacts = contacts;
     return 1;
 }
@@ -318,7 +319,7 @@ static void find_constant(struct modal_motion *x, const tribo_system *sys, const
     memcpy(x->now, h->drag, m * sizeof *x->now);
     for (size_t o = 0; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
-        const double push = o < h->sliding ? tribo_modal_motion_steady_force(x, out->contact) : -offset(sys, out->contact, y);
+        const double push = o < h->sliding ? x->steady[out->contact] : -offset(sys, out->contact, y);
         const double weight = tribo_system_weight(sys, out->contact);
         for (size_t k = 0; k < m; k++) {
             x->now[k] += weight * push * out->on_rate[k];
@@ -328,6 +329,20 @@ static void find_constant(struct modal_motion *x, const tribo_system *sys, const
         for (size_t k = 0; h->forcing[s].omega == 0.0 && k < m; k++) {
             x->now[k] += h->gr[s * m + k];
         }
+    }
+}
+
+/* The forces of contacts but for harmonics of limits that they follow. */
+static void find_steady_forces(struct modal_motion *x, const tribo_system *sys)
+{
+    memcpy(x->steady, x->contacts->force, sys->ncontact * sizeof *x->steady);
+    for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
+        double limit = sys->given_limit[i];
+        for (size_t s = 0; s < sys->harmonics; s++) {
+            const struct harmonic *w = &sys->harmonic[s];
+            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
+        }
+        x->steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
     }
 }
 
@@ -353,6 +368,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
         x->eta[k] = q;
         x->rate[k] = u;
     }
+    find_steady_forces(x, sys);
     find_constant(x, sys, y);
     for (size_t k = 0; k < m; k++) {
         const double force = x->now[k];

@@ -22,7 +22,8 @@ struct modal_motion {
     double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] at t0 + tau, at t0; of contacts times the direction of the force */
     double *now, *work;                    /* [modes] eta and eta' at tau; workspace */
     double *dq;                            /* [ndof] by how much q has changed at tau */
-    double *start, *ramp;                  /* [ncontact] velocity of a sliding contact, as far as it is linear in time */
+    double *steady;                        /* [ncontact] force of a sliding contact, without harmonics of its limit; */
+    double *start, *ramp;                  /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
     double longest;                        /* so long do bounds hold */
 };
 
@@ -49,9 +50,6 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
 /* What start, and ramp, are of an output that is now at t0. */
 void tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, double now, double *start,
                              double *ramp);
-
-/* The force of contact i but for harmonics. */
-double tribo_modal_motion_steady_force(const struct modal_motion *x, size_t i);
 
 /* Energy dissipated until t0 + tau, where dq is. */
 double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
