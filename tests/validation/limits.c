@@ -347,6 +347,25 @@ TEST(methods_agree)
     }
 }
 
+/* The paper's systems, whose matrices have scalings of their own. */
+TEST(reference_systems)
+{
+    const double c[] = {0.2, -0.1, 0.3, 0.05}, d[] = {0.0, 0.3, -0.2, 0.1};
+    for (int kind = 0; kind < 2; kind++) {
+        tribo_system *sys;
+        double y[3][9] = {{0.0}};
+        assert_ok(kind ? tribo_system_chain(&sys, 4, 0.1, 1.5, 0.5) : tribo_system_belt(&sys, 2.0, 0.5, 0.25, 1.0, 0.5));
+        assert_ok(tribo_system_add_limit(sys, 1.25, c, d));
+        assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 2e-4));
+        go(sys, "exact", 0.0, 20.0, y[0]);
+        go(sys, "event", 0.0, 20.0, y[1]);
+        run(sys, "rk4/fixed", 2e-4, 0.0, 20.0, y[2]);
+        assert_all_close(y[1], y[0], tribo_system_dimension(sys), 1e-10);
+        assert_all_close(y[2], y[0], tribo_system_dimension(sys), 1e-3);
+        tribo_system_destroy(sys);
+    }
+}
+
 /* The steppers of GSL, on an oscillator that sticks, slips and flies. */
 TEST(steppers)
 {
@@ -537,5 +556,5 @@ TEST(errors)
 
 TEST_MAIN("limits", {slides_on, 2}, {resonance, 2}, {lift_off, 2}, {touches_down_at_rest, 2}, {touches_down_pulled, 2},
           {grazing_lift_off, 2}, {released_at_the_load_s_extremum, 2}, {grazing_limit, 2}, {zero_limits, 2}, {constant, 1},
-          {together, 2}, {doubled, 2}, {methods_agree, 12}, {steppers, 1}, {energy, 12}, {late_in_time, 2}, {table_lifts_off, 1},
-          {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1}, {errors, 1})
+          {together, 2}, {doubled, 2}, {methods_agree, 12}, {reference_systems, 1}, {steppers, 1}, {energy, 12},
+          {late_in_time, 2}, {table_lifts_off, 1}, {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1}, {errors, 1})
