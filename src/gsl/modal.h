@@ -23,8 +23,8 @@ struct output {
     double ramp;     /* from belts of constant speed */
 };
 
-/* What forces the modes: a harmonic of the system; or of a limit, what it makes of the force of one contact that does not hold, per
- * direction of that. */
+/* What forces the modes: a harmonic of the system; or of a limit, what it makes of the force of one contact that does not hold,
+ * per direction of that. */
 struct forcing {
     double omega;
     size_t harmonic, contact; /* contact: the system's ncontact if it is none's */

@@ -1,6 +1,6 @@
-/* The energy that friction dissipates in a phase, in closed form. A steady force dissipates its size times the distance slid. What
- * harmonics add to it is a sum of e^{i Omega t}, and so, with other exponents, is the velocity: integrals of their products are
- * divided differences of the exponential function (divided.h). */
+/* The energy that friction dissipates in a phase, in closed form. A steady force dissipates its size times the distance slid.
+ * What harmonics add to it is a sum of e^{i Omega t}, and so, with other exponents, is the velocity: integrals of their products
+ * are divided differences of the exponential function (divided.h). */
 #include "divided.h"
 #include "modal_motion.h"
 
