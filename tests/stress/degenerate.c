@@ -242,6 +242,13 @@ static void limit_table(struct scene *c, struct random *g)
         }
     }
     add_load(s, g, 1.0);
+    for (size_t k = 0; k < 2 && chance(g, 0.5); k++) {
+        const double omegas[] = {0.5, 1.0, 2.0};
+        s->motion[k].omega = any_of(g, omegas, COUNT(omegas));
+        for (size_t i = 0; i < s->ncontact; i++) {
+            s->motion[k].sine[i] = i < s->ndof || chance(g, 0.7) ? 1.0 : 0.5;
+        }
+    }
     c->table = 1;
     for (size_t k = 0; k < KNOTS; k++) {
         const double time[KNOTS] = {0.0, 1.0, 2.5, 4.0, 8.0};
