@@ -258,7 +258,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     tribo_system *sys = drv->sys;
     if (sys->tables || sys->limits.knots) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes harmonic loads only, and such limits; method event takes tables too");
+                                 "method exact takes harmonic loads and limits only; method event takes tables too");
     }
     if (x->revision != sys->revision) {
         drop_helds(x);
