@@ -202,6 +202,9 @@ contains
     law = blank_integer
     call tribo_law_find('', law, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called ""' // laws)
+    ! What stands in quotes is the caller's, and no index.
+    call tribo_law_find('contact 3[1]', law, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "contact 3[1]"' // laws)
     call require(untouched(law), 'tribo_law_find: law')
     f = blank
     df_dv = blank
