@@ -5,10 +5,10 @@
 #
 # tribo_get_limit is c_get_limit in Fortran. Of its arguments
 #   double, int, size_t ...    are values
-#   const double *, char * ... arrays, which may be left out, and are NULL then: what may be NULL C says
-#   int *, size_t *            one output
-#   double *                   an array or one output, which then must be an element of an array
-#   tribo_context ** ...       the address of an object, an output
+#   const double *, char * ... are arrays, which may be left out, and are NULL then: what may be NULL C says
+#   double *                   too; where it is one output, that must be an element of an array
+#   int *, size_t *            are one output
+#   tribo_context ** ...       are one output, the address of an object
 # and all other addresses are type(c_ptr). Outputs are intent(inout), lest a compiler copies back a section that the call has not
 # written. TRIBO_PURE before the type, a macro without text, makes a pure function.
 
@@ -36,7 +36,7 @@ function declare(text,    constant, stars, type, argument) {
     sub(/^.* /, "", argument)
     sub(/ +[^ ]*$/, "", type)
     list = list ", " argument
-    if (type ~ /^(struct |tribo_|gsl_|void$)/) return stars == 2 ? "type(c_ptr), intent(inout) :: " argument : "type(c_ptr), value :: " argument
+    if (type ~ /^(struct |tribo_|gsl_|void$)/) return "type(c_ptr), " (stars == 2 ? "intent(inout)" : "value") " :: " argument
     if (!stars) return kind(type) ", value :: " argument
     if (!constant && type ~ /^(int|size_t)$/) return kind(type) ", intent(inout) :: " argument
     return kind(type) ", intent(" (constant ? "in" : "inout") "), optional :: " argument "(*)"

@@ -79,7 +79,7 @@
 module tribo_fixed
   use tribo_c
   use tribo
-  use tribo_support, only: forget, lend, message_of, to_text, work
+  use tribo_support, only: lend, message_of, to_int, to_text, work
   implicit none
   public
 
@@ -211,7 +211,7 @@ subroutine trbtxt(icode, text, ierr)
   integer, intent(in) :: icode
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  call hand_out(c_strerror(int(icode, c_int)), text, ierr)
+  call hand_out(c_strerror(to_int(icode)), text, ierr)
 end subroutine trbtxt
 
 subroutine trbnlw(nlaw, ierr)
@@ -228,7 +228,7 @@ subroutine trblnm(law, text, ierr)
   integer, intent(in) :: law
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  call hand_out(c_law_name(int(law, c_int)), text, ierr)
+  call hand_out(c_law_name(to_int(law)), text, ierr)
 end subroutine trblnm
 
 subroutine trbref(law, text, ierr)
@@ -237,7 +237,7 @@ subroutine trbref(law, text, ierr)
   integer, intent(in) :: law
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  call hand_out(c_law_reference(int(law, c_int)), text, ierr)
+  call hand_out(c_law_reference(to_int(law)), text, ierr)
 end subroutine trbref
 
 subroutine trbfnd(name, law, ierr)
@@ -317,7 +317,7 @@ subroutine trbdel(ih, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr)
-  if (ierr == TRIBO_OK) call forget(-int(ih, c_int64_t))
+  if (ierr == TRIBO_OK) call c_handle_drop(-int(ih, c_int64_t))
 end subroutine trbdel
 
 subroutine trbnum(ih, n, ierr)

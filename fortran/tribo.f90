@@ -123,7 +123,7 @@ contains
   function tribo_strerror(status) result(text)
     integer, intent(in) :: status
     character(len=:), allocatable :: text
-    call to_text(c_strerror(int(status, c_int)), text)
+    call to_text(c_strerror(to_int(status)), text)
   end function tribo_strerror
 
   !> Number of laws; their numbers are 0 to tribo_law_count() - 1.
@@ -135,14 +135,14 @@ contains
   function tribo_law_name(law) result(text)
     integer, intent(in) :: law
     character(len=:), allocatable :: text
-    call to_text(c_law_name(int(law, c_int)), text)
+    call to_text(c_law_name(to_int(law)), text)
   end function tribo_law_name
 
   !> Where a law comes from; empty if there is no such law.
   function tribo_law_reference(law) result(text)
     integer, intent(in) :: law
     character(len=:), allocatable :: text
-    call to_text(c_law_reference(int(law, c_int)), text)
+    call to_text(c_law_reference(to_int(law)), text)
   end function tribo_law_reference
 
   !> Number of the law called name, in upper or lower case.
@@ -174,7 +174,7 @@ contains
     integer :: i
     text = 'no law is called "' // name(:min(len_trim(name), 40)) // '": there are'
     do i = 0, tribo_law_count() - 1
-      call to_text(c_law_name(int(i, c_int)), law)
+      call to_text(c_law_name(to_int(i)), law)
       text = text // ' ' // law // ','
     end do
     text = text(:len(text) - 1)
@@ -192,7 +192,7 @@ contains
     real(dp) :: x(4)
     type(work) :: w
 
-    w%status = c_law_eval(int(law, c_int), v, feq, limit, epsilon, x(1), x(2), x(3), x(4))
+    w%status = c_law_eval(to_int(law), v, feq, limit, epsilon, x(1), x(2), x(3), x(4))
     if (w%status == TRIBO_OK) then
       f = x(1)
       if (present(df_dv)) df_dv = x(2)
@@ -322,7 +322,7 @@ contains
     type(work) :: w
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(law, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, to_int(law))
     call finish(w, stat, errmsg)
   end subroutine set_law_number
 
@@ -343,7 +343,7 @@ contains
       call tell_laws(law, text)
       call fail(w, int(found), text)
     end if
-    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(number, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, to_int(number))
     call finish(w, stat, errmsg)
   end subroutine set_law_name
 
@@ -569,7 +569,7 @@ contains
     type(held_mass), pointer :: held
 
     call c_f_pointer(data, held)
-    ask_mass = int(held%mass%apply(force, acceleration), c_int)
+    ask_mass = to_int(held%mass%apply(force, acceleration))
   end function ask_mass
 
   !> TRIBO_CONSISTENT or TRIBO_PARTITION.
@@ -581,7 +581,7 @@ contains
     type(work) :: w
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_set_coupling(w%ctx, int(coupling, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_coupling(w%ctx, to_int(coupling))
     call finish(w, stat, errmsg)
   end subroutine set_coupling
 
@@ -608,7 +608,7 @@ contains
     type(work) :: w
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_set_sharing(w%ctx, int(sharing, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_sharing(w%ctx, to_int(sharing))
     call finish(w, stat, errmsg)
   end subroutine set_sharing
 
@@ -811,7 +811,7 @@ contains
     integer(c_size_t) :: count
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
+    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, to_int(which), count)
     if (w%status == TRIBO_OK) then
       if (count > huge(value)) call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
     end if
@@ -829,7 +829,7 @@ contains
     integer(c_size_t) :: count
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
+    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, to_int(which), count)
     if (w%status == TRIBO_OK) value = int(count, int64)
     call finish(w, stat, errmsg)
   end subroutine get_count_long
@@ -845,7 +845,7 @@ contains
     real(dp) :: found(1)
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_get_real(w%ctx, int(which, c_int), found)
+    if (w%status == TRIBO_OK) w%status = c_get_real(w%ctx, to_int(which), found)
     if (w%status == TRIBO_OK) value = found(1)
     call finish(w, stat, errmsg)
   end subroutine get_real
@@ -861,6 +861,7 @@ contains
   end function adopted
 end module tribo_contexts
 
+!> What programs use.
 module tribo
   use tribo_constants
   use tribo_contexts

@@ -21,7 +21,7 @@
 module tribo_systems
   use tribo_gsl_c
   use tribo_gsl_constants
-  use tribo_c, only: c_set_message
+  use tribo_c, only: c_handle_add, c_handle_drop, c_set_message
   use tribo_constants
   use tribo, only: tribo_context
   use tribo_support
@@ -646,7 +646,7 @@ contains
   function tribo_method_name(method) result(text)
     integer, intent(in) :: method
     character(len=:), allocatable :: text
-    call to_text(c_method_name(int(method, c_int)), text)
+    call to_text(c_method_name(to_int(method)), text)
   end function tribo_method_name
 
   !> Integrates from t to t1 >= t; y, the system and its context's settings may be changed between calls. On error t and y hold the
@@ -710,7 +710,7 @@ contains
 
     call find_driver(this, w)
     if (w%status /= TRIBO_OK) return
-    if (c_driver_count(w%object, int(which, c_int), count) /= TRIBO_OK) then
+    if (c_driver_count(w%object, to_int(which), count) /= TRIBO_OK) then
       write (text, '(a,i0,a)') 'which = ', which, ' is none of the counts of a driver'
       call fail(w, TRIBO_ERR_RANGE, trim(text))
     else if (count > most) then
@@ -733,7 +733,7 @@ contains
 
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
-      select case (c_driver_real(w%object, int(which, c_int), found))
+      select case (c_driver_real(w%object, to_int(which), found))
       case (TRIBO_OK)
         value = found(1)
       case (TRIBO_ERR_UNSUPPORTED)
@@ -873,7 +873,7 @@ contains
     held%users = 1
     held%given = int(c_system_ndof(sys), c_int64_t)
     if (present(given)) held%given = given
-    held%context = register(c_system_context(sys))
+    held%context = c_handle_add(c_system_context(sys), c_null_funptr)
     if (held%context == 0) w%status = TRIBO_ERR_MEMORY
     if (w%status == TRIBO_OK) w%status = adopt(this, c_loc(held), c_funloc(release_system))
     if (w%status /= TRIBO_OK) call release_system(c_loc(held))
@@ -885,7 +885,7 @@ contains
     type(held_system), pointer :: held
 
     call c_f_pointer(object, held)
-    call forget(held%context)
+    call c_handle_drop(held%context)
     call leave(held)
   end subroutine release_system
 
@@ -918,7 +918,7 @@ contains
 
     call c_f_pointer(data, held)
     call c_f_pointer(y, state, [2*c_system_ndof(held%system%sys) + 1])
-    tell_observer = int(held%observer%seen(t, state, int(event)), c_int)
+    tell_observer = to_int(held%observer%seen(t, state, int(event)))
   end function tell_observer
 
   impure elemental subroutine assign_system(to, from)
@@ -982,6 +982,7 @@ contains
   end function borrowed
 end module tribo_systems
 
+!> What programs use.
 module tribo_gsl
   use tribo_gsl_constants
   use tribo_systems

@@ -10,9 +10,9 @@ module tribo_support
   !> Kind of all reals here: double precision.
   integer, parameter, public :: dp = c_double
 
-  public :: object_of, adopt, lend, register, forget
+  public :: object_of, adopt, lend
   public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, check_rows
-  public :: from_zero, transpose_in_place
+  public :: from_zero, to_int, transpose_in_place
   public :: to_text, message_of
 
   !> What every type of tribo is: the number of an object of the library, see handle.c. A lent one is destroyed by its owner only.
@@ -94,17 +94,6 @@ contains
     this%handle = handle
     this%lent = .true.
   end subroutine lend
-
-  !> A number for what someone else destroys, and its end.
-  integer(c_int64_t) function register(object)
-    type(c_ptr), intent(in) :: object
-    register = c_handle_add(object, c_null_funptr)
-  end function register
-
-  subroutine forget(handle)
-    integer(c_int64_t), intent(in) :: handle
-    call c_handle_drop(handle)
-  end subroutine forget
 
   ! ---------------------------------------------------------------------------------------------------------------------- calls
 
@@ -225,6 +214,12 @@ contains
     integer, intent(in) :: i
     from_zero = int(i, c_size_t) - 1
   end function from_zero
+
+  !> For an int of C: what that cannot hold is taken to its ends, where the library has no choice and no index.
+  elemental integer(c_int) function to_int(i)
+    integer, intent(in) :: i
+    to_int = int(max(min(i, int(huge(0_c_int))), -int(huge(0_c_int))), c_int)
+  end function to_int
 
   !> x = transpose(x), which would allocate.
   pure subroutine transpose_in_place(x)

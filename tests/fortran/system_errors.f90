@@ -379,6 +379,9 @@ contains
     call d%advance(t, 1.0_dp, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_STOPPED, 'the observer answered 5 at t = 0.25')
     call require(abs(t - 0.25_dp) <= 0 .and. sees%calls == 1, 'where the observer stopped')
+    sees%answer = shiftl(1, bit_size(1)/2)
+    call d%advance(t, 1.0_dp, y, stat)
+    call require(stat == TRIBO_ERR_STOPPED, 'the observer answers a large number')
     sees%answer = 0
     call d%advance(t, 1.0_dp, y)
     call require(sees%calls == 4, 'what the observer saw')
