@@ -126,7 +126,7 @@ END {
     if (!functions) fail("no functions")
     gsub(/\n\n$/, "\n", constants)
     gsub(/\n\n$/, "\n", functions)
-    print "! Written by interface.awk, from the headers of C: not to be changed by hand. cmake --build <folder> --target fortran-refresh"
+    print "! Written by interface.awk from the headers of C, and not to be changed by hand: see target fortran-refresh."
     print "\n!> The constants, as in C.\nmodule " name "_constants\n  implicit none\n  private\n"
     printf "%send module %s_constants\n", constants, name
     print "\n!> The functions of C, see interface.awk. Not for programs.\nmodule " name "_c"

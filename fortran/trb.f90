@@ -1,6 +1,6 @@
 !> tribo for fixed-form Fortran: external routines that need no module and no interface block.
 !>
-!> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and MODE; all other numbers are DOUBLE PRECISION; NAME and TEXT are
+!> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and NLAW; all other numbers are DOUBLE PRECISION; NAME and TEXT are
 !> CHARACTER*(*); MINV is a subroutine. Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger
 !> array may be passed, and the array then begins there. Contacts, rows and columns are counted from 1.
 !>
@@ -74,7 +74,7 @@
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
 
 !> What they share. A handle stands for a context of the library, the object of minus its number, see handle.h. Doubles go to the
-!> library as they are; where Fortran counts or stores otherwise - indices, matrices, integers, texts - a routine borrows the context
+!> library as they are; where Fortran counts or stores otherwise (indices, matrices, integers, texts) a routine borrows the context
 !> as a tribo_context, and calls what module tribo has.
 module tribo_fixed
   use tribo_c

@@ -31,6 +31,8 @@
 !> one context a thread. In threads ask for texts by errmsg: where a function of deferred length, like message, is called,
 !> gfortran keeps the length in static memory.
 !>
+!> Names. Programs use module tribo, at the end of this file: it is what is here, and the constants of tribo.h, see tribo_c.f90.
+!>
 !> Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397, doi:10.1115/1.1760564.
 module tribo_contexts
   use tribo_c
@@ -861,7 +863,7 @@ contains
   end function adopted
 end module tribo_contexts
 
-!> What programs use.
+!> What programs use: the module above, and the constants of tribo.h.
 module tribo
   use tribo_constants
   use tribo_contexts

@@ -17,6 +17,9 @@
 !> driver puts it in the place of the one before, and leaves that if it fails. Systems and drivers cannot be copied: an assignment
 !> stops the program. A driver keeps its system alive: it goes on working when the variable has gone.
 !>
+!> Programs use module tribo_gsl, at the end of this file: it is what is here, and the constants of tribo_gsl.h, see
+!> tribo_gsl_c.f90.
+!>
 !> GSL is under the GPL, and so is what is linked with libtribo_gsl.
 module tribo_systems
   use tribo_gsl_c
@@ -982,7 +985,7 @@ contains
   end function borrowed
 end module tribo_systems
 
-!> What programs use.
+!> What programs use: the module above, and the constants of tribo_gsl.h.
 module tribo_gsl
   use tribo_gsl_constants
   use tribo_systems

@@ -1,4 +1,4 @@
-! Written by interface.awk, from the headers of C: not to be changed by hand. cmake --build <folder> --target fortran-refresh
+! Written by interface.awk from the headers of C, and not to be changed by hand: see target fortran-refresh.
 
 !> The constants, as in C.
 module tribo_gsl_constants
