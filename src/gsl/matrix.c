@@ -186,6 +186,21 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
     return done && speed_up(a);
 }
 
+int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
+{
+    size_t *row = malloc((from->first[from->rows] + 1) * sizeof *row);
+    for (size_t i = 0; row && i < from->rows; i++) {
+        for (size_t k = from->first[i]; k < from->first[i + 1]; k++) {
+            row[k] = i;
+        }
+    }
+    memset(a, 0, sizeof *a);
+    const int done =
+        row && tribo_matrix_from_triplets(a, from->cols, from->rows, from->first[from->rows], from->col, row, from->val);
+    free(row);
+    return done;
+}
+
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
 {
     const size_t n = m->nz;

@@ -176,7 +176,7 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t re
         const signed char tied = m->tied[m->at[p]];
         m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
     }
-    const int done = tribo_constraints_create(&c, &sys->direction, &sys->metric, m->at, rest, m->last);
+    const int done = tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
     for (size_t k = done ? c.rank : rest; k < rest; k++) {
         m->holds[m->at[c.order[k]]] = 0;
     }
