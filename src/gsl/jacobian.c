@@ -59,7 +59,7 @@ static int create_dense(tribo_system *sys)
 int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
 {
     tribo_system *sys = params;
-    const size_t n = sys->ndof, m = sys->ncontact, size = 2 * n + 1;
+    const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
     sys->jacobians++;
     if (!sys->dense && !create_dense(sys)) {
         sys->status = tribo_set_message(sys->contacts, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");

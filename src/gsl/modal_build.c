@@ -58,8 +58,10 @@ static const struct matrix *force_matrix(const tribo_system *sys, const struct m
     for (size_t d = 0; mass && d < sys->ndof; d++) {
         mass[d] = tribo_matrix_get(&sys->mass, d, d);
     }
-    int done = mass && tribo_matrix_copy(own, accelerates);
-    done = done && tribo_matrix_scale_rows(own, mass);
+    const int done = mass && tribo_matrix_copy(own, accelerates);
+    if (done) {
+        tribo_matrix_scale_rows(own, mass);
+    }
     free(mass);
     return done ? own : NULL;
 }

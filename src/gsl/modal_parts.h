@@ -30,7 +30,7 @@ double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
 void tribo_modal_give_back(void *list);
 
-/* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold, after taking out of force what moves the modes instead. */
+/* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
 /* The exponents of eta. Returns a status. */

@@ -79,7 +79,7 @@ static int build_chain(tribo_system **sys, size_t n, double *mass)
 {
     struct model m = {.ndof = n, .ncontact = n};
     share_out(mass, n, 1.0);
-    if (tribo_matrix_identity(&m.mass, n) && tribo_matrix_scale_rows(&m.mass, mass) && tribo_matrix_identity(&m.direction, n) &&
+    if (tribo_matrix_diagonal(&m.mass, n, mass) && tribo_matrix_diagonal(&m.direction, n, NULL) &&
         chain_stiffness(&m.stiffness, n)) {
         return tribo_model_build(&m, sys);
     }

@@ -148,24 +148,10 @@ static double iterate(struct lanczos *l)
     return value * (1.0 + CLOSE);
 }
 
-/* What no eigenvalue exceeds. */
-static double row_sum(const struct matrix *a)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < a->rows; i++) {
-        double sum = 0.0;
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            sum += fabs(a->val[k]);
-        }
-        most = greater(most, sum);
-    }
-    return most;
-}
-
 int tribo_system_highest(const tribo_system *sys, double stiffness, double damping, double *value)
 {
     const size_t n = sys->ndof;
-    const double bound = stiffness * row_sum(&sys->stiffness) + damping * row_sum(&sys->damping);
+    const double bound = stiffness * tribo_matrix_row_sum(&sys->stiffness) + damping * tribo_matrix_row_sum(&sys->damping);
     *value = bound;
     if (bound == 0.0 || !isfinite(bound)) {
         return TRIBO_OK;

@@ -50,16 +50,13 @@ static int build_diagonal(struct model *m, tribo_system **sys)
     double *inverse = malloc(n * sizeof *inverse);
     struct matrix b = {0};
     status = inverse && tribo_matrix_transpose(&b, &m->direction) ? TRIBO_OK : tribo_model_no_memory(m);
-    for (size_t i = 0; !status && i < n; i++) {
-        inverse[i] = 1.0 / tribo_matrix_get(&m->mass, i, i);
-    }
-    if (!status && !(tribo_matrix_scale_rows(&b, inverse) && tribo_matrix_scale_rows(&m->stiffness, inverse) &&
-                     (!m->damping.rows || tribo_matrix_scale_rows(&m->damping, inverse)))) {
-        status = tribo_model_no_memory(m);
-    }
-    if (status) {
-        tribo_matrix_free(&b);
-    } else {
+    if (!status) {
+        for (size_t i = 0; i < n; i++) {
+            inverse[i] = 1.0 / tribo_matrix_get(&m->mass, i, i);
+        }
+        tribo_matrix_scale_rows(&b, inverse);
+        tribo_matrix_scale_rows(&m->stiffness, inverse);
+        tribo_matrix_scale_rows(&m->damping, inverse);
         status = tribo_system_build(sys, n, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
         m->stiffness = m->damping = m->direction = (struct matrix){0};
         status = status ? tribo_model_no_memory(m) : TRIBO_OK;

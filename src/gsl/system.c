@@ -24,7 +24,8 @@ int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
     if (!y) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
     }
-    for (size_t i = 0; i < 2 * sys->ndof + 1; i++) {
+    const size_t dimension = tribo_system_dimension(sys);
+    for (size_t i = 0; i < dimension; i++) {
         if (!isfinite(y[i])) {
             return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g is not finite", i, y[i]);
         }

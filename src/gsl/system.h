@@ -54,7 +54,7 @@ struct tribo_system {
     gsl_odeiv2_system odeiv2;
     size_t evaluations, jacobians;
     int status;                      /* what the last evaluation returned */
-    double *tally;                   /* [ncontact] times what a contact dissipates the energy of the state grows by */
+    double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
     double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
     double *acceleration;            /* [ndof] workspace */
     double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
