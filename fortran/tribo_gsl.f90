@@ -238,8 +238,9 @@ contains
     call finish(w, stat, errmsg)
   end subroutine clone_system
 
-  !> n >= 2 blocks on a frictional surface, pulled by alpha*sin(omega*t) at the first one. Fig. 8. limit is the paper's mu N_i; the
-  !> context keeps the paper's scaling, limits mu N_i and R = 1; the last entry of the state is the paper's D.
+  !> n >= 2 blocks on a frictional surface, pulled by alpha*sin(omega*t) at the first one. Fig. 8. limit is the paper's mu N_i.
+  !> Contacts have the limit mu N_i/n and R = n, the last one 3/4 of that limit and 4/3 of that R, see tribo_gsl.h; the last entry of
+  !> the state is the paper's D.
   subroutine chain(this, n, limit, alpha, omega, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     integer, intent(in) :: n
