@@ -135,16 +135,17 @@ static int expand_forces(struct event *e, size_t k)
 static void expand_energy(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    const size_t c = e->sys->ncontact;
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
         for (size_t j = 0; j <= k && j < e->terms; j++) {
             const double *limit = e->limit + j * c, *v = e->watch + (k - j) * c;
             for (size_t i = 0; i < c; i++) {
-                power += m->slip[i] == 1 || m->slip[i] == -1 ? m->slip[i] * limit[i] * v[i] : 0.0;
+                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
             }
         }
-        e->d[k + 1] = e->sys->power * power / (double)(k + 1);
+        e->d[k + 1] = power / (double)(k + 1);
     }
 }
 
@@ -409,7 +410,7 @@ static void state(void *motion, double tau, const double *from, double *to)
     const struct event *e = motion;
     const size_t n = e->sys->ndof;
     (void)from;
-    memset(to, 0, (2 * n + 1) * sizeof *to);
+    memset(to, 0, tribo_system_dimension(e->sys) * sizeof *to);
     for (size_t k = e->order + 1; k-- > 0;) {
         for (size_t i = 0; i < n; i++) {
             to[i] = to[i] * tau + e->q[k * n + i];

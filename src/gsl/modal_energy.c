@@ -89,7 +89,7 @@ static double steady_work(const struct modal_motion *x, size_t i)
     for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
         way += j->val[e] * x->dq[j->col[e]];
     }
-    return x->steady[i] * way;
+    return x->sys->tally[i] * x->steady[i] * way;
 }
 
 /* minus the way of the belts. */
@@ -97,10 +97,11 @@ static double belt_work(const struct modal_motion *x, const struct harmonic *w, 
 {
     double work = 0.0;
     for (size_t e = 0; e < w->count; e++) {
+        const size_t i = w->index[e];
         const double c = w->cosine[e], d = w->sine[e];
         const double way =
             w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
-        work += x->contacts->slip[w->index[e]] ? x->steady[w->index[e]] * way : 0.0;
+        work += x->contacts->slip[i] ? x->sys->tally[i] * x->steady[i] * way : 0.0;
     }
     return work;
 }
@@ -113,12 +114,12 @@ double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau)
         const struct output *v = &x->h->output[o];
         energy -= slip[v->contact] ? steady_work(x, v->contact) : 0.0;
         if (x->sys->limit_harmonics && (slip[v->contact] == 1 || slip[v->contact] == -1)) {
-            energy += slip[v->contact] * limit_work(x, v->contact, v, tau);
+            energy += x->sys->tally[v->contact] * slip[v->contact] * limit_work(x, v->contact, v, tau);
         }
     }
     for (size_t s = 0; s < x->h->given; s++) {
         const struct harmonic *w = &x->sys->harmonic[s];
         energy += w->drives == DRIVES_BASE ? belt_work(x, w, s, tau) : 0.0;
     }
-    return x->sys->power * energy;
+    return energy;
 }

@@ -266,7 +266,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     amplitudes(x);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
-        memcpy(to, from, (2 * n + 1) * sizeof *to);
+        memcpy(to, from, tribo_system_dimension(sys) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         double dq = h->y0[i] * tau, u = h->y0[i];
@@ -320,9 +320,8 @@ static void find_constant(struct modal_motion *x, const tribo_system *sys, const
     for (size_t o = 0; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         const double push = o < h->sliding ? x->steady[out->contact] : -offset(sys, out->contact, y);
-        const double weight = tribo_system_weight(sys, out->contact);
         for (size_t k = 0; k < m; k++) {
-            x->now[k] += weight * push * out->on_rate[k];
+            x->now[k] += push * out->on_rate[k];
         }
     }
     for (size_t s = 0; s < h->given; s++) {

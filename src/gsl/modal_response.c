@@ -62,7 +62,7 @@ static void force_by_limit(struct modal_build *b, size_t w)
     const size_t m = h->modes, i = h->forcing[w].contact;
     const struct harmonic *limit = &b->sys->harmonic[h->forcing[w].harmonic];
     for (size_t k = 0; k < m; k++) {
-        const double push = tribo_system_weight(b->sys, i) * tribo_modal_shape(b, i, k);
+        const double push = tribo_modal_shape(b, i, k);
         h->gr[w * m + k] = push * limit->cosine[i];
         h->gi[w * m + k] = -push * limit->sine[i];
     }
