@@ -99,7 +99,7 @@ TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const
  * cosine, sine  [ncontact] in, each or NULL; forces
  * The limit that they are added to is what is set in the context, before or after, or the table's. The context's limits follow
  * the time that was last looked at: tribo_get_limit answers limit(t) of then, and to set just that again changes nothing.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_MEMORY. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (limits beyond 1e300), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
 /* Lets the limits follow a table, linear between its knots and constant outside, instead of what the context says.

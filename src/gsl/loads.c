@@ -340,6 +340,22 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
     return TRIBO_OK;
 }
 
+/* Limits, and what is computed from them, are to remain numbers. */
+#define MOST_LIMIT 1e300
+
+static int check_limits(const tribo_system *sys, const double *cosine, const double *sine)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double most =
+            sys->given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
+        if (!(most <= MOST_LIMIT)) {
+            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
+                                     MOST_LIMIT);
+        }
+    }
+    return TRIBO_OK;
+}
+
 static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
 {
     if (!sys) {
@@ -351,9 +367,8 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
         return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
     int status = check_amplitudes(sys, "cosine", cosine, given);
-    if (!status) {
-        status = check_amplitudes(sys, "sine", sine, given);
-    }
+    status = status ? status : check_amplitudes(sys, "sine", sine, given);
+    status = status || drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);
     if (status) {
         return status;
     }

@@ -540,7 +540,7 @@ TEST(automatic)
 
 TEST(errors)
 {
-    const double bad = HUGE_VAL, one = 1.0;
+    const double bad = HUGE_VAL, one = 1.0, far = 1e301;
     tribo_system *sys = block(1.0, 1.0, 0.3);
     const char *message = tribo_message(tribo_system_context(sys));
     assert_status(tribo_system_add_limit(NULL, 1.0, &one, &one), TRIBO_ERR_NULL);
@@ -551,6 +551,8 @@ TEST(errors)
     assert_status(tribo_system_add_limit(sys, 1.0, NULL, &bad), TRIBO_ERR_NOT_FINITE);
     assert_says(message, "sine[0]");
     assert_ok(tribo_system_add_limit(sys, 1.0, NULL, NULL));
+    assert_status(tribo_system_add_limit(sys, 1.0, &far, NULL), TRIBO_ERR_RANGE);
+    assert_says(message, "limit of contact 0 comes to");
     tribo_system_destroy(sys);
 }
 
