@@ -11,6 +11,7 @@
 
 #include "operator/operator.h"
 #include "law/law.h"
+#include "planar.h"
 #include "../common/compiler.h"
 #include "../common/real.h"
 
@@ -92,7 +93,10 @@ struct tribo_context {
     struct following follow;
     struct delassus *op;   /* constant; clones have it in common */
     struct memory memory;  /* of the groups, from call to call */
-    unsigned char *moving; /* [n] reversal memory */
+    struct planar *planar; /* NULL: all contacts are scalar */
+    struct plane plane;
+    const size_t *group_of; /* [n] the group in which a box is solved for, or TRIBO_ALONE */
+    unsigned char *moving;  /* [n] reversal memory */
     struct last last;
     struct deeds spare; /* room for the next call */
     struct counters count;
@@ -183,6 +187,48 @@ static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
 {
     return tribo_memory_problem(ctx->op, &ctx->memory, k);
 }
+
+/* planar.c: contacts and clusters for an operator that op is to become, and their taking the place of the old ones. */
+int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
+                         struct planar **planar, struct plane *plane);
+void tribo_planar_install(tribo_context *ctx, struct planar *planar, const struct plane *plane);
+
+/* Groups, with what planar contacts join counted as one, and single contacts. */
+static inline size_t tribo_islands(const tribo_context *ctx)
+{
+    return ctx->planar && ctx->op->diagonal ? ctx->planar->islands : ctx->op->islands;
+}
+
+/* planar_force.c, for contexts with planar contacts: forces of the clusters, once those of all others are known, in ctx->last.f; a
+ * status. f_eq of their contacts. */
+int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a);
+int tribo_planar_step(tribo_context *ctx, double dt, const double *vfree);
+void tribo_planar_feq(tribo_context *ctx, const double *a);
+
+/* Forces f of planar contacts whose f_eq is known, which where it matters must be finite; a status. */
+int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq);
+int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
+
+/* What planar contact k did in the last call; and slip of the directions of all. */
+signed char tribo_planar_slip(const tribo_context *ctx, size_t k);
+void tribo_planar_slips(const tribo_context *ctx, signed char *slip);
+
+/* The rate at which planar contact k relaxes. */
+double tribo_planar_rate(const tribo_context *ctx, size_t k);
+
+/* The problem of a cluster: the contacts in it, which are near stick at v: returns whether there are any; and their pull and beginning,
+ * when all other forces are known. The units of force and R in it. */
+struct unit {
+    double force, r;
+};
+int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v);
+void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a);
+struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g);
+
+/* planar_tangent.c: the derivatives of a cluster's forces at the last tribo_balance_tangent. */
+void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a);
+void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da);
+void tribo_planar_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 
 /* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */
 void tribo_begin_call(tribo_context *ctx);

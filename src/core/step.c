@@ -30,6 +30,7 @@ struct call {
     struct bounds b;
     double scale;
     const double *v;
+    const size_t *group_of;
     int estimates; /* the pull tells something, and what limits can do against it is found from the sums of R's rows first */
 };
 
@@ -75,7 +76,7 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
-            const size_t g = op->group_of[j];
+            const size_t g = c->group_of[j];
             if (g != TRIBO_ALONE && !m->solved[g] &&
                 !(c->estimates && out_of_reach(c->scale, c->v[j], op->row_sum[j], largest))) {
                 m->solved[g] = 1;
@@ -176,20 +177,22 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
 }
 
 /* Solves for all contacts. */
-static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
+static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, int planar, double *f)
 {
     const int estimates = !b.lower && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
-    const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, estimates};
+    const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, planar ? ctx->group_of : ctx->op->group_of, estimates};
     tribo_store_all(ctx);
     box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
     if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
-    const int status = solve_candidates(ctx, &c);
+    int status = solve_candidates(ctx, &c);
+    ctx->plane.solved = 0;
+    status = status || !planar ? status : tribo_planar_step(ctx, dt, v);
     if (status) {
         return status;
     }
-    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
+    ctx->count.skipped += (planar ? tribo_islands(ctx) : ctx->op->islands) - ctx->memory.nsolved - ctx->plane.solved;
     tribo_remember_forces(ctx);
     tribo_copy(f, ctx->last.f, ctx->n);
     return TRIBO_OK;
@@ -215,7 +218,7 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
     tribo_begin_call(ctx);
-    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, f);
+    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, ctx->planar != NULL, f);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;
         ctx->last.holds = 1.0;
@@ -247,5 +250,5 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     }
     tribo_begin_call(ctx);
     ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
-    return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, f);
+    return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, 0, f);
 }
