@@ -34,20 +34,25 @@ static tribo_context *scene_context(const struct scene *s, int law)
     return c;
 }
 
-/* c of the lens, kappa in parts of limits; relaxes 0: the disc. Returns |c|. */
-static double shift_of(const struct scene *s, size_t i, int relaxes, long double *c)
+static long double norm(int wide, const long double *x)
+{
+    return wide == 2 ? hypotl(x[0], x[1]) : fabsl(x[0]);
+}
+
+/* c of the lens, kappa in parts of limits; relaxes 0: the disc. Where the contact slides: 1, and c is twice its direction. */
+static int shift_of(const struct scene *s, size_t i, int relaxes, long double *c)
 {
     const double *b = s->p.limit + i, *v = s->p.v + i, e = s->p.epsilon[i];
     const double far = s->wide[i] == 2 ? fmax(b[0], b[1]) : b[0];
     for (int k = 0; k < s->wide[i]; k++) {
-        c[k] = relaxes && far > 0.0 ? 2.0L * b[k] * v[k] / (far * e) : 0.0L;
+        c[k] = far > 0.0 ? 2.0L * b[k] * v[k] / (far * e) : 0.0L;
     }
-    return (double)(s->wide[i] == 2 ? hypotl(c[0], c[1]) : fabsl(c[0]));
-}
-
-static long double norm(int wide, const long double *x)
-{
-    return wide == 2 ? hypotl(x[0], x[1]) : fabsl(x[0]);
+    const long double length = norm(s->wide[i], c);
+    const int slides = length >= 2.0L;
+    for (int k = 0; k < s->wide[i]; k++) {
+        c[k] *= slides ? 2.0L / length : relaxes ? 1.0L : 0.0L;
+    }
+    return slides;
 }
 
 /* Distance of z from y if y is in the lens, else infinity. */
@@ -108,10 +113,9 @@ static void fixed_point(const struct scene *s, size_t i, int relaxes, const doub
     const long double stiff = stiffness(s, i);
     long double c[2] = {0.0L, 0.0L}, z[2] = {0.0L, 0.0L};
     *noise = 0.0;
-    if (shift_of(s, i, relaxes, c) >= 2.0) {
-        const long double length = norm(s->wide[i], c);
-        y[0] = -c[0] / length;
-        y[1] = -c[1] / length;
+    if (shift_of(s, i, relaxes, c)) {
+        y[0] = -0.5L * c[0];
+        y[1] = -0.5L * c[1];
         return;
     }
     for (int k = 0; k < s->wide[i]; k++) {

@@ -13,6 +13,7 @@
 
 #include "../../common/real.h"
 
+
 enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
 
 /* Distances of so much rounding are none. */
@@ -114,16 +115,35 @@ static void sweep(struct disc_qp *p)
     }
 }
 
+/* How far from may go towards aim until a contact that is inside meets a rim, which is one of |x + t step| = 1. */
+static double way_inside(const struct disc_qp *p)
+{
+    double way = 1.0;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (int d = 0; p->place[i] == LENS_INSIDE && d < 2; d++) {
+            double x[2], step[2];
+            for (size_t k = 0; k < p->wide[i]; k++) {
+                x[k] = p->from[i + k] + (d ? p->shift[i + k] : 0.0);
+                step[k] = p->aim[i + k] - p->from[i + k];
+            }
+            way = lesser(way, tribo_way_to_rim(p->wide[i], x, step));
+        }
+    }
+    return way;
+}
+
 /* As much of Newton's step as leads downwards; near the solution, where that drowns in rounding, all of it if it leads nearer. */
 static void step_down(struct disc_qp *p)
 {
     const double before = p->residual;
-    step_newton(p);
+    find_aim(p);
+    const double way = way_inside(p);
+    project(p, p->from, p->aim, 1.0);
     look(p);
     if (p->residual < 0.5 * before) {
         return;
     }
-    for (double part = 1.0; part > 1e-3; part *= 0.5) {
+    for (double part = way; part > 1e-3 * way; part *= 0.5) {
         project(p, p->from, p->aim, part);
         tribo_disc_gradients(p);
         if (descends(p)) {

@@ -21,6 +21,9 @@ static double shrink(double length)
 /* By so much press and aim/room may differ. */
 #define FAR_OFF 100.0
 
+/* With so much, in parts of the largest stiffness, it ends. */
+#define NEXT_TO_NOTHING 1e-13
+
 /* Steps go as far as this part of the way to the first rim. */
 #define NEARLY 0.99
 
@@ -41,7 +44,7 @@ static double room_of(const struct disc_qp *p, size_t i, int d)
     return 0.5 * (1.0 - length) * (1.0 + length);
 }
 
-/* Sum of room times press over their number. */
+/* Average of room times press. */
 static double average(const struct disc_qp *p)
 {
     double sum = 0.0, count = 0.0;
@@ -54,24 +57,24 @@ static double average(const struct disc_qp *p)
     return sum / count;
 }
 
-/* Returns what the method may end with. */
+/* Returns what is next to nothing of room times press. */
 static double begin(struct disc_qp *p)
 {
-    double most = 0.0, least = HUGE_VAL;
+    double most = 0.0, stiffest = 0.0;
     for (size_t i = 0; i < p->size; i++) {
         p->y[i] = -0.5 * p->shift[i];
     }
     tribo_disc_gradients(p);
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        most = greater(most, tribo_length(p->wide[i], p->gradient + i) + 1.0 / p->gain[i]);
-        least = lesser(least, 1.0 / p->gain[i]);
+        stiffest = greater(stiffest, 1.0 / p->gain[i]);
+        most = greater(most, greater(stiffest, tribo_length(p->wide[i], p->gradient + i)));
     }
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
         for (int d = 0; d < DISCS; d++) {
             p->press[DISCS * i + (size_t)d] = most / room_of(p, i, d);
         }
     }
-    return 1e-13 * least;
+    return NEXT_TO_NOTHING * stiffest;
 }
 
 /* step = the move towards room times press = aim. */
@@ -110,25 +113,17 @@ static double press_step(const struct disc_qp *p, size_t i, int d, double aim)
     return aim / room - press + press / room * turn;
 }
 
-/* How far y may go along step until |y + o| = 1. */
-static double way_to_rim(const struct disc_qp *p, size_t i, int d)
-{
-    double a = 0.0, b = 0.0;
-    for (size_t k = 0; k < p->wide[i]; k++) {
-        a += p->step[i + k] * p->step[i + k];
-        b += offset(p, i, k, d) * p->step[i + k];
-    }
-    const double c = 2.0 * room_of(p, i, d), root = sqrt(b * b + a * c);
-    return b > 0.0 ? quotient(c, greater(b + root, DBL_MIN)) : quotient(root - b, greater(a, DBL_MIN));
-}
-
 static double longest_step(const struct disc_qp *p, double aim)
 {
     double length = 1.0 / NEARLY;
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
         for (int d = 0; d < DISCS; d++) {
             const double change = press_step(p, i, d, aim);
-            length = lesser(length, way_to_rim(p, i, d));
+            double x[2];
+            for (size_t k = 0; k < p->wide[i]; k++) {
+                x[k] = offset(p, i, k, d);
+            }
+            length = lesser(length, tribo_way_to_rim(p->wide[i], x, p->step + i));
             length = change < 0.0 ? lesser(length, quotient(p->press[DISCS * i + (size_t)d], -change)) : length;
         }
     }

@@ -20,6 +20,18 @@ double tribo_length(int directions, const double *x)
     return most * sqrt(u * u + w * w);
 }
 
+/* Without cancellation where x is near the rim: 1 - |x|^2 = (1 - |x|)(1 + |x|). */
+double tribo_way_to_rim(int directions, const double *x, const double *step)
+{
+    const double from = tribo_length(directions, x), c = (1.0 - from) * (1.0 + from), size = tribo_length(directions, step);
+    double b = 0.0;
+    for (int k = 0; k < directions; k++) {
+        b += size > 0.0 ? x[k] * (step[k] / size) : 0.0;
+    }
+    const double root = sqrt(greater(b * b + c, 0.0));
+    return quotient(b > 0.0 ? c / greater(b + root, DBL_MIN) : root - b, greater(size, DBL_MIN));
+}
+
 struct corner tribo_lens_corner(const double *c, const double *z)
 {
     const double length = tribo_length(2, c), along[2] = {c[0] / length, c[1] / length}, half = 0.5 * length;

@@ -20,4 +20,7 @@ struct corner tribo_lens_corner(const double *c, const double *z);
 /* The length of x [directions], whose squares neither overflow nor underflow to nothing. */
 double tribo_length(int directions, const double *x);
 
+/* The t > 0 at which |x + t step| = 1, for |x| < 1. */
+double tribo_way_to_rim(int directions, const double *x, const double *step);
+
 #endif
