@@ -232,4 +232,147 @@ TEST(random_problems)
     require(solved > 100 && ended > 20, "%zu problems, and %zu with two methods", solved, ended);
 }
 
-TEST_MAIN("planar_coupled", {random_problems, 5})
+/* The step form is the problem at rest with a = vfree/dt. */
+TEST(steps)
+{
+    struct random g = random_of(_i);
+    size_t ended = 0;
+    for (int k = 0; k < 50; k++) {
+        const struct recipe recipe = recipe_random(&g, 12, (double)_i);
+        struct scene s = scene_create(&g, &recipe);
+        double f[LARGEST], vfree[LARGEST];
+        tribo_context *c = scene_context(&s, TRIBO_QUINN);
+        for (size_t i = 0; i < s.p.n; i++) {
+            vfree[i] = 0.01 * s.p.a[i];
+            s.p.a[i] = vfree[i] / 0.01;
+            s.p.v[i] = 0.0;
+        }
+        assert_ok(tribo_step_force(c, 0.01, vfree, f));
+        check_solution(&s, 0, f, &ended);
+        tribo_destroy(c);
+    }
+}
+
+/* Other tangential directions, the same forces: each planar contact's are turned by an angle of its own. */
+TEST(turned)
+{
+    struct random g = random_of(_i);
+    for (int k = 0; k < 50; k++) {
+        const struct recipe recipe = recipe_regular(&g, 12);
+        struct scene s = scene_create(&g, &recipe), t;
+        const size_t n = s.p.n;
+        double turn[LARGEST * LARGEST] = {0.0}, f[LARGEST], got[LARGEST];
+        for (size_t i = 0; i < n; i += (size_t)s.wide[i]) {
+            const double angle = s.wide[i] == 2 ? uniform(&g, -PI, PI) : 0.0;
+            turn[i * n + i] = cos(angle);
+            if (s.wide[i] == 2) {
+                s.p.limit[i + 1] = s.p.limit[i];
+                turn[i * n + i + 1] = -sin(angle);
+                turn[(i + 1) * n + i] = sin(angle);
+                turn[(i + 1) * n + i + 1] = cos(angle);
+            }
+        }
+        t = s;
+        for (size_t i = 0; i < n; i++) {
+            t.p.v[i] = t.p.a[i] = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                t.p.v[i] += turn[i * n + j] * s.p.v[j];
+                t.p.a[i] += turn[i * n + j] * s.p.a[j];
+                t.p.r[i * n + j] = 0.0;
+                for (size_t l = 0; l < n * n; l++) {
+                    t.p.r[i * n + j] += turn[i * n + l / n] * s.p.r[l] * turn[j * n + l % n];
+                }
+            }
+        }
+        tribo_context *c = scene_context(&s, TRIBO_QUINN), *d = scene_context(&t, TRIBO_QUINN);
+        if (k % 2) {
+            assert_ok(tribo_set_epsilon_step(c, 0.1, 1.0));
+            assert_ok(tribo_set_epsilon_step(d, 0.1, 1.0));
+            assert_close(real_of(d, TRIBO_REAL_MAX_RATE), real_of(c, TRIBO_REAL_MAX_RATE), 1e-12);
+            assert_close(real_of(c, TRIBO_REAL_MAX_RATE), 10.0, 1e-13);
+        }
+        assert_ok(tribo_balance(c, s.p.v, s.p.a, NULL, f));
+        assert_ok(tribo_balance(d, t.p.v, t.p.a, NULL, got));
+        for (size_t i = 0; i < n; i++) {
+            double want = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                want += turn[i * n + j] * f[j];
+            }
+            assert_close(got[i], want, 2e-10);
+        }
+        tribo_destroy(c);
+        tribo_destroy(d);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ derivatives */
+
+#define STEP 1e-7
+
+static void forces_at(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
+{
+    double v[LARGEST], a[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        v[i] = p->v[i] + step * dv[i];
+        a[i] = p->a[i] + step * da[i];
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+}
+
+/* Differences along (dv, da) where there is no kink; returns how many could be compared. */
+static size_t check_direction(tribo_context *c, const struct problem *p, const double *by_v, const double *by_a, const double *dv,
+                              const double *da)
+{
+    double f[LARGEST], before[LARGEST], after[LARGEST];
+    size_t smooth = 0;
+    forces_at(c, p, 0.0, dv, da, f);
+    forces_at(c, p, -STEP, dv, da, before);
+    forces_at(c, p, STEP, dv, da, after);
+    for (size_t i = 0; i < p->n; i++) {
+        const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP;
+        double want = 0.0, size = 1.0;
+        for (size_t j = 0; j < p->n; j++) {
+            want += by_v[i * p->n + j] * dv[j] + by_a[i * p->n + j] * da[j];
+            size += fabs(by_v[i * p->n + j] * dv[j]) + fabs(by_a[i * p->n + j] * da[j]);
+        }
+        if (fabs(forward - backward) < 1e-4 * size) {
+            assert_close(want, 0.5 * (forward + backward), 2e-5 * size);
+            smooth++;
+        }
+    }
+    return smooth;
+}
+
+TEST(tangents)
+{
+    struct random g = random_of(_i);
+    size_t smooth = 0, all = 0;
+    for (int k = 0; k < 60; k++) {
+        const struct recipe recipe = recipe_regular(&g, 10);
+        const struct scene s = scene_create(&g, &recipe);
+        const size_t n = s.p.n;
+        double by_v[LARGEST * LARGEST], by_a[LARGEST * LARGEST], dv[LARGEST], da[LARGEST], df[LARGEST], f[LARGEST];
+        tribo_context *c = scene_context(&s, k % tribo_law_count());
+        for (size_t i = 0; i < n; i++) {
+            const int jumps = k % tribo_law_count() == TRIBO_COULOMB;
+            dv[i] = jumps ? 0.0 : uniform(&g, -1.0, 1.0);
+            da[i] = uniform(&g, -1.0, 1.0);
+        }
+        assert_ok(tribo_balance_tangent(c, s.p.v, s.p.a, NULL, f, by_v, by_a));
+        assert_ok(tribo_tangent_product(c, dv, da, df));
+        for (size_t i = 0; i < n; i++) {
+            double want = 0.0, size = 1.0;
+            for (size_t j = 0; j < n; j++) {
+                want += by_v[i * n + j] * dv[j] + by_a[i * n + j] * da[j];
+                size += fabs(by_v[i * n + j] * dv[j]) + fabs(by_a[i * n + j] * da[j]);
+            }
+            assert_close(df[i], want, 1e-12 * size);
+        }
+        smooth += check_direction(c, &s.p, by_v, by_a, dv, da);
+        all += n;
+        tribo_destroy(c);
+    }
+    require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
+}
+
+TEST_MAIN("planar_coupled", {random_problems, 5}, {steps, 5}, {turned, 3}, {tangents, 3})
