@@ -335,6 +335,15 @@ TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const 
  * Moreau (1988); Jean and Moreau (1992). */
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
 
+/* The same to second order also where sliding turns or reverses within the step, which tribo_step_force is not.
+ *   planar contacts  that tribo_step_force leaves at v_end = 0 stick; the others slide along their mean velocity, f = -limit^2 w/|limit w|
+ *                    with w = v + v_end, unless they turn back by more than a right angle
+ *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until then and
+ *                    the other way after: f is the mean of that, |f| < limit, and tribo_get_slip tells the direction of the end
+ * All others are as there. It costs up to two solutions.
+ * v  [n] in  relative velocity at the start of the step */
+TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
+
 /* The box-constrained problem behind it all, min 1/2 f'Rf + a'f with lower <= f <= upper, for laws of the caller's own. Neither
  * limits nor law nor epsilon matter, nor which contacts are planar.
  * a, lower, upper  [n] in   finite, lower <= upper

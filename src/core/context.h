@@ -182,6 +182,21 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
     return ctx->last.far ? tribo_cut(p, k, f) : f;
 }
 
+/* Bounds of all contacts; lower NULL: -upper. */
+struct bounds {
+    const double *lower, *upper;
+};
+
+/* Where planar contacts count as such: which scalar contacts of clusters have a force already, in last.f, or NULL for none. */
+struct in_plane {
+    const signed char *known; /* [n] */
+};
+
+/* step.c: checks of a step's arguments; a status. Solves v_end = v + dt R f for all contacts, f in ctx->last.f; plane NULL: they are
+ * all scalar. */
+int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f);
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const struct in_plane *plane);
+
 /* Views of group k. */
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
 {
@@ -202,12 +217,15 @@ static inline size_t tribo_islands(const tribo_context *ctx)
 /* planar_force.c, for contexts with planar contacts: forces of the clusters, once those of all others are known, in ctx->last.f; a
  * status. f_eq of their contacts. */
 int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a);
-int tribo_planar_step(tribo_context *ctx, double dt, const double *vfree);
+int tribo_planar_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
 void tribo_planar_feq(tribo_context *ctx, const double *a);
 
 /* Forces f of planar contacts whose f_eq is known, which where it matters must be finite; a status. */
 int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq);
 int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
+
+/* R f at place k of a cluster, with the contact's own force or without it. */
+double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, size_t k, int own);
 
 /* What planar contact k did in the last call; and slip of the directions of all. */
 signed char tribo_planar_slip(const tribo_context *ctx, size_t k);

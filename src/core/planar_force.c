@@ -319,8 +319,8 @@ int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a)
     return status;
 }
 
-/* All contacts of a cluster that are not open. */
-static int collect_closed(tribo_context *ctx, const struct cluster *g)
+/* All contacts of a cluster whose force is not known. */
+static int collect_free(tribo_context *ctx, const struct cluster *g, const signed char *known)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member;
@@ -331,17 +331,15 @@ static int collect_closed(tribo_context *ctx, const struct cluster *g)
         const int role = ctx->planar->role[i];
         if (role == ROLE_FIRST && (limit[i] > 0.0 || limit[i + 1] > 0.0)) {
             take(ctx, k, 2);
-        } else if (role == ROLE_SCALAR && limit[i] > 0.0) {
+        } else if (role == ROLE_SCALAR && limit[i] > 0.0 && !(known && known[i])) {
             take(ctx, k, 1);
-        } else if (role != ROLE_SECOND || !(limit[i] > 0.0 || limit[i - 1] > 0.0)) {
-            ctx->last.f[i] = 0.0;
         }
     }
     memset(p->shift, 0, p->size * sizeof *p->shift);
     return p->size > 0;
 }
 
-int tribo_planar_step(tribo_context *ctx, double dt, const double *v)
+int tribo_planar_step(tribo_context *ctx, double dt, const double *v, const signed char *known)
 {
     int status = TRIBO_OK;
     ctx->plane.solved = 0;
@@ -351,12 +349,17 @@ int tribo_planar_step(tribo_context *ctx, double dt, const double *v)
         for (size_t j = 0; j < g->size; j++) {
             ctx->plane.a[member[j]] = quotient(v[member[j]], dt);
         }
-        if (collect_closed(ctx, g)) {
+        if (collect_free(ctx, g, known)) {
             tribo_planar_pose(ctx, g, ctx->plane.a);
             status = solve(ctx, g);
         }
     }
     return status;
+}
+
+double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, size_t k, int own)
+{
+    return others(ctx, g, k, k, own ? 0 : 1, 0.0);
 }
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
@@ -418,14 +421,13 @@ int tribo_planar_force(const tribo_context *ctx, const double *v, const double *
 
 signed char tribo_planar_slip(const tribo_context *ctx, size_t k)
 {
-    enum { STUCK = 0, IN_PLANE = 3 };
     const size_t i = ctx->planar->first[k];
     const double *limit = ctx->set.limit + i, *f = ctx->last.f + i, rounding = 8.0 * DBL_EPSILON;
     if (!(limit[0] > 0.0 || limit[1] > 0.0)) {
         return OPEN;
     }
     const double y[2] = {limit[0] > 0.0 ? quotient(f[0], limit[0]) : 0.0, limit[1] > 0.0 ? quotient(f[1], limit[1]) : 0.0};
-    return tribo_length(2, y) >= ctx->last.holds * (1.0 - rounding) ? IN_PLANE : STUCK;
+    return tribo_length(2, y) >= ctx->last.holds * (1.0 - rounding) ? TRIBO_IN_PLANE : 0;
 }
 
 void tribo_planar_slips(const tribo_context *ctx, signed char *slip)

@@ -15,11 +15,6 @@ TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, 
     }
 }
 
-/* Bounds of all contacts; lower NULL: -upper. */
-struct bounds {
-    const double *lower, *upper;
-};
-
 static inline double lower_of(const struct bounds *b, size_t i)
 {
     return b->lower ? b->lower[i] : -b->upper[i];
@@ -176,9 +171,9 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
     return status;
 }
 
-/* Solves for all contacts. */
-static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, int planar, double *f)
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const struct in_plane *plane)
 {
+    const int planar = plane && ctx->planar;
     const int estimates = !b.lower && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
     const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, planar ? ctx->group_of : ctx->op->group_of, estimates};
     tribo_store_all(ctx);
@@ -188,21 +183,17 @@ static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds
     }
     int status = solve_candidates(ctx, &c);
     ctx->plane.solved = 0;
-    status = status || !planar ? status : tribo_planar_step(ctx, dt, v);
+    status = status || !planar ? status : tribo_planar_step(ctx, dt, v, plane->known);
     if (status) {
         return status;
     }
     ctx->count.skipped += (planar ? tribo_islands(ctx) : ctx->op->islands) - ctx->memory.nsolved - ctx->plane.solved;
     tribo_remember_forces(ctx);
-    tribo_copy(f, ctx->last.f, ctx->n);
     return TRIBO_OK;
 }
 
-int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
+int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
     if (!isfinite(dt)) {
         return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
     }
@@ -211,19 +202,32 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
     }
     int status = tribo_need_operator(ctx);
     status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
-    if (status) {
-        return status;
-    }
-    if (!f && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
-    }
-    tribo_begin_call(ctx);
-    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, ctx->planar != NULL, f);
+    return status || f || !ctx->n ? status : tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
+}
+
+static int solve_coulomb(tribo_context *ctx, double dt, const double *vfree, double *f)
+{
+    const struct in_plane plane = {NULL};
+    const int status = tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, &plane);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;
         ctx->last.holds = 1.0;
+        tribo_copy(f, ctx->last.f, ctx->n);
     }
     return status;
+}
+
+int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_check_step(ctx, dt, vfree, f);
+    if (status) {
+        return status;
+    }
+    tribo_begin_call(ctx);
+    return solve_coulomb(ctx, dt, vfree, f);
 }
 
 int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
@@ -250,5 +254,7 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     }
     tribo_begin_call(ctx);
     ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
-    return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, 0, f);
+    status = tribo_solve_step(ctx, 1.0, a, (struct bounds){lower, upper}, NULL);
+    tribo_copy(f, ctx->last.f, status ? 0 : ctx->n);
+    return status;
 }
