@@ -217,7 +217,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     if (status == TRIBO_ERR_NO_CONVERGENCE) {
         return status;
     }
-    ctx->count.skipped += tribo_islands(ctx) - ctx->memory.nsolved - ctx->plane.solved;
+    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
     ctx->last.modes = MODES_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;

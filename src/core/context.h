@@ -139,6 +139,23 @@ static inline int tribo_need_epsilon(const tribo_context *ctx)
     return ctx->set.step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
 }
 
+/* The arguments of a step. */
+static inline int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f)
+{
+    if (!isfinite(dt)) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
+    }
+    if (dt <= 0.0) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
+    }
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    if (status) {
+        return status;
+    }
+    return !f && ctx->n ? tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL") : TRIBO_OK;
+}
+
 /* settings.c: brings what follows from settings and operator up to date: after a change of limits; or of anything, then with
  * width and rate of an epsilon that follows the operator. */
 void tribo_refresh_limits(tribo_context *ctx);
@@ -187,15 +204,9 @@ struct bounds {
     const double *lower, *upper;
 };
 
-/* Where planar contacts count as such: which scalar contacts of clusters have a force already, in last.f, or NULL for none. */
-struct in_plane {
-    const signed char *known; /* [n] */
-};
-
-/* step.c: checks of a step's arguments; a status. Solves v_end = v + dt R f for all contacts, f in ctx->last.f; plane NULL: they are
- * all scalar. */
-int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f);
-int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const struct in_plane *plane);
+/* step.c: solves v_end = v + dt R f for all contacts, f [n]; known [n], or NULL for none: not 0 for scalar contacts of
+ * clusters that have a force already, there. */
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f);
 
 /* Views of group k. */
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
@@ -213,6 +224,7 @@ static inline size_t tribo_islands(const tribo_context *ctx)
 {
     return ctx->planar && ctx->op->diagonal ? ctx->planar->islands : ctx->op->islands;
 }
+
 
 /* planar_force.c, for contexts with planar contacts: forces of the clusters, once those of all others are known, in ctx->last.f; a
  * status. f_eq of their contacts. */

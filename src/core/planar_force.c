@@ -205,6 +205,13 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     return TRIBO_OK;
 }
 
+/* Where planar contacts join islands there are fewer of them; and those that clusters solve for are not skipped. */
+static void count_skipped(tribo_context *ctx)
+{
+    ctx->count.skipped += ctx->planar->islands;
+    ctx->count.skipped -= ctx->op->islands + ctx->plane.solved;
+}
+
 /* The forces of planar contacts are stored, whatever they did. */
 static void store_planar(tribo_context *ctx)
 {
@@ -316,6 +323,7 @@ int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a)
             scalar_laws(ctx, g, v, a);
         }
     }
+    count_skipped(ctx);
     return status;
 }
 
@@ -354,6 +362,7 @@ int tribo_planar_step(tribo_context *ctx, double dt, const double *v, const sign
             status = solve(ctx, g);
         }
     }
+    count_skipped(ctx);
     return status;
 }
 

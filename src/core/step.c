@@ -171,48 +171,45 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
     return status;
 }
 
-int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const struct in_plane *plane)
+/* Solves for all contacts, but for clusters. */
+static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
-    const int planar = plane && ctx->planar;
     const int estimates = !b.lower && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
-    const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, planar ? ctx->group_of : ctx->op->group_of, estimates};
+    const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, group_of, estimates};
     tribo_store_all(ctx);
     box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
     if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
-    int status = solve_candidates(ctx, &c);
-    ctx->plane.solved = 0;
-    status = status || !planar ? status : tribo_planar_step(ctx, dt, v, plane->known);
-    if (status) {
-        return status;
-    }
-    ctx->count.skipped += (planar ? tribo_islands(ctx) : ctx->op->islands) - ctx->memory.nsolved - ctx->plane.solved;
+    return solve_candidates(ctx, &c);
+}
+
+static inline void hand_out(tribo_context *ctx, double *f)
+{
+    ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
-    return TRIBO_OK;
+    tribo_copy(f, ctx->last.f, ctx->n);
 }
 
-int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f)
+/* Solves for all contacts, which are scalar. */
+static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
 {
-    if (!isfinite(dt)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
-    }
-    if (dt <= 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
-    }
-    int status = tribo_need_operator(ctx);
-    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
-    return status || f || !ctx->n ? status : tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
-}
-
-static int solve_coulomb(tribo_context *ctx, double dt, const double *vfree, double *f)
-{
-    const struct in_plane plane = {NULL};
-    const int status = tribo_solve_step(ctx, dt, vfree, (struct bounds){NULL, ctx->set.limit}, &plane);
+    const int status = solve_boxes(ctx, dt, v, b, ctx->op->group_of);
     if (!status) {
-        ctx->last.modes = MODES_IN_FORCES;
-        ctx->last.holds = 1.0;
-        tribo_copy(f, ctx->last.f, ctx->n);
+        hand_out(ctx, f);
+    }
+    return status;
+}
+
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f)
+{
+    if (!ctx->planar) {
+        return box_all(ctx, dt, v, b, f);
+    }
+    int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
+    status = status ? status : tribo_planar_step(ctx, dt, v, known);
+    if (!status) {
+        hand_out(ctx, f);
     }
     return status;
 }
@@ -222,12 +219,18 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = tribo_check_step(ctx, dt, vfree, f);
+    int status = tribo_check_step(ctx, dt, vfree, f);
     if (status) {
         return status;
     }
     tribo_begin_call(ctx);
-    return solve_coulomb(ctx, dt, vfree, f);
+    const struct bounds b = {NULL, ctx->set.limit};
+    status = ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
+    if (!status) {
+        ctx->last.modes = MODES_IN_FORCES;
+        ctx->last.holds = 1.0;
+    }
+    return status;
 }
 
 int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)
@@ -254,7 +257,5 @@ int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, co
     }
     tribo_begin_call(ctx);
     ctx->last.far = most > TRIBO_ROOM * ctx->op->most;
-    status = tribo_solve_step(ctx, 1.0, a, (struct bounds){lower, upper}, NULL);
-    tribo_copy(f, ctx->last.f, status ? 0 : ctx->n);
-    return status;
+    return box_all(ctx, 1.0, a, (struct bounds){lower, upper}, f);
 }

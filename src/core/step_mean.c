@@ -120,19 +120,19 @@ static void write_slips(tribo_context *ctx, const struct step *s)
     }
 }
 
-static int solve_both(tribo_context *ctx, struct step *s)
+static int solve_both(tribo_context *ctx, struct step *s, double *f)
 {
-    struct in_plane plane = {NULL};
-    int status = tribo_solve_step(ctx, s->dt, s->vfree, (struct bounds){NULL, ctx->set.limit}, &plane);
+    int status = tribo_solve_step(ctx, s->dt, s->vfree, (struct bounds){NULL, ctx->set.limit}, NULL, s->lower);
     if (status) {
         return status;
     }
     ctx->last.holds = 1.0;
     look_at_all(ctx, s);
-    if (s->changes) {
+    if (!s->changes) {
+        tribo_copy(f, ctx->last.f, ctx->n);
+    } else {
         tribo_begin_call(ctx);
-        plane.known = s->reverses;
-        status = tribo_solve_step(ctx, s->dt, ctx->planar ? s->free : s->vfree, (struct bounds){s->lower, s->upper}, &plane);
+        status = tribo_solve_step(ctx, s->dt, ctx->planar ? s->free : s->vfree, (struct bounds){s->lower, s->upper}, s->reverses, f);
     }
     return status;
 }
@@ -149,11 +149,10 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     }
     struct step s = {dt, v, vfree, ctx->spare.of, ctx->last.v, ctx->last.feq, ctx->plane.v, 0};
     tribo_begin_call(ctx);
-    status = solve_both(ctx, &s);
+    status = solve_both(ctx, &s, f);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;
         write_slips(ctx, &s);
-        tribo_copy(f, ctx->last.f, ctx->n);
     }
     return status;
 }
