@@ -130,7 +130,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     }
     if (ctx->planar && (df_dv || df_dfeq || df_dlimit)) {
         return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                          "derivatives of the planar contact at direction %zu are no diagonals: see tribo_balance_tangent",
+                          "derivatives of planar contact %zu are no diagonals: see tribo_balance_tangent",
                           ctx->planar->first[0]);
     }
     evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);

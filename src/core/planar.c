@@ -237,13 +237,12 @@ static int check_first(const tribo_context *ctx, size_t count, const size_t *fir
     }
     for (size_t k = 0; k < count; k++) {
         if (ctx->n < 2 || first[k] > ctx->n - 2) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "first[%zu] = %zu: there are %zu directions, and a planar contact has two", k,
-                              first[k], ctx->n);
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "first[%zu] is contact %zu of %zu contacts, and a planar one takes the next one, too",
+                              k, first[k], ctx->n);
         }
         for (size_t i = first[k]; i < first[k] + 2; i++) {
             if (owner[i] != SIZE_MAX) {
-                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "first[%zu] = %zu: direction %zu is one of first[%zu] = %zu", k, first[k],
-                                  i, owner[i], first[owner[i]]);
+                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "first[%zu] takes contact %zu, which first[%zu] has taken", k, i, owner[i]);
             }
             owner[i] = k;
         }
@@ -265,7 +264,7 @@ int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *f
     if (status || !tribo_plane_create(plane, *planar, ctx->n)) {
         tribo_plane_free(plane);
         tribo_planar_release(*planar);
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu planar contacts", count);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contacts in the plane", count);
     }
     return TRIBO_OK;
 }
@@ -287,11 +286,11 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "first is NULL");
     }
     if (count && ctx->set.coupling == TRIBO_PARTITION) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts: first[0] = %zu", first[0]);
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one", first[0]);
     }
     size_t *owner = malloc((ctx->n + 1) * sizeof *owner);
     if (!owner) {
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu planar contacts", count);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contacts in the plane", count);
     }
     struct planar *planar;
     struct plane plane;

@@ -192,7 +192,7 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
     if (!done) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
-                          "no forces found for the %zu directions near stick around direction %zu: %g of a limit is missing", p->size,
+                          "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing", p->size,
                           member[near[0]], p->residual);
     }
     ctx->last.rank += p->sets.rank;
@@ -420,7 +420,7 @@ int tribo_planar_force(const tribo_context *ctx, const double *v, const double *
         if (!tribo_planar_near(ctx->set.law, &s)) {
             slide_force(ctx, i, &s, f + i);
         } else if (!force_near(ctx, k, &s, feq + i, f + i)) {
-            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact at direction %zu", i);
+            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
         }
     }
     return TRIBO_OK;

@@ -308,7 +308,7 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
     }
     if (coupling == TRIBO_PARTITION && ctx->planar) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and direction %zu begins one",
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
                           ctx->planar->first[0]);
     }
     ctx->set.coupling = coupling;

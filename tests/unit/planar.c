@@ -35,10 +35,10 @@ TEST(arguments)
     assert_status(tribo_set_planar(NULL, 0, NULL), TRIBO_ERR_NULL);
     assert_status(tribo_set_planar(c, 1, NULL), TRIBO_ERR_NULL);
     assert_status(tribo_set_planar(c, 2, (const size_t[]){0, 4}), TRIBO_ERR_RANGE);
-    assert_says(tribo_message(c), "first[1] = 4");
+    assert_says(tribo_message(c), "first[1] is contact 4 of 5 contacts");
     assert_status(tribo_set_planar(c, 1, ONE(SIZE_MAX)), TRIBO_ERR_RANGE);
     assert_status(tribo_set_planar(c, 3, (const size_t[]){0, 3, 2}), TRIBO_ERR_DUPLICATE);
-    assert_says(tribo_message(c), "first[2] = 2: direction 3 is one of first[1] = 3");
+    assert_says(tribo_message(c), "first[2] takes contact 3, which first[1] has taken");
     assert_status(tribo_set_planar(c, 2, (const size_t[]){2, 2}), TRIBO_ERR_DUPLICATE);
     ck_assert_uint_eq(count_of(c, TRIBO_COUNT_PLANAR), 0);
     ck_assert_uint_eq(tribo_revision(c), revision);
