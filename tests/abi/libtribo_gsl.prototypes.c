@@ -33,6 +33,8 @@ TRIBO_API const char *tribo_driver_method(const tribo_driver *drv);
 TRIBO_API int tribo_method_count(void);
 TRIBO_API const char *tribo_method_name(int method);
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
+TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
+TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
 TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
 TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data),
