@@ -7,10 +7,10 @@
 
 #define TRIBO_SUSPECTS 8
 
-/* Who goes along with the motion: hears of a phase that has lasted tau before contacts are decided about, and of an event once
- * they are. ends returns a status, its message on the system's context. */
+/* Who goes along with the motion: hears of a phase that has lasted tau and ends at (t, y), before contacts are decided about, and
+ * of an event once they are. ends returns a status, its message on the system's context. */
 struct company {
-    int (*ends)(struct company *c, double tau);
+    int (*ends)(struct company *c, double tau, double t, const double *y);
     void (*decided)(struct company *c);
 };
 

@@ -59,6 +59,9 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
  * velocities in y. Sets slip, holds, force, acceleration and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
+/* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
+int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
+
 /* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
 
