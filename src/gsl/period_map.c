@@ -212,17 +212,16 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period)
     }
     if (!status) {
         m->t = t;
-        m->odd = is_odd(m->sys, period);
-        m->span = m->odd ? 0.5 * period : period;
+        tribo_period_map_choose(m, is_odd(m->sys, period));
         m->least = least_size(m);
     }
     return status;
 }
 
-void tribo_period_map_whole(struct period_map *m)
+void tribo_period_map_choose(struct period_map *m, int odd)
 {
-    m->odd = 0;
-    m->span = m->period;
+    m->odd = odd;
+    m->span = odd ? 0.5 * m->period : m->period;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- life */

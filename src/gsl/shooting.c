@@ -271,7 +271,7 @@ static int find_family(struct shooting *s, double *move)
     return TRIBO_OK;
 }
 
-/* The odd motion is one of a family, and the guess was near another. */
+/* The odd motion is one of a family, and the guess was near another one: that is taken if it comes back. */
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
@@ -281,10 +281,16 @@ static int approach_guess(struct shooting *s)
     if (status || !any || s->freedom == 0 || length(s->guess, n) < MEANT * s->best.size) {
         return status;
     }
-    tribo_period_map_whole(&s->map);
+    tribo_period_map_choose(&s->map, 0);
     memcpy(s->here.x, s->best.x, n * sizeof *s->here.x);
     tribo_add(s->here.x, 1.0, s->guess, n);
-    return search(s);
+    status = tribo_period_map_follow(&s->map, &s->here);
+    if (!status && close_enough(&s->here, TOLERANCE)) {
+        copy_point(s, &s->best, &s->here);
+    } else {
+        tribo_period_map_choose(&s->map, 1);
+    }
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- multipliers */
