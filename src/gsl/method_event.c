@@ -288,6 +288,7 @@ static void destroy(tribo_driver *drv)
 
 static int begin(void *motion, double t, const double *y, double *reach);
 static int transition(void *motion, double tau, size_t columns, double *v);
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
 static void state(void *motion, double tau, const double *from, double *to);
 
 static int create(tribo_driver *drv)
@@ -331,6 +332,7 @@ static int create(tribo_driver *drv)
     e->events.begin = begin;
     e->events.state = state;
     e->events.transition = transition;
+    e->events.signal = combine;
     return TRIBO_OK;
 }
 
@@ -387,6 +389,21 @@ static int transition(void *motion, double tau, size_t columns, double *v)
 {
     struct event *e = motion;
     return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, tau, columns, v);
+}
+
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+{
+    const struct event *e = motion;
+    const size_t n = e->sys->ndof;
+    (void)end;
+    if (!tribo_signal_reserve(to, 0, e->order)) {
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu powers", e->order);
+    }
+    to->tau = tau;
+    for (size_t k = 0; k <= e->order; k++) {
+        to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
+    }
+    return TRIBO_OK;
 }
 
 static int open_events(tribo_driver *drv, struct events **events)

@@ -52,18 +52,31 @@ static void event_decided(struct company *company)
     m->variation.company.decided(&m->variation.company);
 }
 
-/* m->y from t to end. */
+/* m->y from t to end, unseen by the driver's observer, after which the driver begins anew. */
 static int integrate(struct period_map *m, double t, double end, struct company *company)
 {
     tribo_driver *drv = m->drv;
+    int (*const seen)(double, const double *, int, void *) = drv->seen;
+    const size_t evaluations = m->sys->evaluations;
     m->y[m->n] = 0.0;
     drv->time = t;
+    drv->knows = 0;
+    drv->seen = NULL;
     memcpy(drv->state, m->y, (m->n + 1) * sizeof *m->y);
     m->events->company = company;
     const int status = tribo_events_advance(m->events, drv, &t, end, m->y, 0);
     m->events->company = NULL;
+    drv->seen = seen;
+    drv->evaluations += m->sys->evaluations - evaluations;
     m->halves += m->odd ? 1 : 2;
     return status ? status : tribo_driver_check(drv, m->y);
+}
+
+int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company)
+{
+    const int status = m->drv->method->open(m->drv, &m->events);
+    memcpy(m->y, y, m->n * sizeof *y);
+    return status ? status : integrate(m, m->t, m->t + m->period, company);
 }
 
 /* What rests where an integration ends does so where the next one begins: rounding is taken away. */

@@ -43,6 +43,9 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_complete(struct period_map *m, const struct point *p, double *residual);
 
+/* Follows the motion from y through a period, with company. */
+int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company);
+
 /* From here on by whole periods, or, if what drives the system is odd, by halves. */
 void tribo_period_map_choose(struct period_map *m, int odd);
 

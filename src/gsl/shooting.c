@@ -46,6 +46,12 @@
 #define DOUBLE_TO 0.4
 #define BEYOND 1.05
 
+/* The matrix I - derivative is not larger than 2: a step shorter than this part of the residual is none. */
+#define FLAT 0.4
+
+/* Spans followed at once: so few that a motion which grows with each never seems to come back beside its size. */
+#define LONGEST 1024.0
+
 /* A pivot of I - derivative below this may be that of a family of motions, a singular value below CUT is for steps, and one below
  * FREE when they are counted. */
 #define SINGULAR 1e-5
@@ -142,11 +148,26 @@ static int try_step(struct shooting *s, double part)
     return status;
 }
 
+/* Where no step changes the residual, as on a slow belt that takes a body along for many periods, the motion is followed for one
+ * period, four, and so on at once. */
+static int stride(struct shooting *s)
+{
+    const size_t n = s->map.n;
+    memcpy(s->step, s->here.image, n * sizeof *s->step);
+    tribo_add(s->step, -1.0, s->here.x, n);
+    s->stride = s->stride > 0.0 ? lesser(4.0 * s->stride, LONGEST) : 1.0;
+    return try_step(s, s->stride);
+}
+
 static int newton(struct shooting *s)
 {
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
     const int status = newton_step(s, 0.0);
     s->map.drv->newton++;
+    if (!status && length(s->step, s->map.n) < FLAT * s->here.residual) {
+        return stride(s);
+    }
+    s->stride = 0.0;
     return status ? status : try_step(s, to_double ? BEYOND / (1.0 - sqrt(s->rate)) : 1.0);
 }
 
@@ -202,7 +223,11 @@ static int proceed(struct shooting *s)
     s->rate = 0.0;
     if (s->there.residual < PAYS * s->best.residual) {
         settle(s);
-        s->rate = s->ratio;
+        s->rate = s->stride > 0.0 ? 0.0 : s->ratio;
+        return TRIBO_OK;
+    }
+    if (s->stride > 0.0 && s->ratio > 0.0) {
+        settle(s);
         return TRIBO_OK;
     }
     s->first = s->astray ? s->first : s->ratio;
@@ -223,7 +248,7 @@ static int search(struct shooting *s)
     }
     copy_point(s, &s->best, &s->here);
     s->astray = s->setbacks = 0;
-    s->rate = 0.0;
+    s->rate = s->stride = 0.0;
     s->nearest = s->here.residual / s->here.size;
     while (!status && !close_enough(&s->best, AIM) && s->map.halves < MOST) {
         status = newton(s);
@@ -352,6 +377,7 @@ static int find(struct shooting *s, double *y)
         memcpy(y, s->best.y, s->map.n * sizeof *y);
         y[s->map.n] = 0.0;
         s->found = 1;
+        s->revision = tribo_system_revision(s->map.sys);
     }
     return status;
 }
@@ -359,16 +385,10 @@ static int find(struct shooting *s, double *y)
 int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 {
     tribo_driver *drv = s->map.drv;
-    int (*const seen)(double, const double *, int, void *) = drv->seen;
-    const size_t evaluations = drv->sys->evaluations;
-    drv->seen = NULL;
     s->found = 0;
     int status = tribo_period_map_prepare(&s->map, t, period);
     status = status ? status : find(s, y);
-    drv->seen = seen;
     drv->periods += (s->map.halves + 1) / 2;
-    drv->evaluations += drv->sys->evaluations - evaluations;
-    drv->knows = 0;
     return status;
 }
 

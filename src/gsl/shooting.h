@@ -13,11 +13,13 @@ struct shooting {
     size_t *pivot;        /* [n] */
     double ratio;         /* what is left along the step after it, beside what was before */
     double first, rate;   /* that of the step from best; that of the last one, if it was good */
+    double stride;        /* spans followed at once; 0: steps are Newton's */
     size_t astray;        /* steps since best that did not pay */
     size_t setbacks;      /* how often the search has gone back */
     double nearest;       /* the least residual seen beside the size */
     double *re, *im;      /* [n] multipliers of the last motion found */
     int found;
+    size_t revision; /* of the system then */
     size_t freedom; /* dimension of its family */
 };
 
