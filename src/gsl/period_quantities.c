@@ -10,12 +10,12 @@ struct replay {
     struct company company;
     struct period_map *map;
     int (*phase)(struct replay *r, double tau, const double *end);
-    const double *c;              /* [2 ndof] the combination asked for */
-    struct signal signal, slope;  /* it, in the phase */
-    double elapsed;               /* since the period began */
-    double least, most;           /* extremes */
-    double omega, re, im;         /* integral with e^{-i omega t} */
-    double *sum;                  /* [ncontact] */
+    const double *c;             /* [2 ndof] the combination asked for */
+    struct signal signal, slope; /* it, in the phase */
+    double elapsed;              /* since the period began */
+    double least, most;          /* extremes */
+    double omega, re, im;        /* integral with e^{-i omega t} */
+    double *sum;                 /* [ncontact] */
 };
 
 static int no_memory(const struct replay *r)
@@ -194,7 +194,8 @@ static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct repla
     }
     const size_t count = drv->sys->ncontact;
     struct replay r = {.phase = phase, .sum = calloc(count + 1, sizeof *to)};
-    const int status = r.sum ? replay(drv, &r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contacts", count);
+    const int status =
+        r.sum ? replay(drv, &r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contacts", count);
     if (!status) {
         memcpy(to, r.sum, count * sizeof *to);
     }

@@ -346,16 +346,18 @@ static int find_multipliers(struct shooting *s)
     whole_derivative(s);
     const int status = tribo_eigen(s->b, n, s->re, s->im, s->a);
     sort(s);
-    return status ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equations: %s", n, tribo_strerror(status)) : TRIBO_OK;
+    return status ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equations: %s", n, tribo_strerror(status))
+                  : TRIBO_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
 
 static int no_convergence(const struct shooting *s, double residual)
 {
-    return tribo_driver_fail(s->map.drv, TRIBO_ERR_NO_CONVERGENCE,
-                             "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size",
-                             s->map.period, 0.5 * (double)s->map.halves, residual);
+    return tribo_driver_fail(
+        s->map.drv, TRIBO_ERR_NO_CONVERGENCE,
+        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size", s->map.period,
+        0.5 * (double)s->map.halves, residual);
 }
 
 static int find(struct shooting *s, double *y)

@@ -6,9 +6,9 @@
 
 struct signal {
     size_t terms, degree;
-    size_t room[2];             /* for terms, and for degrees */
-    double *cr, *ci, *lr, *li;  /* [terms] */
-    double *a;                  /* [degree + 1] */
+    size_t room[2];            /* for terms, and for degrees */
+    double *cr, *ci, *lr, *li; /* [terms] */
+    double *a;                 /* [degree + 1] */
     double tau;
 };
 

@@ -15,11 +15,11 @@ struct variation {
     struct events *events;
     tribo_system *sys;
     size_t columns;
-    double *v;           /* [2 ndof][columns] perturbations; the caller sets them before the motion begins */
-    double *rows;        /* [ncontact][columns] workspace */
+    double *v;            /* [2 ndof][columns] perturbations; the caller sets them before the motion begins */
+    double *rows;         /* [ncontact][columns] workspace */
     double *slope;        /* [ncontact] v' where the phase ends, */
     double *acceleration; /* [ndof] and q'' */
-    signed char *before; /* [ncontact] slip in the phase that ends */
+    signed char *before;  /* [ncontact] slip in the phase that ends */
 };
 
 /* 1, or 0 if out of memory; tribo_variation_free takes what failed too. */
