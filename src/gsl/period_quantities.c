@@ -168,7 +168,7 @@ static int add_energy(struct replay *r, double tau, const double *end)
             for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
                 way += j->val[k] * (end[j->col[k]] - r->map->x[j->col[k]]);
             }
-            r->sum[i] += sys->power * m->slip[i] * m->limit[i] * way;
+            r->sum[i] += sys->tally[i] * m->slip[i] * m->limit[i] * way;
         }
     }
     return TRIBO_OK;
