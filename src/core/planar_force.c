@@ -16,7 +16,7 @@
 struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v)
 {
     const double reach[2] = {product(c->bound[i], tribo_epsilon_of(c, i)), product(c->bound[i + 1], tribo_epsilon_of(c, i + 1))};
-    const size_t far = reach[1] > reach[0] ? i + 1 : i;
+    const size_t far = reach[1] > reach[0] || (reach[1] == reach[0] && c->bound[i + 1] > c->bound[i]) ? i + 1 : i;
     struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .epsilon = tribo_epsilon_of(c, far)};
     for (size_t k = 0; k < 2 && !s.open; k++) {
         s.part[k] = c->bound[i + k] == c->bound[far] ? 1.0 : quotient(c->bound[i + k], c->bound[far]);
@@ -456,7 +456,8 @@ double tribo_planar_rate(const tribo_context *ctx, size_t k)
     if (s.open) {
         return 0.0;
     }
-    const double a = s.part[0] * s.part[0] * own[0], b = s.part[0] * s.part[1] * own[1], d = s.part[1] * s.part[1] * own[2];
+    const double a = product(s.part[0], product(s.part[0], own[0])), b = product(s.part[0], product(s.part[1], own[1]));
+    const double d = product(s.part[1], product(s.part[1], own[2]));
     const double turned[2] = {0.5 * a - 0.5 * d, b};
     return product(2.0 * quotient(far, s.epsilon), 0.5 * a + 0.5 * d + tribo_length(2, turned));
 }
