@@ -2,10 +2,11 @@
  *
  * In units of its limits, y = f/limit, a planar contact slides with y = -n, n being the direction of limit v. Near stick
  * y is in the lens D ∩ (D - c), D being the unit disc and c = 2 |v|/epsilon n, which is kappa in these units; and y minimizes
- * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its longer
- * way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where it slides.
+ * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its
+ * longer way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where
+ * it slides.
  *
- * Force and R come in any units: S is divided by a power of 2, and weights are limits beside the largest of the cluster. */
+ * Force and R come in any units: in S limits and R are parts of the largest ones near stick in the cluster. */
 #include <float.h>
 
 #include "context.h"
@@ -192,8 +193,8 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
     if (!done) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
-                          "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing", p->size,
-                          member[near[0]], p->residual);
+                          "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing",
+                          p->size, member[near[0]], p->residual);
     }
     ctx->last.rank += p->sets.rank;
     ctx->last.residual = greater(ctx->last.residual, p->residual);
@@ -252,7 +253,8 @@ static void push(const double *own, double *x)
     const double turned[2] = {half, own[1]}, spread = tribo_length(2, turned);
     const double great = mean + spread, small = greater(mean - spread, 0.0);
     /* the direction of the greater eigenvalue */
-    const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half}, length = tribo_length(2, raw);
+    const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half},
+                 length = tribo_length(2, raw);
     const double e[2] = {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0};
     const double along = e[0] * x[0] + e[1] * x[1], across = e[0] * x[1] - e[1] * x[0];
     const int lost = small <= 16.0 * DBL_EPSILON * great && fabs(across) <= 1e-12 * (fabs(x[0]) + fabs(x[1]));

@@ -104,8 +104,8 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const do
     }
 }
 
-/* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit. before: the
- * former, df: what becomes of them. */
+/* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit.
+ * before: the former, df: what becomes of them. */
 static void reverse(const tribo_context *ctx, const struct cluster *g, const double *dv, const double *da, const double *before,
                     double *df)
 {

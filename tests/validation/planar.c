@@ -22,8 +22,11 @@ TEST(methods)
     const struct {
         const char *name;
         double dt, epsilon, error;
-    } cases[] = {{"rk4/fixed", 1e-3, 2e-3, 1.3e-7}, {"rkf45", 1e-2, 2e-3, 1e-4},   {"msbdf", 1e-2, 2e-3, 1e-2},
-                 {"central/fixed", 1e-3, 1.0, 2e-2}, {"moreau/fixed", 1e-3, 1.0, 2e-2}};
+    } cases[] = {{"rk4/fixed", 1e-3, 2e-3, 1.3e-7},
+                 {"rkf45", 1e-2, 2e-3, 1e-4},
+                 {"msbdf", 1e-2, 2e-3, 1e-2},
+                 {"central/fixed", 1e-3, 1.0, 2e-2},
+                 {"moreau/fixed", 1e-3, 1.0, 2e-2}};
     const double want[3] = {-0.794389645, -0.394078205, 67.840627726};
     tribo_system *s = planar_oscillator(cases[_i].epsilon);
     tribo_driver *d;

@@ -133,8 +133,8 @@ static double longest_step(const struct disc_qp *p, double aim)
     return NEARLY * length;
 }
 
-/* y and press go by length along their steps. A press that is far from what its room asks for would let y cross the disc again and
- * again where nothing else holds it. */
+/* y and press go by length along their steps. A press that is far from what its room asks for would let y cross the disc again
+ * and again where nothing else holds it. */
 static void advance(struct disc_qp *p, double length, double aim)
 {
     for (size_t i = 0; i < p->size; i += p->wide[i]) {

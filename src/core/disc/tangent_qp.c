@@ -1,6 +1,7 @@
 /* Newton's method on the projection equations y = P(y - gain gradient), P being the projection onto the lenses. The projection
  * tells the place of each contact, and its derivative there what is left to move: all of it inside; along the rim on a rim, as
- * if on a spring, since what presses outwards turns with it; nothing at a corner. Along what is left the equations are symmetric. */
+ * if on a spring, since what presses outwards turns with it; nothing at a corner. Along what is left the equations are
+ * symmetric. */
 #include "disc_qp.h"
 
 #include <float.h>
