@@ -90,10 +90,11 @@ static int check_planar(const tribo_system *sys, const struct method *m)
     const int scalar_only = m == &tribo_method_event || m == &tribo_method_exact || m == &automatic;
     size_t planar = 0;
     tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
-    return !planar || !scalar_only ? TRIBO_OK
-                                      : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                                          "method %s knows no planar contacts, and there are %zu contacts of that kind",
-                                                          m->name, planar);
+    return !planar || !scalar_only
+               ? TRIBO_OK
+               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "method %s knows no planar contacts, and there are %zu contacts of that kind", m->name,
+                                   planar);
 }
 
 static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
