@@ -38,7 +38,7 @@ static int check_loads(tribo_driver *drv, double period)
         const double turns = w->omega / (2.0 * acos(-1.0)) * period;
         if (w->count > 0 && !(fabs(turns - round(turns)) <= WHOLE)) {
             return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
-                                     "%s %zu, omega = %.17g, is not periodic in period = %.17g: %.12g turns",
+                                     "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns",
                                      w->moves_base ? "base motion" : "load", of_kind[w->moves_base], w->omega, period, turns);
         }
         of_kind[w->moves_base]++;
