@@ -182,7 +182,7 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
 
 /* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact and event; others
  * return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other (in energy), and there
- * is such a motion, as symmetric as its loads, wherever motions are bounded. With it there may be none, or the search may miss it.
+ * is such a motion, as symmetric as its loads, wherever motions are bounded. With it there may be none, or none is found.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
