@@ -190,14 +190,14 @@ TRIBO_API const char *tribo_method_name(int method);
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
 /* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact and event; others
- * return TRIBO_ERR_UNSUPPORTED. No negative damping or stiffness: then a motion that comes back and is as symmetric as its loads
- * exists where any bounded motion does, and motions never part from each other (in energy).
+ * return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other (in energy), and there
+ * is such a motion, as symmetric as its loads, wherever motions are bounded. With it there may be none, or none is found.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
  * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
- * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be at least
- * 1e-4 of what the loads would do against stiffness or inertia alone. That it comes back is seen by following it through the
+ * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be 1e-4 of
+ * what the loads would do against stiffness or inertia alone, at least. That it comes back is seen by following it through the
  * period; if it does not, y is untouched and the message tells how near it came.
  * Where all loads and motions of bases are odd harmonics of the period, the motion is one whose second half is minus the first.
  * Where there is a family of motions (contacts that never slip keep any place within their limits), it is one near the guess; of

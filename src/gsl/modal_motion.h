@@ -64,8 +64,7 @@ void tribo_modal_motion_bound(struct modal_motion *x, double tau);
 /* and of what an output has of them and of harmonics, and of the sixth derivative of that. */
 void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend);
 
-/* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, its message on the system's context.
- */
+/* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status. */
 int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to);
 
 #endif

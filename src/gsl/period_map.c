@@ -61,10 +61,14 @@ static int integrate(struct period_map *m, double t, double end, struct company 
     m->y[m->n] = 0.0;
     drv->time = t;
     drv->knows = 0;
+    int status = tribo_driver_check(drv, m->y);
+    if (status) {
+        return status;
+    }
     drv->seen = NULL;
     memcpy(drv->state, m->y, (m->n + 1) * sizeof *m->y);
     m->events->company = company;
-    const int status = tribo_events_advance(m->events, drv, &t, end, m->y, 0);
+    status = tribo_events_advance(m->events, drv, &t, end, m->y, 0);
     m->events->company = NULL;
     drv->seen = seen;
     drv->evaluations += m->sys->evaluations - evaluations;

@@ -1,4 +1,4 @@
-/* What the periodic motion found last holds. Every call follows it through its period once more, phase by phase in closed form. */
+/* What the periodic motion found last holds. Each call follows it through its period once more, phase by phase in closed form. */
 #include "shooting.h"
 
 #include <complex.h>

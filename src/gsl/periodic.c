@@ -39,7 +39,7 @@ static int check_loads(tribo_driver *drv, double period)
         const double turns = w->omega / (2.0 * acos(-1.0)) * period;
         if (w->count > 0 && !(fabs(turns - round(turns)) <= WHOLE)) {
             return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
-                                     "%s %zu, omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
+                                     "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
                                      of_kind[w->drives], w->omega, period, turns);
         }
         of_kind[w->drives]++;

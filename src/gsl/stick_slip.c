@@ -582,9 +582,6 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     tribo_system_limits(sys, m->limit, m->limit_rate);
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
-    if (!continues) {
-        memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
-    }
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));

@@ -140,13 +140,38 @@ static int make_graded(tribo_system **sys, tribo_driver **drv)
     return tribo_system_linear(sys, 3, 1, mass, NULL, stiffness, direction, 2, NULL, 0);
 }
 
+/* A periodic motion, one of a family since a contact never slips, and what its period holds. */
+static int find_periodic(tribo_system **sys, tribo_driver **drv, const char *method)
+{
+    const double limits[CONTACTS] = {1e3, 0.1, 0.1}, c[DIMENSION] = {1.0};
+    double y[DIMENSION] = {0}, contact[CONTACTS], a, b;
+    int status = make_linear(sys, model, 1, 0);
+    status = status ? status : tribo_set_limit(tribo_system_context(*sys), limits);
+    status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
+    status = status ? status : tribo_driver_create(drv, *sys, method, 1.0, 1e-13, 0.0);
+    status = status ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI, y);
+    status = status ? status : tribo_driver_period_extremes(*drv, c, &a, &b);
+    return status ? status : tribo_driver_period_stick(*drv, contact);
+}
+
+static int make_periodic(tribo_system **sys, tribo_driver **drv)
+{
+    return find_periodic(sys, drv, "exact");
+}
+
+static int make_periodic_event(tribo_system **sys, tribo_driver **drv)
+{
+    return find_periodic(sys, drv, "event");
+}
+
 static const struct {
     const char *name;
     int (*make)(tribo_system **sys, tribo_driver **drv);
-} makers[] = {{"chain", make_chain},        {"belt", make_belt},       {"oscillator", make_oscillator}, {"full", make_full},
-              {"diagonal", make_diagonal},  {"reduced", make_reduced}, {"driver", make_driver},         {"loaded", make_loaded},
-              {"exact", make_exact},        {"coupled", make_coupled}, {"graded", make_graded},         {"copy", make_copy},
-              {"full copy", make_full_copy}};
+} makers[] = {{"chain", make_chain},         {"belt", make_belt},         {"oscillator", make_oscillator},
+              {"full", make_full},           {"diagonal", make_diagonal}, {"reduced", make_reduced},
+              {"driver", make_driver},       {"loaded", make_loaded},     {"exact", make_exact},
+              {"coupled", make_coupled},     {"graded", make_graded},     {"copy", make_copy},
+              {"full copy", make_full_copy}, {"periodic", make_periodic}, {"periodic event", make_periodic_event}};
 
 /* Fails one allocation after the other, until there are no more. */
 TEST(failures)

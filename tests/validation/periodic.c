@@ -47,7 +47,7 @@ static void find(const struct search *s, double t, double *y)
     require(!status, "%s: %s", tribo_strerror(status), tribo_driver_message(s->drv));
 }
 
-/* The largest displacement of a degree of freedom; the least is minus that. */
+/* The largest displacement of a degree of freedom; the motion is odd, so that the least is minus that. */
 static double amplitude(const struct search *s, size_t dof)
 {
     double c[2 * MOST_DOFS] = {0}, least, most;
@@ -428,6 +428,17 @@ TEST(nothing_left)
     driver_advance(s.drv, &t, 20.0, z);
     run(s.sys, methods[_i], 0.1, 1e-14, 20.0, fresh);
     assert_all_exact(z, fresh, 3);
+    /* a velocity that would be rounding of the motion found */
+    double slow[3] = {0.0, -2e-14, 0.0}, alone[3] = {0.0, -2e-14, 0.0};
+    const size_t events = driver_count(s.drv, TRIBO_COUNT_EVENTS);
+    t = 0.0;
+    driver_advance(s.drv, &t, 0.1, slow);
+    tribo_driver *other = driver_create(s.sys, methods[_i], 0.1, 1e-14);
+    t = 0.0;
+    driver_advance(other, &t, 0.1, alone);
+    assert_all_exact(slow, alone, 3);
+    require(driver_count(s.drv, TRIBO_COUNT_EVENTS) - events == driver_count(other, TRIBO_COUNT_EVENTS), "other events");
+    tribo_driver_destroy(other);
     search_free(&s);
 }
 
@@ -445,7 +456,7 @@ TEST(errors)
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, -1.0, y), TRIBO_ERR_NOT_POSITIVE);
     assert_status(tribo_driver_find_periodic(s.drv, 1e300, s.period, y), TRIBO_ERR_STEP);
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1.1 * s.period, y), TRIBO_ERR_RANGE);
-    assert_says(tribo_driver_message(s.drv), "load 0, omega = 0.8");
+    assert_says(tribo_driver_message(s.drv), "load[0], omega = 0.8");
     assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_STATE);
     assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_NOT_FINITE);
     c[1] = 0.0;
