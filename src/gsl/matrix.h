@@ -23,6 +23,7 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
 int tribo_matrix_identity(struct matrix *a, size_t n);
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
+int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b);
 
 /* A copy of count things of so many bytes, NULL for NULL. *done becomes 0 if out of memory. */
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);

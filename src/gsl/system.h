@@ -25,6 +25,14 @@ struct table {
     double *pattern; /* [ndof] accelerations, or NULL */
 };
 
+/* What a reduced system does not have of the whole structure's motion. With lambda = omega^2 + shift, modes left out have lambda of
+ * `above` or more, and the displacement that they make of a steady force at contact i is missing_i of the elastic one. */
+struct truncation {
+    double *missing; /* [ncontact] */
+    double above, shift;
+    int statics; /* and this displacement is among the reduced motions */
+};
+
 struct tribo_system {
     size_t ndof, ncontact;
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
@@ -53,6 +61,7 @@ struct tribo_system {
     size_t given;
     double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
     int loads_accelerate;
+    struct truncation truncation;
 
     gsl_odeiv2_system odeiv2;
     size_t evaluations, jacobians;
