@@ -17,6 +17,9 @@
 /* Of a vector that is in the space of others, rounding leaves no more than this part. */
 #define NOTHING 1e-10
 
+/* What remains of a vector beside others is orthogonal to them to rounding, unless it is less than this part. */
+#define LITTLE 0.1
+
 /* Modes are counted at a place that is this far, relative, from the next ones. */
 #define GAP 1e-3
 
@@ -30,8 +33,8 @@ struct lanczos {
     size_t pending;       /* the last ones, of which w holds what (K + shift M)^-1 M makes of them beyond all */
     int complete;         /* there is nothing beyond */
     double *q;            /* [room][n] */
-    double *w;            /* [BLOCK][n] */
-    double *mw, *c;       /* [n], [room] workspace */
+    double *w, *mw;       /* [BLOCK][n]; [BLOCK][n] M W */
+    double *c;            /* [BLOCK][room] workspace */
     double *h;            /* [room][room] Q'M (K + shift M)^-1 M Q */
     double *theta;        /* [size] its eigenvalues, the largest first */
     double *s, *work;     /* [size][size] its eigenvectors, one a row; [room][room] workspace */
@@ -49,86 +52,108 @@ static void scatter(struct lanczos *l, double *x)
     }
 }
 
-static void apply_mass(const struct lanczos *l, const double *x, double *y)
+/* Takes out of the vectors of w, from the j-th on, what they have of the basis: twice, since the first time leaves rounding. c
+ * [count][room] gets how much that was; mw is up to date then. */
+static void separate(struct lanczos *l, size_t j, size_t count)
 {
-    memset(y, 0, l->n * sizeof *y);
-    tribo_matrix_multiply_add(l->mass, 1.0, x, y);
+    const size_t n = l->n;
+    double *w = l->w + j * n, *mw = l->mw + j * n;
+    memset(l->c, 0, count * l->room * sizeof *l->c);
+    tribo_matrix_multiply_all(l->mass, count, w, mw);
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < l->size; i++) {
+            const double *q = l->q + i * n;
+            for (size_t k = 0; k < count; k++) {
+                const double part = tribo_dot(q, mw + k * n, n);
+                tribo_add(w + k * n, -part, q, n);
+                l->c[k * l->room + i] += part;
+            }
+        }
+        tribo_matrix_multiply_all(l->mass, count, w, mw);
+    }
 }
 
-static double norm_of(struct lanczos *l, const double *x)
+/* Norm in M of the j-th vector of w. */
+static double norm_of(const struct lanczos *l, size_t j)
 {
-    apply_mass(l, x, l->mw);
-    const double square = tribo_dot(x, l->mw, l->n);
+    const double square = tribo_dot(l->w + j * l->n, l->mw + j * l->n, l->n);
     return square > 0.0 ? sqrt(square) : 0.0;
 }
 
-/* Takes out of x what it has of the basis: c [size] gets how much. Twice, since the first time leaves rounding. Returns the norm
- * of the rest. */
-static double separate(struct lanczos *l, double *x, double *c)
+/* The j-th vector of w becomes any that forces make. */
+static void draw(struct lanczos *l, size_t j)
 {
-    memset(c, 0, l->room * sizeof *c);
-    for (int pass = 0; pass < 2; pass++) {
-        apply_mass(l, x, l->mw);
-        for (size_t i = 0; i < l->size; i++) {
-            const double part = tribo_dot(l->q + i * l->n, l->mw, l->n);
-            tribo_add(x, -part, l->q + i * l->n, l->n);
-            c[i] += part;
-        }
+    scatter(l, l->w + j * l->n);
+    tribo_cholesky_solve(l->shifted, 1, l->w + j * l->n);
+    tribo_matrix_multiply_all(l->mass, 1, l->w + j * l->n, l->mw + j * l->n);
+}
+
+/* Takes out of the j-th vector of w what it has of those before it, which are the last of the basis; if little remains, of all
+ * others once more. Returns the norm of the rest. */
+static double separate_from_block(struct lanczos *l, size_t j)
+{
+    const size_t n = l->n;
+    const double before = norm_of(l, j), *q = l->q + (l->size - j) * n;
+    for (size_t i = 0; i < j; i++) {
+        const double part = tribo_dot(q + i * n, l->mw + j * n, n);
+        tribo_add(l->w + j * n, -part, q + i * n, n);
+        tribo_add(l->mw + j * n, -part, l->mw + i * n, n);
     }
-    return norm_of(l, x);
+    if (!(norm_of(l, j) > LITTLE * before)) {
+        separate(l, j, 1);
+    }
+    const double rest = norm_of(l, j);
+    return rest > NOTHING * before ? rest : 0.0;
 }
 
-/* x becomes any vector that a force makes. 0 if out of memory. */
-static int draw(struct lanczos *l, double *x)
-{
-    scatter(l, x);
-    return tribo_cholesky_solve(l->shifted, 1, x);
-}
-
-/* Appends the direction of x to the basis, or another if x has none of its own; if there is none at all, the basis is complete. */
-static void append(struct lanczos *l, double *x)
+/* Appends the direction of the j-th vector of w to the basis, which ends with those before it, or another if it has none of its
+ * own; if there is none at all, the basis is complete. */
+static void append(struct lanczos *l, size_t j)
 {
     for (int attempt = 0; attempt < 3 && l->size < l->n; attempt++) {
-        const double before = norm_of(l, x), rest = separate(l, x, l->c);
-        if (rest > NOTHING * before) {
-            double *q = l->q + l->size * l->n;
+        const double rest = separate_from_block(l, j);
+        if (rest > 0.0) {
             for (size_t i = 0; i < l->n; i++) {
-                q[i] = x[i] / rest;
+                l->q[l->size * l->n + i] = l->w[j * l->n + i] / rest;
+                l->mw[j * l->n + i] /= rest;
             }
             l->size++;
             return;
         }
-        draw(l, x);
+        draw(l, j);
+        separate(l, j, 1);
     }
     l->complete = 1;
+}
+
+static void find_gram(struct lanczos *l)
+{
+    for (size_t i = 0; i < l->pending; i++) {
+        for (size_t j = 0; j < l->pending; j++) {
+            l->gram[i][j] = tribo_dot(l->w + i * l->n, l->mw + j * l->n, l->n);
+        }
+    }
 }
 
 /* One block more. 0 if out of memory. */
 static int extend(struct lanczos *l)
 {
-    const size_t first = l->size, n = l->n;
+    const size_t first = l->size;
     for (size_t j = 0; j < BLOCK && !l->complete; j++) {
-        append(l, l->w + j * n);
+        append(l, j);
     }
     l->pending = l->size - first;
-    for (size_t j = 0; j < l->pending; j++) {
-        apply_mass(l, l->q + (first + j) * n, l->w + j * n);
-    }
+    memcpy(l->w, l->mw, l->pending * l->n * sizeof *l->w);
     if (l->pending && !tribo_cholesky_solve(l->shifted, l->pending, l->w)) {
         return 0;
     }
+    separate(l, 0, l->pending);
     for (size_t j = 0; j < l->pending; j++) {
-        separate(l, l->w + j * n, l->c);
         for (size_t i = 0; i < l->size; i++) {
-            l->h[i * l->room + first + j] = l->h[(first + j) * l->room + i] = l->c[i];
+            l->h[i * l->room + first + j] = l->h[(first + j) * l->room + i] = l->c[j * l->room + i];
         }
     }
-    for (size_t j = 0; j < l->pending; j++) {
-        apply_mass(l, l->w + j * n, l->mw);
-        for (size_t i = 0; i < l->pending; i++) {
-            l->gram[i][j] = tribo_dot(l->w + i * n, l->mw, n);
-        }
-    }
+    find_gram(l);
     return 1;
 }
 
@@ -218,16 +243,14 @@ static int converge(struct lanczos *l, size_t target)
     return TRIBO_ERR_NO_CONVERGENCE;
 }
 
-/* The modes found stay; the search goes on from vectors that have nothing to do with them. 0 if out of memory. */
-static int start_anew(struct lanczos *l)
+/* The modes found stay; the search goes on from vectors that have nothing to do with them. */
+static void start_anew(struct lanczos *l)
 {
     compress(l, count_found(l));
     for (size_t j = 0; j < BLOCK; j++) {
-        if (!draw(l, l->w + j * l->n)) {
-            return 0;
-        }
+        draw(l, j);
     }
-    return 1;
+    separate(l, 0, BLOCK);
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- completeness */
@@ -285,8 +308,8 @@ static int complete(struct lanczos *l, double theta, size_t count)
         if (count + 2 * BLOCK > l->room && l->room < l->n) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
-        if (search && !start_anew(l)) {
-            return TRIBO_ERR_MEMORY;
+        if (search) {
+            start_anew(l);
         }
         const int status = converge(l, count);
         if (status) {
@@ -314,7 +337,8 @@ static int find(struct lanczos *l, const struct matrix *k, double shift, size_t 
 {
     double theta;
     struct inertia below = {0, 0.0};
-    int status = start_anew(l) ? converge(l, wanted) : TRIBO_ERR_MEMORY;
+    start_anew(l);
+    int status = converge(l, wanted);
     if (!status && count_found(l) < wanted) {
         found->count = count_found(l);
         return TRIBO_ERR_SIZE;
@@ -336,15 +360,15 @@ int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift
     const size_t n = k->rows, most = 2 * wanted + 20 * BLOCK, room = most < n ? most : n;
     struct lanczos l = {.mass = m, .shifted = shifted, .n = n, .room = room, .seed = 1};
     memset(found, 0, sizeof *found);
-    double *memory = malloc(((room + BLOCK + 1) * n + 3 * room * room + 2 * room) * sizeof *memory);
+    double *memory = malloc(((room + 2 * BLOCK) * n + 3 * room * room + (BLOCK + 1) * room) * sizeof *memory);
     if (!memory) {
         return TRIBO_ERR_MEMORY;
     }
     l.q = memory;
     l.w = l.q + room * n;
     l.mw = l.w + BLOCK * n;
-    l.c = l.mw + n;
-    l.theta = l.c + room;
+    l.c = l.mw + BLOCK * n;
+    l.theta = l.c + BLOCK * room;
     l.h = l.theta + room;
     l.s = l.h + room * room;
     l.work = l.s + room * room;

@@ -275,6 +275,36 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
     }
 }
 
+/* y [3][rows] = A x for three vectors. */
+static void multiply_three(const struct matrix *a, const double *restrict x, double *restrict y)
+{
+    const size_t n = a->cols, rows = a->rows;
+    for (size_t i = 0; i < rows; i++) {
+        double s0 = 0.0, s1 = 0.0, s2 = 0.0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            const double val = a->val[k], *from = x + a->col[k];
+            s0 += val * from[0];
+            s1 += val * from[n];
+            s2 += val * from[2 * n];
+        }
+        y[i] = s0;
+        y[rows + i] = s1;
+        y[2 * rows + i] = s2;
+    }
+}
+
+void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y)
+{
+    size_t k = 0;
+    for (; k + 3 <= count; k += 3) {
+        multiply_three(a, x + k * a->cols, y + k * a->rows);
+    }
+    memset(y + k * a->rows, 0, (count - k) * a->rows * sizeof *y);
+    for (; k < count; k++) {
+        tribo_matrix_multiply_add(a, 1.0, x + k * a->cols, y + k * a->rows);
+    }
+}
+
 /* A sum and what was rounded off it. */
 struct sum {
     double high, low;

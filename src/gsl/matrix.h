@@ -33,6 +33,9 @@ void tribo_matrix_free(struct matrix *a);
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
 
+/* count vectors y [count][rows] = A x, x [count][cols]: the matrix is read once for some of them. */
+void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y);
+
 /* x'Ay, rounded only at the end: a form may be far smaller than its terms. */
 double tribo_matrix_form(const struct matrix *a, const double *x, const double *y);
 
