@@ -158,7 +158,6 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);
     to->omega = tribo_copy_of(sys->omega, sys->ndof, sizeof *to->omega, &done);
     to->truncation = sys->truncation;
-    to->truncation.missing = tribo_copy_of(sys->truncation.missing, sys->ncontact, sizeof *to->truncation.missing, &done);
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
            tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->metric, &sys->metric) &&
            tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);
@@ -208,7 +207,6 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_cholesky_free(&sys->factor);
     free(sys->modes);
     free(sys->omega);
-    free(sys->truncation.missing);
     free(sys->v);
     free(sys->dense);
     free(sys);

@@ -15,7 +15,7 @@
 #define FOUND 1e-11
 
 /* Of a vector that is in the space of others, rounding leaves no more than this part. */
-#define NOTHING 1e-10
+#define NOTHING 1e-13
 
 /* What remains of a vector beside others is orthogonal to them to rounding, unless it is less than this part. */
 #define LITTLE 0.1
@@ -29,15 +29,16 @@
 struct lanczos {
     const struct matrix *mass;
     const struct cholesky *shifted;
-    size_t n, room, size; /* of vectors: room for so many, and so many there are */
-    size_t pending;       /* the last ones, of which w holds what (K + shift M)^-1 M makes of them beyond all */
-    int complete;         /* there is nothing beyond */
-    double *q;            /* [room][n] */
-    double *w, *mw;       /* [BLOCK][n]; [BLOCK][n] M W */
-    double *c;            /* [BLOCK][room] workspace */
-    double *h;            /* [room][room] Q'M (K + shift M)^-1 M Q */
-    double *theta;        /* [size] its eigenvalues, the largest first */
-    double *s, *work;     /* [size][size] its eigenvectors, one a row; [room][room] workspace */
+    size_t n, room, size;      /* of vectors: room for so many, and so many there are */
+    size_t pending;            /* the last ones, of which w holds what (K + shift M)^-1 M makes of them beyond all */
+    int complete;              /* there is nothing beyond */
+    double *q;                 /* [room][n] */
+    double *w, *mw;            /* [BLOCK][n]; [BLOCK][n] M W */
+    double norm[BLOCK];        /* of those of w before anything was taken out of them */
+    double *c;                 /* [BLOCK][room] workspace */
+    double *h;                 /* [room][room] Q'M (K + shift M)^-1 M Q */
+    double *theta;             /* [size] its eigenvalues, the largest first */
+    double *s, *work;          /* [size][size] its eigenvectors, one a row; [room][room] workspace */
     double gram[BLOCK][BLOCK]; /* W'M W */
     uint64_t seed;
 };
@@ -52,6 +53,13 @@ static void scatter(struct lanczos *l, double *x)
     }
 }
 
+/* Norm in M of the j-th vector of w. */
+static double norm_of(const struct lanczos *l, size_t j)
+{
+    const double square = tribo_dot(l->w + j * l->n, l->mw + j * l->n, l->n);
+    return square > 0.0 ? sqrt(square) : 0.0;
+}
+
 /* Takes out of the vectors of w, from the j-th on, what they have of the basis: twice, since the first time leaves rounding. c
  * [count][room] gets how much that was; mw is up to date then. */
 static void separate(struct lanczos *l, size_t j, size_t count)
@@ -60,6 +68,9 @@ static void separate(struct lanczos *l, size_t j, size_t count)
     double *w = l->w + j * n, *mw = l->mw + j * n;
     memset(l->c, 0, count * l->room * sizeof *l->c);
     tribo_matrix_multiply_all(l->mass, count, w, mw);
+    for (size_t k = j; k < j + count; k++) {
+        l->norm[k] = norm_of(l, k);
+    }
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < l->size; i++) {
             const double *q = l->q + i * n;
@@ -71,13 +82,6 @@ static void separate(struct lanczos *l, size_t j, size_t count)
         }
         tribo_matrix_multiply_all(l->mass, count, w, mw);
     }
-}
-
-/* Norm in M of the j-th vector of w. */
-static double norm_of(const struct lanczos *l, size_t j)
-{
-    const double square = tribo_dot(l->w + j * l->n, l->mw + j * l->n, l->n);
-    return square > 0.0 ? sqrt(square) : 0.0;
 }
 
 /* The j-th vector of w becomes any that forces make. */
@@ -93,7 +97,7 @@ static void draw(struct lanczos *l, size_t j)
 static double separate_from_block(struct lanczos *l, size_t j)
 {
     const size_t n = l->n;
-    const double before = norm_of(l, j), *q = l->q + (l->size - j) * n;
+    const double whole = l->norm[j], before = norm_of(l, j), *q = l->q + (l->size - j) * n;
     for (size_t i = 0; i < j; i++) {
         const double part = tribo_dot(q + i * n, l->mw + j * n, n);
         tribo_add(l->w + j * n, -part, q + i * n, n);
@@ -103,7 +107,7 @@ static double separate_from_block(struct lanczos *l, size_t j)
         separate(l, j, 1);
     }
     const double rest = norm_of(l, j);
-    return rest > NOTHING * before ? rest : 0.0;
+    return rest > NOTHING * whole ? rest : 0.0;
 }
 
 /* Appends the direction of the j-th vector of w to the basis, which ends with those before it, or another if it has none of its
@@ -157,7 +161,8 @@ static int extend(struct lanczos *l)
     return 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------- what is known of modes */
+/* ------------------------------------------------------------------------------------------------------- what is known of
+ * modes */
 
 /* theta and s. 0 if out of memory. */
 static int project(struct lanczos *l)
@@ -253,7 +258,8 @@ static void start_anew(struct lanczos *l)
     separate(l, 0, BLOCK);
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- completeness */
+/* -----------------------------------------------------------------------------------------------------------------
+ * completeness */
 
 /* A theta that is well between the wanted ones and others: the first such place from the last wanted one on. More may have to be
  * found for that. */
@@ -319,18 +325,31 @@ static int complete(struct lanczos *l, double theta, size_t count)
     return count_above(l, theta) == count ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
 }
 
-/* ------------------------------------------------------------------------------------------------------------------------ calls */
+/* ------------------------------------------------------------------------------------------------------------------------
+ * calls */
 
+/* The modes found, once more through (K + shift M)^-1 M: that takes out of them what has no mass. */
 static int take(struct lanczos *l, size_t count, struct low_modes *found)
 {
+    const size_t n = l->n;
+    int done = 1;
     compress(l, count);
-    found->phi = malloc(count * l->n * sizeof *found->phi);
+    found->count = count;
+    found->phi = malloc(count * n * sizeof *found->phi);
     if (!found->phi) {
         return TRIBO_ERR_MEMORY;
     }
-    found->count = count;
-    memcpy(found->phi, l->q, count * l->n * sizeof *l->q);
-    return TRIBO_OK;
+    for (size_t k = 0; done && k < count; k += BLOCK) {
+        const size_t some = count - k < BLOCK ? count - k : BLOCK;
+        tribo_matrix_multiply_all(l->mass, some, l->q + k * n, found->phi + k * n);
+        done = tribo_cholesky_solve(l->shifted, some, found->phi + k * n);
+    }
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < n; i++) {
+            found->phi[k * n + i] /= l->theta[k];
+        }
+    }
+    return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 static int find(struct lanczos *l, const struct matrix *k, double shift, size_t wanted, struct low_modes *found)

@@ -20,8 +20,8 @@ void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 #define SPARSE_LEAST 200
 #define DENSE_MOST 3000
 
-/* A^-1 = S S'. Dense: S = P' L^-T D^-1/2 from P A P' = L D L', with L in the lower triangle of factor. A diagonal A has only root,
- * a sparse one neither. */
+/* A^-1 = S S'. Dense: S = P' L^-T D^-1/2 from P A P' = L D L', with L in the lower triangle of factor. A diagonal A has only
+ * root, a sparse one neither. */
 struct cholesky {
     size_t n; /* 0: the identity */
     double *factor;
@@ -30,8 +30,8 @@ struct cholesky {
     struct sparse_factor *sparse;
 };
 
-/* Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with the place of a pivot
- * that is not positive, and its value, NaN if that is not known. */
+/* Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with the place of a
+ * pivot that is not positive, and its value, NaN if that is not known. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from); /* 1, or 0 if out of memory */
 void tribo_cholesky_free(struct cholesky *c);

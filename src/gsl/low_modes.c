@@ -1,5 +1,5 @@
-/* The motions that a structure is reduced to: its lowest modes, found densely or by Lanczos' method, and what steady forces at its
- * contacts add to them. */
+/* The motions that a structure is reduced to: its lowest modes, found densely or by Lanczos' method, and what steady forces at
+ * its contacts add to them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,18 +11,23 @@
 
 /* The shift beside the mean omega^2 of the degrees of freedom, weighted by their masses: far below what is elastic, and far above
  * what rounding makes of rigid-body motions. Where it is not, larger ones follow. */
-#define SHIFT 1e-10
+#define SHIFT 1e-9
 #define MORE 1e3
 #define MOST_SHIFT 1e-3
 
 /* What a singular mass matrix is made definite with, in the same way. */
 #define SLIGHT 1e-12
 
-/* Modes must come out of the factor again to this part. */
+/* Modes must come out of the factor again, their omega^2 to this part of itself and to this part of the shift, beside which
+ * rounding of the factor is not nothing. */
 #define SAME 1e-5
+#define SAME_SHIFT 1e-3
 
 /* A static response that has no more of its own than this part is one of the others. */
 #define OWN 1e-7
+
+/* Contacts whose displacements depend on each other make a flexibility that is singular but for this part. */
+#define RIDGE 1e-12
 
 /* Contacts whose responses are solved for at a time. */
 #define BATCH 16
@@ -68,8 +73,8 @@ static int search_failed(const struct model *m, int status, const struct low_mod
         return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu modes only", m->nmode,
                                 low->count);
     default:
-        return tribo_model_fail(m, status, "the %zu lowest modes are not found, or not counted: reduce the system to fewer or more",
-                                m->nmode);
+        return tribo_model_fail(
+            m, status, "the %zu lowest modes are not found, or not counted: reduce the system to fewer or more", m->nmode);
     }
 }
 
@@ -105,9 +110,8 @@ static int factor_failed(const struct model *m, int status, const char *what, si
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(m, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what, where)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
-           : status
-               ? tribo_model_fail(m, status, "out of memory for the factor of %zu degrees of freedom", m->ndof)
-               : TRIBO_OK;
+           : status ? tribo_model_fail(m, status, "out of memory for the factor of %zu degrees of freedom", m->ndof)
+                    : TRIBO_OK;
 }
 
 static int factorize_shifted(const struct model *m, struct shifted *s)
@@ -223,7 +227,8 @@ static int check_modes(const struct model *m, const struct shifted *s, const str
         }
     }
     for (size_t k = 0; !status && k < r->count; k++) {
-        if (!(residual(m, s, r->omega2[k], r->phi + k * m->ndof, work) <= SAME)) {
+        const double change = residual(m, s, r->omega2[k], r->phi + k * m->ndof, work);
+        if (!(change * (r->omega2[k] + s->shift) <= SAME * r->omega2[k] + SAME_SHIFT * s->shift)) {
             status = search_failed(m, TRIBO_ERR_NO_CONVERGENCE, low);
         }
     }
@@ -241,7 +246,8 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
     return status ? status : check_modes(m, s, &low, r);
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- the contacts */
+/* ----------------------------------------------------------------------------------------------------------------- the
+ * contacts */
 
 /* x -= the part of it in each of count motions, orthonormal in M, twice. mx [ndof] is workspace. Returns the norm of the rest. */
 static double separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
@@ -268,26 +274,15 @@ static double displacement(const struct model *m, size_t i, const double *x)
     return sum;
 }
 
-/* The elastic displacement that a steady unit force at contact i makes by the modes. */
-static double by_modes(const struct model *m, const struct shifted *s, const struct reduced *r, size_t i)
+/* x [ndof] is what a steady force at contact i does. Takes out of it what the modes have, enters what the rest does at the
+ * contacts into missing [ncontact][ncontact], and adds what is new in it to the motions. */
+static void add_static(const struct model *m, struct reduced *r, size_t i, double *x, double *mx, double *missing)
 {
-    double sum = 0.0;
-    for (size_t k = 0; k < m->nmode; k++) {
-        const double part = displacement(m, i, r->phi + k * m->ndof);
-        sum += r->omega2[k] > 0.0 ? part * part / (r->omega2[k] + s->shift) : 0.0;
+    const double before = separate(m, m->nmode, r->phi, x, mx);
+    for (size_t j = 0; j < m->ncontact; j++) {
+        missing[i * m->ncontact + j] = displacement(m, j, x);
     }
-    return sum;
-}
-
-/* x [ndof] is what a steady force at contact i does: finds what is missing of it, and adds what is new in it to the motions. */
-static void add_static(const struct model *m, const struct shifted *s, struct reduced *r, size_t i, double *x, double *mx)
-{
-    const double before = separate(m, m->nmode, r->phi, x, mx), rest = greater(displacement(m, i, x), 0.0);
-    r->truncation.missing[i] = rest > 0.0 ? rest / (rest + by_modes(m, s, r, i)) : 0.0;
-    if (!m->statics) {
-        return;
-    }
-    const double norm = separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx);
+    const double norm = m->statics ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
     if (norm > OWN * before) {
         for (size_t k = 0; k < m->ndof; k++) {
             r->phi[r->count * m->ndof + k] = x[k] / norm;
@@ -296,7 +291,7 @@ static void add_static(const struct model *m, const struct shifted *s, struct re
     }
 }
 
-static int add_statics(const struct model *m, const struct shifted *s, struct reduced *r)
+static int add_statics(const struct model *m, const struct shifted *s, struct reduced *r, double *missing)
 {
     const size_t n = m->ndof;
     double *x = malloc((BATCH + 1) * n * sizeof *x);
@@ -311,7 +306,7 @@ static int add_statics(const struct model *m, const struct shifted *s, struct re
         }
         done = tribo_cholesky_solve(&s->factor, count, x);
         for (size_t i = first; done && i < first + count; i++) {
-            add_static(m, s, r, i, x + (i - first) * n, x + BATCH * n);
+            add_static(m, r, i, x + (i - first) * n, x + BATCH * n, missing);
         }
     }
     free(x);
@@ -332,19 +327,73 @@ static int finish_statics(const struct model *m, struct reduced *r)
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------------------ calls */
+/* whole = missing + the elastic displacements that steady forces at the contacts make by the modes. */
+static void add_modes(const struct model *m, const struct shifted *s, const struct reduced *r, double *whole)
+{
+    const size_t c = m->ncontact;
+    for (size_t k = 0; k < m->nmode; k++) {
+        for (size_t i = 0; i < c; i++) {
+            const double part = r->omega2[k] > 0.0 ? displacement(m, i, r->phi + k * m->ndof) / (r->omega2[k] + s->shift) : 0.0;
+            for (size_t j = 0; j < c; j++) {
+                whole[i * c + j] += part * displacement(m, j, r->phi + k * m->ndof);
+            }
+        }
+    }
+}
+
+/* The largest x'Ax beside x'Bx, A [n][n] semidefinite, B, of which A is a part, to rounding of its diagonal. A is overwritten. */
+static int largest_part(size_t n, double *a, double *b, double *part)
+{
+    struct matrix whole = {0};
+    struct cholesky c = {0};
+    size_t where;
+    double pivot, *value = malloc((n + 1) * sizeof *value);
+    for (size_t i = 0; i < n; i++) {
+        b[i * n + i] += b[i * n + i] > 0.0 ? RIDGE * b[i * n + i] : 1.0;
+    }
+    int done = value && tribo_matrix_from_dense(&whole, n, n, b) && tribo_cholesky_create(&c, &whole, &where, &pivot) == TRIBO_OK;
+    if (done) {
+        tribo_half_solve(&c, a, n);
+        tribo_transpose(n, n, a, b);
+        tribo_half_solve(&c, b, n);
+        done = tribo_symmetric_eigen(b, n, value, a);
+        *part = clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
+    }
+    tribo_cholesky_free(&c);
+    tribo_matrix_free(&whole);
+    free(value);
+    return done;
+}
+
+/* What the modes lack at the contacts, and the static motions beside them. */
+static int find_statics(const struct model *m, const struct shifted *s, struct reduced *r)
+{
+    const size_t c = m->ncontact;
+    double *missing = calloc(2 * c * c + 1, sizeof *missing), *whole = missing + c * c;
+    int status = missing ? add_statics(m, s, r, missing) : tribo_model_no_memory(m);
+    r->truncation.missing = c > m->nmode ? 1.0 : 0.0;
+    if (!status && c <= m->nmode) {
+        memcpy(whole, missing, c * c * sizeof *whole);
+        add_modes(m, s, r, whole);
+        status = largest_part(c, missing, whole, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
+    }
+    free(missing);
+    return status || r->count == m->nmode ? status : finish_statics(m, r);
+}
+
+/* ------------------------------------------------------------------------------------------------------------------------
+ * calls */
 
 void tribo_reduced_free(struct reduced *r)
 {
     free(r->omega2);
     free(r->phi);
-    free(r->truncation.missing);
 }
 
 static int find_lowest_densely(const struct model *m, struct shifted *s, struct reduced *r)
 {
     struct cholesky mass;
-    int status = tribo_model_factorize(m, &mass);
+    int status = m->ndof > DENSE_MOST ? tribo_model_too_large(m) : tribo_model_factorize(m, &mass);
     if (!status) {
         status = find_densely(m, &mass, r);
         tribo_cholesky_free(&mass);
@@ -375,15 +424,13 @@ int tribo_model_find_modes(const struct model *m, struct reduced *r)
     memset(r, 0, sizeof *r);
     r->omega2 = malloc(most * sizeof *r->omega2);
     r->phi = malloc(most * n * sizeof *r->phi);
-    r->truncation.missing = calloc(m->ncontact + 1, sizeof *r->truncation.missing);
     r->truncation.statics = m->statics;
-    int status = r->omega2 && r->phi && r->truncation.missing ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
+    int status = r->omega2 && r->phi ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
     if (!status && r->omega2[0] < 0.0) {
         status = tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
                                   r->omega2[0]);
     }
-    status = status ? status : add_statics(m, &s, r);
-    status = status || r->count == m->nmode ? status : finish_statics(m, r);
+    status = status || m->nmode == n || !m->ncontact ? status : find_statics(m, &s, r);
     r->truncation.shift = s.shift;
     r->truncation.above += s.shift;
     tribo_cholesky_free(&s.factor);

@@ -22,14 +22,13 @@ static int diagonal_matrix(struct matrix *a, const double *x, double factor, siz
 }
 
 /* The modes as the system keeps them, [ndof][count], and omega; takes what else it needs from r. 0 if out of memory. */
-static int take_modes(tribo_system *sys, size_t given, struct reduced *r)
+static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
 {
     const size_t count = r->count;
     sys->given = given;
     sys->modes = malloc(given * count * sizeof *sys->modes);
     sys->omega = malloc(count * sizeof *sys->omega);
     sys->truncation = r->truncation;
-    r->truncation.missing = NULL;
     if (!sys->modes || !sys->omega) {
         return 0;
     }
@@ -69,7 +68,8 @@ static int build(const struct model *m, const struct reduced *r, double *respons
     }
     free(shapes);
     if (done) {
-        return tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response) ? tribo_model_no_memory(m) : TRIBO_OK;
+        return tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response) ? tribo_model_no_memory(m)
+                                                                                              : TRIBO_OK;
     }
     tribo_matrix_free(&stiffness);
     tribo_matrix_free(&direction);
@@ -156,5 +156,23 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
         }
         full[i] = sum;
     }
+    return TRIBO_OK;
+}
+
+int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error)
+{
+    const int status = only_reduced(sys);
+    if (status) {
+        return status;
+    }
+    if (!error) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "error is NULL");
+    }
+    if (!isfinite(omega)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+    }
+    const struct truncation *t = &sys->truncation;
+    const double x = (omega * omega + t->shift) / t->above;
+    *error = x < 1.0 ? t->missing * (t->statics ? x * x : 1.0) / (1.0 - x) : HUGE_VAL;
     return TRIBO_OK;
 }

@@ -12,8 +12,8 @@ struct sparse_factor;
 /* 0: the library has been built without CHOLMOD, and the calls below return TRIBO_ERR_UNSUPPORTED. */
 int tribo_sparse_available(void);
 
-/* Of a positive definite matrix, of which the upper triangle counts. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED, or
- * TRIBO_ERR_INDEFINITE with the row where it shows. */
+/* Of a positive definite matrix, of which the upper triangle counts. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED,
+ * or TRIBO_ERR_INDEFINITE with the row where it shows. */
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where);
 int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from); /* 1, or 0 if out of memory */
 void tribo_sparse_factor_free(struct sparse_factor *factor);

@@ -25,12 +25,11 @@ struct table {
     double *pattern; /* [ndof] accelerations, or NULL */
 };
 
-/* What a reduced system does not have of the whole structure's motion. With lambda = omega^2 + shift, modes left out have lambda of
- * `above` or more, and the displacement that they make of a steady force at contact i is missing_i of the elastic one. */
+/* What a reduced system does not have of the whole structure's motion. Modes left out have omega^2 + shift of `above` or more;
+ * of the work that steady forces at the contacts do on the elastic structure they take up to the part `missing`. */
 struct truncation {
-    double *missing; /* [ncontact] */
-    double above, shift;
-    int statics; /* and this displacement is among the reduced motions */
+    double above, shift, missing;
+    int statics; /* the displacements by steady forces are among the reduced motions nevertheless */
 };
 
 struct tribo_system {
