@@ -74,7 +74,7 @@ static int search_failed(const struct model *m, int status, const struct low_mod
                                 low->count);
     default:
         return tribo_model_fail(
-            m, status, "the %zu lowest modes are not found, or not counted: reduce the system to fewer or more", m->nmode);
+            m, status, "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more", m->nmode);
     }
 }
 
