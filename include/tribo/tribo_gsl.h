@@ -64,10 +64,25 @@ TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t nconta
                                   const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 
 /* The same from sparse matrices (any GSL format; ones that hold only one triangle of a symmetric matrix must be completed first).
- * Without reduction a mass matrix that is not diagonal makes the system dense. */
+ * Without reduction a mass matrix that is not diagonal makes the system dense.
+ *
+ * From 200 degrees of freedom on, of which at most a quarter are modes wanted, the modes come from Lanczos' method and sparse
+ * factors (CHOLMOD; a library built without it refuses more than 3000 degrees of freedom, TRIBO_ERR_UNSUPPORTED). Repeated
+ * frequencies and rigid-body motions are found as often as there are: the modes below a frequency are counted by the signs of a
+ * factor's pivots, and each is checked by its residual; what does not pass is TRIBO_ERR_NO_CONVERGENCE. A library with CHOLMOD
+ * also reduces structures with a mass matrix that is only semidefinite, if the stiffness holds what has no mass, to the modes
+ * that there are; of an indefinite one with more than 3000 rows it sees what the minors of two rows show. */
 TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
                                          char *message, size_t size);
+
+/* A structure reduced to its lowest nmode modes, as by tribo_system_linear_sparse, and with static_contacts not 0 to what steady
+ * forces at its contacts do beside them, too: of the displacements that contacts make, modes alone leave out much. The system's
+ * motions are orthonormal in M and orthogonal in K; ndof is nmode and at most one more a contact. Responses to a load are had
+ * in the same way, from a row of direction that is the load, as a contact whose limit stays 0.
+ * nmode > 0. Returns what tribo_system_linear does. */
+TRIBO_API int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
+                                   const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size);
 
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 
@@ -115,6 +130,16 @@ TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
  * full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in. Others: TRIBO_ERR_UNSUPPORTED. */
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
 TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
+
+/* Reduced systems: a bound on what the motions left out would do.
+ * omega  in   the highest frequency that matters: of the load, and of those of its harmonics that matter
+ * error  out  harmonic forces at the contacts, up to that frequency and in any proportion to each other, make displacements
+ *             there of which at most this part is missing, in terms of the work that the same forces do on the whole elastic
+ *             structure while they are steady. With static contacts it is (omega/omega_next)^4 and less, omega_next being the
+ *             first frequency left out. HUGE_VAL if modes that slow may be left out. The places where loads act count if they
+ *             are contacts, too
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (not reduced). */
+TRIBO_API int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error);
 
 /* Sizes; 0 for NULL. dimension is 2 ndof + 1. */
 TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);

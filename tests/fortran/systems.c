@@ -142,6 +142,15 @@ static void linear(tribo_system *sys, int reduced)
     tribo_system_destroy(sys);
 }
 
+static void truncation(tribo_system *sys)
+{
+    double error = -1.0;
+    sizes(sys);
+    put_one(tribo_system_get_truncation(sys, 0.25, &error));
+    put_one(error);
+    tribo_system_destroy(sys);
+}
+
 static gsl_spmatrix *sparse(const double *a, size_t rows)
 {
     gsl_spmatrix *s = gsl_spmatrix_alloc(rows, DOF);
@@ -211,6 +220,10 @@ void systems_play(void)
     linear(sys, 0);
     put_one(tribo_system_linear_sparse(&sys, m, NULL, k, j, 2, NULL, 0));
     linear(sys, 1);
+    put_one(tribo_system_reduced(&sys, m, k, j, 2, 0, NULL, 0));
+    linear(sys, 1);
+    put_one(tribo_system_reduced(&sys, m, k, j, 1, 1, NULL, 0));
+    truncation(sys);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(c);
     gsl_spmatrix_free(k);

@@ -107,7 +107,23 @@ contains
     call sys%linear(m, k, j, nmode=2, stat=stat)
     call compare('linear, sparse', stat)
     call linear(sys, .true.)
+    call sys%reduced(m, k, j, 2, .false., stat)
+    call compare('reduced', stat)
+    call linear(sys, .true.)
+    call sys%reduced(m, k, j, 1, stat=stat)
+    call compare('reduced, statics', stat)
+    call truncation(sys)
   end subroutine all_systems
+
+  subroutine truncation(sys)
+    type(tribo_system), intent(in) :: sys
+    real(dp) :: error
+    integer :: stat
+    call sizes(sys)
+    call sys%get_truncation(0.25_dp, error, stat)
+    call compare('get_truncation', stat)
+    call compare('get_truncation', error)
+  end subroutine truncation
 
   subroutine sizes(sys)
     type(tribo_system), intent(in) :: sys
