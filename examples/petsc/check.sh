@@ -1,0 +1,100 @@
+# sh check.sh CASE RANKS PROGRAMS MPIEXEC: runs one of the PETSc programs as a test, in a folder of its own under PROGRAMS, the folder that they
+# are in. MPIEXEC: how it is started, without the number of ranks ("mpiexec -n").
+set -eu
+here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
+case=$1 ranks=$2 programs=$3 mpiexec=$4
+beam=$here/../data/beam
+work=$programs/petsc-$case-$ranks
+rm -rf "$work"
+mkdir -p "$work"
+cd "$work"
+. "$here/mpi.sh"
+
+run() {
+    program=$1
+    shift
+    $mpiexec "$ranks" "$programs/$program" "$@"
+}
+
+same() { # tolerance, of two files
+    awk -v tolerance="$1" -f "$here/compare.awk" "$2" "$3"
+}
+
+printf '%s\n' '# row other limit' '117 0 0.02' '189 0 0.02' '261 0 0.01' '225 168 0.003' >contacts.txt
+structure="-mass $beam/M.mtx -stiffness $beam/K.mtx -contacts contacts.txt -places $beam/dofs.txt -load_row 264 -load 0.1"
+short='-omega 8000 -ts_dt 2e-6 -ts_max_steps 500 -every 100'
+
+# The same by moreau/fixed in one process: damping, steps, every.
+single() {
+    "$programs/petsc_single" structure $beam/M.mtx $beam/K.mtx contacts.txt 288 264 0.1 8000 "$1" 2e-6 "$2" "$3" >single.txt
+}
+
+# It must stop, all of it, and say this.
+fails() {
+    message=$1
+    shift
+    status=0
+    run "$@" >out.txt 2>&1 || status=$?
+    grep -F "$message" out.txt
+    [ $status != 0 ]
+}
+
+case $case in
+chain-rk4 | chain-step)
+    method=rk4/fixed error=1.1e-4 options=
+    [ $case = chain-rk4 ] || method=central/fixed error=9e-4 options=-step_form
+    run petsc_chain -steps 1257 $options >out.txt
+    "$programs/petsc_single" chain $method 32 1257 4 >single.txt
+    same 1e-10 out.txt single.txt
+    tail -n 1 out.txt >last.txt
+    echo 'cycle 4 dissipates 0.0104949600025' >exact.txt # Coulomb's law
+    same $error last.txt exact.txt
+    ;;
+structure)
+    run petsc_structure $structure $short >out.txt
+    single 0 500 100
+    same 1e-9 out.txt single.txt
+    ;;
+structure-damped)
+    run petsc_structure $structure $short -damping 1e-6 >out.txt
+    single 1e-6 500 100
+    same 1e-7 out.txt single.txt # the driver works with M^-1 K, whose rounding this is
+    ;;
+structure-cg)
+    run petsc_structure $structure $short -ts_max_steps 50 -every 10 -ksp_type cg -pc_type gamg >out.txt
+    single 0 50 10
+    same 1e-9 out.txt single.txt
+    ;;
+copies)
+    run petsc_structure $structure $short -copies 3 >out.txt
+    grep '^# 3 islands' out.txt
+    cut -d ' ' -f 1,2 out.txt >moved.txt
+    run petsc_structure $structure $short | cut -d ' ' -f 1,2 >alone.txt
+    same 1e-9 moved.txt alone.txt
+    $mpiexec 1 "$programs/petsc_structure" $structure $short -copies 3 >one.txt
+    same 1e-9 out.txt one.txt
+    ;;
+vtk)
+    run petsc_structure $structure $short -vtk 'motion-%04d.vtk' -ts_monitor >out.txt
+    grep -q '^500 TS dt 2e-06 time 0.001' out.txt
+    awk '$1 == "POINTS" { points = $2 } $1 == "SCALARS" { what = $2; n = -1 } what && NF == 1 { count[what]++ }
+        what == "slip" && NF == 1 && $1 != 3 { contacts++ }
+        END { print points, count["friction"], count["slip"], contacts
+              exit !(points == 100 && count["friction"] == 100 && count["slip"] == 100 && contacts == 4) }' motion-0005.vtk
+    run petsc_chain -steps 1257 -ts_max_steps 2 -ts_monitor_solution_vtk 'chain-%04d.vts' >chain.txt
+    grep -q 'chain.dissipated' chain-0002.vts
+    ;;
+chain-fails) # the first rank pulls its first block, the others wait for their neighbours
+    fails 'tribo on rank 0 (its contact 0 is block 0): a value is NaN or infinite: a[0] = ' petsc_chain -steps 1257 -alpha 1e308
+    fails 'are not stable: less than 0.0411' petsc_chain -steps 300
+    ;;
+structure-fails) # the first rank has the only island, the others wait for its forces
+    fails 'is not finite' petsc_structure $structure $short -load 1e307
+    echo '276 0 -0.5' >>contacts.txt
+    fails 'tribo on rank 0 (its contacts: 0 1 2 3 4): a value is negative: limit[4] = -0.5 is negative' petsc_structure $structure $short
+    ;;
+*)
+    echo "there is no case $case"
+    exit 1
+    ;;
+esac
