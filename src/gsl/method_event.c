@@ -144,10 +144,10 @@ static int expand(struct event *e, double t, const double *y)
             const signed char slip = e->events.stick_slip.slip[i];
             if (slip == 1 || slip == -1) {
                 const double rate = k ? e->events.stick_slip.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
-                power -= slip * (e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate);
+                power += sys->tally[i] * slip * (e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate);
             }
         }
-        e->d[k + 1] = -sys->power * power / (double)(k + 1);
+        e->d[k + 1] = power / (double)(k + 1);
     }
     return TRIBO_OK;
 }
@@ -353,7 +353,7 @@ static void state(void *motion, double tau, const double *from, double *to)
     const struct event *e = motion;
     const size_t n = e->sys->ndof;
     (void)from;
-    memset(to, 0, (2 * n + 1) * sizeof *to);
+    memset(to, 0, tribo_system_dimension(e->sys) * sizeof *to);
     for (size_t k = e->order + 1; k-- > 0;) {
         for (size_t i = 0; i < n; i++) {
             to[i] = to[i] * tau + e->q[k * n + i];
