@@ -49,14 +49,14 @@ static PetscErrorCode ReadHead(Source *s)
 }
 
 /* Goes to where this rank's share of the lines begins, and tells where it ends: a line belongs to whom its first byte does. */
-static PetscErrorCode FindShare(const Source *s, long *end)
+static PetscErrorCode FindShare(MPI_Comm comm, const Source *s, long *end)
 {
     PetscMPIInt rank, size;
     int c = '\n';
 
     PetscFunctionBeginUser;
-    PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-    PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+    PetscCallMPI(MPI_Comm_rank(comm, &rank));
+    PetscCallMPI(MPI_Comm_size(comm, &size));
     PetscCheck(!fseek(s->file, 0, SEEK_END), PETSC_COMM_SELF, PETSC_ERR_FILE_READ, "%s cannot be read", s->path);
     const long bytes = ftell(s->file) - s->begin, share = bytes / size;
     *end = rank + 1 < size ? s->begin + (rank + 1) * share : s->begin + bytes;
@@ -84,14 +84,14 @@ static PetscErrorCode AddEntry(Entries *e, PetscInt row, PetscInt column, PetscS
 }
 
 /* Reads this rank's share of the entries, and sees that those of all ranks are as many as announced. */
-static PetscErrorCode ReadEntries(const Source *s, PetscInt copies, Entries *e)
+static PetscErrorCode ReadEntries(MPI_Comm comm, const Source *s, PetscInt copies, Entries *e)
 {
     PetscInt64 lines = 0, all;
     char line[LINE];
     long end = 0;
 
     PetscFunctionBeginUser;
-    PetscCall(FindShare(s, &end));
+    PetscCall(FindShare(comm, s, &end));
     while (ftell(s->file) < end && fgets(line, LINE, s->file)) {
         char *at = line;
         const long row = strtol(at, &at, 10), column = strtol(at, &at, 10);
@@ -113,13 +113,13 @@ static PetscErrorCode ReadEntries(const Source *s, PetscInt copies, Entries *e)
             }
         }
     }
-    PetscCall(MPIU_Allreduce(&lines, &all, 1, MPIU_INT64, MPI_SUM, PETSC_COMM_WORLD));
-    PetscCheck(all == s->announced, PETSC_COMM_WORLD, PETSC_ERR_FILE_UNEXPECTED,
+    PetscCall(MPIU_Allreduce(&lines, &all, 1, MPIU_INT64, MPI_SUM, comm));
+    PetscCheck(all == s->announced, comm, PETSC_ERR_FILE_UNEXPECTED,
                "%s announces %" PetscInt_FMT " entries and has %" PetscInt64_FMT, s->path, s->announced, all);
     PetscFunctionReturn(0);
 }
 
-PetscErrorCode ReadMatrix(const char *path, PetscInt copies, Mat *matrix)
+PetscErrorCode ReadMatrix(MPI_Comm comm, const char *path, PetscInt copies, Mat *matrix)
 {
     Source s = {.path = path};
     Entries e = {0};
@@ -128,9 +128,9 @@ PetscErrorCode ReadMatrix(const char *path, PetscInt copies, Mat *matrix)
     s.file = fopen(path, "r");
     PetscCheck(s.file, PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN, "%s cannot be opened", path);
     PetscCall(ReadHead(&s));
-    PetscCall(ReadEntries(&s, copies, &e));
+    PetscCall(ReadEntries(comm, &s, copies, &e));
     fclose(s.file);
-    PetscCall(MatCreate(PETSC_COMM_WORLD, matrix));
+    PetscCall(MatCreate(comm, matrix));
     PetscCall(MatSetSizes(*matrix, PETSC_DECIDE, PETSC_DECIDE, copies * s.rows, copies * s.rows));
     PetscCall(MatSetBlockSize(*matrix, s.rows % 3 ? 1 : 3));
     PetscCall(MatSetType(*matrix, MATAIJ));
@@ -241,7 +241,8 @@ PetscErrorCode CreateDirection(const Contacts *c, Mat matrix, Mat *direction, Ve
     PetscFunctionBeginUser;
     PetscCall(MatGetSize(matrix, &columns, NULL));
     PetscCall(MatGetLocalSize(matrix, &here, NULL));
-    PetscCall(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, here, c->count, columns, 2, NULL, 2, NULL, direction));
+    PetscCall(
+        MatCreateAIJ(PetscObjectComm((PetscObject)matrix), PETSC_DECIDE, here, c->count, columns, 2, NULL, 2, NULL, direction));
     PetscCall(MatCreateVecs(*direction, NULL, limit));
     PetscCall(MatGetOwnershipRange(*direction, &first, &end));
     for (PetscInt i = first; i < end; i++) {

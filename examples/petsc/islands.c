@@ -65,7 +65,7 @@ static PetscErrorCode NameContacts(Share *s)
     size_t used;
 
     PetscFunctionBeginUser;
-    PetscCall(PetscStrcpy(s->where, "its contacts:"));
+    PetscCall(PetscStrcpy(s->where, ""));
     for (PetscInt i = 0; i < s->count; i++) {
         PetscCall(PetscStrlen(s->where, &used));
         if (used + 32 > sizeof s->where) {
@@ -92,7 +92,7 @@ static PetscErrorCode CreateContacts(Share *s, PetscInt n, const PetscScalar *r,
         }
     }
     PetscCheck(!tribo_create(&s->contacts, (size_t)s->count), PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for contacts");
-    PetscCallTribo(tribo_set_operator_dense(s->contacts, own), tribo_message(s->contacts), s->where);
+    PetscCallTribo(tribo_set_operator_dense(s->contacts, own), tribo_message(s->contacts), "contacts:%s", s->where);
     PetscCall(PetscFree(own));
     PetscFunctionReturn(0);
 }

@@ -54,7 +54,7 @@ static PetscErrorCode FindForces(Structure *s)
     PetscCall(VecScatterEnd(mine->gather, s->end, mine->end, INSERT_VALUES, SCATTER_FORWARD));
     PetscCall(VecGetArrayRead(mine->end, &end));
     PetscCall(VecGetArrayWrite(mine->f, &f));
-    PetscCallTribo(tribo_step_force(mine->contacts, s->h, end, f), tribo_message(mine->contacts), mine->where);
+    PetscCallTribo(tribo_step_force(mine->contacts, s->h, end, f), tribo_message(mine->contacts), "contacts:%s", mine->where);
     PetscCall(VecRestoreArrayRead(mine->end, &end));
     PetscCall(VecRestoreArrayWrite(mine->f, &f));
     PetscCall(VecScatterBegin(mine->gather, mine->f, s->f, INSERT_VALUES, SCATTER_REVERSE));
@@ -72,7 +72,7 @@ static PetscErrorCode FindSlip(Structure *s)
 
     PetscFunctionBeginUser;
     PetscCall(PetscMalloc1(mine->count, &slip));
-    PetscCallTribo(tribo_get_slip(mine->contacts, slip), tribo_message(mine->contacts), mine->where);
+    PetscCallTribo(tribo_get_slip(mine->contacts, slip), tribo_message(mine->contacts), "contacts:%s", mine->where);
     PetscCall(VecGetArrayWrite(mine->end, &here));
     for (PetscInt i = 0; i < mine->count; i++) {
         here[i] = slip[i];
@@ -129,7 +129,7 @@ static PetscErrorCode Report(Structure *s, const Options *o, PetscInt step, Pets
 
     PetscFunctionBeginUser;
     PetscCallTribo(tribo_get_count(s->share.contacts, TRIBO_COUNT_STUCK, &here), tribo_message(s->share.contacts),
-                   s->share.where);
+                   "contacts:%s", s->share.where);
     PetscInt stuck = (PetscInt)here;
     PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &stuck, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
     PetscCall(VecDot(s->shape, s->q, &at));

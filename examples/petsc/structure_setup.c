@@ -73,7 +73,7 @@ static PetscErrorCode CondenseContacts(Structure *s, Vec limit)
     PetscCall(VecScatterBegin(s->share.gather, limit, s->share.end, INSERT_VALUES, SCATTER_FORWARD));
     PetscCall(VecScatterEnd(s->share.gather, limit, s->share.end, INSERT_VALUES, SCATTER_FORWARD));
     PetscCall(VecGetArrayRead(s->share.end, &own));
-    PetscCallTribo(tribo_set_limit(s->share.contacts, own), tribo_message(s->share.contacts), s->share.where);
+    PetscCallTribo(tribo_set_limit(s->share.contacts, own), tribo_message(s->share.contacts), "contacts:%s", s->share.where);
     PetscCall(VecRestoreArrayRead(s->share.end, &own));
     PetscCall(MatDestroy(&transpose));
     PetscCall(MatDestroy(&forces));
@@ -86,8 +86,8 @@ PetscErrorCode CreateStructure(Structure *s, const Options *o)
     Vec limit;
 
     PetscFunctionBeginUser;
-    PetscCall(ReadMatrix(o->mass, o->copies, &s->mass));
-    PetscCall(ReadMatrix(o->stiffness, o->copies, &s->stiffness));
+    PetscCall(ReadMatrix(PETSC_COMM_WORLD, o->mass, o->copies, &s->mass));
+    PetscCall(ReadMatrix(PETSC_COMM_WORLD, o->stiffness, o->copies, &s->stiffness));
     PetscCall(ReadContacts(o->contacts, s->mass, o->copies, &s->contacts));
     PetscCall(CreateDirection(&s->contacts, s->mass, &s->direction, &limit));
     if (o->places[0]) {

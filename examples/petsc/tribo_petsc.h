@@ -8,12 +8,12 @@
 #include "tribo/tribo.h"
 
 /* message belongs to the handle of the call, tribo_message(contacts) or tribo_driver_message(driver), and counts the contacts of
- * this rank from 0; where is a text that tells which of all these are. */
-#define PetscCallTribo(call, message, where)                                                                                     \
+ * that handle from 0; where, a literal for printf with arguments behind it, tells which of all these are. */
+#define PetscCallTribo(call, message, where, ...)                                                                                \
     do {                                                                                                                         \
         const int tribo_status_ = (call);                                                                                        \
-        PetscCheck(tribo_status_ == TRIBO_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "tribo on rank %d (%s): %s: %s", PetscGlobalRank,  \
-                   (where), tribo_strerror(tribo_status_), (message));                                                           \
+        PetscCheck(tribo_status_ == TRIBO_OK, PETSC_COMM_SELF, PETSC_ERR_LIB, "tribo on rank %d: %s: %s (" where ")",            \
+                   PetscGlobalRank, tribo_strerror(tribo_status_), (message), __VA_ARGS__);                                      \
     } while (0)
 
 #endif
