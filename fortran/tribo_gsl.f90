@@ -71,6 +71,9 @@ module tribo_systems
     procedure, private :: count_short, count_long
     generic :: count => count_short, count_long
     procedure :: real => driver_real
+    procedure :: find_periodic
+    procedure :: get_multipliers
+    procedure :: period_extremes, period_harmonic, period_dissipation, period_stick
     procedure :: set_observer
     procedure :: set_max_step
     procedure :: message => driver_message
@@ -675,7 +678,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine advance
 
-  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, since creation.
+  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, _PERIODS, _NEWTON, since creation, and
+  !> TRIBO_COUNT_FREEDOM, of the last periodic motion found.
   subroutine count_long(this, which, value, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     integer, intent(in) :: which
@@ -749,6 +753,124 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine driver_real
+
+  !> A motion that comes back after a period, from a guess y; see tribo_driver_find_periodic.
+  subroutine find_periodic(this, t, period, y, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: t, period
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_find_periodic(w%object, t, period, y)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine find_periodic
+
+  !> Floquet multipliers of the last periodic motion found, re(2*ndof) and im(2*ndof), the largest first.
+  subroutine get_multipliers(this, re, im, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(inout) :: re(:), im(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 're', re, w%dimension - 1)
+    call expect_size(w, 'im', im, w%dimension - 1)
+    if (w%status == TRIBO_OK) then
+      if (c_driver_get_multipliers(w%object, re, im) /= TRIBO_OK) &
+        call fail(w, TRIBO_ERR_STATE, 'no periodic motion was found: call find_periodic first')
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine get_multipliers
+
+  !> The extremes over that period of c(1:ndof)*q + c(ndof+1:2*ndof)*q'.
+  subroutine period_extremes(this, c, least, most, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(in) :: c(:)
+    real(dp), intent(inout) :: least, most
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: low(1), high(1)
+
+    call find_driver(this, w)
+    call expect_size(w, 'c', c, w%dimension - 1)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_extremes(w%object, c, low, high)
+      call keep_message(w)
+    end if
+    if (w%status == TRIBO_OK) then
+      least = low(1)
+      most = high(1)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_extremes
+
+  !> Its harmonic k >= 0, cosine*cos(k*2*pi*t/period) + sine*sin(k*2*pi*t/period).
+  subroutine period_harmonic(this, c, k, cosine, sine, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(in) :: c(:)
+    integer, intent(in) :: k
+    real(dp), intent(inout) :: cosine, sine
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: re(1), im(1)
+
+    call find_driver(this, w)
+    call expect_size(w, 'c', c, w%dimension - 1)
+    if (w%status == TRIBO_OK .and. k < 0) call fail(w, TRIBO_ERR_NEGATIVE, 'k is negative')
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_harmonic(w%object, c, int(k, c_size_t), re, im)
+      call keep_message(w)
+    end if
+    if (w%status == TRIBO_OK) then
+      cosine = re(1)
+      sine = im(1)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_harmonic
+
+  !> What each contact dissipates in that period, energy(ncontact).
+  subroutine period_dissipation(this, energy, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(inout) :: energy(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 'energy', energy, w%n)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_dissipation(w%object, energy)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_dissipation
+
+  !> The share of it for which each contact is at rest, share(ncontact).
+  subroutine period_stick(this, share, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(inout) :: share(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 'share', share, w%n)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_stick(w%object, share)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_stick
 
   !> Has observer%seen called from now on, see tribo_observer; without observer, nothing. The observer must have the attribute
   !> target (or be a pointer) where it is declared, and live as long as it may be called.

@@ -180,13 +180,57 @@ TRIBO_API const char *tribo_method_name(int method);
  * not known to two digits), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
+/* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact and event; others
+ * return TRIBO_ERR_UNSUPPORTED. No negative damping or stiffness: then a motion that comes back and is as symmetric as its loads
+ * exists where any bounded motion does, and motions never part from each other (in energy).
+ * t       in       time at which the period begins
+ * period  in       > 0; that of the loads, or a multiple of it
+ * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
+ * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
+ * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be at least
+ * 1e-4 of what the loads would do against stiffness or inertia alone. That it comes back is seen by following it through the
+ * period; if it does not, y is untouched and the message tells how near it came.
+ * Where all loads and motions of bases are odd harmonics of the period, the motion is one whose second half is minus the first.
+ * Where there is a family of motions (contacts that never slip keep any place within their limits), it is one near the guess; of
+ * such that may be odd, the odd one, unless the guess is clearly another one of the family. TRIBO_COUNT_FREEDOM counts its
+ * dimensions.
+ * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables), TRIBO_ERR_NO_CONVERGENCE, and what
+ * tribo_driver_advance returns. */
+TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
+
+/* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary
+ * part. Motions next to it come closer by these factors a period. Contacts at rest forget: multipliers of 0.
+ * re, im  [2 ndof] out
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed). */
+TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
+
+/* What the last periodic motion found holds, in closed form from event to event: nothing is sampled. Each call follows the motion
+ * through its period once. The system must be as it was when the motion was found.
+ * c             [2 ndof] in   a combination of displacements and velocities, c'[q, q']
+ * least, most          out   its extremes
+ * k             in            a harmonic: cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
+ * cosine, sine         out
+ * energy        [ncontact] out   what each contact dissipates in a period
+ * share         [ncontact] out   the share of the period for which it is at rest
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
+ * TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in resonance with a mode that has next to no damping). */
+TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
+TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
+TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
+TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
+
 /* Counts since creation. */
 enum {
     TRIBO_COUNT_STEPS = 100,       /* accepted steps */
     TRIBO_COUNT_REJECTED = 101,    /* steps tried and undone */
     TRIBO_COUNT_EVALUATIONS = 102, /* evaluations of the right-hand side */
     TRIBO_COUNT_JACOBIANS = 103,   /* evaluations of its Jacobian */
-    TRIBO_COUNT_EVENTS = 104       /* events located */
+    TRIBO_COUNT_EVENTS = 104,      /* events located */
+    TRIBO_COUNT_PERIODS = 105,     /* periods that tribo_driver_find_periodic integrated, of each search rounded up */
+    TRIBO_COUNT_NEWTON = 106,      /* steps of Newton's method that it took */
+    TRIBO_COUNT_FREEDOM = 107      /* no count: the dimension of the family that the last periodic motion found belongs to */
 };
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "driver.h"
+#include "shooting.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -132,6 +132,7 @@ void tribo_driver_destroy(tribo_driver *drv)
     if (!drv) {
         return;
     }
+    tribo_shooting_free(drv->shooting);
     drv->method->destroy(drv);
     free(drv->state);
     free(drv);
@@ -209,6 +210,15 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
         return TRIBO_OK;
     case TRIBO_COUNT_EVENTS:
         *value = drv->events;
+        return TRIBO_OK;
+    case TRIBO_COUNT_PERIODS:
+        *value = drv->periods;
+        return TRIBO_OK;
+    case TRIBO_COUNT_NEWTON:
+        *value = drv->newton;
+        return TRIBO_OK;
+    case TRIBO_COUNT_FREEDOM:
+        *value = drv->shooting ? drv->shooting->freedom : 0;
         return TRIBO_OK;
     default:
         return TRIBO_ERR_RANGE;
@@ -422,4 +432,4 @@ static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, in
     return delegate(drv, EVENT, t, t1, y);
 }
 
-static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL};
+static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL, NULL};
