@@ -22,6 +22,7 @@ same() { # tolerance, of two files
 
 printf '%s\n' '# row other limit' '117 0 0.02' '189 0 0.02' '261 0 0.01' '225 168 0.003' >contacts.txt
 structure="-mass $beam/M.mtx -stiffness $beam/K.mtx -contacts contacts.txt -places $beam/dofs.txt -load_row 264 -load 0.1"
+study="-mass $beam/M.mtx -stiffness $beam/K.mtx -contacts contacts.txt -load_row 264 -load 0.1"
 short='-omega 8000 -ts_dt 2e-6 -ts_max_steps 500 -every 100'
 
 # The same by moreau/fixed in one process: damping, steps, every.
@@ -83,6 +84,36 @@ vtk)
               exit !(points == 100 && count["friction"] == 100 && count["slip"] == 100 && contacts == 4) }' motion-0005.vtk
     run petsc_chain -steps 1257 -ts_max_steps 2 -ts_monitor_solution_vtk 'chain-%04d.vts' >chain.txt
     grep -q 'chain.dissipated' chain-0002.vts
+    ;;
+study) # the same bits on any number of ranks, also when a run goes on from what another has left
+    options="$study -omega 160,175 -omegas 4 -scale 0.1,10 -scales 5"
+    $mpiexec 1 "$programs/petsc_study" $options -out one.txt | grep 'computed 20 of 20'
+    if grep nan one.txt; then
+        exit 1
+    fi
+    run petsc_study $options -out all.txt
+    cmp one.txt all.txt
+    head=$(head -n 1 one.txt | wc -c) line=$(sed -n 2p one.txt | wc -c)
+    cp one.txt part.txt
+    dd if=/dev/zero of=part.txt bs=1 seek=$((head + 2 * line + 5)) count=$((3 * line)) conv=notrunc 2>dd.txt
+    cut=$((head + 17 * line - 1))
+    head -c $cut part.txt >rest.txt
+    run petsc_study $options -out rest.txt | grep 'computed 8 of 20' # 2 to 5, and 16 to 19
+    cmp one.txt rest.txt
+    run petsc_study $options -out rest.txt | grep 'computed 0 of 20'
+    cmp one.txt rest.txt
+    fails 'holds other results' petsc_study $options -damping 0.01 -out rest.txt
+    cmp one.txt rest.txt
+    ;;
+study-marched) # what rk4 comes to in some 80 cycles
+    printf '%s\n' '117 0 0.01' '189 0 0.01' '261 0 0.01' >contacts.txt
+    "$programs/friction_damper" --limits 0.01:0.01:1 --out . >damper.txt
+    hz=$(awk -F, '$1 == 1 { print $2 }' damper-frequencies.csv)
+    omega=$(awk -v hz="$hz" 'BEGIN { printf "%.12g", 8 * atan2(1, 1) * hz }')
+    run petsc_study $study -omega $omega -out marched.txt
+    tail -n 1 marched.txt | awk '{ print $4, $5 * $2 / (8 * atan2(1, 1)) }' >found.txt
+    awk -F, 'NR == 2 { print $2, $3 }' damper-curve.csv >expected.txt
+    same 1e-3 found.txt expected.txt
     ;;
 chain-fails) # the first rank pulls its first block, the others wait for their neighbours
     fails 'nan is not finite (contact 0 is block 0)' petsc_chain -steps 1257 -alpha 1e308

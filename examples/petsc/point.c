@@ -4,8 +4,6 @@
 
 #include "tribo_petsc.h"
 
-enum { SAMPLES = 256 }; /* of a period */
-
 /* A matrix of PETSc's, which ends here, as one of GSL's. */
 static PetscErrorCode Convert(Mat *from, gsl_spmatrix **to)
 {
@@ -75,32 +73,28 @@ PetscErrorCode CreateStudy(Study *s, const Options *o)
     gsl_spmatrix_free(mass);
     gsl_spmatrix_free(stiffness);
     gsl_spmatrix_free(direction);
-    PetscCall(PetscCalloc3(s->rows, &s->load, modes, &s->shape, s->contacts.count, &s->limit));
+    PetscCall(PetscCalloc3(s->rows, &s->load, 2 * modes, &s->shape, s->contacts.count, &s->limit));
     s->load[o->load_row - 1] = o->load;
     PetscCall(FindShape(s, (size_t)o->load_row - 1));
     PetscFunctionReturn(0);
 }
 
-/* Amplitude of the loaded row and dissipated energy of the period that begins in y. */
-static PetscErrorCode Measure(const Study *s, tribo_driver *drv, double period, double *y, double *amplitude, double *energy)
+/* Amplitude of the loaded row, and what all contacts dissipate, in the motion that the driver has found. */
+static PetscErrorCode Measure(const Study *s, tribo_driver *drv, double *amplitude, double *energy)
 {
-    const size_t modes = tribo_system_ndof(s->sys);
-    double t = 0.0, least = PETSC_MAX_REAL, most = PETSC_MIN_REAL;
+    double least, most, *each;
 
     PetscFunctionBeginUser;
-    y[2 * modes] = 0.0;
-    for (int i = 1; i <= SAMPLES; i++) {
-        double x = 0.0;
-        PetscCallTribo(tribo_driver_advance(drv, &t, period * i / SAMPLES, y), tribo_driver_message(drv), "structure of %zu rows",
-                       s->rows);
-        for (size_t k = 0; k < modes; k++) {
-            x += s->shape[k] * y[k];
-        }
-        least = PetscMin(least, x);
-        most = PetscMax(most, x);
-    }
+    PetscCall(PetscMalloc1(s->contacts.count, &each));
+    PetscCallTribo(tribo_driver_period_extremes(drv, s->shape, &least, &most), tribo_driver_message(drv), "structure of %zu rows",
+                   s->rows);
+    PetscCallTribo(tribo_driver_period_dissipation(drv, each), tribo_driver_message(drv), "structure of %zu rows", s->rows);
     *amplitude = 0.5 * (most - least);
-    *energy = y[2 * modes];
+    *energy = 0.0;
+    for (PetscInt i = 0; i < s->contacts.count; i++) {
+        *energy += each[i];
+    }
+    PetscCall(PetscFree(each));
     PetscFunctionReturn(0);
 }
 
@@ -126,7 +120,7 @@ PetscErrorCode ComputePoint(const Study *s, double omega, double scale, double *
     *amplitude = *energy = NAN;
     *status = tribo_driver_find_periodic(drv, 0.0, period, y);
     if (*status == TRIBO_OK) {
-        PetscCall(Measure(s, drv, period, y, amplitude, energy));
+        PetscCall(Measure(s, drv, amplitude, energy));
     } else {
         PetscCheck(*status == TRIBO_ERR_NO_CONVERGENCE, PETSC_COMM_SELF, PETSC_ERR_LIB, "tribo, omega %g, scale %g: %s", omega,
                    scale, tribo_driver_message(drv));

@@ -17,7 +17,7 @@ typedef struct {
     size_t rows;
     Contacts contacts;
     double *load;  /* [rows] amplitudes */
-    double *shape; /* [modes] displacement of the loaded row in each mode */
+    double *shape; /* [2 modes] displacement of the loaded row in each mode; nothing of velocities */
     double *limit; /* [contacts] of a point */
 } Study;
 

@@ -128,8 +128,8 @@ static PetscErrorCode Report(Structure *s, const Options *o, PetscInt step, Pets
     PetscReal norm[2];
 
     PetscFunctionBeginUser;
-    PetscCallTribo(tribo_get_count(s->share.contacts, TRIBO_COUNT_STUCK, &here), tribo_message(s->share.contacts),
-                   "contacts:%s", s->share.where);
+    PetscCallTribo(tribo_get_count(s->share.contacts, TRIBO_COUNT_STUCK, &here), tribo_message(s->share.contacts), "contacts:%s",
+                   s->share.where);
     PetscInt stuck = (PetscInt)here;
     PetscCall(MPIU_Allreduce(MPI_IN_PLACE, &stuck, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD));
     PetscCall(VecDot(s->shape, s->q, &at));

@@ -37,6 +37,8 @@ static PetscErrorCode ReadOptions(Options *o)
     PetscCall(PetscOptionsRangeInt("-omegas", "frequencies", NULL, o->omegas, &o->omegas, NULL, 1, 10000));
     PetscCall(PetscOptionsRangeInt("-scales", "of limits", NULL, o->scales, &o->scales, NULL, 1, 10000));
     PetscOptionsEnd();
+    PetscCheck((o->omegas == 1 || two == 2) && (o->scales == 1 || both == 2), PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
+               "several -omegas or -scales need a first and a last one");
     PetscCheck(o->mass[0] && o->stiffness[0] && o->contacts[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
                "-mass, -stiffness and -contacts are needed; see -help");
     PetscCheck(o->omega[0] > 0.0 && o->omega[1] > 0.0 && o->scale[0] > 0.0 && o->scale[1] > 0.0, PETSC_COMM_WORLD,
