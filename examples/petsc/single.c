@@ -1,5 +1,5 @@
 /* What chain.c and structure.c do, by the drivers of libtribo_gsl in one process; tests compare them.
- *   single chain METHOD BLOCKS STEPS CYCLES
+ *   single chain METHOD BLOCKS STEPS CYCLES ALPHA
  *   single structure MASS STIFFNESS CONTACTS ROWS LOAD_ROW LOAD OMEGA DAMPING STEP STEPS EVERY
  * Prints the same lines. */
 #include <math.h>
@@ -19,7 +19,7 @@ static void chain(char **argument)
     const double omega = 0.5, period = 2.0 * acos(-1.0) / omega, dt = period / atof(argument[2]);
     tribo_system *sys;
     tribo_driver *drv;
-    need(tribo_system_chain(&sys, n, 1.0, 0.25, omega), NULL);
+    need(tribo_system_chain(&sys, n, 1.0, atof(argument[4]), omega), NULL);
     tribo_context *contacts = tribo_system_context(sys);
     need(tribo_set_epsilon_step(contacts, dt, 0.4), tribo_message(contacts));
     need(tribo_driver_create(&drv, sys, argument[0], dt, 0.0, 0.0), tribo_message(contacts));
@@ -133,7 +133,7 @@ static void structure(char **argument)
 int main(int argc, char **argv)
 {
     program = "single";
-    if (argc == 6 && strcmp(argv[1], "chain") == 0) {
+    if (argc == 7 && strcmp(argv[1], "chain") == 0) {
         chain(argv + 2);
     } else if (argc == 13 && strcmp(argv[1], "structure") == 0) {
         structure(argv + 2);
