@@ -194,6 +194,24 @@ void find_curve(struct curve *c, struct worker *w, double tolerance)
     }
 }
 
+const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
+{
+    ask_sample(c, x, 0);
+    find_sample(c, w, place_of(c, x), ALL);
+    for (int i = 0; i < ROUNDS && !interrupted(); i++) {
+        const size_t k = place_of(c, x);
+        if (found(c, k)) {
+            return &c->sample[k];
+        }
+        if (k > 0 && found(c, k - 1)) {
+            split(c, w, k - 1);
+        } else if (k + 1 < c->count && found(c, k + 1)) {
+            split(c, w, k);
+        }
+    }
+    return NULL;
+}
+
 /* --------------------------------------------------------------------------------------------------------------- largest */
 
 static size_t place_of_largest(const struct curve *c)

@@ -29,6 +29,10 @@ void ask_sample(struct curve *c, double x, int asked);
  * until neighbours differ from a chord by no more than the tolerance, relative. */
 void find_curve(struct curve *c, struct worker *w, double tolerance);
 
+/* Finds the motion at x, with more of them on the way there if it takes that; NULL if it is not found. The sample stays where it
+ * is until the next one is added. */
+const struct sample *reach_sample(struct curve *c, struct worker *w, double x);
+
 /* The sample with the largest amplitude; NULL if none was found. */
 const struct sample *largest_of(const struct curve *c);
 

@@ -74,24 +74,20 @@ static void report_optimum(const struct study *s, const struct motion *best)
     }
 }
 
-/* Three periods of the motion at a limit, from one nearby. */
-static struct motion show_motion(struct study *s, double limit, const struct sample *from, const char *what)
+/* Three periods of the motion at a limit of the curve; returns that motion. */
+static struct motion show_motion(struct study *s, struct curve *c, double limit, const char *what)
 {
-    struct worker w = create_worker(s->damper, 0);
-    double *y = need_memory(w.dimension, sizeof *y);
-    const struct motion m = find_motion(&w, limit, from->motion.hz, from->y, y);
-    if (m.found) {
-        write_history(s->tables, &w, &m, y, what);
-    } else {
-        printf("limit %g: not found: %s\n", limit, m.message);
-        s->gaps++;
+    struct worker w = create_worker(s->damper, s->options->march);
+    const struct sample *there = reach_sample(c, &w, log(limit));
+    const struct motion m = there ? there->motion : (struct motion){.found = 0};
+    if (there) {
+        write_history(s->tables, &w, &m, there->y, what);
     }
-    free(y);
     free_worker(&w);
     return m;
 }
 
-static void find_most_power(struct study *s, const struct curve *c)
+static void find_most_power(struct study *s, struct curve *c)
 {
     const size_t at = most_power(c);
     if (at == c->count) {
@@ -107,9 +103,9 @@ static void find_most_power(struct study *s, const struct curve *c)
     const double limit =
         find_least(c->sample[at - 1].motion.limit, c->sample[at + 1].motion.limit, LEAST_PART, try_limits, &t);
     if (!interrupted()) {
-        const struct motion best = show_motion(s, limit, t.from, "history");
+        const struct motion best = show_motion(s, c, limit, "history");
         /* above the optimum contacts rest for a part of each period */
-        show_motion(s, 3.0 * limit, t.from, "sticking");
+        show_motion(s, c, 3.0 * limit, "sticking");
         end_telling();
         if (best.found) {
             report_optimum(s, &best);
@@ -162,15 +158,15 @@ void study_limits(struct study *s)
     }
     run_jobs(1, 1, run_curve, &j);
     end_telling();
+    print_curve(s, &c);
+    if (!interrupted() && o->limits.points > 1) {
+        find_most_power(s, &c);
+    }
     FILE *table = create_table(s->tables, "curve");
     write_motion_head(table);
     write_curve(table, &c);
     close_table(table, "curve");
-    print_curve(s, &c);
     s->gaps += gaps_of(&c);
-    if (!interrupted() && o->limits.points > 1) {
-        find_most_power(s, &c);
-    }
     check_by_marching(s, &c);
     free_curve(&c);
 }
