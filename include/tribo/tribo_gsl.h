@@ -35,8 +35,10 @@ typedef struct tribo_system tribo_system;
 TRIBO_API int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega);
 
 /* n >= 2 blocks on a frictional surface, pulled by alpha sin(omega t) at the first one. Fig. 8 and the equations beside it.
- * limit is the paper's mu N_i; the context keeps the paper's scaling, forces f_i with limit mu N_i and R = identity; the
- * last entry of the state is the paper's D, (1/n) times the sum of the integrals of -f_i u_i'. */
+ * limit is the paper's mu N_i. Blocks have the mass 1/n, springs the stiffness n, contacts the limit mu N_i/n; the last block
+ * has 3/4 of that mass and of that limit, since the last of the paper's equations is 4/3 of one that makes the stiffness
+ * symmetric. R is n, and 4 n/3 for the last. The last entry of the state is the paper's D, (1/n) times the sum of the integrals
+ * of -f_i u_i', f_i being n times the force of contact i, 4 n/3 times for the last. */
 TRIBO_API int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha, double omega);
 
 /* Two blocks, the upper on the lower, the lower on a belt that moves with speed * sin(omega t): contact 0 is between belt and
@@ -185,11 +187,13 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
  * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
- * q^T K q + q'^T M q', where modes below a tenth of 1/period count with that frequency. That is seen by integrating the period; if it
- * fails, y is untouched and the message tells how near it came. Where all loads and motions of bases are odd harmonics of the
- * period, half a period is looked at, which has the other half as its mirror image.
- * Where there is a family of such motions (contacts that never slip keep any place within their limits), it is one near the guess;
- * see TRIBO_COUNT_FREEDOM.
+ * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be at least
+ * 1e-4 of what the loads would do against stiffness or inertia alone. That it comes back is seen by following it through the
+ * period; if it does not, y is untouched and the message tells how near it came.
+ * Where all loads and motions of bases are odd harmonics of the period, the motion is one whose second half is minus the first.
+ * Where there is a family of motions (contacts that never slip keep any place within their limits), it is one near the guess; of
+ * such that may be odd, the odd one, unless the guess is clearly another one of the family. TRIBO_COUNT_FREEDOM counts its
+ * dimensions.
  * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
  * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables), TRIBO_ERR_NO_CONVERGENCE, and what
@@ -201,6 +205,21 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * re, im  [2 ndof] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
+
+/* What the last periodic motion found holds, in closed form from event to event: nothing is sampled. Each call follows the motion
+ * through its period once. The system must be as it was when the motion was found.
+ * c             [2 ndof] in   a combination of displacements and velocities, c'[q, q']
+ * least, most          out   its extremes
+ * k             in            a harmonic: cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
+ * cosine, sine         out
+ * energy        [ncontact] out   what each contact dissipates in a period
+ * share         [ncontact] out   the share of the period for which it is at rest
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
+ * TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in resonance with a mode that has next to no damping). */
+TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
+TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
+TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
+TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
 
 /* Counts since creation. */
 enum {

@@ -9,10 +9,10 @@
 static int dense_stiffness(const tribo_system *sys, double *k)
 {
     const size_t n = sys->ndof;
-    const int scaled = !sys->elastic.rows && sys->metric.rows;
+    const int scaled = !sys->elastic.rows && sys->mass.rows;
     double *entries = tribo_matrix_to_dense(sys->elastic.rows ? &sys->elastic : &sys->stiffness);
     for (size_t i = 0; entries && i < n; i++) {
-        const double mass = scaled ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
+        const double mass = scaled ? tribo_matrix_get(&sys->mass, i, i) : 1.0;
         for (size_t j = 0; j < n; j++) {
             entries[i * n + j] *= mass;
         }
@@ -26,20 +26,20 @@ static int dense_stiffness(const tribo_system *sys, double *k)
     return entries != NULL;
 }
 
-/* psi = phi'W. */
+/* psi = phi'M. */
 static void weigh(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
-    tribo_transpose(n, n, e->phi, e->psi);
     double *mode = e->omega; /* not set yet */
-    for (size_t k = 0; sys->metric.rows && k < n; k++) {
+    tribo_transpose(n, n, e->phi, e->psi);
+    for (size_t k = 0; k < n; k++) {
         memcpy(mode, e->psi + k * n, n * sizeof *mode);
         memset(e->psi + k * n, 0, n * sizeof *mode);
-        tribo_matrix_multiply_add(&sys->metric, 1.0, mode, e->psi + k * n);
+        tribo_system_add_mass(sys, 1.0, mode, e->psi + k * n);
     }
 }
 
-/* Modes by S'KS, W^-1 = S S'. k [n][n] is workspace. */
+/* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. */
 static int find(struct energy_norm *e, const tribo_system *sys, double *k, double *values, double least)
 {
     const size_t n = e->n;

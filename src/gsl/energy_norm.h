@@ -9,7 +9,7 @@
 struct energy_norm {
     size_t n;
     double *phi;   /* [n][n] a mode in a column */
-    double *psi;   /* [n][n] phi'W */
+    double *psi;   /* [n][n] phi'M */
     double *omega; /* [n] frequencies, none below a small one */
 };
 

@@ -212,14 +212,15 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     e->state(e->motion, when, y, e->next);
     status = tribo_driver_check(drv, e->next);
-    if (!status && e->company) {
-        status = on_context(drv, e->company->ends(e->company, when));
-    }
     if (status) {
         return status;
     }
     memcpy(y, e->next, dimension * sizeof *y);
     *t = go_on(sys, *t, when, end);
+    status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
     drv->steps++;
     learn(e, drv);
     sys->evaluations += e->shows_between ? e->search.looks : 0;

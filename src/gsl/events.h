@@ -3,14 +3,15 @@
 #ifndef TRIBO_EVENTS_H
 #define TRIBO_EVENTS_H
 
+#include "signal.h"
 #include "stick_slip.h"
 
 #define TRIBO_SUSPECTS 8
 
-/* Who goes along with the motion: hears of a phase that has lasted tau before contacts are decided about, and of an event once
- * they are. ends returns a status, its message on the system's context. */
+/* Who goes along with the motion: hears of a phase that has lasted tau and ends at (t, y), before contacts are decided about, and
+ * of an event once they are. ends returns a status, its message on the system's context. */
 struct company {
-    int (*ends)(struct company *c, double tau);
+    int (*ends)(struct company *c, double tau, double t, const double *y);
     void (*decided)(struct company *c);
 };
 
@@ -29,6 +30,8 @@ struct events {
     /* Moves perturbations v [2 ndof][columns] of the state to tau into the phase, in which contacts at rest are held, and what
      * would move these is taken away first. Returns a status, its message on the system's context. */
     int (*transition)(void *motion, double tau, size_t columns, double *v);
+    /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
+    int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
 
     struct company *company; /* NULL: nobody */

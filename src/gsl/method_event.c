@@ -146,10 +146,10 @@ static int expand(struct event *e, double t, const double *y)
             const signed char slip = e->events.stick_slip.slip[i];
             if (slip == 1 || slip == -1) {
                 const double rate = k ? e->events.stick_slip.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
-                power -= slip * (e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate);
+                power += sys->tally[i] * slip * (e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate);
             }
         }
-        e->d[k + 1] = -sys->power * power / (double)(k + 1);
+        e->d[k + 1] = power / (double)(k + 1);
     }
     return TRIBO_OK;
 }
@@ -288,6 +288,7 @@ static void destroy(tribo_driver *drv)
 
 static int begin(void *motion, double t, const double *y, double *reach);
 static int transition(void *motion, double tau, size_t columns, double *v);
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
 static void state(void *motion, double tau, const double *from, double *to);
 
 static int create(tribo_driver *drv)
@@ -331,6 +332,7 @@ static int create(tribo_driver *drv)
     e->events.begin = begin;
     e->events.state = state;
     e->events.transition = transition;
+    e->events.signal = combine;
     return TRIBO_OK;
 }
 
@@ -358,7 +360,7 @@ static void state(void *motion, double tau, const double *from, double *to)
     const struct event *e = motion;
     const size_t n = e->sys->ndof;
     (void)from;
-    memset(to, 0, (2 * n + 1) * sizeof *to);
+    memset(to, 0, tribo_system_dimension(e->sys) * sizeof *to);
     for (size_t k = e->order + 1; k-- > 0;) {
         for (size_t i = 0; i < n; i++) {
             to[i] = to[i] * tau + e->q[k * n + i];
@@ -387,6 +389,21 @@ static int transition(void *motion, double tau, size_t columns, double *v)
 {
     struct event *e = motion;
     return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, tau, columns, v);
+}
+
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+{
+    const struct event *e = motion;
+    const size_t n = e->sys->ndof;
+    (void)end;
+    if (!tribo_signal_reserve(to, 0, e->order)) {
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu powers", e->order);
+    }
+    to->tau = tau;
+    for (size_t k = 0; k <= e->order; k++) {
+        to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
+    }
+    return TRIBO_OK;
 }
 
 static int open_events(tribo_driver *drv, struct events **events)

@@ -190,6 +190,11 @@ static int transition(void *motion, double tau, size_t columns, double *v)
     return TRIBO_OK;
 }
 
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+{
+    return tribo_modal_motion_signal(&((struct exact *)motion)->motion, c, tau, end, to);
+}
+
 /* --------------------------------------------------------------------------------------------------------- the driver */
 
 static void destroy(tribo_driver *drv)
@@ -224,6 +229,7 @@ static int create(tribo_driver *drv)
     x->events.begin = begin;
     x->events.state = move_to;
     x->events.transition = transition;
+    x->events.signal = combine;
     x->events.shows_between = 1;
     if (!tribo_modal_motion_create(&x->motion, drv->sys, x->events.stick_slip.slip, x->events.stick_slip.force)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");

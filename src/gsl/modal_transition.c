@@ -36,7 +36,7 @@ static void split(const struct transition *x, const double *v)
         const struct output *out = &h->output[o];
         tribo_contact_row(x->sys, out->contact, v, c, x->row);
         for (size_t k = 0; k < h->modes; k++) {
-            tribo_add(x->pull + k * c, -tribo_system_weight(x->sys, out->contact) * out->on_rate[k], x->row, c);
+            tribo_add(x->pull + k * c, -out->on_rate[k], x->row, c);
         }
     }
 }

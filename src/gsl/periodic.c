@@ -78,7 +78,7 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
     if (!s || !s->found) {
         return TRIBO_ERR_STATE;
     }
-    memcpy(re, s->re, s->n * sizeof *re);
-    memcpy(im, s->im, s->n * sizeof *im);
+    memcpy(re, s->re, s->map.n * sizeof *re);
+    memcpy(im, s->im, s->map.n * sizeof *im);
     return TRIBO_OK;
 }

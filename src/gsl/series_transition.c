@@ -40,7 +40,7 @@ static int project(struct stick_slip *m, const tribo_system *sys, const struct m
     int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu columns", n);
     for (size_t j = 0; !status && j < n; j++) {
         columns[j * n + j] += a ? 0.0 : 1.0;
-        status = tribo_stick_slip_hold(m, sys, m->still, columns + j * n);
+        status = tribo_stick_slip_project(m, sys, m->still, columns + j * n);
         for (size_t i = 0; i < n; i++) {
             to[i * n + j] = factor * columns[j * n + i];
         }

@@ -2,37 +2,25 @@
 #ifndef TRIBO_SHOOTING_H
 #define TRIBO_SHOOTING_H
 
-#include "energy_norm.h"
-#include "variation.h"
-
-/* A state to begin with, in coordinates of the energy norm, and where the motion leads from there: image is the state a period
- * later, or minus the state half a period later, and derivative that of image by x. */
-struct point {
-    double *x, *image, *derivative; /* [n], [n], [n][n] */
-    double residual;                /* |image - x| */
-    double size;                    /* the largest state on the way */
-};
+#include "period_map.h"
 
 struct shooting {
-    tribo_driver *drv;
-    tribo_system *sys;
-    struct events *events;
-    size_t n; /* 2 ndof */
-    struct energy_norm norm;
-    size_t revision; /* of the system whose norm it is */
-    struct company company;
-    struct variation variation;
-    struct point here, there;
-    double *y, *seen;             /* [n + 1] a state; [n] one in coordinates of the norm */
-    double *unit, *a, *b, *step;  /* [n][n] perturbed states to begin with, workspace; [n] */
-    size_t *pivot;                /* [n] */
-    double t, period, span, side; /* span: of an integration; side: 1, or -1 where span is half a period */
-    double size;                  /* the largest state of this integration so far */
-    int moved;                    /* there has been an integration before */
-    size_t halves, most;          /* half periods integrated in this search, and how many there may be */
-    double *re, *im;              /* [n] multipliers of the last motion found */
+    struct period_map map;
+    struct point here, there, best; /* where the search is; where a step leads; where it goes back to */
+    double *memory;
+    double *a, *b;        /* [n][n] workspace */
+    double *step, *guess; /* [n] */
+    size_t *pivot;        /* [n] */
+    double ratio;         /* what is left along the step after it, beside what was before */
+    double first, rate;   /* that of the step from best; that of the last one, if it was good */
+    double stride;        /* spans followed at once; 0: steps are Newton's */
+    size_t astray;        /* steps since best that did not pay */
+    size_t setbacks;      /* how often the search has gone back */
+    double nearest;       /* the least residual seen beside the size */
+    double *re, *im;      /* [n] multipliers of the last motion found */
     int found;
-    size_t freedom; /* dimension of its family */
+    size_t revision; /* of the system then */
+    size_t freedom;  /* dimension of its family */
 };
 
 /* NULL if out of memory. */

@@ -1,12 +1,13 @@
-/* How it is decided. Contacts without velocity are at rest for now, and
+/* How it is decided, at an instant:
  *
+ *     contacts without velocity, or with none left in the direction of their slip, are at rest
  *     repeat
- *         forces from the problem with bounds, min 1/2 f'Rf + a'f, |f| <= limit for those at rest
- *         those of them slide whose force is at the limit, and whose acceleration is more than rounding
- *         if others are just at their limit: the same problem a moment later tells whether they slide
- *     until none does
- *
- * At last an independent set of those at rest is chosen to hold. */
+ *         find the forces: min 1/2 f'Rf + a'f, with |f| <= limit at rest, and f at its limit where a contact slides
+ *         contacts at rest slide if their force is at the limit and their acceleration is more than rounding
+ *         if none does, but some are just at their limit: solve for a moment later, and contacts at their limit then slide
+ *         if still none does: of the forces that hold all at rest, the one most beyond its limit makes its contact slide
+ *     until none begins to slide
+ *     an independent set of those at rest holds: it keeps all of them where they are */
 #include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"
@@ -176,7 +177,7 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t re
         const signed char tied = m->tied[m->at[p]];
         m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
     }
-    const int done = tribo_constraints_create(&c, &sys->direction, &sys->metric, m->at, rest, m->last);
+    const int done = tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
     for (size_t k = done ? c.rank : rest; k < rest; k++) {
         m->holds[m->at[c.order[k]]] = 0;
     }
@@ -232,14 +233,9 @@ static int moves(struct stick_slip *m, const tribo_system *sys, const double *ba
     return 0;
 }
 
-/* First the last bits of simple contacts; then, if there is more, x -= B_I R_II^-1 (J_I x - base), twice, since the first time
- * leaves rounding of what it takes away. */
-int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
+/* x -= B_I R_II^-1 (J_I x - base), twice, since the first time leaves rounding of what it takes away. */
+int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    tribo_system_snap(sys, m->loose, base, x);
-    if (m->simple || !moves(m, sys, base, x)) {
-        return TRIBO_OK;
-    }
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < m->contacts; i++) {
             m->lo[i] = -base[i];
@@ -251,8 +247,21 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
         }
         tribo_matrix_multiply_add(&sys->response, 1.0, m->f, x);
     }
-    tribo_system_snap(sys, m->loose, base, x);
     return TRIBO_OK;
+}
+
+/* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
+int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
+{
+    tribo_system_snap(sys, m->loose, base, x);
+    if (m->simple || !moves(m, sys, base, x)) {
+        return TRIBO_OK;
+    }
+    const int status = tribo_stick_slip_project(m, sys, base, x);
+    if (!status) {
+        tribo_system_snap(sys, m->loose, base, x);
+    }
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------ who is at rest */
@@ -500,6 +509,19 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     return status;
 }
 
+int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
+{
+    tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->f[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
+    contact_accelerations(sys, acceleration, 1, m->v);
+    const int status = tribo_stick_slip_balance(m, m->v, m->f);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
+    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
@@ -538,6 +560,9 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     tribo_system_limits(sys, m->limit, m->limit_rate);
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    if (!continues) {
+        memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
+    }
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));

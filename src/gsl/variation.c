@@ -12,63 +12,77 @@ void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_
     }
 }
 
-/* What contacts did, and how fast the velocities of those that slide change, where a phase of length tau ends. */
-static void look_back(struct variation *x, double tau)
-{
-    struct first_zero *search = &x->events->search;
-    memcpy(x->before, x->events->stick_slip.slip, x->sys->ncontact);
-    memset(x->slope, 0, x->sys->ncontact * sizeof *x->slope);
-    search->go(search->motion, tau);
-    for (size_t k = 0; k < search->guards; k++) {
-        const struct guard *g = &search->guard[k];
-        if (g->slides) {
-            x->slope[g->contact] = g->side * search->read(search->motion, g).d;
-        }
-    }
-}
-
-static int phase_ends(struct company *company, double tau)
+static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct variation *x = (struct variation *)company;
-    look_back(x, tau);
-    return x->events->transition(x->events->motion, tau, x->columns, x->v);
+    tribo_system *sys = x->sys;
+    memcpy(x->before, x->events->stick_slip.slip, sys->ncontact);
+    int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration);
+    memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
+    tribo_system_loads(sys, 1, 1, -1.0, x->slope);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, x->acceleration, x->slope);
+    return status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
 }
 
-/* Contact i reverses. */
-static void reverse(struct variation *x, size_t i)
+/* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there. */
+static int stops(const struct variation *x, size_t i)
 {
-    const struct matrix *b = &x->sys->response;
+    const signed char before = x->before[i], now = x->events->stick_slip.slip[i];
+    return (before == 1 || before == -1) && now != before && now != 2 && before * x->slope[i] < 0.0;
+}
+
+/* u += jump of accelerations, dt earlier: v_i' dt = row. */
+static void jump_earlier(struct variation *x, size_t i, const double *row)
+{
     const size_t n = x->sys->ndof;
-    double *u = x->v + n * x->columns;
-    const double jump = 2.0 * x->before[i] * x->events->stick_slip.limit[i] / x->slope[i];
-    tribo_contact_row(x->sys, i, u, x->columns, x->row);
+    const double *after = x->events->stick_slip.acceleration;
     for (size_t d = 0; d < n; d++) {
-        tribo_add(u + d * x->columns, jump * tribo_matrix_get(b, d, i), x->row, x->columns);
+        tribo_add(x->v + (n + d) * x->columns, (after[d] - x->acceleration[d]) / x->slope[i], row, x->columns);
     }
 }
 
+/* Of several contacts that stop at once, i reverses; the accelerations that others make will be taken from what they hold. */
+static void reverse(struct variation *x, size_t i, const double *row)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    const size_t n = x->sys->ndof;
+    const double jump = m->slip[i] == 0 ? 0.0 : 2.0 * x->before[i] * m->limit[i] / x->slope[i];
+    for (size_t d = 0; d < n; d++) {
+        tribo_add(x->v + (n + d) * x->columns, jump * tribo_matrix_get(&x->sys->response, d, i), row, x->columns);
+    }
+}
+
+/* Contacts that stop together do so by what moved them before. */
 static void event_decided(struct company *company)
 {
     struct variation *x = (struct variation *)company;
-    const signed char *now = x->events->stick_slip.slip;
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        /* a velocity that touches zero has no derivative there; its slope must be one towards zero */
-        if (x->before[i] * now[i] == -1 && x->before[i] * x->slope[i] < 0.0) {
-            reverse(x, i);
+    const size_t c = x->sys->ncontact;
+    size_t count = 0;
+    for (size_t i = 0; i < c; i++) {
+        if (stops(x, i)) {
+            tribo_contact_row(x->sys, i, x->v + x->sys->ndof * x->columns, x->columns, x->rows + count * x->columns);
+            count++;
+        }
+    }
+    for (size_t i = 0, k = 0; i < c; i++) {
+        if (stops(x, i)) {
+            (count > 1 ? reverse : jump_earlier)(x, i, x->rows + k * x->columns);
+            k++;
         }
     }
 }
 
-int tribo_variation_create(struct variation *x, struct events *e, const tribo_system *sys, size_t columns)
+int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
     *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
-    x->v = malloc(((2 * sys->ndof + 1) * columns + sys->ncontact + 1) * sizeof *x->v);
+    x->v = malloc(((2 * sys->ndof + sys->ncontact) * columns + sys->ncontact + sys->ndof + 1) * sizeof *x->v);
     x->before = malloc(sys->ncontact + 1);
     if (!x->v || !x->before) {
         return 0;
     }
-    x->row = x->v + 2 * sys->ndof * columns;
-    x->slope = x->row + columns;
+    x->rows = x->v + 2 * sys->ndof * columns;
+    x->slope = x->rows + sys->ncontact * columns;
+    x->acceleration = x->slope + sys->ncontact;
     return 1;
 }
 

@@ -35,6 +35,10 @@ TRIBO_API const char *tribo_method_name(int method);
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
+TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
+TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
+TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
+TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
 TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
 TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data),

@@ -70,7 +70,7 @@ static void run(tribo_system *sys, const char *method, double most)
     put_one(tribo_driver_advance(drv, &t, 3.0, y));
     put(3, sums);
     put(n, y);
-    for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_EVENTS; which++) {
+    for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_FREEDOM; which++) {
         size_t count = 0;
         put_one(tribo_driver_count(drv, which, &count));
         put_size(count);
@@ -153,6 +153,35 @@ static gsl_spmatrix *sparse(const double *a, size_t rows)
     return s;
 }
 
+/* What the period of a forced oscillator holds. */
+static void periodic(void)
+{
+    const double period = 8.975979010256552, c[] = {1.0, 0.5};
+    double y[3] = {0.0}, re[2], im[2], a, b;
+    tribo_system *sys = NULL;
+    tribo_driver *drv = NULL;
+    put_one(tribo_system_oscillator(&sys, 0.3, 1.0, 0.7));
+    tribo_driver_create(&drv, sys, "exact", 0.1, 0.0, 0.0);
+    put_one(tribo_driver_get_multipliers(drv, re, im));
+    put_one(tribo_driver_find_periodic(drv, 0.5, period, y));
+    put(3, y);
+    tribo_driver_get_multipliers(drv, re, im);
+    put(2, re);
+    put(2, im);
+    put_one(tribo_driver_period_extremes(drv, c, &a, &b));
+    put_one(a);
+    put_one(b);
+    put_one(tribo_driver_period_harmonic(drv, c, 3, &a, &b));
+    put_one(a);
+    put_one(b);
+    put_one(tribo_driver_period_dissipation(drv, &a));
+    put_one(a);
+    put_one(tribo_driver_period_stick(drv, &a));
+    put_one(a);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
 void systems_play(void)
 {
     tribo_system *sys = NULL;
@@ -184,4 +213,5 @@ void systems_play(void)
     gsl_spmatrix_free(c);
     gsl_spmatrix_free(k);
     gsl_spmatrix_free(j);
+    periodic();
 }

@@ -1,0 +1,214 @@
+/* What the periodic motion found last holds. Every call follows it through its period once more, phase by phase in closed form. */
+#include "shooting.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Goes along with a period, and does something with each phase. */
+struct replay {
+    struct company company;
+    struct period_map *map;
+    int (*phase)(struct replay *r, double tau, const double *end);
+    const double *c;             /* [2 ndof] the combination asked for */
+    struct signal signal, slope; /* it, in the phase */
+    double elapsed;              /* since the period began */
+    double least, most;          /* extremes */
+    double omega, re, im;        /* integral with e^{-i omega t} */
+    double *sum;                 /* [ncontact] */
+};
+
+static int no_memory(const struct replay *r)
+{
+    return tribo_system_fail(r->map->sys, TRIBO_ERR_MEMORY, "out of memory for a phase of the period");
+}
+
+/* map->x is the state that the phase began with. */
+static int phase_ends(struct company *company, double tau, double t, const double *y)
+{
+    struct replay *r = (struct replay *)company;
+    const int status = r->phase(r, tau, y);
+    (void)t;
+    r->elapsed += tau;
+    memcpy(r->map->x, y, r->map->n * sizeof *y);
+    return status;
+}
+
+static void event_decided(struct company *company)
+{
+    (void)company;
+}
+
+static int set_signal(struct replay *r, double tau, const double *end)
+{
+    return r->map->events->signal(r->map->events->motion, r->c, tau, end, &r->signal);
+}
+
+/* Has r->phase called with all phases of the period. Returns a status. */
+static int replay(tribo_driver *drv, struct replay *r)
+{
+    struct shooting *s = drv->shooting;
+    if (!s || !s->found || s->revision != tribo_system_revision(drv->sys)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
+                                 s && s->found ? "the system has changed since the periodic motion was found"
+                                               : "no periodic motion was found");
+    }
+    r->company = (struct company){phase_ends, event_decided};
+    r->map = &s->map;
+    r->elapsed = 0.0;
+    memcpy(s->map.x, s->best.y, s->map.n * sizeof *s->map.x);
+    const int status = tribo_period_map_replay(&s->map, s->best.y, &r->company);
+    tribo_signal_free(&r->signal);
+    tribo_signal_free(&r->slope);
+    return status;
+}
+
+static int check_combination(tribo_driver *drv, const double *c)
+{
+    for (size_t i = 0; i < 2 * drv->sys->ndof; i++) {
+        if (!isfinite(c[i])) {
+            return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "c[%zu] = %g is not finite", i, c[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- extremes */
+
+static int find_extremes(struct replay *r, double tau, const double *end)
+{
+    const int status = set_signal(r, tau, end);
+    return status || tribo_signal_extremes(&r->signal, &r->slope, &r->least, &r->most) ? status : no_memory(r);
+}
+
+int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!c || !least || !most) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !least ? "least" : "most");
+    }
+    struct replay r = {.phase = find_extremes, .c = c, .least = HUGE_VAL, .most = -HUGE_VAL};
+    int status = check_combination(drv, c);
+    status = status ? status : replay(drv, &r);
+    if (!status) {
+        *least = r.least;
+        *most = r.most;
+    }
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- harmonics */
+
+static int integrate(struct replay *r, double tau, const double *end)
+{
+    const int status = set_signal(r, tau, end);
+    if (!status) {
+        double re = 0.0, im = 0.0;
+        const double angle = r->omega * (r->map->t + r->elapsed), c = cos(angle), d = -sin(angle);
+        tribo_signal_integrate(&r->signal, r->omega, &re, &im);
+        r->re += c * re - d * im;
+        r->im += d * re + c * im;
+    }
+    return status;
+}
+
+int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!c || !cosine || !sine) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !cosine ? "cosine" : "sine");
+    }
+    struct replay r = {.phase = integrate, .c = c};
+    int status = check_combination(drv, c);
+    if (!status && drv->shooting) {
+        r.omega = 2.0 * acos(-1.0) * (double)k / drv->shooting->map.period;
+    }
+    status = status ? status : replay(drv, &r);
+    if (!status) {
+        const double factor = (k ? 2.0 : 1.0) / drv->shooting->map.period;
+        *cosine = factor * r.re;
+        *sine = k ? -factor * r.im : 0.0;
+    }
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- contacts */
+
+/* How far the base of contact i moves in tau. */
+static double way_of_base(const struct replay *r, size_t i, double tau)
+{
+    const tribo_system *sys = r->map->sys;
+    const double t = r->map->t + r->elapsed;
+    double way = 0.0;
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        /* integral of cos and sin over tau, about the middle */
+        const double half = 0.5 * w->omega * tau, middle = w->omega * t + half;
+        const double mean = w->omega != 0.0 ? 2.0 * sin(half) / w->omega : tau;
+        for (size_t k = 0; w->moves_base && k < w->count; k++) {
+            way += w->index[k] == i ? mean * (w->cosine[k] * cos(middle) + w->sine[k] * sin(middle)) : 0.0;
+        }
+    }
+    return way;
+}
+
+/* A sliding force is constant: it dissipates its size times the way. */
+static int add_energy(struct replay *r, double tau, const double *end)
+{
+    const tribo_system *sys = r->map->sys;
+    const struct stick_slip *m = &r->map->events->stick_slip;
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->slip[i] == 1 || m->slip[i] == -1) {
+            double way = -way_of_base(r, i, tau);
+            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+                way += j->val[k] * (end[j->col[k]] - r->map->x[j->col[k]]);
+            }
+            r->sum[i] += sys->tally[i] * m->slip[i] * m->limit[i] * way;
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int add_rest(struct replay *r, double tau, const double *end)
+{
+    (void)end;
+    for (size_t i = 0; i < r->map->sys->ncontact; i++) {
+        r->sum[i] += r->map->events->stick_slip.slip[i] == 0 ? tau / r->map->period : 0.0;
+    }
+    return TRIBO_OK;
+}
+
+/* to [ncontact] = the sum over the phases. */
+static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct replay *, double, const double *), double *to)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!to) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", name);
+    }
+    const size_t count = drv->sys->ncontact;
+    struct replay r = {.phase = phase, .sum = calloc(count + 1, sizeof *to)};
+    const int status =
+        r.sum ? replay(drv, &r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contacts", count);
+    if (!status) {
+        memcpy(to, r.sum, count * sizeof *to);
+    }
+    free(r.sum);
+    return status;
+}
+
+int tribo_driver_period_dissipation(tribo_driver *drv, double *energy)
+{
+    return sum_up(drv, "energy", add_energy, energy);
+}
+
+int tribo_driver_period_stick(tribo_driver *drv, double *share)
+{
+    return sum_up(drv, "share", add_rest, share);
+}
