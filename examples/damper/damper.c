@@ -119,12 +119,12 @@ void free_damper(struct damper *d)
 
 void check_drive(const struct damper *d, double hz)
 {
-    const double turn = 2.0 * acos(-1.0), highest = d->omega[d->modes - 1];
-    if (!(turn * hz > 1e-6 * highest)) {
+    const double highest = d->omega[d->modes - 1];
+    if (!(TURN * hz > 1e-6 * highest)) {
         die("the load's frequency, %g Hz, is next to nothing beside %g Hz of the highest mode kept; see --drive", hz,
-            highest / turn);
+            highest / TURN);
     }
-    const struct scale s = free_scale(d, turn * hz);
+    const struct scale s = free_scale(d, TURN * hz);
     if (!isnormal(s.amplitude * s.amplitude) || !isnormal(s.power * s.power) || !isnormal(NOTHING * s.norm * s.norm)) {
         die("without friction the load makes an amplitude of %g: nothing to compute with; see --load, --force and --modes",
             s.amplitude);

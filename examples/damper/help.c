@@ -64,7 +64,8 @@ static const char *const part[] = {
     "  values-damper.txt        all single results, with all digits\n"
     "Responses have the columns: limit; frequency; amplitude (half of the way from the smallest to the largest displacement);\n"
     "mean powers over a period, lost to friction, lost to damping, put in by the load; periods that were integrated to find it;\n"
-    "message, which is empty if the motion was found, else the numbers are.\n"
+    "message, which is empty if the motion was found, else the numbers are; and for each contact, in the order given, the power\n"
+    "that it takes and the share of the period for which it sticks.\n"
     "\n"
     "Ends with status 0; with 1 and a message if something is wrong; with 130 after Ctrl-C, tables then holding what was found\n"
     "until then.\n"};

@@ -15,7 +15,7 @@ enum { INTERRUPTED = 130 /* status, as shells have it */ };
 
 static void check_drives(const struct options *o, const struct damper *d)
 {
-    const double first = d->omega[0] / (2.0 * acos(-1.0));
+    const double first = d->omega[0] / TURN;
     const double ends[] = {o->drive.from > 0.0 ? o->drive.from : first, o->drive.to > 0.0 ? o->drive.to : first};
     for (int k = 0; k < 2; k++) {
         check_drive(d, ends[k]);

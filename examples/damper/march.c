@@ -30,7 +30,7 @@ struct run {
 /* rk4 damps a mode by (omega dt)^5/144 of critical, and follows it up to omega dt = 2.8. */
 static double steps_of(const struct damper *d, double hz)
 {
-    const double highest = fmax(d->omega[d->modes - 1], 2.0 * acos(-1.0) * hz);
+    const double highest = fmax(d->omega[d->modes - 1], TURN * hz);
     return fmax(LEAST_STEPS, ceil(highest / (hz * d->step)));
 }
 
@@ -44,7 +44,7 @@ void check_steps(const struct damper *d, double hz)
 
 static struct run create_run(struct worker *w, double limit, double hz)
 {
-    struct run r = {.d = w->d, .period = 1.0 / hz, .omega = 2.0 * acos(-1.0) * hz, .steps = (size_t)steps_of(w->d, hz)};
+    struct run r = {.d = w->d, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(w->d, hz)};
     const double dt = r.period / (double)r.steps;
     tribo_context *contacts = tribo_system_context(w->sys);
     r.free = free_scale(w->d, r.omega);

@@ -10,15 +10,14 @@
 #include "march.h"
 #include "team.h"
 
-enum { SAMPLES = 400 /* of a period, for what is measured of it */ };
-
 struct worker create_worker(const struct damper *d, int march)
 {
     struct worker w = {.d = d, .march = march, .dimension = 2 * d->modes + 1};
     need(tribo_system_clone(d->sys, &w.sys), NULL);
     need(tribo_driver_create(&w.drv, w.sys, "exact", 1.0, 0.0, 0.0), tribo_message(tribo_system_context(w.sys)));
-    w.y = need_memory(w.dimension, sizeof *w.y);
-    w.v = need_memory(d->contacts, sizeof *w.v);
+    w.limit = need_memory(d->contacts, sizeof *w.limit);
+    w.c = need_memory(2 * d->modes, sizeof *w.c);
+    memcpy(w.c, d->load_shape, d->modes * sizeof *w.c);
     return w;
 }
 
@@ -26,8 +25,8 @@ void free_worker(struct worker *w)
 {
     tribo_driver_destroy(w->drv);
     tribo_system_destroy(w->sys);
-    free(w->y);
-    free(w->v);
+    free(w->limit);
+    free(w->c);
 }
 
 void set_point(struct worker *w, double limit, double hz)
@@ -35,58 +34,42 @@ void set_point(struct worker *w, double limit, double hz)
     const struct damper *d = w->d;
     tribo_context *contacts = tribo_system_context(w->sys);
     for (size_t c = 0; c < d->contacts; c++) {
-        w->v[c] = isnan(d->limit[c]) ? d->mu[c] * limit : d->limit[c];
+        w->limit[c] = isnan(d->limit[c]) ? d->mu[c] * limit : d->limit[c];
     }
-    need(tribo_set_limit(contacts, w->v), tribo_message(contacts));
+    need(tribo_set_limit(contacts, w->limit), tribo_message(contacts));
     need(tribo_system_clear_loads(w->sys), tribo_message(contacts));
-    need(tribo_system_add_load(w->sys, 2.0 * acos(-1.0) * hz, NULL, d->load), tribo_message(contacts));
+    need(tribo_system_add_load(w->sys, TURN * hz, NULL, d->load), tribo_message(contacts));
 }
 
 /* ------------------------------------------------------------------------------------------------------------ measuring */
 
-/* The largest value between two samples, of the cubic that has their values and slopes; x[1], v[1] at the end. */
-static double top_between(const double *x, const double *v, double h)
-{
-    if (!(v[0] > 0.0 && v[1] < 0.0)) {
-        return fmax(x[0], x[1]);
-    }
-    const double a = v[0] * h, b = v[1] * h, c = 3.0 * (x[1] - x[0]), quadratic = 3.0 * (a + b) - 2.0 * c,
-                 linear = 2.0 * (c - 2.0 * a - b), root = sqrt(fmax(linear * linear - 4.0 * quadratic * a, 0.0)),
-                 s = 2.0 * a / (root - linear), r = 1.0 - s;
-    return r * r * (1.0 + 2.0 * s) * x[0] + s * r * r * a + s * s * (3.0 - 2.0 * s) * x[1] - s * s * r * b;
-}
-
-/* Runs w->y over one period and measures it. */
-static int measure(struct worker *w, double hz, struct motion *m)
+/* What the period of the motion just found holds, in closed form. The load is F sin(omega t), so that its mean power is that of its
+ * velocity's part in phase; what friction does not take of it damping does. */
+static int measure(struct worker *w, struct motion *m)
 {
     const struct damper *d = w->d;
-    const double h = 1.0 / (hz * SAMPLES), omega = 2.0 * acos(-1.0) * hz;
-    double t = 0.0, most = -HUGE_VAL, least = HUGE_VAL;
-    double x[2] = {load_displacement(d, w->y)}, v[2] = {load_displacement(d, w->y + d->modes)};
-    w->y[2 * d->modes] = 0.0;
-    for (int i = 1; i <= SAMPLES; i++) {
-        const int status = tribo_driver_advance(w->drv, &t, i * h, w->y);
-        if (status) {
-            return status;
-        }
-        x[1] = load_displacement(d, w->y);
-        v[1] = load_displacement(d, w->y + d->modes);
-        most = fmax(most, top_between(x, v, h));
-        least = fmin(least, -top_between((const double[]){-x[0], -x[1]}, (const double[]){-v[0], -v[1]}, h));
-        m->damped += damping_power(d, w->y) / SAMPLES;
-        m->input += d->force * sin(omega * t) * v[1] / SAMPLES;
-        x[0] = x[1];
-        v[0] = v[1];
+    double least, most, cosine, sine;
+    int status = tribo_driver_period_extremes(w->drv, w->c, &least, &most);
+    status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
+    status = status ? status : tribo_driver_period_dissipation(w->drv, m->power);
+    status = status ? status : tribo_driver_period_stick(w->drv, m->stick);
+    if (status) {
+        return status;
     }
     m->amplitude = 0.5 * (most - least);
-    m->friction = w->y[2 * d->modes] * hz;
+    m->input = -0.5 * TURN * m->hz * d->force * cosine;
+    for (size_t c = 0; c < d->contacts; c++) {
+        m->power[c] *= m->hz;
+        m->friction += m->power[c];
+    }
+    m->damped = m->input - m->friction;
     return TRIBO_OK;
 }
 
 /* Rounding is nothing. */
 static void take_rounding_away(const struct damper *d, struct motion *m)
 {
-    const struct scale whole = free_scale(d, 2.0 * acos(-1.0) * m->hz);
+    const struct scale whole = free_scale(d, TURN * m->hz);
     m->amplitude = m->amplitude < NOTHING * whole.amplitude ? 0.0 : m->amplitude;
     m->friction = fabs(m->friction) < NOTHING * fmax(10.0 * m->damped, whole.power) ? 0.0 : m->friction;
     m->damped = fabs(m->damped) < NOTHING * whole.power ? 0.0 : m->damped;
@@ -108,10 +91,7 @@ static struct motion shoot(struct worker *w, double limit, double hz, double *y)
     const size_t before = periods_of(w);
     set_point(w, limit, hz);
     int status = tribo_driver_find_periodic(w->drv, 0.0, 1.0 / hz, y);
-    if (!status) {
-        memcpy(w->y, y, w->dimension * sizeof *y);
-        status = measure(w, hz, &m);
-    }
+    status = status ? status : measure(w, &m);
     m.periods = periods_of(w) - before;
     m.found = !status;
     if (status) {

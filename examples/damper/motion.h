@@ -7,6 +7,8 @@
 struct motion {
     double limit, hz, amplitude;
     double friction, damped, input; /* power lost to friction, lost to modal damping, and put in by the load */
+    double power[MAX_CONTACTS];     /* lost to friction by each contact; not by marching, nor is */
+    double stick[MAX_CONTACTS];     /* the share of the period for which it is at rest */
     size_t periods;                 /* that were integrated to find it */
     int found;                      /* 0: numbers mean nothing, and message says why */
     char message[200];
@@ -19,7 +21,8 @@ struct worker {
     tribo_driver *drv; /* "exact" */
     int march;         /* steady motions are found by marching */
     size_t dimension;
-    double *y, *v;     /* [dimension], [contacts] */
+    double *limit;     /* [contacts] */
+    double *c;         /* [2 modes] the displacement where the load acts is c'[q, q'] */
 };
 struct worker create_worker(const struct damper *d, int march);
 void free_worker(struct worker *w);

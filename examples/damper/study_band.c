@@ -22,14 +22,13 @@ struct family {
 static void ask_band(const struct study *s, struct curve *c)
 {
     const struct range *band = &s->options->drive;
-    const double turn = 2.0 * acos(-1.0);
     double *stuck = need_memory(s->damper->modes, sizeof *stuck);
     const size_t held = stuck_frequencies(s->damper, stuck);
     for (size_t k = 0; k < band->points; k++) {
         ask_sample(c, band->from + (band->to - band->from) * ((double)k / (double)(band->points - 1)), 1);
     }
     for (size_t k = 0; k < s->damper->modes + held; k++) {
-        const double hz = (k < held ? stuck[k] : s->damper->omega[k - held]) / turn;
+        const double hz = (k < held ? stuck[k] : s->damper->omega[k - held]) / TURN;
         if (hz > band->from && hz < band->to) {
             ask_sample(c, hz, 0);
         }
@@ -86,8 +85,8 @@ static void report_best(struct study *s, double limit)
     end_telling();
     if (top && !interrupted()) {
         FILE *table = create_table(s->tables, "best");
-        write_motion_head(table);
-        write_curve(table, &f.curve[0]);
+        write_motion_head(table, s->damper->contacts);
+        write_curve(table, &f.curve[0], s->damper->contacts);
         close_table(table, "best");
         printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude,
                top->motion.hz);
@@ -126,12 +125,12 @@ static void find_best(struct study *s, const struct family *f, const double *lim
 static void write_family(struct study *s, const struct family *f, size_t count)
 {
     FILE *table = create_table(s->tables, "family");
-    write_motion_head(table);
+    write_motion_head(table, s->damper->contacts);
     printf("         limit   points    not found  largest amplitude  at frequency\n");
     for (size_t k = 0; k < count; k++) {
         const struct curve *c = &f->curve[k];
         const struct sample *top = largest_of(c);
-        write_curve(table, c);
+        write_curve(table, c, s->damper->contacts);
         fprintf(table, "%s", k + 1 < count && c->count ? "\n" : "");
         if (top) {
             printf("  %12.5g %8zu %12zu %18.8g %13.7g\n", c->fixed, c->count, gaps_of(c), top->motion.amplitude,

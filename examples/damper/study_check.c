@@ -35,7 +35,7 @@ void check_extremes(const struct study *s, double hz)
     struct worker w = create_worker(d, s->options->march);
     double *y = need_memory(w.dimension, sizeof *y);
     const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->force, hz, NULL, y);
-    const double omega = 2.0 * acos(-1.0) * hz;
+    const double omega = TURN * hz;
     end_telling();
     printf("load at %.7g Hz\n", hz);
     compare(s, &open, free_amplitude(d, omega), "free", "without friction");
@@ -85,12 +85,12 @@ static size_t choose(const struct curve *c, size_t most, const struct sample **c
 static void report(const struct study *s, const struct marched *m, size_t count)
 {
     FILE *table = create_table(s->tables, "check");
-    double amplitude = 0.0, power = 0.0, most = 0.0;
-    write_motion_head(table);
+    double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
+    write_motion_head(table, 0);
     printf("by marching (rk4, %s)\n         limit    frequency    amplitude   difference  periods\n", tribo_law_name(s->options->law));
     for (size_t k = 0; k < count; k++) {
         const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
-        write_motion(table, here);
+        write_motion(table, here, 0);
         if (!here->found) {
             printf("  %12.5g %12.5g  %s\n", here->limit, here->hz, here->message);
             continue;
@@ -100,9 +100,11 @@ static void report(const struct study *s, const struct marched *m, size_t count)
         amplitude = fmax(amplitude, off);
         power = fmax(power, fabs(here->friction - known->friction));
         most = fmax(most, known->friction);
+        unbalanced = fmax(unbalanced, difference(here->input, here->friction + here->damped));
     }
     write_result(s->tables, "check.amplitude", amplitude);
     write_result(s->tables, "check.power", power > 0.0 ? power / most : 0.0);
+    write_result(s->tables, "check.balance", unbalanced);
     close_table(table, "check");
 }
 

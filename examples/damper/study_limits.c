@@ -61,7 +61,7 @@ static size_t most_power(const struct curve *c)
 
 static void report_optimum(const struct study *s, const struct motion *best)
 {
-    const struct optimum simple = harmonic_balance(s->damper, 2.0 * acos(-1.0) * best->hz);
+    const struct optimum simple = harmonic_balance(s->damper, TURN * best->hz);
     printf("most power: limit %.8g dissipates %.8g, amplitude %.8g\n", best->limit, best->friction, best->amplitude);
     write_result(s->tables, "best.limit", best->limit);
     write_result(s->tables, "best.power", best->friction);
@@ -128,28 +128,23 @@ static void run_curve(void *data, size_t k)
     free_worker(&w);
 }
 
-static void print_curve(const struct study *s, const struct curve *c)
+static void print_curve(const struct curve *c)
 {
-    double unbalanced = 0.0;
     printf("         limit    amplitude friction power  damping power  periods\n");
     for (size_t k = 0; k < c->count; k++) {
         const struct motion *m = &c->sample[k].motion;
-        if (m->found) {
-            unbalanced = fmax(unbalanced, fabs(m->input - m->friction - m->damped) / fmax(fabs(m->input), 1e-300));
-        }
         if (c->sample[k].asked && m->found) {
             printf("  %12.5g %12.5g %14.5g %14.5g %8zu\n", m->limit, m->amplitude, m->friction, m->damped, m->periods);
         } else if (!m->found) {
             printf("  %12.5g  not found: %s\n", m->limit, m->message);
         }
     }
-    write_result(s->tables, "balance", unbalanced);
 }
 
 void study_limits(struct study *s)
 {
     const struct options *o = s->options;
-    const double hz = o->drive.from > 0.0 ? o->drive.from : s->damper->omega[0] / (2.0 * acos(-1.0));
+    const double hz = o->drive.from > 0.0 ? o->drive.from : s->damper->omega[0] / TURN;
     struct curve c = create_curve(1, hz, 2 * s->damper->modes + 1);
     struct limits_job j = {s, &c};
     check_extremes(s, hz);
@@ -158,13 +153,13 @@ void study_limits(struct study *s)
     }
     run_jobs(1, 1, run_curve, &j);
     end_telling();
-    print_curve(s, &c);
+    print_curve(&c);
     if (!interrupted() && o->limits.points > 1) {
         find_most_power(s, &c);
     }
     FILE *table = create_table(s->tables, "curve");
-    write_motion_head(table);
-    write_curve(table, &c);
+    write_motion_head(table, s->damper->contacts);
+    write_curve(table, &c, s->damper->contacts);
     close_table(table, "curve");
     s->gaps += gaps_of(&c);
     check_by_marching(s, &c);

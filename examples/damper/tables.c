@@ -7,8 +7,6 @@
 #include "../common/output.h"
 #include "linear.h"
 
-static const double TURN = 6.283185307179586476925;
-
 struct tables open_tables(const struct options *o)
 {
     struct tables t = {.out = o->out, .name = o->name};
@@ -43,29 +41,47 @@ void write_result(const struct tables *t, const char *key, double value)
 
 /* ------------------------------------------------------------------------------------------------------------- motions */
 
-void write_motion_head(FILE *file)
+void write_motion_head(FILE *file, size_t contacts)
 {
-    fprintf(file, "limit,frequency,amplitude,friction power,damping power,input power,periods,message\n");
+    fprintf(file, "limit,frequency,amplitude,friction power,damping power,input power,periods,message");
+    for (size_t c = 1; c <= contacts; c++) {
+        fprintf(file, ",power%zu,stick%zu", c, c);
+    }
+    fprintf(file, "\n");
 }
 
-void write_motion(FILE *file, const struct motion *m)
+static void write_message(FILE *file, const char *message)
+{
+    fputc('"', file);
+    for (; *message; message++) {
+        fputc(*message == '"' ? '\'' : *message, file);
+    }
+    fputc('"', file);
+}
+
+void write_motion(FILE *file, const struct motion *m, size_t contacts)
 {
     fprintf(file, "%.10g,%.10g", m->limit, m->hz);
     if (m->found) {
-        fprintf(file, ",%.10g,%.10g,%.10g,%.10g,%zu,\n", m->amplitude, m->friction, m->damped, m->input, m->periods);
-        return;
+        fprintf(file, ",%.10g,%.10g,%.10g,%.10g,%zu,", m->amplitude, m->friction, m->damped, m->input, m->periods);
+    } else {
+        fprintf(file, ",,,,,%zu,", m->periods);
+        write_message(file, m->message);
     }
-    fprintf(file, ",,,,,%zu,\"", m->periods);
-    for (const char *c = m->message; *c; c++) {
-        fputc(*c == '"' ? '\'' : *c, file);
+    for (size_t c = 0; c < contacts; c++) {
+        if (m->found) {
+            fprintf(file, ",%.8g,%.8g", m->power[c], m->stick[c]);
+        } else {
+            fprintf(file, ",,");
+        }
     }
-    fprintf(file, "\"\n");
+    fprintf(file, "\n");
 }
 
-void write_curve(FILE *file, const struct curve *c)
+void write_curve(FILE *file, const struct curve *c, size_t contacts)
 {
     for (size_t k = 0; k < c->count; k++) {
-        write_motion(file, &c->sample[k].motion);
+        write_motion(file, &c->sample[k].motion, contacts);
     }
 }
 
@@ -130,13 +146,14 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     const struct damper *d = w->d;
     tribo_context *contacts = tribo_system_context(w->sys);
     double *v = need_memory(2 * d->contacts, sizeof *v), *f = v + d->contacts, now = 0.0;
+    double *state = need_memory(w->dimension, sizeof *state);
     signed char *slip = need_memory(d->contacts, sizeof *slip);
     FILE *table = create_table(t, what);
     set_point(w, m->limit, m->hz);
     /* what sticks has velocities that are rounding, to be told from those of what slides */
     const double size = fmax(m->amplitude, 1e-6 * free_amplitude(d, TURN * m->hz));
     need(tribo_set_epsilon_all(contacts, 1e-8 * TURN * m->hz * size), tribo_message(contacts));
-    memcpy(w->y, y, w->dimension * sizeof *y);
+    memcpy(state, y, w->dimension * sizeof *state);
     fprintf(table, "cycle,t,displacement");
     for (size_t c = 0; c < d->contacts; c++) {
         fprintf(table, ",v%zu,f%zu,mode%zu", c + 1, c + 1, c + 1);
@@ -144,12 +161,13 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     fprintf(table, "\n");
     for (int i = 0; i <= STEPS; i++) {
         const double cycle = (double)PERIODS * i / STEPS;
-        need(tribo_driver_advance(w->drv, &now, cycle / m->hz, w->y), tribo_driver_message(w->drv));
-        need(tribo_system_contacts(w->sys, now, w->y, v, NULL, f), tribo_message(contacts));
+        need(tribo_driver_advance(w->drv, &now, cycle / m->hz, state), tribo_driver_message(w->drv));
+        need(tribo_system_contacts(w->sys, now, state, v, NULL, f), tribo_message(contacts));
         need(tribo_get_slip(contacts, slip), tribo_message(contacts));
-        write_instant(table, d, cycle, now, w->y, v, f, slip);
+        write_instant(table, d, cycle, now, state, v, f, slip);
     }
     close_table(table, what);
     free(v);
+    free(state);
     free(slip);
 }

@@ -18,10 +18,11 @@ void close_table(FILE *file, const char *what);
 /* Shown by NAME.key. */
 void write_result(const struct tables *t, const char *key, double value);
 
-/* A table of motions: its head, and a line for each of a curve. */
-void write_motion_head(FILE *file);
-void write_motion(FILE *file, const struct motion *m);
-void write_curve(FILE *file, const struct curve *c);
+/* A table of motions: its head, and a line for each of a curve. contacts: of how many
+ * it tells powers and shares of rest. */
+void write_motion_head(FILE *file, size_t contacts);
+void write_motion(FILE *file, const struct motion *m, size_t contacts);
+void write_curve(FILE *file, const struct curve *c, size_t contacts);
 
 void write_frequencies(const struct tables *t, const struct damper *d, const char *given);
 
