@@ -30,11 +30,16 @@ void free_curve(struct curve *c)
 /* Where x belongs. */
 static size_t place_of(const struct curve *c, double x)
 {
-    size_t k = 0;
-    while (k < c->count && c->sample[k].x < x) {
-        k++;
+    size_t low = 0, high = c->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (c->sample[middle].x < x) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
     }
-    return k;
+    return low;
 }
 
 static void insert_sample(struct curve *c, size_t k, double x, int asked)
@@ -87,20 +92,6 @@ static void find_sample(struct curve *c, struct worker *w, size_t k, int tries)
             s->motion.periods += periods;
         }
     }
-}
-
-/* Only what has been looked for stays, when the user wants no more. */
-static void drop_unseen(struct curve *c)
-{
-    size_t kept = 0;
-    for (size_t k = 0; k < c->count; k++) {
-        if (c->sample[k].motion.found || c->sample[k].motion.message[0]) {
-            c->sample[kept++] = c->sample[k];
-        } else {
-            free(c->sample[k].y);
-        }
-    }
-    c->count = kept;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ refinement */
@@ -189,9 +180,6 @@ void find_curve(struct curve *c, struct worker *w, double tolerance)
     }
     for (int round = 0; round < ROUNDS && c->count > 1 && refine(c, w, tolerance) > 0; round++) {
     }
-    if (interrupted()) {
-        drop_unseen(c);
-    }
 }
 
 const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
@@ -258,11 +246,16 @@ void find_largest(struct curve *c, struct worker *w)
     }
 }
 
+int looked_for(const struct sample *s)
+{
+    return s->motion.found || s->motion.message[0] != '\0';
+}
+
 size_t gaps_of(const struct curve *c)
 {
     size_t gaps = 0;
     for (size_t k = 0; k < c->count; k++) {
-        gaps += !found(c, k);
+        gaps += !found(c, k) && looked_for(&c->sample[k]);
     }
     return gaps;
 }

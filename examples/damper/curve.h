@@ -39,7 +39,10 @@ const struct sample *largest_of(const struct curve *c);
 /* Finds the largest amplitude to rounding, by more samples about it. */
 void find_largest(struct curve *c, struct worker *w);
 
-/* How many asked for were not found. */
+/* Whether it was found, or not: after an interruption there are others. */
+int looked_for(const struct sample *s);
+
+/* How many were looked for and not found. */
 size_t gaps_of(const struct curve *c);
 
 #endif

@@ -40,6 +40,7 @@ void check_extremes(const struct study *s, double hz)
     printf("load at %.7g Hz\n", hz);
     compare(s, &open, free_amplitude(d, omega), "free", "without friction");
     compare(s, &stuck, stuck_amplitude(d, omega), "stuck", "all contacts stuck");
+    fflush(stdout);
     free(y);
     free_worker(&w);
 }

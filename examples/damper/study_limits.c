@@ -135,7 +135,7 @@ static void print_curve(const struct curve *c)
         const struct motion *m = &c->sample[k].motion;
         if (c->sample[k].asked && m->found) {
             printf("  %12.5g %12.5g %14.5g %14.5g %8zu\n", m->limit, m->amplitude, m->friction, m->damped, m->periods);
-        } else if (!m->found) {
+        } else if (!m->found && looked_for(&c->sample[k])) {
             printf("  %12.5g  not found: %s\n", m->limit, m->message);
         }
     }

@@ -81,7 +81,9 @@ void write_motion(FILE *file, const struct motion *m, size_t contacts)
 void write_curve(FILE *file, const struct curve *c, size_t contacts)
 {
     for (size_t k = 0; k < c->count; k++) {
-        write_motion(file, &c->sample[k].motion, contacts);
+        if (looked_for(&c->sample[k])) {
+            write_motion(file, &c->sample[k].motion, contacts);
+        }
     }
 }
 
