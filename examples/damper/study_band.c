@@ -84,6 +84,7 @@ static void report_best(struct study *s, double limit)
     const struct sample *top = largest_of(&f.curve[0]);
     end_telling();
     if (top && !interrupted()) {
+        check_by_marching(s, &f.curve[0]);
         FILE *table = create_table(s->tables, "best");
         write_motion_head(table, s->damper->contacts);
         write_curve(table, &f.curve[0], s->damper->contacts);
@@ -94,7 +95,6 @@ static void report_best(struct study *s, double limit)
         write_result(s->tables, "band.amplitude", top->motion.amplitude);
         write_result(s->tables, "band.frequency", top->motion.hz);
         s->gaps += gaps_of(&f.curve[0]);
-        check_by_marching(s, &f.curve[0]);
     }
     free_family(&f, 1);
 }
@@ -154,7 +154,7 @@ void study_band(struct study *s)
     struct family f = run_family(s, limit, count, BEND);
     end_telling();
     write_family(s, &f, count);
-    write_linear(s->tables, s->damper, &f.curve[0]);
+    write_linear(s->tables, s->damper, &s->options->drive);
     if (!interrupted() && count > 1) {
         find_best(s, &f, limit, count);
     } else {

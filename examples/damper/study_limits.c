@@ -154,6 +154,7 @@ void study_limits(struct study *s)
     run_jobs(1, 1, run_curve, &j);
     end_telling();
     print_curve(&c);
+    check_by_marching(s, &c);
     if (!interrupted() && o->limits.points > 1) {
         find_most_power(s, &c);
     }
@@ -162,6 +163,5 @@ void study_limits(struct study *s)
     write_curve(table, &c, s->damper->contacts);
     close_table(table, "curve");
     s->gaps += gaps_of(&c);
-    check_by_marching(s, &c);
     free_curve(&c);
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <gsl/gsl_sort.h>
+
 #include "../common/output.h"
 #include "linear.h"
 
@@ -118,15 +120,37 @@ void write_frequencies(const struct tables *t, const struct damper *d, const cha
     free(hz);
 }
 
-void write_linear(const struct tables *t, const struct damper *d, const struct curve *c)
+/* Evenly spaced frequencies, and the resonances between them; *count out. */
+static double *linear_frequencies(const struct damper *d, const struct range *band, size_t *count)
 {
+    enum { EVEN = 2001 };
+    double *omega = need_memory(EVEN + 2 * d->modes, sizeof *omega);
+    const size_t resonances = d->modes + stuck_frequencies(d, omega);
+    memcpy(omega + resonances - d->modes, d->omega, d->modes * sizeof *omega);
+    *count = 0;
+    for (size_t k = 0; k < resonances; k++) {
+        if (omega[k] > TURN * band->from && omega[k] < TURN * band->to) {
+            omega[(*count)++] = omega[k];
+        }
+    }
+    for (size_t k = 0; k < EVEN; k++) {
+        omega[(*count)++] = TURN * (band->from + (band->to - band->from) * ((double)k / (EVEN - 1)));
+    }
+    gsl_sort(omega, 1, *count);
+    return omega;
+}
+
+void write_linear(const struct tables *t, const struct damper *d, const struct range *band)
+{
+    size_t count;
+    double *omega = linear_frequencies(d, band, &count);
     FILE *table = create_table(t, "linear");
     fprintf(table, "frequency,without friction,stuck\n");
-    for (size_t k = 0; k < c->count; k++) {
-        const double omega = TURN * c->sample[k].x;
-        fprintf(table, "%.10g,%.10g,%.10g\n", c->sample[k].x, free_amplitude(d, omega), stuck_amplitude(d, omega));
+    for (size_t k = 0; k < count; k++) {
+        fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, free_amplitude(d, omega[k]), stuck_amplitude(d, omega[k]));
     }
     close_table(table, "linear");
+    free(omega);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- history */

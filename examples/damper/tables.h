@@ -26,8 +26,8 @@ void write_curve(FILE *file, const struct curve *c, size_t contacts);
 
 void write_frequencies(const struct tables *t, const struct damper *d, const char *given);
 
-/* A band: frequency, amplitudes without friction and with all contacts stuck, at the frequencies of a curve. */
-void write_linear(const struct tables *t, const struct damper *d, const struct curve *c);
+/* Over a band: frequency, amplitudes without friction and with all contacts stuck. */
+void write_linear(const struct tables *t, const struct damper *d, const struct range *band);
 
 /* Three periods of the motion that begins with y, with what each contact does. */
 void write_history(const struct tables *t, struct worker *w, const struct motion *m, const double *y, const char *what);
