@@ -37,6 +37,8 @@
 !>   TRBGLW(IH, LAW, IERR)                                                             LAW
 !>   TRBLIM(IH, N, FMUN, IERR)                       FMUN(N) limits mu*N >= 0
 !>   TRBNLD(IH, N, FMU, FN, IERR)                    FMU(N) >= 0, FN(N) normal loads   the limits FMU*max(FN, 0)
+!>   TRBPLN(IH, NPL, IFIRST, IERR)                   contacts IFIRST(NPL) and the next of each are the two directions of one
+!>                                                   planar contact; NPL 0: none are
 !>   TRBLM1(IH, FMUN, IERR)                          FMUN one for all
 !>   TRBGLM(IH, N, FMUN, IERR)                                                         FMUN(N)
 !>   TRBEPS(IH, N, EPS, IERR)                        EPS(N) > 0
@@ -66,6 +68,7 @@
 !>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
 !>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of the last TRBBTN
 !>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
+!>   TRBSTM(IH, N, DT, V, VFREE, F, IERR)            DT, V(N) at its start, VFREE(N)       F(N): the same to second order
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
 !>   TRBACC(IH, N, V, FEQ, IERR)                     V(N), FEQ(N) of an accepted step
 !> Queries
@@ -415,6 +418,17 @@ subroutine trbnld(ih, n, fmu, fn, ierr)
   if (ierr == TRIBO_OK) ierr = c_set_normal_load(ctx, fmu, fn)
 end subroutine trbnld
 
+subroutine trbpln(ih, npl, ifirst, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, npl, ifirst(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call borrow(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_planar(ifirst(:max(npl, 0)), ierr)
+end subroutine trbpln
+
 subroutine trblm1(ih, fmun, ierr)
   use tribo_fixed
   implicit none
@@ -681,6 +695,19 @@ subroutine trbstf(ih, n, dt, vfree, f, ierr)
   call find(ih, ctx, ierr, n)
   if (ierr == TRIBO_OK) ierr = c_step_force(ctx, dt, vfree, f)
 end subroutine trbstf
+
+subroutine trbstm(ih, n, dt, v, vfree, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: dt, v(*), vfree(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_step_force_mean(ctx, dt, v, vfree, f)
+end subroutine trbstm
 
 subroutine trbbox(ih, n, a, flo, fup, f, ierr)
   use tribo_fixed

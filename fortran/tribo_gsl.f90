@@ -50,10 +50,11 @@ module tribo_systems
     procedure :: clone => clone_system
     procedure, private :: linear_dense, linear_sparse
     generic :: linear => linear_dense, linear_sparse
-    procedure :: add_load, add_base_motion, add_load_table
+    procedure :: reduced
+    procedure :: add_load, add_base_motion, add_load_table, add_limit
     procedure :: clear_loads
     procedure :: set_limit_table, set_damping_ratio
-    procedure :: get_frequencies, expand
+    procedure :: get_frequencies, expand, get_truncation
     procedure :: ndof, ncontact, dimension
     procedure :: context
     procedure :: derivative, jacobian
@@ -351,6 +352,39 @@ contains
     call finish(w, stat, errmsg)
   end subroutine linear_sparse
 
+  !> A structure reduced to its lowest nmode modes and, unless static_contacts is .false., to what steady forces at its contacts do
+  !> beside them. A load's static response is had from a row of direction that is the load, as a contact whose limit stays 0.
+  subroutine reduced(this, mass, stiffness, direction, nmode, static_contacts, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    type(tribo_sparse), intent(in), target :: mass, stiffness, direction
+    integer, intent(in) :: nmode
+    logical, intent(in), optional :: static_contacts
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(rows_of), target :: rows(3)
+    type(c_ptr) :: sys
+    integer(c_int) :: statics
+    character(kind=c_char) :: message(240)
+
+    w%status = TRIBO_OK
+    call expect_given(w, 'mass', mass)
+    call expect_count(w, 'nmode', nmode)
+    call expect_given(w, 'stiffness', stiffness)
+    call expect_given(w, 'direction', direction)
+    statics = 1
+    if (present(static_contacts)) statics = merge(1_c_int, 0_c_int, static_contacts)
+    if (w%status == TRIBO_OK) then
+      message = c_null_char
+      rows = [borrowed(mass), borrowed(stiffness), borrowed(direction)]
+      w%status = c_fortran_reduced(sys, c_loc(rows(1)), c_loc(rows(2)), c_loc(rows(3)), modes(nmode), statics, message, &
+        size(message, kind=c_size_t))
+      call note(w, message)
+    end if
+    call adopt_system(this, w, sys, mass%rows)
+    call finish(w, stat, errmsg)
+  end subroutine reduced
+
   !> Adds a harmonic to the load, p(t) = ... + cosine*cos(omega*t) + sine*sin(omega*t); forces on the degrees of freedom of the
   !> matrices given, also for a reduced system.
   subroutine add_load(this, omega, cosine, sine, stat, errmsg)
@@ -384,6 +418,23 @@ contains
     call finish(w, stat, errmsg)
   end subroutine add_base_motion
 
+  !> Adds a harmonic to the limits, limit(t) = max(0, ... + cosine*cos(omega*t) + sine*sin(omega*t)), e.g. of a normal load that
+  !! changes: mu times it. At 0 the contact has lifted off. What is set in the context, or the table's, is what they are added to.
+  subroutine add_limit(this, omega, cosine, sine, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    real(dp), intent(in) :: omega
+    real(dp), intent(in), optional, contiguous :: cosine(:), sine(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_system(this, w)
+    if (present(cosine)) call expect_size(w, 'cosine', cosine, w%n)
+    if (present(sine)) call expect_size(w, 'sine', sine, w%n)
+    if (w%status == TRIBO_OK) w%status = c_system_add_limit(w%object, omega, cosine, sine)
+    call finish(w, stat, errmsg)
+  end subroutine add_limit
+
   !> Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay.
   subroutine clear_loads(this, stat, errmsg)
     class(tribo_system), intent(inout) :: this
@@ -413,8 +464,8 @@ contains
   end subroutine add_load_table
 
   !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside, instead of
-  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends: limits are again those that
-  !> the context had before.
+  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends, and harmonics of the limits
+  !> do: limits are again those that the context had before.
   subroutine set_limit_table(this, time, limit, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: time(:), limit(:,:)
@@ -470,6 +521,24 @@ contains
     if (w%status == TRIBO_OK) w%status = c_system_expand(w%object, reduced, full)
     call finish(w, stat, errmsg)
   end subroutine expand
+
+  !> Reduced systems: a bound on what forces at the contacts, up to the frequency omega, are short of by what was left out, in
+  !> terms of the work that they do on the whole elastic structure.
+  subroutine get_truncation(this, omega, error, stat, errmsg)
+    class(tribo_system), intent(in) :: this
+    real(dp), intent(in) :: omega
+    real(dp), intent(inout) :: error
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: found(1)
+
+    call find_system(this, w)
+    found = error
+    if (w%status == TRIBO_OK) w%status = c_system_get_truncation(w%object, omega, found)
+    error = found(1)
+    call finish(w, stat, errmsg)
+  end subroutine get_truncation
 
   !> Sizes; 0 for a system that has not been created. dimension is 2*ndof + 1. Arrays may be declared with them.
   pure integer function ndof(this)

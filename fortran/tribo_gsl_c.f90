@@ -95,6 +95,20 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_linear_sparse
 
+    function c_system_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
+      bind(c,name='tribo_system_reduced')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_system_reduced
+
     subroutine c_system_destroy(sys) bind(c,name='tribo_system_destroy')
       import
       type(c_ptr), value :: sys
@@ -142,6 +156,15 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_add_load_table
 
+    function c_system_add_limit(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_limit')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(in), optional :: cosine(*)
+      real(c_double), intent(in), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_system_add_limit
+
     function c_system_set_limit_table(sys, knots, time, limit) result(answer) bind(c,name='tribo_system_set_limit_table')
       import
       type(c_ptr), value :: sys
@@ -172,6 +195,14 @@ module tribo_gsl_c
       real(c_double), intent(inout), optional :: full(*)
       integer(c_int) :: answer
     end function c_system_expand
+
+    function c_system_get_truncation(sys, omega, error) result(answer) bind(c,name='tribo_system_get_truncation')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(inout), optional :: error(*)
+      integer(c_int) :: answer
+    end function c_system_get_truncation
 
     function c_system_ndof(sys) result(answer) bind(c,name='tribo_system_ndof')
       import
@@ -376,6 +407,20 @@ module tribo_gsl_c
       integer(c_size_t), value :: size
       integer(c_int) :: answer
     end function c_fortran_linear
+
+    function c_fortran_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
+      bind(c,name='tribo_fortran_reduced')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_fortran_reduced
 
     function c_fortran_derivative(sys, t, y, dydt) result(answer) bind(c,name='tribo_fortran_derivative')
       import

@@ -64,10 +64,25 @@ TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t nconta
                                   const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 
 /* The same from sparse matrices (any GSL format; ones that hold only one triangle of a symmetric matrix must be completed first).
- * Without reduction a mass matrix that is not diagonal makes the system dense. */
+ * Without reduction a mass matrix that is not diagonal makes the system dense.
+ *
+ * From 200 degrees of freedom on, of which at most a quarter are modes wanted, the modes come from Lanczos' method and sparse
+ * factors (CHOLMOD; a library built without it refuses more than 3000 degrees of freedom, TRIBO_ERR_UNSUPPORTED). Repeated
+ * frequencies and rigid-body motions are found as often as there are: the modes below a frequency are counted by the signs of a
+ * factor's pivots, and each is checked by its residual; what does not pass is TRIBO_ERR_NO_CONVERGENCE. A library with CHOLMOD
+ * also reduces structures with a mass matrix that is only semidefinite, if the stiffness holds what has no mass, to the modes
+ * that there are; of an indefinite one with more than 3000 rows it sees what the minors of two rows show. */
 TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
                                          char *message, size_t size);
+
+/* A structure reduced to its lowest nmode modes, as by tribo_system_linear_sparse, and with static_contacts not 0 to what steady
+ * forces at its contacts do beside them, too: of the displacements that contacts make, modes alone leave out much. The system's
+ * motions are orthonormal in M and orthogonal in K; ndof is nmode and at most one more a contact. Responses to a load are had
+ * in the same way, from a row of direction that is the load, as a contact whose limit stays 0.
+ * nmode > 0. Returns what tribo_system_linear does. */
+TRIBO_API int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
+                                   const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size);
 
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 
@@ -93,9 +108,18 @@ TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, cons
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
 
+/* Adds a harmonic to the limits, limit(t) = max(0, limit + cosine cos(omega t) + sine sin(omega t) + ...), e.g. of a normal load
+ * that changes: mu times it. Where the sum is not above 0 the contact has lifted off: it has no force, and no memory; it touches
+ * down sliding, or, without velocity, sticks if it can. tribo_system_set_limit_table with knots = 0 takes these harmonics away.
+ * cosine, sine  [ncontact] in, each or NULL; forces
+ * The limit that they are added to is what is set in the context, before or after, or the table's. The context's limits follow
+ * the time that was last looked at: tribo_get_limit answers limit(t) of then, and to set just that again changes nothing.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (limits beyond 1e300), TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
+
 /* Lets the limits follow a table, linear between its knots and constant outside, instead of what the context says.
- * time   [knots] in   ascending; knots = 0 ends it: limits are again those that the context had before
- * limit  [knots][ncontact] in   >= 0
+ * time   [knots] in   ascending; knots = 0 ends it, and harmonics: limits are again those that the context had before
+ * limit  [knots][ncontact] in   >= 0; 0: lifted off
  * Limits that are set in the context meanwhile have no effect. */
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
 
@@ -106,6 +130,16 @@ TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
  * full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in. Others: TRIBO_ERR_UNSUPPORTED. */
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
 TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
+
+/* Reduced systems: a bound on what the motions left out would do.
+ * omega  in   the highest frequency that matters: of the load, and of those of its harmonics that matter
+ * error  out  harmonic forces at the contacts, up to that frequency and in any proportion to each other, make displacements
+ *             there of which at most this part is missing, in terms of the work that the same forces do on the whole elastic
+ *             structure while they are steady. With static contacts it is (omega/omega_next)^4 and less, omega_next being the
+ *             first frequency left out. HUGE_VAL if modes that slow may be left out. The places where loads act count if they
+ *             are contacts, too
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (not reduced). */
+TRIBO_API int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error);
 
 /* Sizes; 0 for NULL. dimension is 2 ndof + 1. */
 TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
@@ -133,7 +167,7 @@ typedef struct tribo_driver tribo_driver;
 
 /* An integrator for a system, which it borrows and which must live longer.
  * method   in   in any case of letters. Coulomb's law itself, epsilon -> 0:
- *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads
+ *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads and limits
  *               "event": high-order steps between events, with the tolerances; any system
  *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt
  *               that is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule
@@ -181,14 +215,14 @@ TRIBO_API const char *tribo_method_name(int method);
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
 /* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact and event; others
- * return TRIBO_ERR_UNSUPPORTED. No negative damping or stiffness: then a motion that comes back and is as symmetric as its loads
- * exists where any bounded motion does, and motions never part from each other (in energy).
+ * return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other (in energy), and there
+ * is such a motion, as symmetric as its loads, wherever motions are bounded. With it there may be none, or none is found.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
  * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
- * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be at least
- * 1e-4 of what the loads would do against stiffness or inertia alone. That it comes back is seen by following it through the
+ * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be 1e-4 of
+ * what the loads would do against stiffness or inertia alone, at least. That it comes back is seen by following it through the
  * period; if it does not, y is untouched and the message tells how near it came.
  * Where all loads and motions of bases are odd harmonics of the period, the motion is one whose second half is minus the first.
  * Where there is a family of motions (contacts that never slip keep any place within their limits), it is one near the guess; of

@@ -49,11 +49,12 @@ static void make_orthogonal(double *a, double *v, size_t n)
 
 int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *kernel)
 {
-    double *v = calloc(2 * n * n + n + 1, sizeof *v), *columns = v + n * n, *right = columns + n * n;
+    double *v = calloc(2 * n * n + n + 1, sizeof *v);
     size_t zeros = 0;
     if (!v) {
         return 0;
     }
+    double *columns = v + n * n, *right = columns + n * n;
     tribo_transpose(n, n, a, columns);
     memcpy(right, x, n * sizeof *x);
     memset(x, 0, n * sizeof *x);

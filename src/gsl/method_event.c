@@ -23,12 +23,15 @@ struct event {
     double tolerance; /* relative */
     double fastest;   /* bound on the frequencies of the motion */
     size_t revision;
-    double tau, length;    /* where go() was; that of the step, and what bounds hold for */
-    double *q, *u;         /* [order + 1][ndof] coefficients of the powers of time */
-    double *watch;         /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
-    double *d;             /* [order + 1] dissipated energy */
-    double *size, *bend;   /* [ncontact] bounds of what is watched, and of its sixth derivative */
-    double *cosine, *sine; /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
+    double tau, length;              /* where go() was; that of the step, and what bounds hold for */
+    double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
+    double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
+    double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
+    size_t terms;                    /* so many rows of them are not zero */
+    double *d;                       /* [order + 1] dissipated energy */
+    double *size, *bend;             /* [ncontact] bounds of what is watched, and of its sixth derivative; */
+    double *limit_size, *limit_bend; /* [ncontact] the same of limits */
+    double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
     struct series_transition perturbed;
 };
@@ -53,14 +56,26 @@ static void expand_harmonics(struct event *e, double t)
 }
 
 /* to += factor times the k-th coefficient of the harmonics that load the structure, or move the base. */
-static void add_harmonics(const struct event *e, int moves_base, size_t k, double factor, double *to)
+static void add_harmonics(const struct event *e, enum drives drives, size_t k, double factor, double *to)
 {
     for (size_t s = 0; s < e->sys->harmonics; s++) {
         const struct harmonic *w = &e->sys->harmonic[s];
         const double c = factor * e->cosine[k * e->sys->harmonics + s], d = factor * e->sine[k * e->sys->harmonics + s];
-        for (size_t i = 0; w->moves_base == moves_base && i < w->count; i++) {
+        for (size_t i = 0; w->drives == drives && i < w->count; i++) {
             to[w->index[i]] += c * w->cosine[i] + d * w->sine[i];
         }
+    }
+}
+
+/* Coefficients of the limits, at the time that the harmonics have been expanded for. */
+static void expand_limits(struct event *e)
+{
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    tribo_system_limits(sys, e->limit, e->limit + c);
+    for (size_t k = 2; k < e->terms; k++) {
+        memset(e->limit + k * c, 0, c * sizeof *e->limit);
+        add_harmonics(e, DRIVES_LIMIT, k, 1.0, e->limit + k * c);
     }
 }
 
@@ -69,10 +84,10 @@ static void add_harmonics(const struct event *e, int moves_base, size_t k, doubl
 static void given_forces(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
+    const double *limit = e->limit + k * e->sys->ncontact;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        const double limit = k == 0 ? m->limit[i] : m->limit_rate[i];
-        const double kept = k == 0 ? m->force[i] : m->tied[i] ? (m->force[i] > 0.0 ? limit : -limit) : 0.0;
-        e->given[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? kept : -m->slip[i] * limit;
+        const int keeps = k == 0 && m->slip[i] == 0 && !m->holds[i];
+        e->given[i] = keeps ? m->force[i] : tribo_stick_slip_follows(m, i) * limit[i];
     }
 }
 
@@ -85,18 +100,18 @@ static int expand_forces(struct event *e, size_t k)
     const double *q = e->q + k * n, *u = e->u + k * n;
     double *acc = e->acceleration, *watch = e->watch + k * c;
     memset(acc, 0, n * sizeof *acc);
-    add_harmonics(e, 0, k, 1.0, acc);
+    add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, acc);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
     }
-    if (k < 2) {
-        tribo_system_tables(sys, (int)k, 1.0, acc);
+    tribo_system_tables(sys, (int)k, 1.0, acc);
+    if (k < e->terms) {
         given_forces(e, k);
         tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
     }
     memset(e->base, 0, c * sizeof *e->base);
-    add_harmonics(e, 1, k + 1, (double)(k + 1), e->base);
+    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
     for (size_t i = 0; i < c; i++) {
         e->a[i] = -e->base[i];
     }
@@ -107,10 +122,10 @@ static int expand_forces(struct event *e, size_t k)
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
     memset(watch, 0, c * sizeof *watch);
-    add_harmonics(e, 1, k, -1.0, watch);
+    add_harmonics(e, DRIVES_BASE, k, -1.0, watch);
     tribo_matrix_multiply_add(&sys->direction, 1.0, u, watch);
     for (size_t i = 0; i < c; i++) {
-        const double force = k == 0 ? m->force[i] : e->held[i] + (k < 2 ? e->given[i] : 0.0);
+        const double force = k == 0 ? m->force[i] : e->held[i] + (k < e->terms ? e->given[i] : 0.0);
         const double v = k == 0 && m->rested[i] ? 0.0 : watch[i];
         watch[i] = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : v;
     }
@@ -118,15 +133,34 @@ static int expand_forces(struct event *e, size_t k)
     return tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
 }
 
+/* The power of the sliding contacts: limits times velocities. */
+static void expand_energy(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    for (size_t k = 0; k < e->order; k++) {
+        double power = 0.0;
+        for (size_t j = 0; j <= k && j < e->terms; j++) {
+            const double *limit = e->limit + j * c, *v = e->watch + (k - j) * c;
+            for (size_t i = 0; i < c; i++) {
+                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
+            }
+        }
+        e->d[k + 1] = power / (double)(k + 1);
+    }
+}
+
 /* Coefficients of the motion from (t, y) on. Returns a status. */
 static int expand(struct event *e, double t, const double *y)
 {
     tribo_system *sys = e->sys;
-    const size_t n = sys->ndof, c = sys->ncontact;
+    const size_t n = sys->ndof;
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[2 * n];
     expand_harmonics(e, t);
+    expand_limits(e);
     for (size_t k = 0; k <= e->order; k++) {
         const int status = expand_forces(e, k);
         if (status) {
@@ -139,18 +173,7 @@ static int expand(struct event *e, double t, const double *y)
         }
     }
     sys->evaluations += e->order + 1;
-    /* power of the sliding contacts, whose forces are linear in time */
-    for (size_t k = 0; k < e->order; k++) {
-        double power = 0.0;
-        for (size_t i = 0; i < c; i++) {
-            const signed char slip = e->events.stick_slip.slip[i];
-            if (slip == 1 || slip == -1) {
-                const double rate = k ? e->events.stick_slip.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
-                power += sys->tally[i] * slip * (e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate);
-            }
-        }
-        e->d[k + 1] = power / (double)(k + 1);
-    }
+    expand_energy(e);
     return TRIBO_OK;
 }
 
@@ -172,10 +195,12 @@ static double step_length(const struct event *e)
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
-            /* forces of contacts at rest to the same part of their limit, or of what it becomes */
-            const double limit = m->limit[i] + (m->limit_rate[i] != 0.0 ? fabs(m->limit_rate[i]) * lesser(most, DBL_MAX) : 0.0);
-            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? e->tolerance * limit : u;
+            /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
+            const double rise = m->limit_rate[i] != 0.0 ? fabs(m->limit_rate[i]) * lesser(most, DBL_MAX) : 0.0;
+            const double force = e->tolerance * (m->limit[i] + m->swing[i] + rise);
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : u;
             term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
+            term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
         h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
     }
@@ -189,28 +214,42 @@ static void go(void *motion, double tau)
     ((struct event *)motion)->tau = tau;
 }
 
+/* Adds factor times a polynomial at s with so many terms, c apart, and its derivatives. */
+static void add_polynomial(struct sample *to, double factor, size_t terms, size_t c, const double *term, double s)
+{
+    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
+    for (size_t k = terms; k-- > 0;) {
+        v2 = v2 * s + v1;
+        v1 = v1 * s + v0;
+        v0 = v0 * s + term[k * c];
+    }
+    to->g += factor * v0;
+    to->d += factor * v1;
+    to->e += 2.0 * factor * v2;
+}
+
 static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct event *e = motion;
     const size_t c = e->sys->ncontact;
-    const double *output = g->output, s = e->tau;
-    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
-    for (size_t k = e->order + 1; k-- > 0;) {
-        v2 = v2 * s + v1;
-        v1 = v1 * s + v0;
-        v0 = v0 * s + output[k * c];
+    struct sample x = {g->offset, 0.0, 0.0};
+    if (g->side != 0.0) {
+        add_polynomial(&x, g->side, e->order + 1, c, g->output, e->tau);
     }
-    return (struct sample){g->offset + g->ramp * s + g->side * v0, g->ramp + g->side * v1, 2.0 * g->side * v2};
+    if (g->limit != 0.0) {
+        add_polynomial(&x, g->limit, e->terms, c, e->limit + g->contact, e->tau);
+    }
+    return x;
 }
 
-/* Bounds of all that is watched over [0, h]. */
-TRIBO_SIMD static void find_bounds(size_t c, size_t order, double h, const double *restrict watch, double *restrict size,
+/* Bounds of so many terms of all that is watched, or of limits, over [0, h]. */
+TRIBO_SIMD static void find_bounds(size_t c, size_t terms, double h, const double *restrict watch, double *restrict size,
                                    double *restrict bend)
 {
     double power = 1.0;
     memset(size, 0, c * sizeof *size);
     memset(bend, 0, c * sizeof *bend);
-    for (size_t k = 0; k <= order; k++) {
+    for (size_t k = 0; k < terms; k++) {
         const double six =
             k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) / (h * h * h * h * h * h);
         const double *restrict w = watch + k * c;
@@ -230,8 +269,9 @@ static double bound(void *motion, double tau)
     (void)tau;
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
-        g->size = e->size[g->contact] + fabs(g->offset) + fabs(g->ramp) * e->length;
-        g->bend = e->bend[g->contact];
+        const double side = fabs(g->side), limit = fabs(g->limit);
+        g->size = side * e->size[g->contact] + limit * e->limit_size[g->contact] + fabs(g->offset);
+        g->bend = side * e->bend[g->contact] + limit * e->limit_bend[g->contact];
     }
     return HUGE_VAL;
 }
@@ -251,12 +291,22 @@ static double parts_of_velocity(const struct event *e, size_t i, double h)
     return size;
 }
 
+/* Whether the limit of contact i may fall to 0, or to the force that it keeps, while no other guard of it looks after that. A
+ * limit that only follows a table has its zeros at knots, where steps end. */
+static int limit_tells(const struct stick_slip *m, size_t i, int varies)
+{
+    const int keeps = m->slip[i] == 0 && !m->holds[i] && !tribo_stick_slip_follows(m, i);
+    return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
+}
+
 static void set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const double h = e->length;
+    const int varies = e->terms > 1;
     tribo_events_clear_guards(&e->events);
-    find_bounds(m->contacts, e->order, h, e->watch, e->size, e->bend);
+    find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
+    find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
     for (size_t i = 0; i < m->contacts; i++) {
         struct guard g = {.output = e->watch + i};
         if (m->slip[i] == 1 || m->slip[i] == -1) {
@@ -264,10 +314,13 @@ static void set_guards(struct event *e)
         } else if (tribo_stick_slip_may_part(m, i)) {
             e->size[i] = parts_of_velocity(e, i, h);
             tribo_events_guard_part(&e->events, i, g);
-        } else if (m->slip[i] == 0 && e->size[i] >= lesser(m->limit[i], m->limit[i] + m->limit_rate[i] * h)) {
-            g.offset = m->limit[i];
-            g.ramp = m->limit_rate[i];
+        }
+        g.limit = varies;
+        g.offset = varies ? 0.0 : m->limit[i];
+        if (m->holds[i] && e->size[i] >= 2.0 * e->limit[i] - e->limit_size[i]) {
             tribo_events_guard_stick(&e->events, i, g);
+        } else if (limit_tells(m, i, varies)) {
+            tribo_events_guard_limit(&e->events, i, g);
         }
     }
 }
@@ -308,7 +361,7 @@ static int create(tribo_driver *drv)
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
-    double *work = malloc((terms * (2 * n + c + 1) + n + 6 * c + 1) * sizeof *work);
+    double *work = malloc((terms * (2 * n + 2 * c + 1) + n + 8 * c + 1) * sizeof *work);
     if (!work) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
@@ -317,7 +370,8 @@ static int create(tribo_driver *drv)
     e->q = work;
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
-    e->d = e->watch + terms * c;
+    e->limit = e->watch + terms * c;
+    e->d = e->limit + terms * c;
     e->acceleration = e->d + terms;
     e->base = e->acceleration + n;
     e->a = e->base + c;
@@ -325,6 +379,8 @@ static int create(tribo_driver *drv)
     e->held = e->given + c;
     e->size = e->held + c;
     e->bend = e->size + c;
+    e->limit_size = e->bend + c;
+    e->limit_bend = e->limit_size + c;
     e->events.search.go = go;
     e->events.search.read = read_guard;
     e->events.search.bound = bound;
@@ -350,6 +406,7 @@ static int prepare(struct event *e)
     }
     e->cosine = more;
     e->sine = more + room;
+    e->terms = sys->limit_harmonics ? e->order + 1 : sys->limits.knots ? 2 : 1;
     e->fastest = tribo_system_fastest(sys);
     e->revision = sys->revision;
     return TRIBO_OK;

@@ -253,7 +253,7 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     if ((a->kind->takes_slope || law == TRIBO_QUINN_REVERSAL) && tribo_system_begin_step(drv->sys, t, y, drv->slope)) {
         return tribo_driver_explain(drv, t, a->h);
     }
-    if (drv->sys->limits.knots) {
+    if (tribo_system_limits_vary(drv->sys)) {
         find_bands(a, drv->sys);
     }
     return find_tolerance(a, drv, t, y);

@@ -21,6 +21,7 @@ struct moreau {
     double *limit;    /* [ncontact] */
     double *load;     /* [ndof] at the end of the step before */
     tribo_context *contacts;
+    size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
 };
 
 static void destroy(tribo_driver *drv)
@@ -148,6 +149,33 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
+static size_t planar_of(const tribo_context *contacts)
+{
+    size_t planar = 0;
+    return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
+}
+
+/* Whether the system's contacts may have become planar, or others than before. */
+static int planar_changed(const struct moreau *m, const tribo_system *sys)
+{
+    return (planar_of(sys->contacts) || planar_of(m->contacts)) && m->settings != tribo_revision(sys->contacts);
+}
+
+/* Contacts of its own, planar where the system's are. */
+static int make_contacts(struct moreau *m, const tribo_system *sys)
+{
+    if (m->contacts && !planar_of(sys->contacts) && !planar_of(m->contacts)) {
+        return 1;
+    }
+    tribo_destroy(m->contacts);
+    m->contacts = NULL;
+    m->settings = tribo_revision(sys->contacts);
+    const int status =
+        planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
+    m->contacts = status ? NULL : m->contacts;
+    return !status;
+}
+
 /* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B. */
 static int prepare(struct moreau *m, const tribo_system *sys, double h)
 {
@@ -160,10 +188,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
     free(m->response);
     m->response = tribo_matrix_transpose_to_dense(&sys->response);
     double *r = calloc(c * c + 1, sizeof *r);
-    if (!m->contacts && tribo_create(&m->contacts, c)) {
-        m->contacts = NULL;
-    }
-    if (!m->response || !r || !m->contacts) {
+    if (!m->response || !r || !make_contacts(m, sys)) {
         free(r);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
@@ -192,7 +217,7 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
 {
     tribo_system_set_time(sys, t);
     memset(m->load, 0, sys->ndof * sizeof *m->load);
-    tribo_system_loads(sys, 0, 0, 1.0, m->load);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
 static int moreau_step(tribo_driver *drv, double t, double next, double *y)
@@ -204,7 +229,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     const double h = next - t;
     double *du = s->a, *u = y + n;
     /* steps of equal length differ by the rounding of time only */
-    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision) {
+    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
         const int status = prepare(m, sys, h);
         if (status) {
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));

@@ -25,7 +25,7 @@ static void response(const struct modal_motion *x, size_t s, size_t k, double *x
     *xr = h->xr[at];
     *xi = h->xi[at];
     if (h->resonant[at]) {
-        const double omega = x->sys->harmonic[s].omega, re = h->omega2[k] - omega * omega, im = omega * h->damping[k];
+        const double omega = h->forcing[s].omega, re = h->omega2[k] - omega * omega, im = omega * h->damping[k];
         const double square = re * re + im * im;
         *xr = (h->gr[at] * re + h->gi[at] * im) / square;
         *xi = (h->gi[at] * re - h->gr[at] * im) / square;
@@ -40,7 +40,7 @@ static void exponent(const struct modal_motion *x, size_t p, double *zr, double 
     *zi = x->zi[p];
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         const size_t k = h->owner[p];
-        const double omega = x->sys->harmonic[s].omega;
+        const double omega = h->forcing[s].omega;
         double xr, xi;
         if (h->resonant[s * h->modes + k]) {
             response(x, s, k, &xr, &xi);
@@ -57,7 +57,7 @@ static int too_close(const struct modal_motion *x)
     const struct modal *h = x->h;
     for (size_t at = 0; at < h->harmonics * h->modes && h->any_resonant; at++) {
         const size_t k = at % h->modes;
-        const double omega = x->sys->harmonic[at / h->modes].omega, re = h->omega2[k] - omega * omega, im = omega * h->damping[k];
+        const double omega = h->forcing[at / h->modes].omega, re = h->omega2[k] - omega * omega, im = omega * h->damping[k];
         if (h->resonant[at] && hypot(re, im) < TOO_CLOSE * fabs(h->omega2[k])) {
             return 1;
         }
@@ -97,7 +97,7 @@ static void add_harmonic(const struct modal_motion *x, const double *c, size_t s
 {
     const struct modal *h = x->h;
     const size_t n = x->sys->ndof;
-    const double omega = x->sys->harmonic[s].omega;
+    const double omega = h->forcing[s].omega;
     double re = 0.0, im = 0.0;
     for (size_t k = 0; k < h->modes; k++) {
         double place, speed, xr, xi;
@@ -106,7 +106,7 @@ static void add_harmonic(const struct modal_motion *x, const double *c, size_t s
         re += place * xr - speed * omega * xi;
         im += place * xi + speed * omega * xr;
     }
-    for (size_t i = 0; i < h->moving; i++) {
+    for (size_t i = 0; s < h->given && i < h->moving; i++) {
         const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i], place = c[h->dof[i]], speed = c[n + h->dof[i]];
         re += speed * yr + (omega != 0.0 ? place * yi / omega : 0.0);
         im += speed * yi - (omega != 0.0 ? place * yr / omega : 0.0);

@@ -61,10 +61,14 @@ static int integrate(struct period_map *m, double t, double end, struct company 
     m->y[m->n] = 0.0;
     drv->time = t;
     drv->knows = 0;
+    int status = tribo_driver_check(drv, m->y);
+    if (status) {
+        return status;
+    }
     drv->seen = NULL;
     memcpy(drv->state, m->y, (m->n + 1) * sizeof *m->y);
     m->events->company = company;
-    const int status = tribo_events_advance(m->events, drv, &t, end, m->y, 0);
+    status = tribo_events_advance(m->events, drv, &t, end, m->y, 0);
     m->events->company = NULL;
     drv->seen = seen;
     drv->evaluations += m->sys->evaluations - evaluations;
@@ -85,7 +89,7 @@ static int hold_still(struct period_map *m)
     struct stick_slip *contacts = &m->events->stick_slip;
     tribo_system_set_time(m->sys, m->t);
     memset(contacts->base, 0, m->sys->ncontact * sizeof *contacts->base);
-    tribo_system_loads(m->sys, 1, 0, 1.0, contacts->base);
+    tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->base);
     const int status = tribo_stick_slip_hold(contacts, m->sys, contacts->base, m->y + m->sys->ndof);
     return status ? tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts)) : TRIBO_OK;
 }
@@ -136,12 +140,13 @@ int tribo_period_map_complete(struct period_map *m, const struct point *p, doubl
 
 /* -------------------------------------------------------------------------------------------------------------- preparation */
 
-/* 1 if all that drives the system is minus itself half a period later. */
+/* 1 if all that drives the system is minus itself half a period later, and limits are the same. */
 static int is_odd(const tribo_system *sys, double period)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
-        const double order = round(fabs(sys->harmonic[k].omega) * period / turn());
-        if (sys->harmonic[k].count > 0 && fmod(order, 2.0) != 1.0) {
+        const struct harmonic *w = &sys->harmonic[k];
+        const double order = round(fabs(w->omega) * period / turn());
+        if (w->count > 0 && fmod(order, 2.0) != (w->drives == DRIVES_LIMIT ? 0.0 : 1.0)) {
             return 0;
         }
     }
@@ -187,8 +192,11 @@ static double least_size(struct period_map *m)
     double square = 0.0;
     for (size_t k = 0; k < m->sys->harmonics; k++) {
         const struct harmonic *w = &m->sys->harmonic[k];
-        square += w->moves_base ? size_of_base(m, w, w->cosine) + size_of_base(m, w, w->sine)
-                                : size_of_load(m, w, w->cosine) + size_of_load(m, w, w->sine);
+        if (w->drives == DRIVES_LOAD) {
+            square += size_of_load(m, w, w->cosine) + size_of_load(m, w, w->sine);
+        } else if (w->drives == DRIVES_BASE) {
+            square += size_of_base(m, w, w->cosine) + size_of_base(m, w, w->sine);
+        }
     }
     return LEAST_SIZE * sqrt(square);
 }

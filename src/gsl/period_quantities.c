@@ -1,6 +1,7 @@
-/* What the periodic motion found last holds. Every call follows it through its period once more, phase by phase in closed form. */
+/* What the periodic motion found last holds. Each call follows it through its period once more, phase by phase in closed form. */
 #include "shooting.h"
 
+#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,6 +17,7 @@ struct replay {
     double least, most;          /* extremes */
     double omega, re, im;        /* integral with e^{-i omega t} */
     double *sum;                 /* [ncontact] */
+    double *row;                 /* [2 ndof] workspace */
 };
 
 static int no_memory(const struct replay *r)
@@ -138,40 +140,98 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
 
 /* -------------------------------------------------------------------------------------------------------------- contacts */
 
-/* How far the base of contact i moves in tau. */
-static double way_of_base(const struct replay *r, size_t i, double tau)
+/* Entry i of a harmonic, or 0, as Re(a e^{i omega s}), s from t on. */
+static double complex entry(const struct harmonic *w, size_t i, double t)
 {
-    const tribo_system *sys = r->map->sys;
-    const double t = r->map->t + r->elapsed;
+    for (size_t k = 0; k < w->count; k++) {
+        if (w->index[k] == i) {
+            return (w->cosine[k] - w->sine[k] * I) * cexp(w->omega * t * I);
+        }
+    }
+    return 0.0;
+}
+
+/* The integral of e^{i omega s} over tau, about the middle. */
+static double complex integral(double omega, double tau)
+{
+    return (omega != 0.0 ? 2.0 * sin(0.5 * omega * tau) / omega : tau) * cexp(0.5 * omega * tau * I);
+}
+
+/* Integrals over tau of the velocity of contact i, and of that times what a harmonic makes of its limit, limit. */
+struct way {
+    size_t i;
+    double t, tau;
+    const struct harmonic *limit;
+    double complex amplitude;
+};
+
+/* The part of the base, which moves from below. */
+static double way_of_base(const tribo_system *sys, const struct way *x)
+{
     double way = 0.0;
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
-        /* integral of cos and sin over tau, about the middle */
-        const double half = 0.5 * w->omega * tau, middle = w->omega * t + half;
-        const double mean = w->omega != 0.0 ? 2.0 * sin(half) / w->omega : tau;
-        for (size_t k = 0; w->moves_base && k < w->count; k++) {
-            way += w->index[k] == i ? mean * (w->cosine[k] * cos(middle) + w->sine[k] * sin(middle)) : 0.0;
+        const double complex b = w->drives == DRIVES_BASE ? entry(w, x->i, x->t) : 0.0;
+        if (b != 0.0 && !x->limit) {
+            way -= creal(b * integral(w->omega, x->tau));
+        } else if (b != 0.0) {
+            const double complex sum = integral(x->limit->omega + w->omega, x->tau);
+            const double complex difference = integral(x->limit->omega - w->omega, x->tau);
+            way -= 0.5 * creal(x->amplitude * (b * sum + conj(b) * difference));
         }
     }
     return way;
 }
 
-/* A sliding force is constant: it dissipates its size times the way. */
+/* J_i times what is in its row. */
+static double of_contact(const tribo_system *sys, size_t i, const double *x)
+{
+    double sum = 0.0;
+    for (size_t k = sys->direction.first[i]; k < sys->direction.first[i + 1]; k++) {
+        sum += sys->direction.val[k] * x[sys->direction.col[k]];
+    }
+    return sum;
+}
+
+/* The work of what harmonics add to the limit of contact i. */
+static int add_swing(struct replay *r, const struct way *steady, const double *end, double *work, double *limit)
+{
+    const tribo_system *sys = r->map->sys;
+    struct way x = *steady;
+    memset(r->row, 0, 2 * sys->ndof * sizeof *r->row);
+    for (size_t k = sys->direction.first[x.i]; k < sys->direction.first[x.i + 1]; k++) {
+        r->row[sys->ndof + sys->direction.col[k]] = sys->direction.val[k];
+    }
+    r->c = r->row;
+    int status = set_signal(r, x.tau, end);
+    for (size_t s = 0; !status && s < sys->harmonics; s++) {
+        x.limit = &sys->harmonic[s];
+        if (x.limit->drives == DRIVES_LIMIT && (x.amplitude = entry(x.limit, x.i, x.t)) != 0.0) {
+            double re = 0.0, im = 0.0;
+            tribo_signal_integrate(&r->signal, x.limit->omega, &re, &im);
+            *work += creal(x.amplitude) * re + cimag(x.amplitude) * im + way_of_base(sys, &x);
+            *limit -= creal(x.amplitude);
+        }
+    }
+    return status;
+}
+
+/* A sliding force dissipates its size times the way. */
 static int add_energy(struct replay *r, double tau, const double *end)
 {
     const tribo_system *sys = r->map->sys;
     const struct stick_slip *m = &r->map->events->stick_slip;
-    const struct matrix *j = &sys->direction;
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    int status = TRIBO_OK;
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
         if (m->slip[i] == 1 || m->slip[i] == -1) {
-            double way = -way_of_base(r, i, tau);
-            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-                way += j->val[k] * (end[j->col[k]] - r->map->x[j->col[k]]);
-            }
-            r->sum[i] += sys->tally[i] * m->slip[i] * m->limit[i] * way;
+            const struct way x = {i, r->map->t + r->elapsed, tau, NULL, 0.0};
+            double work = 0.0, limit = m->limit[i];
+            status = m->swing[i] > 0.0 ? add_swing(r, &x, end, &work, &limit) : TRIBO_OK;
+            work += limit * (of_contact(sys, i, end) - of_contact(sys, i, r->map->x) + way_of_base(sys, &x));
+            r->sum[i] += sys->tally[i] * m->slip[i] * work;
         }
     }
-    return TRIBO_OK;
+    return status;
 }
 
 static int add_rest(struct replay *r, double tau, const double *end)
@@ -193,7 +253,8 @@ static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct repla
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", name);
     }
     const size_t count = drv->sys->ncontact;
-    struct replay r = {.phase = phase, .sum = calloc(count + 1, sizeof *to)};
+    struct replay r = {.phase = phase, .sum = calloc(count + 2 * drv->sys->ndof + 1, sizeof *to)};
+    r.row = r.sum ? r.sum + count : NULL;
     const int status =
         r.sum ? replay(drv, &r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contacts", count);
     if (!status) {

@@ -28,8 +28,9 @@ static int check_period(tribo_driver *drv, double t, double period)
 
 static int check_loads(tribo_driver *drv, double period)
 {
+    static const char *const kind[] = {[DRIVES_LOAD] = "load", [DRIVES_BASE] = "base motion", [DRIVES_LIMIT] = "limit"};
     const tribo_system *sys = drv->sys;
-    size_t of_kind[2] = {0, 0};
+    size_t of_kind[] = {0, 0, 0};
     if (sys->tables || sys->limits.knots) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "loads and limits that follow a table are not periodic");
     }
@@ -38,10 +39,10 @@ static int check_loads(tribo_driver *drv, double period)
         const double turns = w->omega / (2.0 * acos(-1.0)) * period;
         if (w->count > 0 && !(fabs(turns - round(turns)) <= WHOLE)) {
             return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
-                                     "%s %zu, omega = %.17g, is not periodic in period = %.17g: %.12g turns",
-                                     w->moves_base ? "base motion" : "load", of_kind[w->moves_base], w->omega, period, turns);
+                                     "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
+                                     of_kind[w->drives], w->omega, period, turns);
         }
-        of_kind[w->moves_base]++;
+        of_kind[w->drives]++;
     }
     return TRIBO_OK;
 }

@@ -8,8 +8,8 @@
  *         take it if the residual falls
  *         otherwise go on from there nevertheless, a few times, unless the step has gone much too far
  *         otherwise go back to the best point, and make its step shorter: in its direction, or, the next time, with a shift of
- *             the matrix that first spares what the least force moves the most, and follow the motion for once; contacts that come
- *             to rest forget
+ *             the matrix that first spares what the least force moves the most, and follow the motion for once, since contacts
+ *             that come to rest forget
  *
  * A contact that hardly slips does so with the square of the distance to where it does not any more, and a whole family of
  * solutions begins there: Newton's steps become half as long each time, and a quarter is left. Then the step is made twice as

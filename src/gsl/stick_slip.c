@@ -42,9 +42,9 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit,    &m->limit_rate, &m->force,   &m->allowance, &m->base, &m->noise,
-                                   &m->diagonal, &m->seen,       &m->parting, &m->excess,    &m->v,    &m->a,
-                                   &m->gain,     &m->lo,         &m->hi,      &m->f,         &m->still};
+    double **const by_contact[] = {&m->limit,    &m->limit_rate, &m->force,   &m->allowance, &m->base,  &m->noise,
+                                   &m->diagonal, &m->seen,       &m->parting, &m->excess,    &m->v,     &m->a,
+                                   &m->gain,     &m->lo,         &m->hi,      &m->f,         &m->still, &m->swing};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
@@ -106,12 +106,12 @@ static void add_sizes(const struct matrix *a, const double *x, double *y)
 }
 
 /* y += amplitudes of the order-th derivatives of loads, or of b. */
-static void add_amplitudes(const tribo_system *sys, int moves_base, int order, double *y)
+static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
 {
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
         const double rate = order ? fabs(w->omega) : 1.0;
-        for (size_t k = 0; w->moves_base == moves_base && k < w->count; k++) {
+        for (size_t k = 0; w->drives == drives && k < w->count; k++) {
             y[w->index[k]] += rate * (fabs(w->cosine[k]) + fabs(w->sine[k]));
         }
     }
@@ -121,7 +121,7 @@ static void add_amplitudes(const tribo_system *sys, int moves_base, int order, d
 static void find_noise(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->noise, 0, sys->ncontact * sizeof *m->noise);
-    add_amplitudes(sys, 1, 0, m->noise);
+    add_amplitudes(sys, DRIVES_BASE, 0, m->noise);
     add_sizes(&sys->direction, y + sys->ndof, m->noise);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->noise[i] = VELOCITY_NOISE * greater(m->noise[i], m->seen[i]);
@@ -142,18 +142,19 @@ static void find_gains(struct stick_slip *m, const tribo_system *sys, const doub
     for (size_t d = 0; d < sys->ndof; d++) {
         m->size[d] = fabs(m->size[d]);
     }
-    add_amplitudes(sys, 0, 0, m->size);
+    add_amplitudes(sys, DRIVES_LOAD, 0, m->size);
     add_sizes(&sys->stiffness, y, m->size);
     if (sys->damping.rows) {
         add_sizes(&sys->damping, y + sys->ndof, m->size);
     }
     add_sizes(&sys->response, m->force, m->size);
     memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
-    add_amplitudes(sys, 1, 1, m->gain);
+    add_amplitudes(sys, DRIVES_BASE, 1, m->gain);
     add_sizes(&sys->direction, m->size, m->gain);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->gain[i] *= NOISE * m->doubt;
         m->allowance[i] = m->diagonal[i] > 0.0 ? ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
         m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
     }
 }
@@ -266,6 +267,14 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
 
 /* ------------------------------------------------------------------------------------------------------ who is at rest */
 
+int tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
+{
+    if (m->slip[i] == 0) {
+        return m->holds[i] || !m->tied[i] ? 0 : m->force[i] > 0.0 ? 1 : -1;
+    }
+    return m->slip[i] == 2 ? 0 : -m->slip[i];
+}
+
 int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
 {
     return m->base_moves && m->slip[i] == 0 && !m->holds[i];
@@ -286,18 +295,25 @@ static signed char slip_of(const struct stick_slip *m, size_t i, double v)
     return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? 0 : v > 0.0 ? 1 : -1);
 }
 
+static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    return m->swing[i] > 0.0 ? tribo_system_presses(sys, i, m->doubt) : m->limit[i] != 0.0 || m->limit_rate[i] != 0.0;
+}
+
 /* Brings limits, and with them which contacts are open, up to the time set. */
 static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    if (sys->limits.knots) {
+    if (tribo_system_limits_vary(sys)) {
         tribo_system_limits(sys, m->limit, m->limit_rate);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->limit[i] == 0.0 && m->limit_rate[i] == 0.0) {
+        if (!presses(m, sys, i)) {
+            m->limit[i] = m->limit_rate[i] = 0.0;
             m->slip[i] = 2;
         } else if (m->slip[i] == 2) {
             m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
         }
+        m->limit[i] = greater(m->limit[i], 0.0);
     }
 }
 
@@ -360,7 +376,7 @@ static int find_forces(struct stick_slip *m, tribo_system *sys)
 static void contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     memset(to, 0, sys->ncontact * sizeof *to);
-    tribo_system_loads(sys, 1, order, -1.0, to);
+    tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
@@ -374,6 +390,12 @@ static int breaks_away(struct stick_slip *m, size_t i, signed char direction, do
     m->slip[i] = direction;
     m->tied[i] = 0;
     return 1;
+}
+
+/* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
+static signed char direction_of(const struct stick_slip *m, size_t i, double force)
+{
+    return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
 /* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
@@ -394,7 +416,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
         const double room = m->limit[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->limit[i] : m->allowance[i] / ALLOWED;
         if (m->slip[i] == 0 && room <= within) {
-            const signed char direction = m->force[i] > 0.0 ? -1 : 1;
+            const signed char direction = direction_of(m, i, m->force[i]);
             m->tied[i] = 1;
             changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             *ties += m->tied[i] != 0;
@@ -427,7 +449,7 @@ static void set_bounds_ahead(struct stick_slip *m)
 static void find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->rate, 0, sys->ndof * sizeof *m->rate);
-    tribo_system_loads(sys, 0, 1, 1.0, m->rate);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->rate);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->rate);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, m->acceleration, m->rate);
@@ -453,8 +475,8 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (m->slip[i] == 0 && m->limit[i] > 0.0 && room >= 0.0) {
-            const signed char direction = m->f[i] > 0.0 ? -1 : 1;
+        if (m->slip[i] == 0 && room >= 0.0) {
+            const signed char direction = direction_of(m, i, m->f[i]);
             const int leaves = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             *changes += (size_t)leaves;
             m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
@@ -528,7 +550,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 {
     tribo_system_set_time(sys, t);
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
-    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     memset(m->tied, 0, sys->ncontact);
     find_noise(m, sys, y);
     update_limits(m, sys, y);
@@ -559,20 +581,20 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     tribo_system_set_time(sys, t);
     tribo_system_limits(sys, m->limit, m->limit_rate);
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
-    tribo_system_loads(sys, 1, 0, 1.0, m->base);
-    if (!continues) {
-        memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
-    }
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->swing[i] = tribo_system_swing(sys, i);
     }
     m->fresh = 1;
     m->doubt = 1.0;
     m->reached = m->contacts;
     m->base_moves = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
-        m->base_moves |= sys->harmonic[k].moves_base && sys->harmonic[k].count > 0;
+        m->base_moves |= sys->harmonic[k].drives == DRIVES_BASE && sys->harmonic[k].count > 0;
     }
     const double most = tribo_system_fastest(sys);
     m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);

@@ -27,6 +27,7 @@ struct stick_slip {
     size_t dependents;     /* how many rest by themselves */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     double *limit, *limit_rate; /* [ncontact] */
+    double *swing;              /* [ncontact] by how much harmonics change the limit at most */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *acceleration;       /* [ndof] and q'' */
     double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
@@ -70,6 +71,9 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
 
 /* The same where J x - base is rounding: takes that out of x [ndof]. Returns a status. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
+
+/* How many times its limit the force of contact i is from here on: +1, -1, or 0 if it does not follow it. */
+int tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
 /* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
 int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i);

@@ -19,7 +19,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     memcpy(x->before, x->events->stick_slip.slip, sys->ncontact);
     int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration);
     memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
-    tribo_system_loads(sys, 1, 1, -1.0, x->slope);
+    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
     tribo_matrix_multiply_add(&sys->direction, 1.0, x->acceleration, x->slope);
     return status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
 }

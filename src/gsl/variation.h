@@ -1,10 +1,10 @@
 /* The derivative of the motion by the state that it began with, along events: perturbations of the state in columns.
  *
  * In a phase they move as the structure does without loads and without what slides, contacts at rest being held: a perturbed
- * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for perturbed motions
- * a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once, each makes the jump that
- * its force does. Where one breaks away accelerations are continuous, since the problem that decides about them has one solution:
- * S = I. */
+ * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for
+ * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once,
+ * each makes the jump that its force does. Where one breaks away accelerations are continuous, since the problem that decides
+ * about them has one solution: S = I. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 

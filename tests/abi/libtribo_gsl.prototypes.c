@@ -9,6 +9,8 @@ TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t nconta
 TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
                                          char *message, size_t size);
+TRIBO_API int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
+                                   const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size);
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 TRIBO_API int tribo_system_clone(const tribo_system *sys, tribo_system **copy);
 TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
@@ -16,10 +18,12 @@ TRIBO_API int tribo_system_clear_loads(tribo_system *sys);
 TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
+TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
 TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
+TRIBO_API int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error);
 TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
 TRIBO_API size_t tribo_system_ncontact(const tribo_system *sys);
 TRIBO_API size_t tribo_system_dimension(const tribo_system *sys);

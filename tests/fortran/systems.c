@@ -119,6 +119,8 @@ static void linear(tribo_system *sys, int reduced)
     put_one(tribo_system_add_load(sys, 0.0, sine, NULL));
     put_one(tribo_system_add_base_motion(sys, 0.75, motion, NULL));
     put_one(tribo_system_add_base_motion(sys, 0.5, NULL, limits));
+    put_one(tribo_system_add_limit(sys, 1.5, limits, motion));
+    put_one(tribo_system_add_limit(sys, 0.5, NULL, limits));
     if (reduced) {
         put_one(tribo_system_set_damping_ratio(sys, 0.02));
         put_one(tribo_system_get_frequencies(sys, omega));
@@ -137,6 +139,15 @@ static void linear(tribo_system *sys, int reduced)
     run(sys, "central/fixed", 1e9);
     put_one(tribo_system_set_limit_table(sys, 0, NULL, NULL));
     run(sys, "moreau/fixed", 1e9);
+    tribo_system_destroy(sys);
+}
+
+static void truncation(tribo_system *sys)
+{
+    double error = -1.0;
+    sizes(sys);
+    put_one(tribo_system_get_truncation(sys, 0.25, &error));
+    put_one(error);
     tribo_system_destroy(sys);
 }
 
@@ -209,6 +220,10 @@ void systems_play(void)
     linear(sys, 0);
     put_one(tribo_system_linear_sparse(&sys, m, NULL, k, j, 2, NULL, 0));
     linear(sys, 1);
+    put_one(tribo_system_reduced(&sys, m, k, j, 2, 0, NULL, 0));
+    linear(sys, 1);
+    put_one(tribo_system_reduced(&sys, m, k, j, 1, 1, NULL, 0));
+    truncation(sys);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(c);
     gsl_spmatrix_free(k);

@@ -41,6 +41,11 @@ static void end_table(tribo_system *sys)
     assert_ok(tribo_system_set_limit_table(sys, 0, NULL, NULL));
 }
 
+static void add_limit(tribo_system *sys)
+{
+    assert_ok(tribo_system_add_limit(sys, 0.8, limit_table + 3, limit_table));
+}
+
 static void set_limit(tribo_system *sys)
 {
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit_table + 3));
@@ -84,12 +89,14 @@ static const struct {
                {"coupling", nothing, set_coupling},
                {"epsilon", nothing, set_epsilon},
                {"damping", nothing, set_damping},
-               {"load table twice", add_table, add_table}};
+               {"load table twice", add_table, add_table},
+               {"swinging limits", nothing, add_limit},
+               {"swinging limits, and limits", add_limit, set_limit}};
 
 /* Exact takes no tables. */
 static int possible(const char *method, size_t change)
 {
-    return strcmp(method, "exact") || (!strstr(changes[change].name, "table") && changes[change].before == nothing);
+    return strcmp(method, "exact") || (!strstr(changes[change].name, "table") && changes[change].before != begin_table);
 }
 
 static int chooses_steps(const char *method)

@@ -125,7 +125,7 @@ static double energy_between(const struct structure *s, const double *a, const d
     return sqrt(fmax(sum, 0.0));
 }
 
-/* Work per period at most this often over 40 periods. */
+/* In the energy norm, and with what its contacts dissipate adding up to the energy in the state. */
 TEST(comes_back)
 {
     struct structure s;
