@@ -127,4 +127,3 @@ double value_of(const char *key)
     require(at && at[strlen(key)] == ' ', "no value %s", key);
     return strtod(at + strlen(key), NULL);
 }
-

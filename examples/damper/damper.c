@@ -82,12 +82,8 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
 
 struct damper create_damper(const struct options *o, const struct structure *s)
 {
-    struct damper d = {.ndof = s->ndof,
-                       .modes = o->modes,
-                       .contacts = o->contacts,
-                       .damping = o->damping,
-                       .force = o->force,
-                       .step = o->step};
+    struct damper d = {
+        .ndof = s->ndof, .modes = o->modes, .contacts = o->contacts, .damping = o->damping, .force = o->force, .step = o->step};
     if (d.modes > s->ndof) {
         die("option --modes %zu: the structure has %zu degrees of freedom", d.modes, s->ndof);
     }

@@ -78,8 +78,8 @@ static void reduce(const struct damper *d, double omega, const gsl_matrix *basis
             *at = gsl_complex_add_real(*at, mode * d->load_shape[k]);
             for (size_t j = 0; j < b->size; j++) {
                 at = gsl_matrix_complex_ptr(h, i, j);
-                *at = gsl_complex_add(*at, gsl_complex_mul_real(dynamic_stiffness(d, k, omega),
-                                                                mode * gsl_matrix_get(basis, k, first + j)));
+                *at = gsl_complex_add(
+                    *at, gsl_complex_mul_real(dynamic_stiffness(d, k, omega), mode * gsl_matrix_get(basis, k, first + j)));
             }
         }
     }

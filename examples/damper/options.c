@@ -114,8 +114,8 @@ static void set_name(const char *origin, const char *value, struct options *o)
 
 /* --------------------------------------------------------------------------------------------------------------- table */
 
-#define FILE_OPTION(name) {"--" #name, NULL, offsetof(struct options, name), 1}
-#define OPTION(name) {"--" #name, set_##name, 0, 0}
+#define FILE_OPTION(name) "--" #name, NULL, offsetof(struct options, name), 1
+#define OPTION(name) "--" #name, set_##name, 0, 0
 
 static const struct option {
     const char *name;
@@ -123,10 +123,16 @@ static const struct option {
     size_t offset; /* where */
     int is_path;
 } table[] = {
-    FILE_OPTION(mass), FILE_OPTION(stiffness), FILE_OPTION(dofs), FILE_OPTION(frequencies), FILE_OPTION(out),
-    OPTION(name),      OPTION(modes),          OPTION(damping),   OPTION(contact),          {"--contacts", set_contacts, 0, 1},
-    OPTION(load),      OPTION(force),          OPTION(drive),     OPTION(limits),           OPTION(method),
-    OPTION(check),     OPTION(step),           OPTION(law),       OPTION(threads),
+    {FILE_OPTION(mass)}, {FILE_OPTION(stiffness)},
+    {FILE_OPTION(dofs)}, {FILE_OPTION(frequencies)},
+    {FILE_OPTION(out)},  {OPTION(name)},
+    {OPTION(modes)},     {OPTION(damping)},
+    {OPTION(contact)},   {"--contacts", set_contacts, 0, 1},
+    {OPTION(load)},      {OPTION(force)},
+    {OPTION(drive)},     {OPTION(limits)},
+    {OPTION(method)},    {OPTION(check)},
+    {OPTION(step)},      {OPTION(law)},
+    {OPTION(threads)},
 };
 
 /* name has length characters, and no hyphens in front. */
@@ -227,7 +233,8 @@ static void complete(struct options *o)
         }
         o->limits = (struct range){1.0, 1.0, 1};
     } else if (!o->limits.points) {
-        o->limits = (struct range){LIMIT_FROM * o->force, LIMIT_TO * o->force, o->drive.points > 1 ? FAMILY_LIMITS : CURVE_LIMITS};
+        o->limits =
+            (struct range){LIMIT_FROM * o->force, LIMIT_TO * o->force, o->drive.points > 1 ? FAMILY_LIMITS : CURVE_LIMITS};
     }
 }
 

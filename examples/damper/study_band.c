@@ -89,8 +89,7 @@ static void report_best(struct study *s, double limit)
         write_motion_head(table, s->damper->contacts);
         write_curve(table, &f.curve[0], s->damper->contacts);
         close_table(table, "best");
-        printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude,
-               top->motion.hz);
+        printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude, top->motion.hz);
         write_result(s->tables, "band.limit", limit);
         write_result(s->tables, "band.amplitude", top->motion.amplitude);
         write_result(s->tables, "band.frequency", top->motion.hz);
@@ -133,8 +132,7 @@ static void write_family(struct study *s, const struct family *f, size_t count)
         write_curve(table, c, s->damper->contacts);
         fprintf(table, "%s", k + 1 < count && c->count ? "\n" : "");
         if (top) {
-            printf("  %12.5g %8zu %12zu %18.8g %13.7g\n", c->fixed, c->count, gaps_of(c), top->motion.amplitude,
-                   top->motion.hz);
+            printf("  %12.5g %8zu %12zu %18.8g %13.7g\n", c->fixed, c->count, gaps_of(c), top->motion.amplitude, top->motion.hz);
         }
         s->gaps += gaps_of(c);
     }

@@ -88,7 +88,8 @@ static void report(const struct study *s, const struct marched *m, size_t count)
     FILE *table = create_table(s->tables, "check");
     double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
     write_motion_head(table, 0);
-    printf("by marching (rk4, %s)\n         limit    frequency    amplitude   difference  periods\n", tribo_law_name(s->options->law));
+    printf("by marching (rk4, %s)\n         limit    frequency    amplitude   difference  periods\n",
+           tribo_law_name(s->options->law));
     for (size_t k = 0; k < count; k++) {
         const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
         write_motion(table, here, 0);

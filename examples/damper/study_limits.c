@@ -100,8 +100,7 @@ static void find_most_power(struct study *s, struct curve *c)
         return;
     }
     struct trial t = {.study = s, .from = &c->sample[at]};
-    const double limit =
-        find_least(c->sample[at - 1].motion.limit, c->sample[at + 1].motion.limit, LEAST_PART, try_limits, &t);
+    const double limit = find_least(c->sample[at - 1].motion.limit, c->sample[at + 1].motion.limit, LEAST_PART, try_limits, &t);
     if (!interrupted()) {
         const struct motion best = show_motion(s, c, limit, "history");
         /* above the optimum contacts rest for a part of each period */

@@ -318,9 +318,10 @@ TEST(options)
         {"--limits", "0 1:2 1:2:0 1:2:1.5 2:1:3 1:1:2 0:1:3 -1:1:3 nan:1:3 1:inf:3 1:2:3:4 1:2:1e300 :: 1;2;3"},
         {"--step", "0 -1 1.1 nan 1/4"},
         {"--law", "quin quinnn 4"},
-        {"--contact", "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x 2,0,0,xy 2,0,0,x:stiffness=5 "
-                      "2,0,0,x:limit=-1 2,0,0,x:limit= 2,0,0,x:limit 2,0,0,x:load=1 2,0,0,x:mu=1:limit=1 2,0,0,x:mu=0 2,0,0,x:mu=1:load=0 "
-                      "2,0,0,x:to=2,0,0 2,0,0,x:to=9,0,0 2,0,0,x:to=1,0 2,0,0,x:to=1,0,0,x 2,0,0,x:limit=1:foo"},
+        {"--contact",
+         "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x 2,0,0,xy 2,0,0,x:stiffness=5 "
+         "2,0,0,x:limit=-1 2,0,0,x:limit= 2,0,0,x:limit 2,0,0,x:load=1 2,0,0,x:mu=1:limit=1 2,0,0,x:mu=0 2,0,0,x:mu=1:load=0 "
+         "2,0,0,x:to=2,0,0 2,0,0,x:to=9,0,0 2,0,0,x:to=1,0 2,0,0,x:to=1,0,0,x 2,0,0,x:limit=1:foo"},
         {"--method", "shoot Exact -1"},
         {"--check", "-1 x 0.5"},
         {"--threads", "0 -1 x"},
@@ -370,11 +371,11 @@ TEST(files_of_words)
     static const struct {
         const char *text, *place;
     } files[] = {{"modes 2\nnonsense 1\n", "o.txt:2: "},
-                   {"modes\n", "o.txt:1: "},
-                   {"modes 0\n", "o.txt:1: "},
-                   {"# nothing\n\ncontact 2,0,0,x limit=-1\n", "o.txt:3: "},
-                   {"contacts nowhere.txt\n", "nowhere.txt"},
-                   {"modes 2", "o.txt:1: "}},
+                 {"modes\n", "o.txt:1: "},
+                 {"modes 0\n", "o.txt:1: "},
+                 {"# nothing\n\ncontact 2,0,0,x limit=-1\n", "o.txt:3: "},
+                 {"contacts nowhere.txt\n", "nowhere.txt"},
+                 {"modes 2", "o.txt:1: "}},
       contacts[] = {{"2,0,0,x\n3,0,0,x limit=1 mu=2\n", "c.txt:2: "},
                     {"2,0,0,x\n\n3,0,0\n", "c.txt:3: "},
                     {"2,0,0,x limit=\033[\n", "c.txt:1: "},
@@ -400,8 +401,9 @@ END_TEST
 TEST(same_limit)
 {
     static const char *const way[] = {
-        "--contact 2,0,0,x:limit=0.1", "--contact 2,0,0,x --limits 0.1",      "--contact 2,0,0,x:mu=0.5 --limits 0.2",
-        "--contacts c.txt",            "--contact 2,0,0,x:mu=2:load=0.05",    "--read o.txt",
+        "--contact 2,0,0,x:limit=0.1",           "--contact 2,0,0,x --limits 0.1",
+        "--contact 2,0,0,x:mu=0.5 --limits 0.2", "--contacts c.txt",
+        "--contact 2,0,0,x:mu=2:load=0.05",      "--read o.txt",
     };
     double first = 0.0;
     write_chain();
@@ -476,4 +478,5 @@ TEST(few)
 }
 END_TEST
 
-TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {parts, 1}, {files_of_words, 1}, {same_limit, 1}, {between, 1}, {one_mass, 1}, {few, 1})
+TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {parts, 1}, {files_of_words, 1}, {same_limit, 1},
+          {between, 1}, {one_mass, 1}, {few, 1})

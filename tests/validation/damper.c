@@ -11,6 +11,7 @@
 #include "tool.h"
 
 #define READ_BEAM "--read " BEAM "/beam.txt"
+#define READ_FAMILY "--read " BEAM "/family.txt --name damper --drive 25:45:6 --limits 0.1:10:3 --check 1"
 
 /* Without friction and with all contacts stuck the motion is known; so is about how much friction takes at best: half of what the
  * load puts in. Marching agrees to what its step allows. */
@@ -47,8 +48,15 @@ TEST(threads)
 {
     static const char *const name[] = {"damper-frequencies.csv", "damper-family.csv", "damper-best.csv",
                                        "damper-linear.csv",      "damper-check.csv",  "values-damper.txt"};
-    assert_runs(READ_BEAM " --drive 26:28:5 --limits 0.001:1:5 --check 2 --threads 1 --out one");
-    assert_runs(READ_BEAM " --drive 26:28:5 --limits 0.001:1:5 --check 2 --threads 2 --out two");
+    for (size_t k = 0; k < COUNT(name); k++) {
+        char path[2][100];
+        snprintf(path[0], sizeof path[0], "one/%s", name[k]);
+        snprintf(path[1], sizeof path[1], "two/%s", name[k]);
+        remove(path[0]);
+        remove(path[1]);
+    }
+    assert_runs(READ_FAMILY " --threads 1 --out one");
+    assert_runs(READ_FAMILY " --threads 2 --out two");
     for (size_t k = 0; k < COUNT(name); k++) {
         size_t length[2];
         char *one = read_all("one", name[k], &length[0]), *two = read_all("two", name[k], &length[1]);
