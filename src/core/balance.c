@@ -122,7 +122,7 @@ static int solve_bounded(tribo_context *ctx, struct box_qp *p, const double *v, 
 /* The limits by which near contacts go, each by its own f_eq. */
 static void limit_near(const tribo_context *ctx, const struct box_qp *p, const double *v)
 {
-    for (size_t e = 0; ctx->set.breaking && e < p->count; e++) {
+    for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->member[p->near[e]];
         tribo_find_limits(ctx, i, 1, v + i, ctx->last.feq + i, ctx->follow.now + i);
     }
@@ -131,12 +131,13 @@ static void limit_near(const tribo_context *ctx, const struct box_qp *p, const d
 /* Where limits are static, until nobody breaks away any more. */
 static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
-    tribo_hold(ctx, p);
-    int status = solve_bounded(ctx, p, v, a);
-    while (!status && ctx->set.breaking && tribo_break_away(ctx, p, 0.0)) {
-        ctx->last.rank -= p->sets->rank;
-        status = solve_bounded(ctx, p, v, a);
+    int status;
+    if (ctx->set.breaking) {
+        tribo_hold(ctx, p);
     }
+    do {
+        status = solve_bounded(ctx, p, v, a);
+    } while (!status && ctx->set.breaking && tribo_break_away(ctx, p, 0.0));
     return status;
 }
 
@@ -159,7 +160,9 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
         ctx->last.feq[i] = p->x[k];
     }
     ctx->last.rank += p->sets->rank;
-    limit_near(ctx, p, v);
+    if (ctx->set.breaking) {
+        limit_near(ctx, p, v);
+    }
     if (consistent) {
         return TRIBO_OK;
     }

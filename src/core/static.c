@@ -68,7 +68,7 @@ static int breaks(const tribo_context *ctx, const struct box_qp *p, size_t k)
 size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt)
 {
     size_t broken = 0;
-    for (size_t e = 0; ctx->set.breaking && e < p->count; e++) {
+    for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
         double rate;
         if (breaks(ctx, p, k)) {
@@ -76,6 +76,7 @@ size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt)
             broken += ctx->follow.now[i] < ctx->follow.hold[i];
         }
     }
+    ctx->last.rank -= broken ? p->sets->rank : 0; /* they will be solved for once more */
     return broken;
 }
 

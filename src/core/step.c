@@ -156,7 +156,6 @@ static size_t let_go(tribo_context *ctx, struct box_qp *p, double dt)
         p->hi[k] = ctx->follow.now[p->member[k]];
         p->lo[k] = -p->hi[k];
     }
-    ctx->last.rank -= broken ? p->sets->rank : 0;
     return broken;
 }
 
@@ -164,10 +163,10 @@ static size_t let_go(tribo_context *ctx, struct box_qp *p, double dt)
 static int solve_for(tribo_context *ctx, struct box_qp *p, const struct call *c)
 {
     const struct bounds *b = &c->b;
-    int status = tribo_solve_group(ctx, p);
-    while (!status && c->breaks && let_go(ctx, p, c->dt)) {
+    int status;
+    do {
         status = tribo_solve_group(ctx, p);
-    }
+    } while (!status && c->breaks && let_go(ctx, p, c->dt));
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
         ctx->last.f[i] = clamp(p->x[k], lower_of(b, i), b->upper[i]);
