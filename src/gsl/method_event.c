@@ -20,12 +20,13 @@ struct event {
     struct events events;
     size_t order;
     double tolerance; /* relative */
-    double fastest;   /* bound on the frequencies of the motion */
+    double fastest;   /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
     double tau, length;    /* where go() was; that of the step, and what bounds hold for */
     double *q, *u;         /* [order + 1][ndof] coefficients of the powers of time */
     double *watch;         /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
     double *d;             /* [order + 1] dissipated energy */
+    double *slide, *part;  /* [order + 1][ncontact] limits that fall with the speed, and exp(-|v|/velocity) of sliding contacts */
     double *size, *bend;   /* [ncontact] bounds of what is watched, and of its sixth derivative */
     double *cosine, *sine; /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
@@ -62,15 +63,40 @@ static void add_harmonics(const struct event *e, int moves_base, size_t k, doubl
     }
 }
 
+/* The k-th coefficient of the limit by which contact i slides. */
+static double sliding_limit(struct event *e, size_t i, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    if (!m->breakaway.falls) {
+        return k == 0 ? m->limit[i] : k == 1 ? m->limit_rate[i] : 0.0;
+    }
+    return e->slide[k * c + i] = tribo_breakaway_series(&m->breakaway, i, m->slip[i], k, c, e->watch + i, e->part + i);
+}
+
 /* The k-th coefficient of f for the contacts that do not hold: those that slide follow their limit, and so do those that are just
  * at it; others keep their force. */
 static void given_forces(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        const double limit = k == 0 ? m->limit[i] : m->limit_rate[i];
-        const double kept = k == 0 ? m->force[i] : m->tied[i] ? (m->force[i] > 0.0 ? limit : -limit) : 0.0;
-        e->given[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? kept : -m->slip[i] * limit;
+        const double rate = k == 1 && m->tied[i] ? m->stick_rate[i] : 0.0;
+        const double kept = k == 0 ? m->force[i] : m->force[i] > 0.0 ? rate : -rate;
+        const int slides = m->slip[i] == 1 || m->slip[i] == -1;
+        e->given[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : slides ? -m->slip[i] * sliding_limit(e, i, k) : kept;
+    }
+}
+
+/* The k-th coefficients of the contacts' velocities. */
+static void find_velocities(const struct event *e, size_t k, double *v)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    memset(v, 0, c * sizeof *v);
+    add_harmonics(e, 1, k, -1.0, v);
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
+    for (size_t i = 0; k == 0 && i < c; i++) {
+        v[i] = m->rested[i] ? 0.0 : v[i];
     }
 }
 
@@ -81,6 +107,7 @@ static int expand_forces(struct event *e, size_t k)
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     const double *q = e->q + k * n, *u = e->u + k * n;
+    const int given = k < 2 || m->breakaway.falls;
     double *acc = e->acceleration, *watch = e->watch + k * c;
     memset(acc, 0, n * sizeof *acc);
     add_harmonics(e, 0, k, 1.0, acc);
@@ -88,8 +115,11 @@ static int expand_forces(struct event *e, size_t k)
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
     }
+    find_velocities(e, k, watch);
     if (k < 2) {
         tribo_system_tables(sys, (int)k, 1.0, acc);
+    }
+    if (given) {
         given_forces(e, k);
         tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
     }
@@ -104,16 +134,25 @@ static int expand_forces(struct event *e, size_t k)
         return tribo_system_fail(sys, status, "%s", tribo_message(e->events.stick_slip.hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
-    memset(watch, 0, c * sizeof *watch);
-    add_harmonics(e, 1, k, -1.0, watch);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, u, watch);
     for (size_t i = 0; i < c; i++) {
-        const double force = k == 0 ? m->force[i] : e->held[i] + (k < 2 ? e->given[i] : 0.0);
-        const double v = k == 0 && m->rested[i] ? 0.0 : watch[i];
-        watch[i] = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : v;
+        const double force = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
+        watch[i] = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : watch[i];
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
     return tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
+}
+
+/* The k-th coefficient of limit times velocity of contact i, which slides. */
+static double sliding_power(const struct event *e, size_t i, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    double sum = 0.0;
+    for (size_t j = 0; m->breakaway.falls && j <= k; j++) {
+        sum += e->slide[j * c + i] * e->watch[(k - j) * c + i];
+    }
+    const double rate = k ? m->limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
+    return m->breakaway.falls ? sum : m->limit[i] * e->watch[k * c + i] + rate;
 }
 
 /* Coefficients of the motion from (t, y) on. Returns a status. */
@@ -137,14 +176,13 @@ static int expand(struct event *e, double t, const double *y)
         }
     }
     sys->evaluations += e->order + 1;
-    /* power of the sliding contacts, whose forces are linear in time */
+    /* power of the sliding contacts */
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
         for (size_t i = 0; i < c; i++) {
             const signed char slip = e->events.stick_slip.slip[i];
             if (slip == 1 || slip == -1) {
-                const double rate = k ? e->events.stick_slip.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
-                power -= slip * (e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate);
+                power -= slip * sliding_power(e, i, k);
             }
         }
         e->d[k + 1] = -sys->power * power / (double)(k + 1);
@@ -158,6 +196,11 @@ static double wanted(const tribo_driver *drv, double size)
     return greater(drv->abstol + drv->reltol * size, DBL_EPSILON * size);
 }
 
+static double fastest(const struct event *e)
+{
+    return e->fastest + e->events.stick_slip.breakaway.steepest;
+}
+
 /* The step on which the last two terms of everything stay below the tolerance. */
 static double step_length(const struct event *e)
 {
@@ -165,13 +208,13 @@ static double step_length(const struct event *e)
     const tribo_driver *drv = e->drv;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
     const double q = wanted(drv, tribo_largest(e->q, n)), u = wanted(drv, tribo_largest(e->u, n)), d = wanted(drv, fabs(e->d[0]));
-    const double most = e->fastest > 0.0 ? 0.5 * (double)(e->order + 1) / e->fastest : HUGE_VAL;
+    const double most = fastest(e) > 0.0 ? 0.5 * (double)(e->order + 1) / fastest(e) : HUGE_VAL;
     double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
             /* forces of contacts at rest to the same part of their limit, or of what it becomes */
-            const double limit = m->limit[i] + (m->limit_rate[i] != 0.0 ? fabs(m->limit_rate[i]) * lesser(most, DBL_MAX) : 0.0);
+            const double limit = m->stick[i] + (m->stick_rate[i] != 0.0 ? fabs(m->stick_rate[i]) * lesser(most, DBL_MAX) : 0.0);
             const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? e->tolerance * limit : u;
             term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
         }
@@ -262,9 +305,9 @@ static void set_guards(struct event *e)
         } else if (tribo_stick_slip_may_part(m, i)) {
             e->size[i] = parts_of_velocity(e, i, h);
             tribo_events_guard_part(&e->events, i, g);
-        } else if (m->slip[i] == 0 && e->size[i] >= lesser(m->limit[i], m->limit[i] + m->limit_rate[i] * h)) {
-            g.offset = m->limit[i];
-            g.ramp = m->limit_rate[i];
+        } else if (m->slip[i] == 0 && e->size[i] >= lesser(m->stick[i], m->stick[i] + m->stick_rate[i] * h)) {
+            g.offset = tribo_stick_slip_most(m, i);
+            g.ramp = m->stick_rate[i];
             tribo_events_guard_stick(&e->events, i, g);
         }
     }
@@ -303,7 +346,7 @@ static int create(tribo_driver *drv)
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
-    double *work = malloc((terms * (2 * n + c + 1) + n + 6 * c + 1) * sizeof *work);
+    double *work = malloc((terms * (2 * n + 3 * c + 1) + n + 6 * c + 1) * sizeof *work);
     if (!work) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
@@ -312,7 +355,9 @@ static int create(tribo_driver *drv)
     e->q = work;
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
-    e->d = e->watch + terms * c;
+    e->slide = e->watch + terms * c;
+    e->part = e->slide + terms * c;
+    e->d = e->part + terms * c;
     e->acceleration = e->d + terms;
     e->base = e->acceleration + n;
     e->a = e->base + c;
@@ -373,7 +418,7 @@ static int begin(void *motion, double t, const double *y, double *reach)
     const double length = step_length(e);
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
-    e->length = e->fastest > 0.0 ? greater(*reach, lesser(length, 1.0 / e->fastest)) : *reach;
+    e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
     set_guards(e);
     return TRIBO_OK;
 }

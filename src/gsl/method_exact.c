@@ -135,7 +135,7 @@ static void add_guards(struct exact *x, const struct output *w, int of_velocity,
         tribo_events_guard_slip(&x->events, i, g);
     } else {
         bound_guard(x, &g);
-        g.offset = x->events.stick_slip.limit[i];
+        g.offset = tribo_stick_slip_most(&x->events.stick_slip, i);
         /* nothing to guard if it is far from the limit for the whole phase */
         if (g.size >= g.offset) {
             tribo_events_guard_stick(&x->events, i, g);
@@ -231,6 +231,11 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     if (sys->tables || sys->limits.knots) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                  "method exact takes harmonic loads only; method event takes tables too");
+    }
+    if (tribo_system_falls(sys)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                 "method exact takes static limits that drop at once; method event takes such that fall with "
+                                 "the speed too");
     }
     const int status = prepare(x, sys);
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts))

@@ -7,6 +7,7 @@
 
 #include <gsl/gsl_linalg.h>
 
+#include "breakaway.h"
 #include "hidden.h"
 #include "step_form.h"
 
@@ -19,6 +20,8 @@ struct moreau {
     unsigned int *pivot;
     double *response; /* [ncontact][ndof] */
     double *limit;    /* [ncontact] */
+    double *ratio, *velocity; /* [ncontact] of static limits */
+    size_t settings;  /* revision of the system's context, from which these are */
     double *load;     /* [ndof] at the end of the step before */
     tribo_context *contacts;
 };
@@ -43,12 +46,14 @@ static int create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (m) {
-        m->limit = calloc(c + n + 1, sizeof *m->limit);
+        m->limit = calloc(3 * c + n + 1, sizeof *m->limit);
     }
     if (!m || !m->limit || !tribo_step_form_create(&m->common, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
-    m->load = m->limit + c;
+    m->ratio = m->limit + c;
+    m->velocity = m->limit + 2 * c;
+    m->load = m->limit + 3 * c;
     return TRIBO_OK;
 }
 
@@ -196,6 +201,21 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, 0, 0, 1.0, m->load);
 }
 
+static void take_limits(struct moreau *m, const tribo_system *sys)
+{
+    const size_t revision = tribo_revision(sys->contacts);
+    tribo_get_limit(sys->contacts, m->limit);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->limit[i] *= tribo_system_weight(sys, i);
+    }
+    tribo_set_limit(m->contacts, m->limit);
+    if (m->settings != revision) {
+        tribo_get_static(sys->contacts, m->ratio, m->velocity);
+        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
+        m->settings = revision;
+    }
+}
+
 static int moreau_step(tribo_driver *drv, double t, double next, double *y)
 {
     struct moreau *m = drv->own;
@@ -235,11 +255,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_find_base(s, sys, next);
     tribo_step_form_relative(s, sys, s->u, s->end);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
-    tribo_get_limit(sys->contacts, m->limit);
-    for (size_t i = 0; i < c; i++) {
-        m->limit[i] *= tribo_system_weight(sys, i);
-    }
-    tribo_set_limit(m->contacts, m->limit);
+    take_limits(m, sys);
     const int status = tribo_step_force(m->contacts, h, s->end, s->f);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);

@@ -51,7 +51,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->at = malloc(c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
-    if (status || !work || !m->slip || !m->at || !m->last) {
+    const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
+    if (status || !work || !m->slip || !m->at || !m->last || !statics) {
         tribo_stick_slip_free(m);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stick and slip of %zu contacts", sys->ncontact);
     }
@@ -76,6 +77,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->uncoupled = islands == sys->ncontact;
     /* a contact that has reached its limit stays there while others take over */
     tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
+    tribo_set_static(m->box, NULL, NULL);
+    tribo_set_static(m->hold, NULL, NULL);
     tribo_set_law(m->hold, TRIBO_COULOMB);
     tribo_set_coupling(m->hold, TRIBO_PARTITION);
     return TRIBO_OK;
@@ -85,6 +88,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
 {
     tribo_destroy(m->box);
     tribo_destroy(m->hold);
+    tribo_breakaway_free(&m->breakaway);
     free(m->limit);
     free(m->slip);
     free(m->at);
@@ -262,6 +266,11 @@ int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
     return m->base_moves && m->slip[i] == 0 && !m->holds[i];
 }
 
+double tribo_stick_slip_most(const struct stick_slip *m, size_t i)
+{
+    return m->stick[i] + (tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0);
+}
+
 double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
     const struct matrix *j = &sys->direction;
@@ -337,7 +346,7 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
 static int find_forces(struct stick_slip *m, tribo_system *sys)
 {
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double limit = m->slip[i] == 2 ? 0.0 : m->limit[i];
+        const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
         m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
         m->hi[i] = m->slip[i] == 1 ? -limit : limit;
     }
@@ -355,6 +364,13 @@ static void contact_accelerations(const tribo_system *sys, const double *acceler
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
+/* A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
+static void let_go(struct stick_slip *m, size_t i, signed char direction)
+{
+    m->slip[i] = tribo_breakaway_lets_go(&m->breakaway, i) ? 0 : direction;
+    m->tied[i] = 0;
+}
+
 /* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
  * than rounding, slides. */
 static int breaks_away(struct stick_slip *m, size_t i, signed char direction, double acceleration)
@@ -362,8 +378,7 @@ static int breaks_away(struct stick_slip *m, size_t i, signed char direction, do
     if (direction * acceleration <= m->gain[i]) {
         return 0;
     }
-    m->slip[i] = direction;
-    m->tied[i] = 0;
+    let_go(m, i, direction);
     return 1;
 }
 
@@ -374,7 +389,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     *ties = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->tied[i] = 0;
-        close += m->slip[i] == 0 && fabs(m->force[i]) >= (1.0 - CLOSE) * m->limit[i];
+        close += m->slip[i] == 0 && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
     }
     if (close == 0) {
         return 0;
@@ -382,8 +397,8 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     find_gains(m, sys, y);
     contact_accelerations(sys, m->acceleration, 1, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double room = m->limit[i] - fabs(m->force[i]);
-        const double within = i == m->reached ? CLOSE * m->limit[i] : m->allowance[i] / ALLOWED;
+        const double room = m->stick[i] - fabs(m->force[i]);
+        const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / ALLOWED;
         if (m->slip[i] == 0 && room <= within) {
             const signed char direction = m->force[i] > 0.0 ? -1 : 1;
             m->tied[i] = 1;
@@ -398,13 +413,36 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
 
 static double limit_ahead(const struct stick_slip *m, size_t i)
 {
-    return m->slip[i] == 2 ? 0.0 : greater(m->limit[i] + m->horizon * m->limit_rate[i], 0.0);
+    const double now = m->slip[i] ? m->limit[i] : m->stick[i], rate = m->slip[i] ? m->limit_rate[i] : m->stick_rate[i];
+    return m->slip[i] == 2 ? 0.0 : greater(now + m->horizon * rate, 0.0);
+}
+
+/* The limits of this instant, where there are static ones. */
+static void find_static(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    if (m->breakaway.some) {
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            m->v[i] = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        }
+        tribo_breakaway_limits(&m->breakaway, sys, m->slip, m->v, m->limit, m->limit_rate);
+    }
+}
+
+/* How the limits of sliding contacts fall, as they gain speed. */
+static void find_falling(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    find_static(m, sys, y);
+    contact_accelerations(sys, m->acceleration, 1, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
+    }
 }
 
 static void set_bounds_ahead(struct stick_slip *m)
 {
     for (size_t i = 0; i < m->contacts; i++) {
-        const double limit = limit_ahead(m, i), now = m->limit[i], wider = WIDER * now;
+        const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
         if (m->slip[i] != 0) {
             m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
             continue;
@@ -429,6 +467,9 @@ static void find_rate(struct stick_slip *m, const tribo_system *sys, const doubl
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
     find_gains(m, sys, y);
+    if (m->breakaway.falls) {
+        find_falling(m, sys, y);
+    }
     find_rate(m, sys, y);
     contact_accelerations(sys, m->rate, 2, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -446,7 +487,8 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
         if (m->slip[i] == 0 && m->limit[i] > 0.0 && room >= 0.0) {
             const signed char direction = m->f[i] > 0.0 ? -1 : 1;
-            const int leaves = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
+            const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             *changes += (size_t)leaves;
             m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
         }
@@ -479,20 +521,19 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     size_t worst = sys->ncontact;
     double most = 1.0;
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        const double excess = fabs(m->f[i]) - m->limit[i];
+        const double excess = fabs(m->f[i]) - m->stick[i];
         if (m->tied[i] && m->holds[i] && excess > most * m->allowance[i]) {
             worst = i;
             most = excess / m->allowance[i];
         }
     }
     if (worst < sys->ncontact) {
-        m->slip[worst] = m->f[worst] > 0.0 ? -1 : 1;
-        m->tied[worst] = 0;
+        let_go(m, worst, m->f[worst] > 0.0 ? -1 : 1);
         *changes = 1;
         return status;
     }
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->limit[i], m->limit[i]) : m->force[i];
+        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->stick[i], m->stick[i]) : m->force[i];
         m->excess[i] = m->holds[i] ? fabs(m->f[i] - m->force[i]) : 0.0;
     }
     memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
@@ -501,6 +542,18 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
 }
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
+
+/* Contacts that broke away, and that the others hold after all, hold by their static limits again. */
+static void restore_static(struct stick_slip *m)
+{
+    struct breakaway *b = &m->breakaway;
+    for (size_t i = 0; b->some && i < m->contacts; i++) {
+        const double stick = b->ratio[i] * b->kinetic[i];
+        m->tied[i] = (signed char)(m->stick[i] < stick ? 0 : m->tied[i]);
+        b->stick[i] = stick;
+        b->stick_rate[i] = b->ratio[i] * b->kinetic_rate[i];
+    }
+}
 
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
@@ -511,6 +564,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     find_noise(m, sys, y);
     update_limits(m, sys, y);
     int status = find_resting(m, sys, y);
+    find_static(m, sys, y);
     if (!status) {
         tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
         m->sized = 0;
@@ -529,6 +583,10 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         }
     }
     m->reached = m->contacts;
+    if (m->breakaway.some && !status) {
+        find_gains(m, sys, y);
+    }
+    restore_static(m);
     return status ? status : find_holds(m, sys);
 }
 
@@ -536,6 +594,9 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
 {
     tribo_system_set_time(sys, t);
     tribo_system_limits(sys, m->limit, m->limit_rate);
+    tribo_breakaway_start(&m->breakaway, sys, m->rate, m->v);
+    m->stick = m->breakaway.some ? m->breakaway.stick : m->limit;
+    m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, 1, 0, 1.0, m->base);
     find_noise(m, sys, y);
@@ -549,7 +610,7 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     for (size_t k = 0; k < sys->harmonics; k++) {
         m->base_moves |= sys->harmonic[k].moves_base && sys->harmonic[k].count > 0;
     }
-    const double most = tribo_system_fastest(sys);
+    const double most = tribo_system_fastest(sys) + m->breakaway.steepest;
     m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);
     return tribo_stick_slip_decide(m, sys, t, y);
 }

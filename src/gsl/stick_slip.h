@@ -8,6 +8,7 @@
 #define TRIBO_STICK_SLIP_H
 
 #include "driver.h"
+#include "breakaway.h"
 #include "first_zero.h"
 
 struct stick_slip {
@@ -26,7 +27,9 @@ struct stick_slip {
     signed char *loose;    /* [ncontact] 1: it does not hold */
     size_t dependents;     /* how many rest by themselves */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
-    double *limit, *limit_rate; /* [ncontact] */
+    double *limit, *limit_rate; /* [ncontact] by which contacts slide, and its rate */
+    double *stick, *stick_rate; /* [ncontact] by which those at rest hold: these, unless there are static limits */
+    struct breakaway breakaway; /* of static limits */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *acceleration;       /* [ndof] and q'' */
     double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
@@ -67,6 +70,9 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
 
 /* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
 int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i);
+
+/* The force up to which contact i holds: where it would let go of much, what may be rounding does not count. */
+double tribo_stick_slip_most(const struct stick_slip *m, size_t i);
 
 /* v_i in a state, at the time that was last decided for. */
 double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);

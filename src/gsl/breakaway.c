@@ -1,0 +1,115 @@
+#include "breakaway.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../common/real.h"
+
+int tribo_breakaway_create(struct breakaway *b, size_t contacts)
+{
+    const size_t c = contacts + 1;
+    memset(b, 0, sizeof *b);
+    b->ratio = calloc(6 * c, sizeof *b->ratio);
+    if (!b->ratio) {
+        return 0;
+    }
+    b->velocity = b->ratio + c;
+    b->kinetic = b->ratio + 2 * c;
+    b->kinetic_rate = b->ratio + 3 * c;
+    b->stick = b->ratio + 4 * c;
+    b->stick_rate = b->ratio + 5 * c;
+    return 1;
+}
+
+void tribo_breakaway_free(struct breakaway *b)
+{
+    free(b->ratio);
+}
+
+int tribo_system_falls(const tribo_system *sys)
+{
+    tribo_get_static(sys->contacts, NULL, sys->v);
+    return sys->ncontact && sys->v[0] > 0.0;
+}
+
+static void add_sizes(const struct matrix *a, const double *x, double *y)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            y[i] += fabs(a->val[k]) * x[a->col[k]];
+        }
+    }
+}
+
+/* The largest row sum of |J| |B| diag(slopes at rest). */
+static double steepest(const struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
+{
+    memset(dof, 0, sys->ndof * sizeof *dof);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        contact[i] = -tribo_breakaway_slope(b, i, 0.0);
+    }
+    add_sizes(&sys->response, contact, dof);
+    memset(contact, 0, sys->ncontact * sizeof *contact);
+    add_sizes(&sys->direction, dof, contact);
+    return tribo_largest(contact, sys->ncontact);
+}
+
+void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact)
+{
+    b->some = 0;
+    b->falls = tribo_system_falls(sys);
+    tribo_get_static(sys->contacts, b->ratio, b->velocity);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        b->some |= b->ratio[i] > 1.0;
+    }
+    tribo_system_limits(sys, b->kinetic, b->kinetic_rate);
+    b->steepest = b->falls ? steepest(b, sys, dof, contact) : 0.0;
+}
+
+/* exp(-|v|/velocity), or 0 where limits drop at once. */
+static double part_at(const struct breakaway *b, size_t i, double v)
+{
+    return b->falls ? exp(-quotient(fabs(v), b->velocity[i])) : 0.0;
+}
+
+void tribo_breakaway_limits(struct breakaway *b, const tribo_system *sys, const signed char *slip, const double *v, double *limit,
+                            double *limit_rate)
+{
+    tribo_system_limits(sys, b->kinetic, b->kinetic_rate);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double more = (b->ratio[i] - 1.0) * part_at(b, i, slip[i] ? v[i] : 0.0);
+        limit[i] = b->kinetic[i] * (1.0 + more);
+        limit_rate[i] = b->kinetic_rate[i] * (1.0 + more);
+        b->stick[i] = b->ratio[i] * b->kinetic[i];
+        b->stick_rate[i] = b->ratio[i] * b->kinetic_rate[i];
+    }
+}
+
+double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v)
+{
+    return b->falls ? quotient(-(b->ratio[i] - 1.0) * b->kinetic[i] * part_at(b, i, v), b->velocity[i]) : 0.0;
+}
+
+int tribo_breakaway_lets_go(struct breakaway *b, size_t i)
+{
+    if (!b->some || b->falls || !(b->stick[i] > b->kinetic[i])) {
+        return 0;
+    }
+    b->stick[i] = b->kinetic[i];
+    b->stick_rate[i] = b->kinetic_rate[i];
+    return 1;
+}
+
+double tribo_breakaway_series(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
+                              double *part)
+{
+    double sum = 0.0;
+    for (size_t j = 1; j <= k; j++) {
+        sum += (double)j * v[j * stride] * part[(k - j) * stride];
+    }
+    part[k * stride] = k ? -side * sum / ((double)k * b->velocity[i]) : part_at(b, i, v[0]);
+    const double alone = k == 0 ? b->kinetic[i] : k == 1 ? b->kinetic_rate[i] : 0.0;
+    const double before = k ? b->kinetic_rate[i] * part[(k - 1) * stride] : 0.0;
+    return alone + (b->ratio[i] - 1.0) * (b->kinetic[i] * part[k * stride] + before);
+}

@@ -1,0 +1,50 @@
+/* Static friction above kinetic, for the event-located drivers (tribo_set_static). A contact that holds does so up to its static
+ * limit. One that cannot breaks away: it has the limit by which it slides from there on, and all are decided about again. Where
+ * limits fall with the speed (Stribeck), the law is
+ *     N(|v|) sgn v = limit sgn v + (ratio - 1) limit exp(-|v|/velocity) sgn v,
+ * of which the last part is smooth while the contact slides, and belongs to the equations of its motion. */
+#ifndef TRIBO_BREAKAWAY_H
+#define TRIBO_BREAKAWAY_H
+
+#include "system.h"
+
+/* Whether limits fall with the speed. */
+int tribo_system_falls(const tribo_system *sys);
+
+struct breakaway {
+    int some, falls;                /* there are static limits; with velocities by which they fall */
+    double *ratio, *velocity;       /* [ncontact] */
+    double *kinetic, *kinetic_rate; /* [ncontact] limit at high speed, and its rate */
+    double *stick, *stick_rate;     /* [ncontact] room for static limits */
+    double steepest;                /* no faster does falling friction make anything grow */
+};
+
+/* 1, or 0 if out of memory. tribo_breakaway_free takes what failed too. */
+int tribo_breakaway_create(struct breakaway *b, size_t contacts);
+void tribo_breakaway_free(struct breakaway *b);
+
+/* Takes the static limits of the system's context. dof, contact: workspace. */
+void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact);
+
+/* stick, and limit [ncontact] of contacts with this slip and v, at the time set; and their rates, but for what v adds. */
+void tribo_breakaway_limits(struct breakaway *b, const tribo_system *sys, const signed char *slip, const double *v, double *limit,
+                            double *limit_rate);
+
+/* dN/d|v| of contact i. */
+double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v);
+
+/* Whether contact i, at rest, would let go of more than rounding by breaking away: then that must be certain. */
+static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
+{
+    return b->some && b->ratio[i] > 1.0 && b->stick[i] >= b->ratio[i] * b->kinetic[i];
+}
+
+/* The contact holds no more by its static limit; 0 if it has none, or does not already. */
+int tribo_breakaway_lets_go(struct breakaway *b, size_t i);
+
+/* The next coefficient, the k-th, of N(|v|) in powers of time: v [k + 1], part [k] those of |v| times side, and of
+ * exp(-|v|/velocity), of which this finds the k-th too; each stride doubles apart. */
+double tribo_breakaway_series(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
+                              double *part);
+
+#endif
