@@ -139,6 +139,9 @@ typedef struct tribo_driver tribo_driver;
  *               there first order
  *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
+ *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at
+ *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
+ *               more than rounding. All methods with steps are of first order then.
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL

@@ -98,7 +98,9 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     for (size_t d = 0; d < sys->ndof; d++) {
         a->cap[d] = HUGE_VAL;
     }
+    tribo_get_static(sys->contacts, sys->v, NULL);
     for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] *= sys->v[i];
         most = greater(most, limit[i]);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {

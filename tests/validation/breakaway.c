@@ -2,7 +2,7 @@
  * integration of its own. */
 #include <string.h>
 
-#include "run.h"
+#include "model.h"
 
 #define EVENTS 400
 
@@ -215,7 +215,38 @@ TEST(chains)
     assert_all_close(y[0], y[1], 17, 1e-8);
 }
 
+/* Contacts that share bodies, on moving bases. */
+TEST(coupled)
+{
+    struct random g = random_of(_i);
+    const struct model m = model_create(&g, _i % 2);
+    tribo_system *sys = model_system(&m, 0, 0, 0.05);
+    double y[2][DIMENSION] = {{0.5, 0.0, -0.5}, {0.5, 0.0, -0.5}};
+    set_static(sys, 1.1 + 0.1 * (_i % 5), 0.0);
+    for (int k = 0; k < 2; k++) {
+        run(sys, located[k], 0.1, 1e-12, 12.0, y[k]);
+    }
+    assert_all_close(y[0], y[1], DIMENSION, 1e-8);
+    tribo_system_destroy(sys);
+}
+
 /* ------------------------------------------------------------------------------------------------------ falling friction */
+
+/* The same with limits that fall, beside steps. */
+TEST(coupled_and_falling)
+{
+    struct random g = random_of(_i);
+    const struct model m = model_create(&g, _i % 2);
+    tribo_system *sys = model_system(&m, 0, 0, 0.05);
+    double y[3][DIMENSION] = {{0.5, 0.0, -0.5}, {0.5, 0.0, -0.5}, {0.5, 0.0, -0.5}};
+    set_static(sys, 1.1 + 0.1 * (_i % 5), 0.5);
+    run(sys, "event", 0.1, 1e-12, 6.0, y[0]);
+    run(sys, "event", 0.1, 1e-8, 6.0, y[1]);
+    run(sys, "moreau/fixed", 2e-4, 0.0, 6.0, y[2]);
+    assert_all_close(y[0], y[1], DIMENSION, 1e-6);
+    assert_all_close(y[0], y[2], DIMENSION, 3e-3);
+    tribo_system_destroy(sys);
+}
 
 /* A block on a spring, limit 0.6 + 0.4 exp(-|v|/scale), that slides on a belt towards one side: x'' = -x - side N(|x' - v0|). */
 struct fall {
@@ -365,4 +396,4 @@ TEST(refusal)
 }
 
 TEST_MAIN("breakaway", {belt, 6}, {code_aster_sdnd106, 2}, {equal_blocks, 4}, {up_to_the_limit, 8}, {ratio_of_one, 7},
-          {undone, 2}, {chains, 4}, {falling_on_a_belt, 2}, {falling_to_rest, 1}, {steps, 6}, {steppers, 6}, {refusal, 1})
+          {undone, 2}, {chains, 4}, {coupled, 40}, {coupled_and_falling, 20}, {falling_on_a_belt, 2}, {falling_to_rest, 1}, {steps, 6}, {steppers, 6}, {refusal, 1})
