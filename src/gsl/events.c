@@ -74,7 +74,7 @@ static void append_both(struct events *e, size_t i, struct guard guard)
 void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard)
 {
     guard.slides = 0;
-    guard.allowance = tribo_breakaway_is_sudden(&e->stick_slip.breakaway, i) ? 0.0 : e->stick_slip.allowance[i];
+    guard.allowance = e->stick_slip.allowance[i];
     append_both(e, i, guard);
 }
 

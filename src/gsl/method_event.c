@@ -135,24 +135,30 @@ static int expand_forces(struct event *e, size_t k)
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
     for (size_t i = 0; i < c; i++) {
-        const double force = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
-        watch[i] = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : watch[i];
+        if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
+            watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
+        }
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
     return tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
 }
 
-/* The k-th coefficient of limit times velocity of contact i, which slides. */
-static double sliding_power(const struct event *e, size_t i, size_t k)
+/* The k-th coefficient of limit times velocity of contact i, which slides, with a limit linear in time; or that falls. */
+static inline double sliding_power(const struct event *e, size_t i, size_t k)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    const double rate = k ? e->events.stick_slip.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
+    return e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate;
+}
+
+static double falling_power(const struct event *e, size_t i, size_t k)
+{
     const size_t c = e->sys->ncontact;
     double sum = 0.0;
-    for (size_t j = 0; m->breakaway.falls && j <= k; j++) {
+    for (size_t j = 0; j <= k; j++) {
         sum += e->slide[j * c + i] * e->watch[(k - j) * c + i];
     }
-    const double rate = k ? m->limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
-    return m->breakaway.falls ? sum : m->limit[i] * e->watch[k * c + i] + rate;
+    return sum;
 }
 
 /* Coefficients of the motion from (t, y) on. Returns a status. */
@@ -176,13 +182,14 @@ static int expand(struct event *e, double t, const double *y)
         }
     }
     sys->evaluations += e->order + 1;
+    const int falls = e->events.stick_slip.breakaway.falls;
     /* power of the sliding contacts */
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
         for (size_t i = 0; i < c; i++) {
             const signed char slip = e->events.stick_slip.slip[i];
             if (slip == 1 || slip == -1) {
-                power -= slip * sliding_power(e, i, k);
+                power -= slip * (falls ? falling_power(e, i, k) : sliding_power(e, i, k));
             }
         }
         e->d[k + 1] = -sys->power * power / (double)(k + 1);

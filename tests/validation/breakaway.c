@@ -148,7 +148,8 @@ TEST(equal_blocks)
     tribo_system_destroy(single);
 }
 
-/* A load that comes up to the static limit and turns back moves nothing; one that goes beyond does. */
+/* A load that comes up to the static limit and turns back moves nothing, also where an advance ends just before it does; one that
+ * goes beyond does. */
 TEST(up_to_the_limit)
 {
     const int method = _i % 2, beyond = _i / 2 % 2, falls = _i / 4;
@@ -156,8 +157,12 @@ TEST(up_to_the_limit)
     tribo_system *sys = block(1, 1.0, 0.0);
     assert_ok(tribo_system_add_load(sys, 0.7, NULL, &load));
     set_static(sys, 1.5, falls ? 0.1 : 0.0);
-    double y[3] = {0.0};
-    run(sys, falls ? "event" : located[method], 0.1, 1e-12, 50.0, y);
+    tribo_driver *drv = driver_create(sys, falls ? "event" : located[method], 0.1, 1e-12);
+    double y[3] = {0.0}, t = 0.0;
+    for (int k = 0; k < 10; k++) {
+        driver_advance(drv, &t, ((double)k + 0.5) * PI / 0.7 - 2e-7, y);
+    }
+    tribo_driver_destroy(drv);
     ck_assert(beyond ? fabs(y[0]) > 0.01 && y[2] > 0.1 : y[0] == 0.0 && y[1] == 0.0 && y[2] == 0.0);
     tribo_system_destroy(sys);
 }
@@ -215,6 +220,25 @@ TEST(chains)
     assert_all_close(y[0], y[1], 17, 1e-8);
 }
 
+/* At once two contacts cannot hold, but one of them, by what the other one still carries, does. A step is no different. */
+TEST(held_after_all)
+{
+    const double one[] = {1.0, 0.0, 0.0, 1.0}, slope = sqrt(0.19), direction[] = {1.0, 0.0, -0.9, slope}, limit[] = {1.0, 1.0};
+    const double ratio[] = {3.0, 1.1}, load[] = {-2.02, (0.02 - 0.9 * 2.02) / slope}, end = 0.01;
+    static const char *const methods[] = {"exact", "event", "moreau/fixed", "central/fixed"};
+    double y[5] = {0.0};
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 2, 2, one, NULL, one, direction, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
+    run(sys, methods[_i], 1e-3, 1e-12, end, y);
+    /* f_2 = 0.88, with which contact 2 stays and contact 1 accelerates by -1.812 */
+    assert_close(slope * y[1] - 0.9 * y[0], 0.0, 1e-15);
+    assert_close(y[2], -1.812 * end, 1e-5);
+    tribo_system_destroy(sys);
+}
+
 /* Contacts that share bodies, on moving bases. */
 TEST(coupled)
 {
@@ -240,6 +264,10 @@ TEST(coupled_and_falling)
     tribo_system *sys = model_system(&m, 0, 0, 0.05);
     double y[3][DIMENSION] = {{0.5, 0.0, -0.5}, {0.5, 0.0, -0.5}, {0.5, 0.0, -0.5}};
     set_static(sys, 1.1 + 0.1 * (_i % 5), 0.5);
+    if (_i % 3 == 0) {
+        const double time[] = {0.0, 4.0, 7.0}, limit[] = {0.5, 1.0, 0.25, 1.5, 0.2, 0.75, 0.1, 0.1, 0.1};
+        assert_ok(tribo_system_set_limit_table(sys, 3, time, limit));
+    }
     run(sys, "event", 0.1, 1e-12, 6.0, y[0]);
     run(sys, "event", 0.1, 1e-8, 6.0, y[1]);
     run(sys, "moreau/fixed", 2e-4, 0.0, 6.0, y[2]);
@@ -396,4 +424,4 @@ TEST(refusal)
 }
 
 TEST_MAIN("breakaway", {belt, 6}, {code_aster_sdnd106, 2}, {equal_blocks, 4}, {up_to_the_limit, 8}, {ratio_of_one, 7},
-          {undone, 2}, {chains, 4}, {coupled, 40}, {coupled_and_falling, 20}, {falling_on_a_belt, 2}, {falling_to_rest, 1}, {steps, 6}, {steppers, 6}, {refusal, 1})
+          {undone, 2}, {chains, 4}, {held_after_all, 4}, {coupled, 40}, {coupled_and_falling, 20}, {falling_on_a_belt, 2}, {falling_to_rest, 1}, {steps, 6}, {steppers, 6}, {refusal, 1})
