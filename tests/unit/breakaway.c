@@ -77,6 +77,33 @@ TEST(ties)
     tribo_destroy(c);
 }
 
+/* Just at what all contacts hold together rounding does not tell; a little beyond it those slide that are pulled further. */
+TEST(just_at_the_limit)
+{
+    struct random g = random_of(_i);
+    const struct recipe recipe = recipe_regular(&g, 12);
+    struct problem p = problem_create(&g, &recipe);
+    double ratio[LARGEST], hold[LARGEST], f[LARGEST], none[LARGEST] = {0.0};
+    for (size_t i = 0; i < p.n; i++) {
+        ratio[i] = uniform(&g, 1.1, 2.0);
+        hold[i] = (below(&g, 2) ? 1.0 : -1.0) * ratio[i] * p.limit[i];
+    }
+    for (size_t i = 0; i < p.n; i++) {
+        p.a[i] = 0.0;
+        p.a[i] = -(double)acceleration(&p, i, hold);
+    }
+    tribo_context *c = problem_context(&p, TRIBO_COULOMB, TRIBO_CONSISTENT);
+    assert_ok(tribo_set_static(c, ratio, NULL));
+    for (int step = 0; step < 2; step++) {
+        assert_ok(step ? tribo_step_force(c, 1.0, p.a, f) : tribo_balance(c, none, p.a, NULL, f));
+        assert_all_close(f, hold, p.n, 1e-11);
+    }
+    p.a[0] *= 1.0 - 1e-9 * sgn(p.a[0] * hold[0]);
+    assert_ok(tribo_balance(c, none, p.a, NULL, f));
+    ck_assert_double_lt(fabs(f[0]), p.limit[0] * (1.0 + 1e-12));
+    tribo_destroy(c);
+}
+
 /* What one block no longer carries is too much for the other one; or the other one is relieved. */
 TEST(decided_again)
 {
@@ -414,6 +441,6 @@ TEST(far_limits)
     tribo_destroy(c);
 }
 
-TEST_MAIN("breakaway", {one_block, 4}, {ties, 2}, {decided_again, 2}, {many_contacts, 100}, {falling_limit, 6},
+TEST_MAIN("breakaway", {one_block, 4}, {ties, 2}, {just_at_the_limit, 40}, {decided_again, 2}, {many_contacts, 100}, {falling_limit, 6},
           {dropping_limit, 6}, {falling_limit_in_steps, 1}, {undone, 40}, {clones, 20}, {rate_of_relaxation, 2},
           {tangents_of_the_law, 24}, {refusals, 1}, {far_limits, 2})
