@@ -10,7 +10,8 @@ setup gcc gfortran libc6-dev make cmake pkg-config libgsl-dev gnuplot-nox
 
 build=build/release bin=build/release/examples results=$PWD/build/results
 legacy='legacy_newmark_before legacy_newmark_after legacy_newmark_implicit legacy_rk45 legacy_fric legacy_vfric'
-programs="paper_oscillator paper_dissipation paper_belt paper_chain friction_damper $legacy"
+contacts='contact_hysteresis'
+programs="paper_oscillator paper_dissipation paper_belt paper_chain friction_damper $contacts $legacy"
 cores=$(getconf _NPROCESSORS_ONLN)
 begin=$(date +%s)
 
@@ -31,7 +32,7 @@ mkdir -p "$results"
             echo paper_dissipation $figure $law
         done
     done
-    printf '%s\n' paper_belt paper_oscillator 'paper_dissipation rod quinn' paper_chain $legacy
+    printf '%s\n' paper_belt paper_oscillator 'paper_dissipation rod quinn' paper_chain $contacts $legacy
 } | xargs -P "$cores" -L 1 sh examples/job.sh "$bin" "$results"
 
 echo "== Drawing"

@@ -6,6 +6,8 @@
 
 #include "tribo/tribo_gsl.h"
 
+#include "handle.h"
+
 /* A sparse matrix in compressed rows: row i has val[k] at column col[k], k = first[i] to first[i + 1] - 1, from 0. */
 struct tribo_rows {
     size_t rows, columns;
@@ -18,8 +20,8 @@ struct tribo_held {
     tribo_system *sys;
     int64_t context, given, users;
 };
-TRIBO_API size_t tribo_fortran_ndof(const struct tribo_held *held);
-TRIBO_API size_t tribo_fortran_ncontact(const struct tribo_held *held);
+TRIBO_API TRIBO_PURE size_t tribo_fortran_ndof(const struct tribo_held *held);
+TRIBO_API TRIBO_PURE size_t tribo_fortran_ncontact(const struct tribo_held *held);
 
 /* tribo_system_linear_sparse; damping may be NULL. */
 TRIBO_API int tribo_fortran_linear(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *damping,

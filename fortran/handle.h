@@ -6,6 +6,9 @@
 
 #include "tribo/tribo.h"
 
+/* For interface.awk: a pure function of Fortran's, with which arrays may be declared. */
+#define TRIBO_PURE
+
 /* A number > 0 for object; 0 if memory or numbers run out. destroy releases the object when its number is dropped, and may be
  * NULL. */
 TRIBO_API int64_t tribo_handle_add(void *object, void (*destroy)(void *));
@@ -14,7 +17,7 @@ TRIBO_API int64_t tribo_handle_add(void *object, void (*destroy)(void *));
 TRIBO_API int64_t tribo_handle_add_short(void *object, void (*destroy)(void *));
 
 /* The object of a number, NULL if it has none; any number may be asked for. */
-TRIBO_API void *tribo_handle_find(int64_t number);
+TRIBO_API TRIBO_PURE void *tribo_handle_find(int64_t number);
 
 /* Destroys the object of a number, if it has one; from now on it has none. */
 TRIBO_API void tribo_handle_drop(int64_t number);

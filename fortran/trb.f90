@@ -1,6 +1,6 @@
 !> tribo for fixed-form Fortran: external routines that need no module and no interface block.
 !>
-!> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and MODE; all other numbers are DOUBLE PRECISION; NAME and TEXT are
+!> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and NLAW; all other numbers are DOUBLE PRECISION; NAME and TEXT are
 !> CHARACTER*(*); MINV is a subroutine. Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger
 !> array may be passed, and the array then begins there. Contacts, rows and columns are counted from 1.
 !>
@@ -73,12 +73,13 @@
 !>   TRBCNT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_...            IVAL
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
 
-!> What they share. A handle stands for a tribo_context, the object of minus its number, see handle.h.
+!> What they share. A handle stands for a context of the library, the object of minus its number, see handle.h. Doubles go to the
+!> library as they are; where Fortran counts or stores otherwise (indices, matrices, integers, texts) a routine borrows the context
+!> as a tribo_context, and calls what module tribo has.
 module tribo_fixed
-  use, intrinsic :: iso_c_binding, only: c_associated, c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_ptr
+  use tribo_c
   use tribo
-  use tribo_support, only: begin, c_handle_add_short, c_handle_find, c_law_name, c_law_reference, c_strerror, c_version_string, &
-    fail, forget, message_of, to_text, work
+  use tribo_support, only: lend, message_of, to_int, to_text, work
   implicit none
   public
 
@@ -112,78 +113,64 @@ contains
     call this%minv(size(force), force, acceleration, this%rpar, this%ipar, ier)
   end function call_minv
 
-  !> The contacts of a handle; ierr says whether there are such, and n of them.
-  subroutine find(ih, c, ierr, n)
+  !> The context of a handle; ierr says whether there is one, and with n contacts.
+  subroutine find(ih, ctx, ierr, n)
     integer, intent(in) :: ih
-    type(tribo_context), pointer, intent(out) :: c
+    type(c_ptr), intent(out) :: ctx
     integer, intent(out) :: ierr
     integer, intent(in), optional :: n
-    type(work) :: w
-    type(c_ptr) :: object
+    integer(c_size_t) :: found
 
-    nullify (c)
-    ierr = TRIBO_ERR_NULL
-    if (ih <= 0) return
-    object = c_handle_find(-int(ih, c_int64_t))
-    if (.not. c_associated(object)) return
-    call c_f_pointer(object, c)
-    call begin(c, w)
-    if (present(n)) call expect_value(w, n == w%n, 'N', n, ', but the number of contacts is ', w%n)
-    ierr = int(w%status)
+    ctx = c_null_ptr
+    if (ih > 0) ctx = c_handle_find(-int(ih, c_int64_t))
+    ierr = c_get_ncontact(ctx, found)
+    if (ierr /= TRIBO_OK .or. .not. present(n)) return
+    if (n /= found) call refuse(ctx, ierr, 'N', n, ', but the number of contacts is ', int(found))
   end subroutine find
 
-  !> The same, with one more size.
-  subroutine find_more(ih, c, ierr, n, name, value, least)
-    integer, intent(in) :: ih, n, value, least
-    type(tribo_context), pointer, intent(out) :: c
+  !> The same as a tribo_context; and value, the argument called name, must be least at least.
+  subroutine borrow(ih, c, ierr, n, name, value, least)
+    integer, intent(in) :: ih
+    type(tribo_context), intent(inout) :: c
     integer, intent(out) :: ierr
-    character(len=*), intent(in) :: name
-    type(work) :: w
+    integer, intent(in), optional :: n, value, least
+    character(len=*), intent(in), optional :: name
+    type(c_ptr) :: ctx
 
-    call find(ih, c, ierr, n)
-    if (ierr /= TRIBO_OK) return
-    call begin(c, w)
-    call expect_value(w, value >= least, name, value, ' is less than ', least)
-    ierr = int(w%status)
-  end subroutine find_more
+    call find(ih, ctx, ierr, n)
+    if (ierr == TRIBO_OK .and. present(name)) then
+      if (value < least) call refuse(ctx, ierr, name, value, ' is less than ', least)
+    end if
+    if (ierr == TRIBO_OK) call lend(c, -int(ih, c_int64_t))
+  end subroutine borrow
 
-  !> Fails unless holds; the text is made of the last four.
-  subroutine expect_value(w, holds, name, value, but, other)
-    type(work), intent(inout) :: w
-    logical, intent(in) :: holds
+  !> An argument has a value that does not do.
+  subroutine refuse(ctx, ierr, name, value, but, other)
+    type(c_ptr), intent(in) :: ctx
+    integer, intent(inout) :: ierr
     character(len=*), intent(in) :: name, but
     integer, intent(in) :: value, other
     character(len=80) :: text
 
-    if (holds .or. w%status /= TRIBO_OK) return
     write (text, '(2a,i0,a,i0)') name, ' = ', value, but, other
-    call fail(w, TRIBO_ERR_SIZE, trim(text))
-  end subroutine expect_value
+    ierr = c_set_message(ctx, int(TRIBO_ERR_SIZE, c_int), trim(text) // c_null_char)
+  end subroutine refuse
 
-  !> A handle for c, if there is no error yet; else c goes.
-  subroutine give(c, ih, ierr)
-    type(tribo_context), pointer, intent(inout) :: c
+  !> A handle for a context, if there is no error yet.
+  subroutine give(ctx, ih, ierr)
+    type(c_ptr), intent(in) :: ctx
     integer, intent(inout) :: ih, ierr
     integer(c_int64_t) :: number
 
-    number = 0
-    if (ierr == TRIBO_OK) then
-      number = c_handle_add_short(c_loc(c), c_funloc(release))
-      if (number == 0) ierr = TRIBO_ERR_MEMORY
-    end if
+    if (ierr /= TRIBO_OK) return
+    number = c_handle_add_short(ctx, c_funloc(c_destroy))
     if (number == 0) then
-      deallocate (c)
+      call c_destroy(ctx)
+      ierr = TRIBO_ERR_MEMORY
     else
       ih = -int(number)
     end if
   end subroutine give
-
-  subroutine release(object) bind(c, name='')
-    type(c_ptr), value :: object
-    type(tribo_context), pointer :: c
-    call c_f_pointer(object, c)
-    deallocate (c)
-  end subroutine release
 
   !> Hands out a text of the library, if there is one.
   subroutine hand_out(s, text, ierr)
@@ -224,7 +211,7 @@ subroutine trbtxt(icode, text, ierr)
   integer, intent(in) :: icode
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  call hand_out(c_strerror(int(icode, c_int)), text, ierr)
+  call hand_out(c_strerror(to_int(icode)), text, ierr)
 end subroutine trbtxt
 
 subroutine trbnlw(nlaw, ierr)
@@ -241,7 +228,7 @@ subroutine trblnm(law, text, ierr)
   integer, intent(in) :: law
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  call hand_out(c_law_name(int(law, c_int)), text, ierr)
+  call hand_out(c_law_name(to_int(law)), text, ierr)
 end subroutine trblnm
 
 subroutine trbref(law, text, ierr)
@@ -250,7 +237,7 @@ subroutine trbref(law, text, ierr)
   integer, intent(in) :: law
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  call hand_out(c_law_reference(int(law, c_int)), text, ierr)
+  call hand_out(c_law_reference(to_int(law)), text, ierr)
 end subroutine trbref
 
 subroutine trbfnd(name, law, ierr)
@@ -302,11 +289,11 @@ subroutine trbnew(n, ih, ierr)
   integer, intent(in) :: n
   integer, intent(inout) :: ih
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  allocate (c)
-  call c%create(n, ierr)
-  call give(c, ih, ierr)
+  ierr = TRIBO_ERR_NEGATIVE
+  if (n >= 0) ierr = c_create(ctx, int(n, c_size_t))
+  call give(ctx, ih, ierr)
 end subroutine trbnew
 
 subroutine trbcpy(ih, ihnew, ierr)
@@ -315,12 +302,10 @@ subroutine trbcpy(ih, ihnew, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: ihnew
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c, copy
+  type(c_ptr) :: ctx, copy
 
-  call find(ih, c, ierr)
-  if (ierr /= TRIBO_OK) return
-  allocate (copy)
-  call c%clone(copy, ierr)
+  call find(ih, ctx, ierr)
+  if (ierr == TRIBO_OK) ierr = c_clone(ctx, copy)
   call give(copy, ihnew, ierr)
 end subroutine trbcpy
 
@@ -329,10 +314,10 @@ subroutine trbdel(ih, ierr)
   implicit none
   integer, intent(in) :: ih
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr)
-  if (ierr == TRIBO_OK) call forget(-int(ih, c_int64_t))
+  call find(ih, ctx, ierr)
+  if (ierr == TRIBO_OK) call c_handle_drop(-int(ih, c_int64_t))
 end subroutine trbdel
 
 subroutine trbnum(ih, n, ierr)
@@ -341,9 +326,9 @@ subroutine trbnum(ih, n, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: n
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_ncontact(n, ierr)
 end subroutine trbnum
 
@@ -353,15 +338,13 @@ subroutine trbmsg(ih, text, ierr)
   integer, intent(in) :: ih
   character(len=*), intent(inout) :: text
   integer, intent(inout) :: ierr
-  type(tribo_context), pointer :: c
   type(work) :: w
   character(len=:), allocatable :: found
   character(len=80) :: none
   integer :: no_handle
 
-  call find(ih, c, no_handle)
+  call find(ih, w%ctx, no_handle)
   if (no_handle == TRIBO_OK) then
-    call begin(c, w)
     call message_of(w, found)
     text = found
   else
@@ -378,9 +361,9 @@ subroutine trblaw(ih, law, ierr)
   implicit none
   integer, intent(in) :: ih, law
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_law(law, ierr)
 end subroutine trblaw
 
@@ -390,9 +373,9 @@ subroutine trbnam(ih, name, ierr)
   integer, intent(in) :: ih
   character(len=*), intent(in) :: name
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_law(name, ierr)
 end subroutine trbnam
 
@@ -402,9 +385,9 @@ subroutine trbglw(ih, law, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: law
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_law(law, ierr)
 end subroutine trbglw
 
@@ -414,10 +397,10 @@ subroutine trblim(ih, n, fmun, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: fmun(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%set_limit(fmun(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_set_limit(ctx, fmun)
 end subroutine trblim
 
 subroutine trbnld(ih, n, fmu, fn, ierr)
@@ -426,10 +409,10 @@ subroutine trbnld(ih, n, fmu, fn, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: fmu(*), fn(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%set_normal_load(fmu(:n), fn(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_set_normal_load(ctx, fmu, fn)
 end subroutine trbnld
 
 subroutine trblm1(ih, fmun, ierr)
@@ -438,10 +421,10 @@ subroutine trblm1(ih, fmun, ierr)
   integer, intent(in) :: ih
   real(dp), intent(in) :: fmun
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr)
-  if (ierr == TRIBO_OK) call c%set_limit(fmun, ierr)
+  call find(ih, ctx, ierr)
+  if (ierr == TRIBO_OK) ierr = c_set_limit_all(ctx, fmun)
 end subroutine trblm1
 
 subroutine trbglm(ih, n, fmun, ierr)
@@ -450,10 +433,10 @@ subroutine trbglm(ih, n, fmun, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(inout) :: fmun(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%get_limit(fmun(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_get_limit(ctx, fmun)
 end subroutine trbglm
 
 subroutine trbeps(ih, n, eps, ierr)
@@ -462,10 +445,10 @@ subroutine trbeps(ih, n, eps, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: eps(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%set_epsilon(eps(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_set_epsilon(ctx, eps)
 end subroutine trbeps
 
 subroutine trbep1(ih, eps, ierr)
@@ -474,10 +457,10 @@ subroutine trbep1(ih, eps, ierr)
   integer, intent(in) :: ih
   real(dp), intent(in) :: eps
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr)
-  if (ierr == TRIBO_OK) call c%set_epsilon(eps, stat=ierr)
+  call find(ih, ctx, ierr)
+  if (ierr == TRIBO_OK) ierr = c_set_epsilon_all(ctx, eps)
 end subroutine trbep1
 
 subroutine trbstp(ih, dt, rldt, ierr)
@@ -486,10 +469,10 @@ subroutine trbstp(ih, dt, rldt, ierr)
   integer, intent(in) :: ih
   real(dp), intent(in) :: dt, rldt
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr)
-  if (ierr == TRIBO_OK) call c%set_epsilon(step=dt, lambda_dt=rldt, stat=ierr)
+  call find(ih, ctx, ierr)
+  if (ierr == TRIBO_OK) ierr = c_set_epsilon_step(ctx, dt, rldt)
 end subroutine trbstp
 
 subroutine trbgep(ih, n, eps, ierr)
@@ -498,10 +481,10 @@ subroutine trbgep(ih, n, eps, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(inout) :: eps(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%get_epsilon(eps(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_get_epsilon(ctx, eps)
 end subroutine trbgep
 
 subroutine trbopd(ih, n, rdiag, ierr)
@@ -510,10 +493,10 @@ subroutine trbopd(ih, n, rdiag, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: rdiag(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%set_operator(rdiag(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_set_operator_diagonal(ctx, rdiag)
 end subroutine trbopd
 
 subroutine trbopf(ih, n, r, ldr, ierr)
@@ -522,9 +505,9 @@ subroutine trbopf(ih, n, r, ldr, ierr)
   integer, intent(in) :: ih, n, ldr
   real(dp), intent(in) :: r(ldr, *)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find_more(ih, c, ierr, n, 'LDR', ldr, n)
+  call borrow(ih, c, ierr, n, 'LDR', ldr, n)
   if (ierr == TRIBO_OK) call c%set_operator(r(:n, :n), ierr)
 end subroutine trbopf
 
@@ -534,9 +517,9 @@ subroutine trbops(ih, n, irow, icol, val, ierr)
   integer, intent(in) :: ih, n, irow(*), icol(*)
   real(dp), intent(in) :: val(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr, n)
+  call borrow(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%set_operator_csr(irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbops
 
@@ -546,9 +529,9 @@ subroutine trbopm(ih, n, ndof, rminv, irow, icol, val, ierr)
   integer, intent(in) :: ih, n, ndof, irow(*), icol(*)
   real(dp), intent(in) :: rminv(*), val(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find_more(ih, c, ierr, n, 'NDOF', ndof, 0)
+  call borrow(ih, c, ierr, n, 'NDOF', ndof, 0)
   if (ierr /= TRIBO_OK) return
   call c%set_operator_mass(rminv(:ndof), irow(:n + 1), icol(:max(irow(n + 1) - 1, 0)), val(:max(irow(n + 1) - 1, 0)), ierr)
 end subroutine trbopm
@@ -562,10 +545,10 @@ subroutine trbopc(ih, n, ndof, minv, irow, icol, val, rpar, ipar, ierr)
   real(dp), intent(inout), target :: rpar(*)
   integer, intent(inout), target :: ipar(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
   type(external_mass) :: mass
 
-  call find_more(ih, c, ierr, n, 'NDOF', ndof, 0)
+  call borrow(ih, c, ierr, n, 'NDOF', ndof, 0)
   if (ierr /= TRIBO_OK) return
   mass%minv => minv
   mass%rpar => rpar(:1)
@@ -578,9 +561,9 @@ subroutine trbcpl(ih, icpl, ierr)
   implicit none
   integer, intent(in) :: ih, icpl
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_coupling(icpl, ierr)
 end subroutine trbcpl
 
@@ -590,9 +573,9 @@ subroutine trbgcp(ih, icpl, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: icpl
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_coupling(icpl, ierr)
 end subroutine trbgcp
 
@@ -601,9 +584,9 @@ subroutine trbshr(ih, ishr, ierr)
   implicit none
   integer, intent(in) :: ih, ishr
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%set_sharing(ishr, ierr)
 end subroutine trbshr
 
@@ -613,9 +596,9 @@ subroutine trbgsh(ih, ishr, ierr)
   integer, intent(in) :: ih
   integer, intent(inout) :: ishr
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_sharing(ishr, ierr)
 end subroutine trbgsh
 
@@ -628,10 +611,10 @@ subroutine trbfrc(ih, n, v, feq, f, ierr)
   real(dp), intent(in) :: v(*), feq(*)
   real(dp), intent(inout) :: f(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%force(v(:n), feq(:n), f(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_force(ctx, v, feq, f)
 end subroutine trbfrc
 
 subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
@@ -641,10 +624,10 @@ subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
   real(dp), intent(in) :: v(*), feq(*)
   real(dp), intent(inout) :: f(*), dfdv(*), dfdq(*), dfdn(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%force_tangent(v(:n), feq(:n), f(:n), dfdv(:n), dfdq(:n), dfdn(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_force_tangent(ctx, v, feq, f, dfdv, dfdq, dfdn)
 end subroutine trbftn
 
 subroutine trbbal(ih, n, v, a, feq, f, ierr)
@@ -654,10 +637,10 @@ subroutine trbbal(ih, n, v, a, feq, f, ierr)
   real(dp), intent(in) :: v(*), a(*)
   real(dp), intent(inout) :: feq(*), f(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%balance(v(:n), a(:n), feq(:n), f(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_balance(ctx, v, a, feq, f)
 end subroutine trbbal
 
 subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
@@ -667,9 +650,9 @@ subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
   real(dp), intent(in) :: v(*), a(*)
   real(dp), intent(inout) :: feq(*), f(*), dfdv(ldj, *), dfda(ldj, *)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find_more(ih, c, ierr, n, 'LDJ', ldj, n)
+  call borrow(ih, c, ierr, n, 'LDJ', ldj, n)
   if (ierr == TRIBO_OK) call c%balance_tangent(v(:n), a(:n), feq(:n), f(:n), dfdv(:n, :n), dfda(:n, :n), ierr)
 end subroutine trbbtn
 
@@ -680,10 +663,10 @@ subroutine trbtpr(ih, n, dv, da, df, ierr)
   real(dp), intent(in) :: dv(*), da(*)
   real(dp), intent(inout) :: df(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%tangent_product(dv(:n), da(:n), df(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_tangent_product(ctx, dv, da, df)
 end subroutine trbtpr
 
 subroutine trbstf(ih, n, dt, vfree, f, ierr)
@@ -693,10 +676,10 @@ subroutine trbstf(ih, n, dt, vfree, f, ierr)
   real(dp), intent(in) :: dt, vfree(*)
   real(dp), intent(inout) :: f(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%step_force(dt, vfree(:n), f(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_step_force(ctx, dt, vfree, f)
 end subroutine trbstf
 
 subroutine trbbox(ih, n, a, flo, fup, f, ierr)
@@ -706,10 +689,10 @@ subroutine trbbox(ih, n, a, flo, fup, f, ierr)
   real(dp), intent(in) :: a(*), flo(*), fup(*)
   real(dp), intent(inout) :: f(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%solve_box(a(:n), flo(:n), fup(:n), f(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_solve_box(ctx, a, flo, fup, f)
 end subroutine trbbox
 
 subroutine trbacc(ih, n, v, feq, ierr)
@@ -718,10 +701,10 @@ subroutine trbacc(ih, n, v, feq, ierr)
   integer, intent(in) :: ih, n
   real(dp), intent(in) :: v(*), feq(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(c_ptr) :: ctx
 
-  call find(ih, c, ierr, n)
-  if (ierr == TRIBO_OK) call c%accept(v(:n), feq(:n), ierr)
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_accept(ctx, v, feq)
 end subroutine trbacc
 
 ! ------------------------------------------------------------------------------------------------------------------------- queries
@@ -732,9 +715,9 @@ subroutine trbslp(ih, n, slip, ierr)
   integer, intent(in) :: ih, n
   integer, intent(inout) :: slip(*)
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr, n)
+  call borrow(ih, c, ierr, n)
   if (ierr == TRIBO_OK) call c%get_slip(slip(:n), ierr)
 end subroutine trbslp
 
@@ -744,9 +727,9 @@ subroutine trbcnt(ih, iwhich, ival, ierr)
   integer, intent(in) :: ih, iwhich
   integer, intent(inout) :: ival
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_count(iwhich, ival, ierr)
 end subroutine trbcnt
 
@@ -756,8 +739,8 @@ subroutine trbval(ih, iwhich, val, ierr)
   integer, intent(in) :: ih, iwhich
   real(dp), intent(inout) :: val
   integer, intent(out) :: ierr
-  type(tribo_context), pointer :: c
+  type(tribo_context) :: c
 
-  call find(ih, c, ierr)
+  call borrow(ih, c, ierr)
   if (ierr == TRIBO_OK) call c%get_real(iwhich, val, ierr)
 end subroutine trbval

@@ -31,61 +31,19 @@
 !> one context a thread. In threads ask for texts by errmsg: where a function of deferred length, like message, is called,
 !> gfortran keeps the length in static memory.
 !>
+!> Names. Programs use module tribo, at the end of this file: it is what is here, and the constants of tribo.h, see tribo_c.f90.
+!>
 !> Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397, doi:10.1115/1.1760564.
-module tribo
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funloc, c_funptr, c_int, c_loc, &
-    c_null_char, c_null_ptr, c_ptr, c_signed_char, c_size_t
-  use, intrinsic :: iso_fortran_env, only: int32, int64
+module tribo_contexts
+  use tribo_c
+  use tribo_constants
   use tribo_support
+  use, intrinsic :: iso_fortran_env, only: int32, int64
   implicit none
   private
 
-  !> Kind of all reals here: double precision; and the status codes, see tribo_support.f90.
+  !> Kind of all reals here: double precision.
   public :: dp
-  public :: TRIBO_OK, TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_RANGE, &
-    TRIBO_ERR_SIZE, TRIBO_ERR_NAME, TRIBO_ERR_STATE, TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_MEMORY, &
-    TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_DUPLICATE, TRIBO_ERR_INCONSISTENT, TRIBO_ERR_NO_CONVERGENCE, &
-    TRIBO_ERR_STOPPED, TRIBO_ERR_STEP, TRIBO_ERR_CALLBACK, TRIBO_ERR_CHATTER
-
-  !> Friction laws; set_law takes their names too: "coulomb", "velocity-limited", "smooth", "karnopp", "quinn",
-  !> "quinn-reversal".
-  integer, parameter, public :: &
-    TRIBO_COULOMB = 0, &          !< v /= 0: -limit*sign(v);  v = 0: f_eq between -limit and limit
-    TRIBO_VELOCITY_LIMITED = 1, & !< -limit*v/epsilon between -limit and limit
-    TRIBO_SMOOTH = 2, &           !< -limit*tanh(v/epsilon)
-    TRIBO_KARNOPP = 3, &          !< as Coulomb's, with abs(v) <= epsilon for v = 0; the caller holds v at 0 inside
-    TRIBO_QUINN = 4, &            !< f_eq between -limit and limit, - 2*limit*v/epsilon, between -limit and limit
-    TRIBO_QUINN_REVERSAL = 5      !< Quinn's, second order also where contacts are driven through v = 0, see accept
-
-  !> How f_eq of contacts that share bodies is found.
-  integer, parameter, public :: &
-    TRIBO_CONSISTENT = 0, &       !< it balances the forces that the others really carry
-    TRIBO_PARTITION = 1           !< it balances those of the contacts with abs(v) > epsilon: the paper, Eq. 8 to 10
-
-  !> How redundant contacts share, where R f is unique but f is not.
-  integer, parameter, public :: &
-    TRIBO_SHARE_LEAST_NORM = 0, &      !< f of least norm: depends neither on the order of the contacts nor on earlier calls
-    TRIBO_SHARE_PREVIOUS = 1          !< the forces of the last call, changed no more than they must be: continuous in time
-
-  !> For get_count. STUCK and RANK are those of the last balance, step_force or solve_box, the others add up since create.
-  integer, parameter, public :: &
-    TRIBO_COUNT_STUCK = 0, &      !< contacts with mode 0; 0 where there are no modes
-    TRIBO_COUNT_RANK = 1, &       !< sum of the ranks of the matrices that the last call solved with
-    TRIBO_COUNT_ISLANDS = 2, &    !< groups of coupled contacts in the operator, and single contacts
-    TRIBO_COUNT_SOLVES = 3, &     !< islands that had to be solved
-    TRIBO_COUNT_SKIPPED = 4, &    !< islands that needed no solver: a single contact, or none near stick
-    TRIBO_COUNT_FACTORIZATIONS = 5, & !< matrices factorized
-    TRIBO_COUNT_UPDATES = 6, &    !< changes of a stick set
-    TRIBO_COUNT_REVERSALS = 7, &     !< reversal marks that accept has set or cleared
-    TRIBO_COUNT_REUSED = 8        !< of the solves: those that ended with the stick set and the factor they began with
-
-  !> For get_real.
-  integer, parameter, public :: &
-    TRIBO_REAL_RESIDUAL = 0, &    !< last balance: how much of its limit a contact near stick misses its balance by, at most
-    TRIBO_REAL_MAX_RATE = 1, &    !< lambda, 1/time: stuck contacts relax no faster. The largest 2*limit*R_ii/epsilon; in the
-                                  !< partition coupling, and for the laws that are dampers near v = 0, see tribo.h
-    TRIBO_REAL_MAX_STEP = 2       !< 2.785/lambda, up to which rk4 is stable; infinite if lambda is 0
-
   public :: tribo_version, tribo_version_string, tribo_strerror
   public :: tribo_law_count, tribo_law_name, tribo_law_reference, tribo_law_find, tribo_law_eval, tribo_elastic_force
 
@@ -144,303 +102,10 @@ module tribo
     class(tribo_mass), pointer :: mass
   end type held_mass
 
-  ! The C library. Outputs are intent(inout) here as well, lest a compiler copies back a section that the call has not written.
   !> On a line, or in the plane.
   interface tribo_elastic_force
     procedure :: elastic_force_line, elastic_force_plane
   end interface tribo_elastic_force
-
-  interface
-    function c_version() result(version) bind(c, name='tribo_version')
-      import :: c_int
-      integer(c_int) :: version
-    end function c_version
-
-    function c_law_count() result(count) bind(c, name='tribo_law_count')
-      import :: c_int
-      integer(c_int) :: count
-    end function c_law_count
-
-    function c_law_find(name, law) result(status) bind(c, name='tribo_law_find')
-      import :: c_char, c_int
-      character(kind=c_char), intent(in) :: name(*)
-      integer(c_int), intent(inout) :: law
-      integer(c_int) :: status
-    end function c_law_find
-
-    function c_law_eval(law, v, feq, limit, epsilon, f, df_dv, df_dfeq, df_dlimit) result(status) bind(c, name='tribo_law_eval')
-      import :: c_int, c_double
-      integer(c_int), value :: law
-      real(c_double), value :: v, feq, limit, epsilon
-      real(c_double), intent(inout) :: f, df_dv, df_dfeq, df_dlimit
-      integer(c_int) :: status
-    end function c_law_eval
-
-    function c_elastic_force(n, dz, stiffness, limit, f, df_dz) result(status) bind(c, name='tribo_elastic_force')
-      import :: c_double, c_int, c_ptr, c_size_t
-      integer(c_size_t), value :: n
-      real(c_double), intent(in) :: dz(*), stiffness(*), limit(*)
-      real(c_double), intent(inout) :: f(*)
-      type(c_ptr), value :: df_dz
-      integer(c_int) :: status
-    end function c_elastic_force
-
-    function c_elastic_force_planar(n, dz, stiffness, limit, f, df_dz) result(status) bind(c, name='tribo_elastic_force_planar')
-      import :: c_double, c_int, c_ptr, c_size_t
-      integer(c_size_t), value :: n
-      real(c_double), intent(in) :: dz(*), stiffness(*), limit(*)
-      real(c_double), intent(inout) :: f(*)
-      type(c_ptr), value :: df_dz
-      integer(c_int) :: status
-    end function c_elastic_force_planar
-
-    function c_create(ctx, ncontact) result(status) bind(c, name='tribo_create')
-      import :: c_ptr, c_size_t, c_int
-      type(c_ptr), intent(inout) :: ctx
-      integer(c_size_t), value :: ncontact
-      integer(c_int) :: status
-    end function c_create
-
-    function c_clone(ctx, copy) result(status) bind(c, name='tribo_clone')
-      import :: c_ptr, c_int
-      type(c_ptr), value :: ctx
-      type(c_ptr), intent(inout) :: copy
-      integer(c_int) :: status
-    end function c_clone
-
-    subroutine c_destroy(ctx) bind(c, name='tribo_destroy')
-      import :: c_ptr
-      type(c_ptr), value :: ctx
-    end subroutine c_destroy
-
-    function c_set_law(ctx, law) result(status) bind(c, name='tribo_set_law')
-      import :: c_ptr, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), value :: law
-      integer(c_int) :: status
-    end function c_set_law
-
-    function c_get_law(ctx, law) result(status) bind(c, name='tribo_get_law')
-      import :: c_ptr, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), intent(inout) :: law
-      integer(c_int) :: status
-    end function c_get_law
-
-    function c_set_limit(ctx, limit) result(status) bind(c, name='tribo_set_limit')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: limit(*)
-      integer(c_int) :: status
-    end function c_set_limit
-
-    function c_set_normal_load(ctx, mu, load) result(status) bind(c, name='tribo_set_normal_load')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: mu(*), load(*)
-      integer(c_int) :: status
-    end function c_set_normal_load
-
-    function c_set_limit_all(ctx, limit) result(status) bind(c, name='tribo_set_limit_all')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), value :: limit
-      integer(c_int) :: status
-    end function c_set_limit_all
-
-    function c_get_limit(ctx, limit) result(status) bind(c, name='tribo_get_limit')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(inout) :: limit(*)
-      integer(c_int) :: status
-    end function c_get_limit
-
-    function c_set_epsilon(ctx, epsilon) result(status) bind(c, name='tribo_set_epsilon')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: epsilon(*)
-      integer(c_int) :: status
-    end function c_set_epsilon
-
-    function c_set_epsilon_all(ctx, epsilon) result(status) bind(c, name='tribo_set_epsilon_all')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), value :: epsilon
-      integer(c_int) :: status
-    end function c_set_epsilon_all
-
-    function c_set_epsilon_step(ctx, dt, lambda_dt) result(status) bind(c, name='tribo_set_epsilon_step')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), value :: dt, lambda_dt
-      integer(c_int) :: status
-    end function c_set_epsilon_step
-
-    function c_get_epsilon(ctx, epsilon) result(status) bind(c, name='tribo_get_epsilon')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(inout) :: epsilon(*)
-      integer(c_int) :: status
-    end function c_get_epsilon
-
-    function c_set_operator_diagonal(ctx, r) result(status) bind(c, name='tribo_set_operator_diagonal')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: r(*)
-      integer(c_int) :: status
-    end function c_set_operator_diagonal
-
-    function c_set_operator_dense(ctx, r) result(status) bind(c, name='tribo_set_operator_dense')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: r(*)
-      integer(c_int) :: status
-    end function c_set_operator_dense
-
-    function c_set_operator_csr(ctx, rowptr, col, val) result(status) bind(c, name='tribo_set_operator_csr')
-      import :: c_ptr, c_size_t, c_double, c_int
-      type(c_ptr), value :: ctx
-      integer(c_size_t), intent(in) :: rowptr(*), col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int) :: status
-    end function c_set_operator_csr
-
-    function c_set_operator_mass(ctx, ndof, inverse_mass, rowptr, col, val) result(status) bind(c, name='tribo_set_operator_mass')
-      import :: c_ptr, c_size_t, c_double, c_int
-      type(c_ptr), value :: ctx
-      integer(c_size_t), value :: ndof
-      real(c_double), intent(in) :: inverse_mass(*)
-      integer(c_size_t), intent(in) :: rowptr(*), col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int) :: status
-    end function c_set_operator_mass
-
-    function c_set_operator_callback(ctx, ndof, apply, data, rowptr, col, val) result(status) &
-      bind(c, name='tribo_set_operator_callback')
-      import :: c_ptr, c_funptr, c_size_t, c_double, c_int
-      type(c_ptr), value :: ctx
-      integer(c_size_t), value :: ndof
-      type(c_funptr), value :: apply
-      type(c_ptr), value :: data
-      integer(c_size_t), intent(in) :: rowptr(*), col(*)
-      real(c_double), intent(in) :: val(*)
-      integer(c_int) :: status
-    end function c_set_operator_callback
-
-    function c_set_coupling(ctx, coupling) result(status) bind(c, name='tribo_set_coupling')
-      import :: c_ptr, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), value :: coupling
-      integer(c_int) :: status
-    end function c_set_coupling
-
-    function c_get_coupling(ctx, coupling) result(status) bind(c, name='tribo_get_coupling')
-      import :: c_ptr, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), intent(inout) :: coupling
-      integer(c_int) :: status
-    end function c_get_coupling
-
-    function c_set_sharing(ctx, sharing) result(status) bind(c, name='tribo_set_sharing')
-      import :: c_ptr, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), value :: sharing
-      integer(c_int) :: status
-    end function c_set_sharing
-
-    function c_get_sharing(ctx, sharing) result(status) bind(c, name='tribo_get_sharing')
-      import :: c_ptr, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), intent(inout) :: sharing
-      integer(c_int) :: status
-    end function c_get_sharing
-
-    function c_force(ctx, v, feq, f) result(status) bind(c, name='tribo_force')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: v(*), feq(*)
-      real(c_double), intent(inout) :: f(*)
-      integer(c_int) :: status
-    end function c_force
-
-    function c_force_tangent(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit) result(status) bind(c, name='tribo_force_tangent')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: v(*), feq(*)
-      type(c_ptr), value :: f, df_dv, df_dfeq, df_dlimit
-      integer(c_int) :: status
-    end function c_force_tangent
-
-    function c_balance(ctx, v, a, feq, f) result(status) bind(c, name='tribo_balance')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: v(*), a(*)
-      type(c_ptr), value :: feq, f
-      integer(c_int) :: status
-    end function c_balance
-
-    function c_balance_tangent(ctx, v, a, feq, f, df_dv, df_da) result(status) bind(c, name='tribo_balance_tangent')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: v(*), a(*)
-      type(c_ptr), value :: feq, f, df_dv, df_da
-      integer(c_int) :: status
-    end function c_balance_tangent
-
-    function c_tangent_product(ctx, dv, da, df) result(status) bind(c, name='tribo_tangent_product')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx, dv, da
-      real(c_double), intent(inout) :: df(*)
-      integer(c_int) :: status
-    end function c_tangent_product
-
-    function c_step_force(ctx, dt, vfree, f) result(status) bind(c, name='tribo_step_force')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), value :: dt
-      real(c_double), intent(in) :: vfree(*)
-      real(c_double), intent(inout) :: f(*)
-      integer(c_int) :: status
-    end function c_step_force
-
-    function c_solve_box(ctx, a, lower, upper, f) result(status) bind(c, name='tribo_solve_box')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: a(*), lower(*), upper(*)
-      real(c_double), intent(inout) :: f(*)
-      integer(c_int) :: status
-    end function c_solve_box
-
-    function c_accept(ctx, v, feq) result(status) bind(c, name='tribo_accept')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      real(c_double), intent(in) :: v(*), feq(*)
-      integer(c_int) :: status
-    end function c_accept
-
-    function c_get_slip(ctx, slip) result(status) bind(c, name='tribo_get_slip')
-      import :: c_ptr, c_signed_char, c_int
-      type(c_ptr), value :: ctx
-      integer(c_signed_char), intent(inout) :: slip(*)
-      integer(c_int) :: status
-    end function c_get_slip
-
-    function c_get_count(ctx, which, value) result(status) bind(c, name='tribo_get_count')
-      import :: c_ptr, c_size_t, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), value :: which
-      integer(c_size_t), intent(inout) :: value
-      integer(c_int) :: status
-    end function c_get_count
-
-    function c_get_real(ctx, which, value) result(status) bind(c, name='tribo_get_real')
-      import :: c_ptr, c_double, c_int
-      type(c_ptr), value :: ctx
-      integer(c_int), value :: which
-      real(c_double), intent(inout) :: value
-      integer(c_int) :: status
-    end function c_get_real
-  end interface
 
 contains
 
@@ -460,7 +125,7 @@ contains
   function tribo_strerror(status) result(text)
     integer, intent(in) :: status
     character(len=:), allocatable :: text
-    call to_text(c_strerror(int(status, c_int)), text)
+    call to_text(c_strerror(to_int(status)), text)
   end function tribo_strerror
 
   !> Number of laws; their numbers are 0 to tribo_law_count() - 1.
@@ -472,14 +137,14 @@ contains
   function tribo_law_name(law) result(text)
     integer, intent(in) :: law
     character(len=:), allocatable :: text
-    call to_text(c_law_name(int(law, c_int)), text)
+    call to_text(c_law_name(to_int(law)), text)
   end function tribo_law_name
 
   !> Where a law comes from; empty if there is no such law.
   function tribo_law_reference(law) result(text)
     integer, intent(in) :: law
     character(len=:), allocatable :: text
-    call to_text(c_law_reference(int(law, c_int)), text)
+    call to_text(c_law_reference(to_int(law)), text)
   end function tribo_law_reference
 
   !> Number of the law called name, in upper or lower case.
@@ -511,7 +176,7 @@ contains
     integer :: i
     text = 'no law is called "' // name(:min(len_trim(name), 40)) // '": there are'
     do i = 0, tribo_law_count() - 1
-      call to_text(c_law_name(int(i, c_int)), law)
+      call to_text(c_law_name(to_int(i)), law)
       text = text // ' ' // law // ','
     end do
     text = text(:len(text) - 1)
@@ -526,14 +191,15 @@ contains
     real(dp), intent(inout), optional :: df_dv, df_dfeq, df_dlimit
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    real(dp) :: dv, dfeq, dlimit
+    real(dp) :: x(4)
     type(work) :: w
 
-    w%status = c_law_eval(int(law, c_int), v, feq, limit, epsilon, f, dv, dfeq, dlimit)
+    w%status = c_law_eval(to_int(law), v, feq, limit, epsilon, x(1), x(2), x(3), x(4))
     if (w%status == TRIBO_OK) then
-      if (present(df_dv)) df_dv = dv
-      if (present(df_dfeq)) df_dfeq = dfeq
-      if (present(df_dlimit)) df_dlimit = dlimit
+      f = x(1)
+      if (present(df_dv)) df_dv = x(2)
+      if (present(df_dfeq)) df_dfeq = x(3)
+      if (present(df_dlimit)) df_dlimit = x(4)
     end if
     call finish(w, stat, errmsg)
   end subroutine tribo_law_eval
@@ -543,20 +209,18 @@ contains
   subroutine elastic_force_line(dz, stiffness, limit, f, df_dz, stat, errmsg)
     real(dp), intent(in) :: dz(:), stiffness(:), limit(:)
     real(dp), intent(inout) :: f(:)
-    real(dp), intent(inout), optional, contiguous, target :: df_dz(:)
+    real(dp), intent(inout), optional, contiguous :: df_dz(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(c_ptr) :: at
 
     w%status = TRIBO_OK
     w%n = size(f)
-    at = c_null_ptr
     call expect_size(w, 'dz', dz, w%n)
     call expect_size(w, 'stiffness', stiffness, w%n)
     call expect_size(w, 'limit', limit, w%n)
-    if (present(df_dz)) call find(w, 'df_dz', df_dz, at)
-    if (w%status == TRIBO_OK) w%status = c_elastic_force(int(w%n, c_size_t), dz, stiffness, limit, f, at)
+    if (present(df_dz)) call expect_size(w, 'df_dz', df_dz, w%n)
+    if (w%status == TRIBO_OK) w%status = c_elastic_force(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
     call finish(w, stat, errmsg)
   end subroutine elastic_force_line
 
@@ -564,24 +228,19 @@ contains
   subroutine elastic_force_plane(dz, stiffness, limit, f, df_dz, stat, errmsg)
     real(dp), intent(in) :: dz(:,:), stiffness(:), limit(:)
     real(dp), intent(inout) :: f(:,:)
-    real(dp), intent(inout), optional, contiguous, target :: df_dz(:,:,:)
+    real(dp), intent(inout), optional, contiguous :: df_dz(:,:,:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(c_ptr) :: at
 
     w%status = TRIBO_OK
     w%n = size(f, 2)
-    at = c_null_ptr
     call expect_shape(w, 'f', shape(f), [2, w%n])
     call expect_shape(w, 'dz', shape(dz), [2, w%n])
     call expect_size(w, 'stiffness', stiffness, w%n)
     call expect_size(w, 'limit', limit, w%n)
-    if (present(df_dz)) then
-      call expect_shape(w, 'df_dz', shape(df_dz), [2, 2, w%n])
-      if (size(df_dz) > 0) at = c_loc(df_dz)
-    end if
-    if (w%status == TRIBO_OK) w%status = c_elastic_force_planar(int(w%n, c_size_t), dz, stiffness, limit, f, at)
+    if (present(df_dz)) call expect_shape(w, 'df_dz', shape(df_dz), [2, 2, w%n])
+    if (w%status == TRIBO_OK) w%status = c_elastic_force_planar(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
     call finish(w, stat, errmsg)
   end subroutine elastic_force_plane
 
@@ -665,7 +324,7 @@ contains
     type(work) :: w
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(law, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, to_int(law))
     call finish(w, stat, errmsg)
   end subroutine set_law_number
 
@@ -686,7 +345,7 @@ contains
       call tell_laws(law, text)
       call fail(w, int(found), text)
     end if
-    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, int(number, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_law(w%ctx, to_int(number))
     call finish(w, stat, errmsg)
   end subroutine set_law_name
 
@@ -912,7 +571,7 @@ contains
     type(held_mass), pointer :: held
 
     call c_f_pointer(data, held)
-    ask_mass = int(held%mass%apply(force, acceleration), c_int)
+    ask_mass = to_int(held%mass%apply(force, acceleration))
   end function ask_mass
 
   !> TRIBO_CONSISTENT or TRIBO_PARTITION.
@@ -924,7 +583,7 @@ contains
     type(work) :: w
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_set_coupling(w%ctx, int(coupling, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_coupling(w%ctx, to_int(coupling))
     call finish(w, stat, errmsg)
   end subroutine set_coupling
 
@@ -951,7 +610,7 @@ contains
     type(work) :: w
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_set_sharing(w%ctx, int(sharing, c_int))
+    if (w%status == TRIBO_OK) w%status = c_set_sharing(w%ctx, to_int(sharing))
     call finish(w, stat, errmsg)
   end subroutine set_sharing
 
@@ -992,21 +651,19 @@ contains
   subroutine force_tangent(this, v, feq, f, df_dv, df_dfeq, df_dlimit, stat, errmsg)
     class(tribo_context), intent(in) :: this
     real(dp), intent(in) :: v(:), feq(:)
-    real(dp), intent(inout), optional, contiguous, target :: f(:), df_dv(:), df_dfeq(:), df_dlimit(:)
+    real(dp), intent(inout), optional, contiguous :: f(:), df_dv(:), df_dfeq(:), df_dlimit(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(c_ptr) :: at(4)
 
     call begin(this, w)
-    at = c_null_ptr
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'feq', feq, w%n)
-    if (present(f)) call find(w, 'f', f, at(1))
-    if (present(df_dv)) call find(w, 'df_dv', df_dv, at(2))
-    if (present(df_dfeq)) call find(w, 'df_dfeq', df_dfeq, at(3))
-    if (present(df_dlimit)) call find(w, 'df_dlimit', df_dlimit, at(4))
-    if (w%status == TRIBO_OK) w%status = c_force_tangent(w%ctx, v, feq, at(1), at(2), at(3), at(4))
+    if (present(f)) call expect_size(w, 'f', f, w%n)
+    if (present(df_dv)) call expect_size(w, 'df_dv', df_dv, w%n)
+    if (present(df_dfeq)) call expect_size(w, 'df_dfeq', df_dfeq, w%n)
+    if (present(df_dlimit)) call expect_size(w, 'df_dlimit', df_dlimit, w%n)
+    if (w%status == TRIBO_OK) w%status = c_force_tangent(w%ctx, v, feq, f, df_dv, df_dfeq, df_dlimit)
     call finish(w, stat, errmsg)
   end subroutine force_tangent
 
@@ -1016,19 +673,17 @@ contains
   subroutine balance(this, v, a, feq, f, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: v(:), a(:)
-    real(dp), intent(inout), optional, contiguous, target :: feq(:), f(:)
+    real(dp), intent(inout), optional, contiguous :: feq(:), f(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(c_ptr) :: at(2)
 
     call begin(this, w)
-    at = c_null_ptr
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'a', a, w%n)
-    if (present(feq)) call find(w, 'feq', feq, at(1))
-    if (present(f)) call find(w, 'f', f, at(2))
-    if (w%status == TRIBO_OK) w%status = c_balance(w%ctx, v, a, at(1), at(2))
+    if (present(feq)) call expect_size(w, 'feq', feq, w%n)
+    if (present(f)) call expect_size(w, 'f', f, w%n)
+    if (w%status == TRIBO_OK) w%status = c_balance(w%ctx, v, a, feq, f)
     call finish(w, stat, errmsg)
   end subroutine balance
 
@@ -1036,22 +691,20 @@ contains
   subroutine balance_tangent(this, v, a, feq, f, df_dv, df_da, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: v(:), a(:)
-    real(dp), intent(inout), optional, contiguous, target :: feq(:), f(:), df_dv(:,:), df_da(:,:)
+    real(dp), intent(inout), optional, contiguous :: feq(:), f(:), df_dv(:,:), df_da(:,:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(c_ptr) :: at(4)
 
     call begin(this, w)
-    at = c_null_ptr
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'a', a, w%n)
-    if (present(feq)) call find(w, 'feq', feq, at(1))
-    if (present(f)) call find(w, 'f', f, at(2))
-    if (present(df_dv)) call find(w, 'df_dv', df_dv, at(3))
-    if (present(df_da)) call find(w, 'df_da', df_da, at(4))
+    if (present(feq)) call expect_size(w, 'feq', feq, w%n)
+    if (present(f)) call expect_size(w, 'f', f, w%n)
+    if (present(df_dv)) call expect_size(w, 'df_dv', df_dv, w%n)
+    if (present(df_da)) call expect_size(w, 'df_da', df_da, w%n)
     if (w%status == TRIBO_OK) then
-      w%status = c_balance_tangent(w%ctx, v, a, at(1), at(2), at(3), at(4))
+      w%status = c_balance_tangent(w%ctx, v, a, feq, f, df_dv, df_da)
       if (w%status == TRIBO_OK .and. present(df_dv)) call transpose_in_place(df_dv)
       if (w%status == TRIBO_OK .and. present(df_da)) call transpose_in_place(df_da)
     end if
@@ -1063,19 +716,17 @@ contains
   !> balance or setting since.
   subroutine tangent_product(this, dv, da, df, stat, errmsg)
     class(tribo_context), intent(inout) :: this
-    real(dp), intent(in), optional, contiguous, target :: dv(:), da(:)
+    real(dp), intent(in), optional, contiguous :: dv(:), da(:)
     real(dp), intent(inout) :: df(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(c_ptr) :: at(2)
 
     call begin(this, w)
-    at = c_null_ptr
-    if (present(dv)) call find_input(w, 'dv', dv, w%n, at(1))
-    if (present(da)) call find_input(w, 'da', da, w%n, at(2))
+    if (present(dv)) call expect_size(w, 'dv', dv, w%n)
+    if (present(da)) call expect_size(w, 'da', da, w%n)
     call expect_size(w, 'df', df, w%n)
-    if (w%status == TRIBO_OK) w%status = c_tangent_product(w%ctx, at(1), at(2), df)
+    if (w%status == TRIBO_OK) w%status = c_tangent_product(w%ctx, dv, da, df)
     call finish(w, stat, errmsg)
   end subroutine tangent_product
 
@@ -1162,7 +813,7 @@ contains
     integer(c_size_t) :: count
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
+    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, to_int(which), count)
     if (w%status == TRIBO_OK) then
       if (count > huge(value)) call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
     end if
@@ -1180,7 +831,7 @@ contains
     integer(c_size_t) :: count
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, int(which, c_int), count)
+    if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, to_int(which), count)
     if (w%status == TRIBO_OK) value = int(count, int64)
     call finish(w, stat, errmsg)
   end subroutine get_count_long
@@ -1193,9 +844,11 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
+    real(dp) :: found(1)
 
     call begin(this, w)
-    if (w%status == TRIBO_OK) w%status = c_get_real(w%ctx, int(which, c_int), value)
+    if (w%status == TRIBO_OK) w%status = c_get_real(w%ctx, to_int(which), found)
+    if (w%status == TRIBO_OK) value = found(1)
     call finish(w, stat, errmsg)
   end subroutine get_real
 
@@ -1208,4 +861,12 @@ contains
     status = adopt(this, ctx, c_funloc(c_destroy))
     if (status /= TRIBO_OK) call c_destroy(ctx)
   end function adopted
+end module tribo_contexts
+
+!> What programs use: the module above, and the constants of tribo.h.
+module tribo
+  use tribo_constants
+  use tribo_contexts
+  implicit none
+  public
 end module tribo

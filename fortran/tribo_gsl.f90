@@ -17,28 +17,20 @@
 !> driver puts it in the place of the one before, and leaves that if it fails. Systems and drivers cannot be copied: an assignment
 !> stops the program. A driver keeps its system alive: it goes on working when the variable has gone.
 !>
+!> Programs use module tribo_gsl, at the end of this file: it is what is here, and the constants of tribo_gsl.h, see
+!> tribo_gsl_c.f90.
+!>
 !> GSL is under the GPL, and so is what is linked with libtribo_gsl.
-module tribo_gsl
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funloc, c_funptr, c_int, c_int64_t, c_loc, &
-    c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
-  use, intrinsic :: iso_fortran_env, only: int32, int64
+module tribo_systems
+  use tribo_gsl_c
+  use tribo_gsl_constants
+  use tribo_c, only: c_handle_add, c_handle_drop, c_set_message
+  use tribo_constants
   use tribo, only: tribo_context
   use tribo_support
+  use, intrinsic :: iso_fortran_env, only: int32, int64
   implicit none
   private
-
-  !> For count of a driver: since its creation.
-  integer, parameter, public :: &
-    TRIBO_COUNT_STEPS = 100, &       !< accepted steps
-    TRIBO_COUNT_REJECTED = 101, &    !< steps tried and undone
-    TRIBO_COUNT_EVALUATIONS = 102, & !< evaluations of the right-hand side
-    TRIBO_COUNT_JACOBIANS = 103, &   !< evaluations of its Jacobian
-    TRIBO_COUNT_EVENTS = 104         !< events located
-
-  !> For real of a driver: how far the motion of "exact" and "event" has strayed from Coulomb's law since its creation.
-  integer, parameter, public :: &
-    TRIBO_REAL_EXCESS = 100, &       !< the largest force of a contact at rest beyond its limit
-    TRIBO_REAL_BACKSLIP = 101        !< the largest velocity of a contact against the direction of its slip
 
   public :: tribo_method_count, tribo_method_name
 
@@ -120,268 +112,6 @@ module tribo_gsl
     integer(c_size_t) :: rows, columns
     type(c_ptr) :: first, col, val
   end type rows_of
-
-  interface
-    function c_oscillator(sys, limit, alpha, omega) result(status) bind(c, name='tribo_system_oscillator')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), intent(inout) :: sys
-      real(c_double), value :: limit, alpha, omega
-      integer(c_int) :: status
-    end function c_oscillator
-
-    function c_chain(sys, n, limit, alpha, omega) result(status) bind(c, name='tribo_system_chain')
-      import :: c_double, c_int, c_ptr, c_size_t
-      type(c_ptr), intent(inout) :: sys
-      integer(c_size_t), value :: n
-      real(c_double), value :: limit, alpha, omega
-      integer(c_int) :: status
-    end function c_chain
-
-    function c_belt(sys, kappa, limit1, limit2, speed, omega) result(status) bind(c, name='tribo_system_belt')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), intent(inout) :: sys
-      real(c_double), value :: kappa, limit1, limit2, speed, omega
-      integer(c_int) :: status
-    end function c_belt
-
-    function c_linear(sys, ndof, ncontact, mass, damping, stiffness, direction, nmode, message, size) result(status) &
-      bind(c, name='tribo_system_linear')
-      import :: c_char, c_double, c_int, c_ptr, c_size_t
-      type(c_ptr), intent(inout) :: sys
-      integer(c_size_t), value :: ndof, ncontact, nmode, size
-      real(c_double), intent(in) :: mass(*), stiffness(*), direction(*)
-      type(c_ptr), value :: damping
-      character(kind=c_char), intent(inout) :: message(*)
-      integer(c_int) :: status
-    end function c_linear
-
-    function c_linear_sparse(sys, mass, damping, stiffness, direction, nmode, message, size) result(status) &
-      bind(c, name='tribo_fortran_linear')
-      import :: c_char, c_int, c_ptr, c_size_t, rows_of
-      type(c_ptr), intent(inout) :: sys
-      type(rows_of), intent(in) :: mass, stiffness, direction
-      type(c_ptr), value :: damping
-      integer(c_size_t), value :: nmode, size
-      character(kind=c_char), intent(inout) :: message(*)
-      integer(c_int) :: status
-    end function c_linear_sparse
-
-    subroutine c_system_destroy(sys) bind(c, name='tribo_system_destroy')
-      import :: c_ptr
-      type(c_ptr), value :: sys
-    end subroutine c_system_destroy
-
-    function c_add_load(sys, omega, cosine, sine) result(status) bind(c, name='tribo_system_add_load')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys, cosine, sine
-      real(c_double), value :: omega
-      integer(c_int) :: status
-    end function c_add_load
-
-    function c_add_base_motion(sys, omega, cosine, sine) result(status) bind(c, name='tribo_system_add_base_motion')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys, cosine, sine
-      real(c_double), value :: omega
-      integer(c_int) :: status
-    end function c_add_base_motion
-
-    function c_clear_loads(sys) result(status) bind(c, name='tribo_system_clear_loads')
-      import :: c_int, c_ptr
-      type(c_ptr), value :: sys
-      integer(c_int) :: status
-    end function c_clear_loads
-
-    function c_clone_system(sys, copy) result(status) bind(c, name='tribo_system_clone')
-      import :: c_int, c_ptr
-      type(c_ptr), value :: sys
-      type(c_ptr), intent(inout) :: copy
-      integer(c_int) :: status
-    end function c_clone_system
-
-    function c_add_load_table(sys, knots, time, value, pattern) result(status) bind(c, name='tribo_system_add_load_table')
-      import :: c_double, c_int, c_ptr, c_size_t
-      type(c_ptr), value :: sys
-      integer(c_size_t), value :: knots
-      real(c_double), intent(in) :: time(*), value(*), pattern(*)
-      integer(c_int) :: status
-    end function c_add_load_table
-
-    function c_set_limit_table(sys, knots, time, limit) result(status) bind(c, name='tribo_system_set_limit_table')
-      import :: c_double, c_int, c_ptr, c_size_t
-      type(c_ptr), value :: sys
-      integer(c_size_t), value :: knots
-      real(c_double), intent(in) :: time(*), limit(*)
-      integer(c_int) :: status
-    end function c_set_limit_table
-
-    function c_set_damping_ratio(sys, zeta) result(status) bind(c, name='tribo_system_set_damping_ratio')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys
-      real(c_double), value :: zeta
-      integer(c_int) :: status
-    end function c_set_damping_ratio
-
-    function c_get_frequencies(sys, omega) result(status) bind(c, name='tribo_system_get_frequencies')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys
-      real(c_double), intent(inout) :: omega(*)
-      integer(c_int) :: status
-    end function c_get_frequencies
-
-    function c_expand(sys, reduced, full) result(status) bind(c, name='tribo_system_expand')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys
-      real(c_double), intent(in) :: reduced(*)
-      real(c_double), intent(inout) :: full(*)
-      integer(c_int) :: status
-    end function c_expand
-
-    pure function c_held_ndof(held) result(n) bind(c, name='tribo_fortran_ndof')
-      import :: c_ptr, c_size_t
-      type(c_ptr), intent(in), value :: held
-      integer(c_size_t) :: n
-    end function c_held_ndof
-
-    pure function c_held_ncontact(held) result(n) bind(c, name='tribo_fortran_ncontact')
-      import :: c_ptr, c_size_t
-      type(c_ptr), intent(in), value :: held
-      integer(c_size_t) :: n
-    end function c_held_ncontact
-
-    function c_ndof(sys) result(n) bind(c, name='tribo_system_ndof')
-      import :: c_ptr, c_size_t
-      type(c_ptr), value :: sys
-      integer(c_size_t) :: n
-    end function c_ndof
-
-    function c_ncontact(sys) result(n) bind(c, name='tribo_system_ncontact')
-      import :: c_ptr, c_size_t
-      type(c_ptr), value :: sys
-      integer(c_size_t) :: n
-    end function c_ncontact
-
-    function c_context(sys) result(ctx) bind(c, name='tribo_system_context')
-      import :: c_ptr
-      type(c_ptr), value :: sys
-      type(c_ptr) :: ctx
-    end function c_context
-
-    function c_derivative(sys, t, y, dydt) result(status) bind(c, name='tribo_fortran_derivative')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys
-      real(c_double), value :: t
-      real(c_double), intent(in) :: y(*)
-      real(c_double), intent(inout) :: dydt(*)
-      integer(c_int) :: status
-    end function c_derivative
-
-    function c_jacobian(sys, t, y, dfdy, dfdt) result(status) bind(c, name='tribo_fortran_jacobian')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys
-      real(c_double), value :: t
-      real(c_double), intent(in) :: y(*)
-      real(c_double), intent(inout) :: dfdy(*), dfdt(*)
-      integer(c_int) :: status
-    end function c_jacobian
-
-    function c_contacts(sys, t, y, v, feq, f) result(status) bind(c, name='tribo_system_contacts')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys, v, feq, f
-      real(c_double), value :: t
-      real(c_double), intent(in) :: y(*)
-      integer(c_int) :: status
-    end function c_contacts
-
-    function c_accept(sys, t, y) result(status) bind(c, name='tribo_system_accept')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: sys
-      real(c_double), value :: t
-      real(c_double), intent(in) :: y(*)
-      integer(c_int) :: status
-    end function c_accept
-
-    function c_driver_create(drv, sys, method, dt, abstol, reltol) result(status) bind(c, name='tribo_driver_create')
-      import :: c_char, c_double, c_int, c_ptr
-      type(c_ptr), intent(inout) :: drv
-      type(c_ptr), value :: sys
-      character(kind=c_char), intent(in) :: method(*)
-      real(c_double), value :: dt, abstol, reltol
-      integer(c_int) :: status
-    end function c_driver_create
-
-    subroutine c_driver_destroy(drv) bind(c, name='tribo_driver_destroy')
-      import :: c_ptr
-      type(c_ptr), value :: drv
-    end subroutine c_driver_destroy
-
-    function c_driver_method(drv) result(s) bind(c, name='tribo_driver_method')
-      import :: c_ptr
-      type(c_ptr), value :: drv
-      type(c_ptr) :: s
-    end function c_driver_method
-
-    function c_method_count() result(count) bind(c, name='tribo_method_count')
-      import :: c_int
-      integer(c_int) :: count
-    end function c_method_count
-
-    function c_method_name(method) result(s) bind(c, name='tribo_method_name')
-      import :: c_int, c_ptr
-      integer(c_int), value :: method
-      type(c_ptr) :: s
-    end function c_method_name
-
-    function c_advance(drv, t, t1, y) result(status) bind(c, name='tribo_driver_advance')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: drv
-      real(c_double), intent(inout) :: t, y(*)
-      real(c_double), value :: t1
-      integer(c_int) :: status
-    end function c_advance
-
-    function c_driver_real(drv, which, value) result(status) bind(c, name='tribo_driver_real')
-      import :: c_ptr, c_int, c_double
-      type(c_ptr), value :: drv
-      integer(c_int), value :: which
-      real(c_double), intent(inout) :: value
-      integer(c_int) :: status
-    end function c_driver_real
-
-    function c_driver_count(drv, which, value) result(status) bind(c, name='tribo_driver_count')
-      import :: c_int, c_ptr, c_size_t
-      type(c_ptr), value :: drv
-      integer(c_int), value :: which
-      integer(c_size_t), intent(inout) :: value
-      integer(c_int) :: status
-    end function c_driver_count
-
-    function c_set_observer(drv, seen, data) result(status) bind(c, name='tribo_driver_set_observer')
-      import :: c_funptr, c_int, c_ptr
-      type(c_ptr), value :: drv, data
-      type(c_funptr), value :: seen
-      integer(c_int) :: status
-    end function c_set_observer
-
-    function c_set_max_step(drv, h) result(status) bind(c, name='tribo_driver_set_max_step')
-      import :: c_double, c_int, c_ptr
-      type(c_ptr), value :: drv
-      real(c_double), value :: h
-      integer(c_int) :: status
-    end function c_set_max_step
-
-    function c_driver_message(drv) result(s) bind(c, name='tribo_driver_message')
-      import :: c_ptr
-      type(c_ptr), value :: drv
-      type(c_ptr) :: s
-    end function c_driver_message
-
-    function c_copy_message(ctx, status, text) result(same_status) bind(c, name='tribo_set_message')
-      import :: c_int, c_ptr
-      type(c_ptr), value :: ctx, text
-      integer(c_int), value :: status
-      integer(c_int) :: same_status
-    end function c_copy_message
-  end interface
 
 contains
 
@@ -486,7 +216,7 @@ contains
     type(work) :: w
     type(c_ptr) :: sys
 
-    w%status = c_oscillator(sys, limit, alpha, omega)
+    w%status = c_system_oscillator(sys, limit, alpha, omega)
     call adopt_system(this, w, sys)
     call finish(w, stat, errmsg)
   end subroutine oscillator
@@ -497,20 +227,20 @@ contains
     class(tribo_system), intent(inout) :: copy
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
     type(c_ptr) :: sys
 
-    call find_system(this, held, w)
+    call find_system(this, w)
     if (w%status == TRIBO_OK) then
-      w%status = c_clone_system(held%sys, sys)
-      call adopt_system(copy, w, sys, int(held%given))
+      w%status = c_system_clone(w%object, sys)
+      call adopt_system(copy, w, sys, w%given)
     end if
     call finish(w, stat, errmsg)
   end subroutine clone_system
 
-  !> n >= 2 blocks on a frictional surface, pulled by alpha*sin(omega*t) at the first one. Fig. 8. limit is the paper's mu N_i; the
-  !> context keeps the paper's scaling, limits mu N_i and R = 1; the last entry of the state is the paper's D.
+  !> n >= 2 blocks on a frictional surface, pulled by alpha*sin(omega*t) at the first one. Fig. 8. limit is the paper's mu N_i.
+  !> Contacts have the limit mu N_i/n and R = n, the last one 3/4 of that limit and 4/3 of that R, see tribo_gsl.h; the last entry of
+  !> the state is the paper's D.
   subroutine chain(this, n, limit, alpha, omega, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     integer, intent(in) :: n
@@ -522,7 +252,7 @@ contains
 
     w%status = TRIBO_OK
     call expect_count(w, 'n', n)
-    if (w%status == TRIBO_OK) w%status = c_chain(sys, int(n, c_size_t), limit, alpha, omega)
+    if (w%status == TRIBO_OK) w%status = c_system_chain(sys, int(n, c_size_t), limit, alpha, omega)
     call adopt_system(this, w, sys)
     call finish(w, stat, errmsg)
   end subroutine chain
@@ -537,7 +267,7 @@ contains
     type(work) :: w
     type(c_ptr) :: sys
 
-    w%status = c_belt(sys, kappa, limit1, limit2, speed, omega)
+    w%status = c_system_belt(sys, kappa, limit1, limit2, speed, omega)
     call adopt_system(this, w, sys)
     call finish(w, stat, errmsg)
   end subroutine belt
@@ -558,8 +288,8 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(c_ptr) :: sys, at
-    real(dp), allocatable, target :: given_damping(:,:)
+    type(c_ptr) :: sys
+    real(dp), allocatable :: given_damping(:,:)
     character(kind=c_char) :: message(240)
     integer :: n
 
@@ -569,16 +299,14 @@ contains
     if (present(nmode)) call expect_count(w, 'nmode', nmode)
     call expect_size(w, 'stiffness', stiffness, n)
     call expect_size(w, 'direction', direction, n, size(direction, 1))
-    at = c_null_ptr
     if (present(damping)) then
       call expect_size(w, 'damping', damping, n)
       given_damping = transpose(damping)
-      if (size(damping) > 0) at = c_loc(given_damping)
     end if
     if (w%status == TRIBO_OK) then
       message = c_null_char
-      w%status = c_linear(sys, int(n, c_size_t), size(direction, 1, c_size_t), transpose(mass), at, transpose(stiffness), &
-        transpose(direction), modes(nmode), message, size(message, kind=c_size_t))
+      w%status = c_system_linear(sys, int(n, c_size_t), size(direction, 1, c_size_t), transpose(mass), given_damping, &
+        transpose(stiffness), transpose(direction), modes(nmode), message, size(message, kind=c_size_t))
       call note(w, message)
     end if
     call adopt_system(this, w, sys, n)
@@ -594,7 +322,7 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(rows_of), target :: rows
+    type(rows_of), target :: rows(4)
     type(c_ptr) :: sys, at
     character(kind=c_char) :: message(240)
 
@@ -606,12 +334,13 @@ contains
     at = c_null_ptr
     if (present(damping)) then
       call expect_given(w, 'damping', damping)
-      if (w%status == TRIBO_OK) rows = borrowed(damping)
-      at = c_loc(rows)
+      if (w%status == TRIBO_OK) rows(4) = borrowed(damping)
+      at = c_loc(rows(4))
     end if
     if (w%status == TRIBO_OK) then
       message = c_null_char
-      w%status = c_linear_sparse(sys, borrowed(mass), at, borrowed(stiffness), borrowed(direction), modes(nmode), message, &
+      rows(:3) = [borrowed(mass), borrowed(stiffness), borrowed(direction)]
+      w%status = c_fortran_linear(sys, c_loc(rows(1)), at, c_loc(rows(2)), c_loc(rows(3)), modes(nmode), message, &
         size(message, kind=c_size_t))
       call note(w, message)
     end if
@@ -624,20 +353,15 @@ contains
   subroutine add_load(this, omega, cosine, sine, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: omega
-    real(dp), intent(in), optional, contiguous, target :: cosine(:), sine(:)
+    real(dp), intent(in), optional, contiguous :: cosine(:), sine(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
-    type(c_ptr) :: at(2)
 
-    call find_system(this, held, w)
-    at = c_null_ptr
-    if (w%status == TRIBO_OK) then
-      if (present(cosine)) call find_input(w, 'cosine', cosine, int(held%given), at(1))
-      if (present(sine)) call find_input(w, 'sine', sine, int(held%given), at(2))
-    end if
-    if (w%status == TRIBO_OK) w%status = c_add_load(held%sys, omega, at(1), at(2))
+    call find_system(this, w)
+    if (present(cosine)) call expect_size(w, 'cosine', cosine, w%given)
+    if (present(sine)) call expect_size(w, 'sine', sine, w%given)
+    if (w%status == TRIBO_OK) w%status = c_system_add_load(w%object, omega, cosine, sine)
     call finish(w, stat, errmsg)
   end subroutine add_load
 
@@ -645,18 +369,15 @@ contains
   subroutine add_base_motion(this, omega, cosine, sine, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: omega
-    real(dp), intent(in), optional, contiguous, target :: cosine(:), sine(:)
+    real(dp), intent(in), optional, contiguous :: cosine(:), sine(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
-    type(c_ptr) :: at(2)
 
-    call find_system(this, held, w)
-    at = c_null_ptr
-    if (present(cosine)) call find_input(w, 'cosine', cosine, w%n, at(1))
-    if (present(sine)) call find_input(w, 'sine', sine, w%n, at(2))
-    if (w%status == TRIBO_OK) w%status = c_add_base_motion(held%sys, omega, at(1), at(2))
+    call find_system(this, w)
+    if (present(cosine)) call expect_size(w, 'cosine', cosine, w%n)
+    if (present(sine)) call expect_size(w, 'sine', sine, w%n)
+    if (w%status == TRIBO_OK) w%status = c_system_add_base_motion(w%object, omega, cosine, sine)
     call finish(w, stat, errmsg)
   end subroutine add_base_motion
 
@@ -665,11 +386,10 @@ contains
     class(tribo_system), intent(inout) :: this
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
-    if (w%status == TRIBO_OK) w%status = c_clear_loads(held%sys)
+    call find_system(this, w)
+    if (w%status == TRIBO_OK) w%status = c_system_clear_loads(w%object)
     call finish(w, stat, errmsg)
   end subroutine clear_loads
 
@@ -680,13 +400,12 @@ contains
     real(dp), intent(in) :: time(:), value(:), pattern(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
+    call find_system(this, w)
     call expect_size(w, 'value', value, size(time))
-    if (w%status == TRIBO_OK) call expect_size(w, 'pattern', pattern, int(held%given))
-    if (w%status == TRIBO_OK) w%status = c_add_load_table(held%sys, size(time, kind=c_size_t), time, value, pattern)
+    call expect_size(w, 'pattern', pattern, w%given)
+    if (w%status == TRIBO_OK) w%status = c_system_add_load_table(w%object, size(time, kind=c_size_t), time, value, pattern)
     call finish(w, stat, errmsg)
   end subroutine add_load_table
 
@@ -698,12 +417,11 @@ contains
     real(dp), intent(in) :: time(:), limit(:,:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
+    call find_system(this, w)
     call expect_size(w, 'limit', limit, size(time), w%n)
-    if (w%status == TRIBO_OK) w%status = c_set_limit_table(held%sys, size(time, kind=c_size_t), time, limit)
+    if (w%status == TRIBO_OK) w%status = c_system_set_limit_table(w%object, size(time, kind=c_size_t), time, limit)
     call finish(w, stat, errmsg)
   end subroutine set_limit_table
 
@@ -713,11 +431,10 @@ contains
     real(dp), intent(in) :: zeta
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
-    if (w%status == TRIBO_OK) w%status = c_set_damping_ratio(held%sys, zeta)
+    call find_system(this, w)
+    if (w%status == TRIBO_OK) w%status = c_system_set_damping_ratio(w%object, zeta)
     call finish(w, stat, errmsg)
   end subroutine set_damping_ratio
 
@@ -727,12 +444,11 @@ contains
     real(dp), intent(inout) :: omega(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
+    call find_system(this, w)
     call expect_size(w, 'omega', omega, this%ndof())
-    if (w%status == TRIBO_OK) w%status = c_get_frequencies(held%sys, omega)
+    if (w%status == TRIBO_OK) w%status = c_system_get_frequencies(w%object, omega)
     call finish(w, stat, errmsg)
   end subroutine get_frequencies
 
@@ -743,25 +459,24 @@ contains
     real(dp), intent(inout) :: full(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
+    call find_system(this, w)
     call expect_size(w, 'reduced', reduced, this%ndof())
-    if (w%status == TRIBO_OK) call expect_size(w, 'full', full, int(held%given))
-    if (w%status == TRIBO_OK) w%status = c_expand(held%sys, reduced, full)
+    call expect_size(w, 'full', full, w%given)
+    if (w%status == TRIBO_OK) w%status = c_system_expand(w%object, reduced, full)
     call finish(w, stat, errmsg)
   end subroutine expand
 
   !> Sizes; 0 for a system that has not been created. dimension is 2*ndof + 1. Arrays may be declared with them.
   pure integer function ndof(this)
     class(tribo_system), intent(in) :: this
-    ndof = int(c_held_ndof(object_of(this)))
+    ndof = int(c_fortran_ndof(object_of(this)))
   end function ndof
 
   pure integer function ncontact(this)
     class(tribo_system), intent(in) :: this
-    ncontact = int(c_held_ncontact(object_of(this)))
+    ncontact = int(c_fortran_ncontact(object_of(this)))
   end function ncontact
 
   pure integer function dimension(this)
@@ -780,7 +495,8 @@ contains
     type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
+    call find_system(this, w)
+    held => system_of(this)
     if (w%status == TRIBO_OK) call lend(c, held%context)
     call finish(w, stat, errmsg)
   end subroutine context
@@ -793,13 +509,12 @@ contains
     real(dp), intent(inout) :: dydt(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
-    call expect_size(w, 'y', y, this%dimension())
-    call expect_size(w, 'dydt', dydt, this%dimension())
-    if (w%status == TRIBO_OK) w%status = c_derivative(held%sys, t, y, dydt)
+    call find_system(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    call expect_size(w, 'dydt', dydt, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_fortran_derivative(w%object, t, y, dydt)
     call finish(w, stat, errmsg)
   end subroutine derivative
 
@@ -809,15 +524,14 @@ contains
     real(dp), intent(inout) :: dfdy(:,:), dfdt(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
-    call expect_size(w, 'y', y, this%dimension())
-    call expect_size(w, 'dfdy', dfdy, this%dimension())
-    call expect_size(w, 'dfdt', dfdt, this%dimension())
+    call find_system(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    call expect_size(w, 'dfdy', dfdy, w%dimension)
+    call expect_size(w, 'dfdt', dfdt, w%dimension)
     if (w%status == TRIBO_OK) then
-      w%status = c_jacobian(held%sys, t, y, dfdy, dfdt)
+      w%status = c_fortran_jacobian(w%object, t, y, dfdy, dfdt)
       if (w%status == TRIBO_OK) call transpose_in_place(dfdy)
     end if
     call finish(w, stat, errmsg)
@@ -827,20 +541,17 @@ contains
   subroutine contacts(this, t, y, v, feq, f, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: t, y(:)
-    real(dp), intent(inout), optional, contiguous, target :: v(:), feq(:), f(:)
+    real(dp), intent(inout), optional, contiguous :: v(:), feq(:), f(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
-    type(c_ptr) :: at(3)
 
-    call find_system(this, held, w)
-    at = c_null_ptr
-    call expect_size(w, 'y', y, this%dimension())
-    if (present(v)) call find(w, 'v', v, at(1))
-    if (present(feq)) call find(w, 'feq', feq, at(2))
-    if (present(f)) call find(w, 'f', f, at(3))
-    if (w%status == TRIBO_OK) w%status = c_contacts(held%sys, t, y, at(1), at(2), at(3))
+    call find_system(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    if (present(v)) call expect_size(w, 'v', v, w%n)
+    if (present(feq)) call expect_size(w, 'feq', feq, w%n)
+    if (present(f)) call expect_size(w, 'f', f, w%n)
+    if (w%status == TRIBO_OK) w%status = c_system_contacts(w%object, t, y, v, feq, f)
     call finish(w, stat, errmsg)
   end subroutine contacts
 
@@ -850,12 +561,11 @@ contains
     real(dp), intent(in) :: t, y(:)
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
-    call expect_size(w, 'y', y, this%dimension())
-    if (w%status == TRIBO_OK) w%status = c_accept(held%sys, t, y)
+    call find_system(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_system_accept(w%object, t, y)
     call finish(w, stat, errmsg)
   end subroutine accept
 
@@ -863,10 +573,9 @@ contains
   function system_message(this) result(text)
     class(tribo_system), intent(in) :: this
     character(len=:), allocatable :: text
-    type(held_system), pointer :: held
     type(work) :: w
 
-    call find_system(this, held, w)
+    call find_system(this, w)
     call message_of(w, text)
   end function system_message
 
@@ -896,24 +605,23 @@ contains
     real(dp), intent(in), optional :: abstol, reltol
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_system), pointer :: system
     type(held_driver), pointer :: held
     type(work) :: w
     type(c_ptr) :: drv
     real(dp) :: tolerance(2)
 
-    call find_system(sys, system, w)
+    call find_system(sys, w)
     tolerance = 0
     if (present(abstol)) tolerance(1) = abstol
     if (present(reltol)) tolerance(2) = reltol
     if (w%status == TRIBO_OK) then
-      w%status = c_driver_create(drv, system%sys, trim(method) // c_null_char, dt, tolerance(1), tolerance(2))
+      w%status = c_driver_create(drv, w%object, trim(method) // c_null_char, dt, tolerance(1), tolerance(2))
     end if
     if (w%status == TRIBO_OK) then
       allocate (held)
       held%drv = drv
-      held%system => system
-      system%users = system%users + 1
+      held%system => system_of(sys)
+      held%system%users = held%system%users + 1
       w%status = adopt(this, c_loc(held), c_funloc(release_driver))
       if (w%status /= TRIBO_OK) call release_driver(c_loc(held))
     end if
@@ -924,12 +632,11 @@ contains
   function method(this) result(text)
     class(tribo_driver), intent(in) :: this
     character(len=:), allocatable :: text
-    type(held_driver), pointer :: held
     type(work) :: w
 
-    call find_driver(this, held, w)
+    call find_driver(this, w)
     if (w%status == TRIBO_OK) then
-      call to_text(c_driver_method(held%drv), text)
+      call to_text(c_driver_method(w%object), text)
     else
       text = ''
     end if
@@ -943,7 +650,7 @@ contains
   function tribo_method_name(method) result(text)
     integer, intent(in) :: method
     character(len=:), allocatable :: text
-    call to_text(c_method_name(int(method, c_int)), text)
+    call to_text(c_method_name(to_int(method)), text)
   end function tribo_method_name
 
   !> Integrates from t to t1 >= t; y, the system and its context's settings may be changed between calls. On error t and y hold the
@@ -954,15 +661,16 @@ contains
     real(dp), intent(in) :: t1
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_driver), pointer :: held
     type(work) :: w
+    real(dp) :: time(1)
 
-    call find_driver(this, held, w)
-    if (w%status == TRIBO_OK) call expect_size(w, 'y', y, 2*int(c_ndof(held%system%sys)) + 1)
+    call find_driver(this, w)
+    call expect_size(w, 'y', y, w%dimension)
     if (w%status == TRIBO_OK) then
-      w%status = c_advance(held%drv, t, t1, y)
-      ! One place for messages, that of the context.
-      if (w%status /= TRIBO_OK) w%status = c_copy_message(w%ctx, w%status, c_driver_message(held%drv))
+      time = t
+      w%status = c_driver_advance(w%object, time, t1, y)
+      t = time(1)
+      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine advance
@@ -1001,13 +709,12 @@ contains
     integer(int64), intent(in) :: most
     integer(int64), intent(inout) :: value
     type(work), intent(out) :: w
-    type(held_driver), pointer :: held
     integer(c_size_t) :: count
     character(len=60) :: text
 
-    call find_driver(this, held, w)
+    call find_driver(this, w)
     if (w%status /= TRIBO_OK) return
-    if (c_driver_count(held%drv, int(which, c_int), count) /= TRIBO_OK) then
+    if (c_driver_count(w%object, to_int(which), count) /= TRIBO_OK) then
       write (text, '(a,i0,a)') 'which = ', which, ' is none of the counts of a driver'
       call fail(w, TRIBO_ERR_RANGE, trim(text))
     else if (count > most) then
@@ -1025,18 +732,20 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    type(held_driver), pointer :: held
     character(len=60) :: text
+    real(dp) :: found(1)
 
-    call find_driver(this, held, w)
+    call find_driver(this, w)
     if (w%status == TRIBO_OK) then
-      w%status = c_driver_real(held%drv, int(which, c_int), value)
-      if (w%status == TRIBO_ERR_RANGE) then
+      select case (c_driver_real(w%object, to_int(which), found))
+      case (TRIBO_OK)
+        value = found(1)
+      case (TRIBO_ERR_UNSUPPORTED)
+        call fail(w, TRIBO_ERR_UNSUPPORTED, 'this method does not know how far it strays from Coulomb''s law')
+      case default
         write (text, '(a,i0,a)') 'which = ', which, ' is no real quantity of a driver'
         call fail(w, TRIBO_ERR_RANGE, trim(text))
-      else if (w%status == TRIBO_ERR_UNSUPPORTED) then
-        call fail(w, TRIBO_ERR_UNSUPPORTED, 'this method does not know how far it strays from Coulomb''s law')
-      end if
+      end select
     end if
     call finish(w, stat, errmsg)
   end subroutine driver_real
@@ -1052,15 +761,16 @@ contains
     type(work) :: w
     type(c_funptr) :: call_back
 
-    call find_driver(this, held, w)
+    call find_driver(this, w)
     if (w%status == TRIBO_OK) then
+      held => driver_of(this)
       nullify (held%observer)
       call_back = c_null_funptr
       if (present(observer)) then
         held%observer => observer
         call_back = c_funloc(tell_observer)
       end if
-      w%status = c_set_observer(held%drv, call_back, c_loc(held))
+      w%status = c_driver_set_observer(held%drv, call_back, c_loc(held))
     end if
     call finish(w, stat, errmsg)
   end subroutine set_observer
@@ -1072,13 +782,12 @@ contains
     real(dp), intent(in) :: h
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    type(held_driver), pointer :: held
     type(work) :: w
 
-    call find_driver(this, held, w)
+    call find_driver(this, w)
     if (w%status == TRIBO_OK) then
-      w%status = c_set_max_step(held%drv, h)
-      if (w%status /= TRIBO_OK) w%status = c_copy_message(w%ctx, w%status, c_driver_message(held%drv))
+      w%status = c_driver_set_max_step(w%object, h)
+      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine set_max_step
@@ -1087,43 +796,72 @@ contains
   function driver_message(this) result(text)
     class(tribo_driver), intent(in) :: this
     character(len=:), allocatable :: text
-    type(held_driver), pointer :: held
     type(work) :: w
 
-    call find_driver(this, held, w)
+    call find_driver(this, w)
     call message_of(w, text)
   end function driver_message
 
   ! ------------------------------------------------------------------------------------------------------- what the calls share
 
-  subroutine find_system(this, held, w)
+  !> What Fortran keeps of a system or driver; null if it has not been created.
+  function system_of(this) result(held)
     class(tribo_system), intent(in) :: this
-    type(held_system), pointer, intent(out) :: held
+    type(held_system), pointer :: held
+    nullify (held)
+    if (c_associated(object_of(this))) call c_f_pointer(object_of(this), held)
+  end function system_of
+
+  function driver_of(this) result(held)
+    class(tribo_driver), intent(in) :: this
+    type(held_driver), pointer :: held
+    nullify (held)
+    if (c_associated(object_of(this))) call c_f_pointer(object_of(this), held)
+  end function driver_of
+
+  !> Begin a call on a system or driver.
+  subroutine find_system(this, w)
+    class(tribo_system), intent(in) :: this
     type(work), intent(out) :: w
+    type(held_system), pointer :: held
 
     w%kind = 'system'
-    w%object = object_of(this)
-    nullify (held)
-    if (.not. c_associated(w%object)) return
-    call c_f_pointer(w%object, held)
-    w%ctx = c_context(held%sys)
-    w%n = int(c_ncontact(held%sys))
-    w%status = TRIBO_OK
+    held => system_of(this)
+    if (associated(held)) call work_on(w, held, held%sys)
   end subroutine find_system
 
-  subroutine find_driver(this, held, w)
+  subroutine find_driver(this, w)
     class(tribo_driver), intent(in) :: this
-    type(held_driver), pointer, intent(out) :: held
     type(work), intent(out) :: w
+    type(held_driver), pointer :: held
 
     w%kind = 'driver'
-    w%object = object_of(this)
-    nullify (held)
-    if (.not. c_associated(w%object)) return
-    call c_f_pointer(w%object, held)
-    w%ctx = c_context(held%system%sys)
-    w%status = TRIBO_OK
+    held => driver_of(this)
+    if (associated(held)) call work_on(w, held%system, held%drv)
   end subroutine find_driver
+
+  subroutine work_on(w, held, object)
+    type(work), intent(inout) :: w
+    type(held_system), intent(in) :: held
+    type(c_ptr), intent(in) :: object
+
+    w%object = object
+    w%ctx = c_system_context(held%sys)
+    w%n = int(c_system_ncontact(held%sys))
+    w%dimension = int(c_system_dimension(held%sys))
+    w%given = int(held%given)
+    w%status = TRIBO_OK
+  end subroutine work_on
+
+  !> One place for messages, that of the context: that of a driver goes there.
+  subroutine keep_message(w)
+    type(work), intent(inout) :: w
+    character(len=:), allocatable :: text
+
+    if (w%status == TRIBO_OK) return
+    call to_text(c_driver_message(w%object), text)
+    w%status = c_set_message(w%ctx, w%status, text // c_null_char)
+  end subroutine keep_message
 
   !> Gives what a call has created, if it has, to this. given: degrees of freedom of the matrices, ndof where absent.
   subroutine adopt_system(this, w, sys, given)
@@ -1137,9 +875,9 @@ contains
     allocate (held)
     held%sys = sys
     held%users = 1
-    held%given = int(c_ndof(sys), c_int64_t)
+    held%given = int(c_system_ndof(sys), c_int64_t)
     if (present(given)) held%given = given
-    held%context = register(c_context(sys))
+    held%context = c_handle_add(c_system_context(sys), c_null_funptr)
     if (held%context == 0) w%status = TRIBO_ERR_MEMORY
     if (w%status == TRIBO_OK) w%status = adopt(this, c_loc(held), c_funloc(release_system))
     if (w%status /= TRIBO_OK) call release_system(c_loc(held))
@@ -1151,7 +889,7 @@ contains
     type(held_system), pointer :: held
 
     call c_f_pointer(object, held)
-    call forget(held%context)
+    call c_handle_drop(held%context)
     call leave(held)
   end subroutine release_system
 
@@ -1183,8 +921,8 @@ contains
     real(dp), pointer :: state(:)
 
     call c_f_pointer(data, held)
-    call c_f_pointer(y, state, [2*c_ndof(held%system%sys) + 1])
-    tell_observer = int(held%observer%seen(t, state, int(event)), c_int)
+    call c_f_pointer(y, state, [2*c_system_ndof(held%system%sys) + 1])
+    tell_observer = to_int(held%observer%seen(t, state, int(event)))
   end function tell_observer
 
   impure elemental subroutine assign_system(to, from)
@@ -1246,4 +984,12 @@ contains
     borrowed%col = c_loc(x%col)
     borrowed%val = c_loc(x%val)
   end function borrowed
+end module tribo_systems
+
+!> What programs use: the module above, and the constants of tribo_gsl.h.
+module tribo_gsl
+  use tribo_gsl_constants
+  use tribo_systems
+  implicit none
+  public
 end module tribo_gsl

@@ -1,8 +1,8 @@
-!> What the modules tribo and tribo_gsl and the fixed-form routines share: status codes, objects by number, texts, and how calls
+!> What the modules tribo and tribo_gsl and the fixed-form routines share: objects by number, sizes of arrays, texts, and how calls
 !> begin and end. Not for programs.
 module tribo_support
-  use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_double, c_f_pointer, c_funptr, c_int, c_int64_t, c_loc, &
-    c_null_char, c_null_funptr, c_null_ptr, c_ptr, c_size_t
+  use tribo_c
+  use tribo_constants
   use, intrinsic :: iso_fortran_env, only: error_unit
   implicit none
   private
@@ -10,33 +10,10 @@ module tribo_support
   !> Kind of all reals here: double precision.
   integer, parameter, public :: dp = c_double
 
-  !> Status codes.
-  integer, parameter, public :: &
-    TRIBO_OK = 0, &
-    TRIBO_ERR_NULL = 1, &         !< an object that has not been created
-    TRIBO_ERR_NOT_FINITE = 2, &   !< NaN or infinity
-    TRIBO_ERR_NEGATIVE = 3, &     !< a value must be >= 0
-    TRIBO_ERR_NOT_POSITIVE = 4, & !< a value must be > 0
-    TRIBO_ERR_RANGE = 5, &        !< an index or a choice is out of range
-    TRIBO_ERR_SIZE = 6, &         !< sizes do not fit each other, or are too large
-    TRIBO_ERR_NAME = 7, &         !< no law or method has this name
-    TRIBO_ERR_STATE = 8, &        !< another call must come first
-    TRIBO_ERR_UNSUPPORTED = 9, &  !< not available for this system, law or build
-    TRIBO_ERR_MEMORY = 10, &
-    TRIBO_ERR_NOT_SYMMETRIC = 20, &
-    TRIBO_ERR_INDEFINITE = 21, &  !< not positive semidefinite, or a mass matrix that is not positive definite
-    TRIBO_ERR_DUPLICATE = 22, &   !< an entry is given twice
-    TRIBO_ERR_INCONSISTENT = 40, & !< partition coupling: no f_eq balances this a; the outputs hold the least-squares one
-    TRIBO_ERR_NO_CONVERGENCE = 41, &
-    TRIBO_ERR_STOPPED = 60, &     !< the observer ended the run
-    TRIBO_ERR_STEP = 61, &        !< the step size fell below what time resolves
-    TRIBO_ERR_CALLBACK = 62, &    !< a procedure of the caller's failed
-    TRIBO_ERR_CHATTER = 63        !< too many events in too short a time: 'central/fixed' and 'moreau/fixed' step over them
-
-  public :: object_of, adopt, lend, register, forget, c_handle_add_short, c_handle_find
-  public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, find, find_input, check_rows
-  public :: from_zero, transpose_in_place
-  public :: to_text, message_of, c_version_string, c_strerror, c_law_name, c_law_reference
+  public :: object_of, adopt, lend
+  public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, check_rows
+  public :: from_zero, to_int, transpose_in_place
+  public :: to_text, message_of
 
   !> What every type of tribo is: the number of an object of the library, see handle.c. A lent one is destroyed by its owner only.
   type, public :: tribo_object
@@ -48,11 +25,12 @@ module tribo_support
     final :: finalize
   end type tribo_object
 
-  !> What a call works on: the object, the context that keeps its messages, the number of contacts; how the call has gone so far,
-  !> and the text of an error found here, with indices from 0 as in the library's messages.
+  !> What a call works on: the object of the library, the context that keeps its messages, the number of contacts; of a system and
+  !> its drivers the size of the state, and the degrees of freedom of the matrices given; how the call has gone so far, and the text
+  !> of an error found here, with indices from 0 as in the library's messages.
   type, public :: work
     type(c_ptr) :: object = c_null_ptr, ctx = c_null_ptr
-    integer :: n = 0
+    integer :: n = 0, dimension = 0, given = 0
     integer(c_int) :: status = TRIBO_ERR_NULL
     character(len=8) :: kind = 'context'
     character(len=:), allocatable :: text
@@ -62,85 +40,12 @@ module tribo_support
     procedure :: expect_vector, expect_matrix
   end interface expect_size
 
-  interface find
-    procedure :: find_vector, find_matrix
-  end interface find
-
   interface
     function c_strlen(s) result(n) bind(c, name='strlen')
       import :: c_ptr, c_size_t
       type(c_ptr), value :: s
       integer(c_size_t) :: n
     end function c_strlen
-
-    function c_handle_add(object, destroy) result(handle) bind(c, name='tribo_handle_add')
-      import :: c_funptr, c_int64_t, c_ptr
-      type(c_ptr), value :: object
-      type(c_funptr), value :: destroy
-      integer(c_int64_t) :: handle
-    end function c_handle_add
-
-    function c_handle_add_short(object, destroy) result(handle) bind(c, name='tribo_handle_add_short')
-      import :: c_funptr, c_int64_t, c_ptr
-      type(c_ptr), value :: object
-      type(c_funptr), value :: destroy
-      integer(c_int64_t) :: handle
-    end function c_handle_add_short
-
-    pure function c_handle_find(handle) result(object) bind(c, name='tribo_handle_find')
-      import :: c_int64_t, c_ptr
-      integer(c_int64_t), intent(in), value :: handle
-      type(c_ptr) :: object
-    end function c_handle_find
-
-    subroutine c_handle_drop(handle) bind(c, name='tribo_handle_drop')
-      import :: c_int64_t
-      integer(c_int64_t), value :: handle
-    end subroutine c_handle_drop
-
-    function c_version_string() result(s) bind(c, name='tribo_version_string')
-      import :: c_ptr
-      type(c_ptr) :: s
-    end function c_version_string
-
-    function c_law_name(law) result(s) bind(c, name='tribo_law_name')
-      import :: c_ptr, c_int
-      integer(c_int), value :: law
-      type(c_ptr) :: s
-    end function c_law_name
-
-    function c_law_reference(law) result(s) bind(c, name='tribo_law_reference')
-      import :: c_ptr, c_int
-      integer(c_int), value :: law
-      type(c_ptr) :: s
-    end function c_law_reference
-
-    function c_strerror(status) result(s) bind(c, name='tribo_strerror')
-      import :: c_int, c_ptr
-      integer(c_int), value :: status
-      type(c_ptr) :: s
-    end function c_strerror
-
-    function c_message(ctx) result(s) bind(c, name='tribo_message')
-      import :: c_ptr
-      type(c_ptr), value :: ctx
-      type(c_ptr) :: s
-    end function c_message
-
-    function c_set_message(ctx, status, text) result(same_status) bind(c, name='tribo_set_message')
-      import :: c_char, c_int, c_ptr
-      type(c_ptr), value :: ctx
-      integer(c_int), value :: status
-      character(kind=c_char), intent(in) :: text(*)
-      integer(c_int) :: same_status
-    end function c_set_message
-
-    function c_get_ncontact(ctx, ncontact) result(status) bind(c, name='tribo_get_ncontact')
-      import :: c_int, c_ptr, c_size_t
-      type(c_ptr), value :: ctx
-      integer(c_size_t), intent(inout) :: ncontact
-      integer(c_int) :: status
-    end function c_get_ncontact
   end interface
 
 contains
@@ -190,17 +95,6 @@ contains
     this%lent = .true.
   end subroutine lend
 
-  !> A number for what someone else destroys, and its end.
-  integer(c_int64_t) function register(object)
-    type(c_ptr), intent(in) :: object
-    register = c_handle_add(object, c_null_funptr)
-  end function register
-
-  subroutine forget(handle)
-    integer(c_int64_t), intent(in) :: handle
-    call c_handle_drop(handle)
-  end subroutine forget
-
   ! ---------------------------------------------------------------------------------------------------------------------- calls
 
   !> Begins a call on a context.
@@ -210,7 +104,6 @@ contains
     integer(c_size_t) :: n
 
     w%ctx = object_of(this)
-    w%object = w%ctx
     w%status = c_get_ncontact(w%ctx, n)
     if (w%status == TRIBO_OK) w%n = int(n)
   end subroutine begin
@@ -272,35 +165,6 @@ contains
     call expect_shape(w, name, shape(x), wanted)
   end subroutine expect_matrix
 
-  !> Expects one value a contact, or a matrix of them, in an output that may be absent, and so goes to the library by its address.
-  subroutine find_vector(w, name, x, address)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(inout), contiguous, target :: x(:)
-    type(c_ptr), intent(inout) :: address
-    call expect_size(w, name, x, w%n)
-    if (size(x) > 0) address = c_loc(x)
-  end subroutine find_vector
-
-  subroutine find_matrix(w, name, x, address)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(inout), contiguous, target :: x(:,:)
-    type(c_ptr), intent(inout) :: address
-    call expect_size(w, name, x, w%n)
-    if (size(x) > 0) address = c_loc(x)
-  end subroutine find_matrix
-
-  subroutine find_input(w, name, x, n, address)
-    type(work), intent(inout) :: w
-    character(len=*), intent(in) :: name
-    real(dp), intent(in), contiguous, target :: x(:)
-    integer, intent(in) :: n
-    type(c_ptr), intent(inout) :: address
-    call expect_size(w, name, x, n)
-    if (size(x) > 0) address = c_loc(x)
-  end subroutine find_input
-
   subroutine expect_shape(w, name, found, wanted)
     type(work), intent(inout) :: w
     character(len=*), intent(in) :: name
@@ -350,6 +214,12 @@ contains
     integer, intent(in) :: i
     from_zero = int(i, c_size_t) - 1
   end function from_zero
+
+  !> For an int of C: what that cannot hold is taken to its ends, where the library has no choice and no index.
+  elemental integer(c_int) function to_int(i)
+    integer, intent(in) :: i
+    to_int = int(max(min(i, int(huge(0_c_int))), -int(huge(0_c_int))), c_int)
+  end function to_int
 
   !> x = transpose(x), which would allocate.
   pure subroutine transpose_in_place(x)
@@ -407,22 +277,26 @@ contains
   end subroutine message_of
 
   !> A message for Fortran. The library counts from 0 and writes x[i][j]; here it counts from 1, and is x(i,j). In the library's
-  !> messages an index stands in brackets or after one of the words below, and nothing else does (a test sees to that).
+  !> messages an index stands in brackets or after one of the words below, and nothing else does (a test sees to that), but in
+  !> quotes, where names stand that were given.
   subroutine from_one(zero, text)
     character(len=*), intent(in) :: zero
     character(len=:), allocatable, intent(out) :: text
     character(len=*), parameter :: words(5) = &
       [character(len=18) :: 'contact', 'contacts', 'column', 'degree of freedom', 'mode']
     character(len=20) :: index
-    logical :: is_index
+    logical :: is_index, quoted
     integer :: i, k, length, number
 
     text = ''
     is_index = .false.
+    quoted = .false.
     i = 1
     do while (i <= len(zero))
+      if (zero(i:i) == '"') quoted = .not. quoted
       length = max(1, verify(zero(i:) // '.', '0123456789') - 1)
-      select case (zero(i:i))
+      if (quoted) length = 1
+      select case (merge('"', zero(i:i), quoted))
       case ('0':'9')
         is_index = ends(zero(:i - 1), '[') .or. (is_index .and. ends(text, ', '))
         do k = 1, size(words)

@@ -35,8 +35,10 @@ typedef struct tribo_system tribo_system;
 TRIBO_API int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega);
 
 /* n >= 2 blocks on a frictional surface, pulled by alpha sin(omega t) at the first one. Fig. 8 and the equations beside it.
- * limit is the paper's mu N_i; the context keeps the paper's scaling, forces f_i with limit mu N_i and R = identity; the
- * last entry of the state is the paper's D, (1/n) times the sum of the integrals of -f_i u_i'. */
+ * limit is the paper's mu N_i. Blocks have the mass 1/n, springs the stiffness n, contacts the limit mu N_i/n; the last block
+ * has 3/4 of that mass and of that limit, since the last of the paper's equations is 4/3 of one that makes the stiffness
+ * symmetric. R is n, and 4 n/3 for the last. The last entry of the state is the paper's D, (1/n) times the sum of the integrals
+ * of -f_i u_i', f_i being n times the force of contact i, 4 n/3 times for the last. */
 TRIBO_API int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha, double omega);
 
 /* Two blocks, the upper on the lower, the lower on a belt that moves with speed * sin(omega t): contact 0 is between belt and

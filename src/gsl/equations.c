@@ -33,9 +33,9 @@ static void add_forces(const tribo_system *sys, const double *y, double *dydt)
     tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, dydt + n);
     double power = 0.0;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        power += sys->f[i] * sys->v[i];
+        power -= sys->tally[i] * sys->f[i] * sys->v[i];
     }
-    dydt[2 * n] = -sys->power * power;
+    dydt[2 * n] = power;
 }
 
 static int right_hand_side(double t, const double y[], double dydt[], void *params)
@@ -114,7 +114,7 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
 {
     tribo_system *s = calloc(1, sizeof *s);
     int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
-    double *work = status ? NULL : calloc(6 * (ncontact + 1) + ndof, sizeof *work);
+    double *work = status ? NULL : calloc(7 * (ncontact + 1) + ndof, sizeof *work);
     if (!work) {
         tribo_system_destroy(s);
         tribo_matrix_free(stiffness);
@@ -130,7 +130,6 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     s->damping = *damping;
     s->direction = *direction;
     s->response = *response;
-    s->power = 1.0;
     s->time = NAN;
     s->v = work;
     s->a = work + (ncontact + 1);
@@ -138,7 +137,11 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     s->feq = work + 3 * (ncontact + 1);
     s->dv_dt = work + 4 * (ncontact + 1);
     s->given_limit = work + 5 * (ncontact + 1);
-    s->acceleration = work + 6 * (ncontact + 1);
+    s->tally = work + 6 * (ncontact + 1);
+    s->acceleration = work + 7 * (ncontact + 1);
+    for (size_t i = 0; i < ncontact; i++) {
+        s->tally[i] = 1.0;
+    }
     s->odeiv2 = (gsl_odeiv2_system){right_hand_side, tribo_jacobian, 2 * ndof + 1, s};
     *sys = s;
     return TRIBO_OK;
@@ -149,16 +152,15 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
 {
     tribo_destroy(to->contacts);
     to->contacts = NULL;
-    to->power = sys->power;
     to->revision = sys->revision;
     to->given = sys->given;
-    to->loads_accelerate = sys->loads_accelerate;
     memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
+    memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);
     int done = 1;
     to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);
     to->omega = tribo_copy_of(sys->omega, sys->ndof, sizeof *to->omega, &done);
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
-           tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->metric, &sys->metric) &&
+           tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->mass, &sys->mass) &&
            tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);
 }
 
@@ -202,7 +204,7 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_loads_free(sys);
     tribo_matrix_free(&sys->elastic);
     tribo_matrix_free(&sys->viscous);
-    tribo_matrix_free(&sys->metric);
+    tribo_matrix_free(&sys->mass);
     tribo_cholesky_free(&sys->factor);
     free(sys->modes);
     free(sys->omega);

@@ -67,7 +67,7 @@ static size_t large_pivots(double *r, size_t n)
 }
 
 /* The rank of J; n + 1 if out of memory. */
-static size_t rank_of(const struct matrix *direction, const struct matrix *metric)
+static size_t rank_of(const struct matrix *direction, const struct matrix *mass)
 {
     const size_t n = direction->rows;
     struct constraints c;
@@ -76,7 +76,7 @@ static size_t rank_of(const struct matrix *direction, const struct matrix *metri
     for (size_t i = 0; all && i < n; i++) {
         all[i] = i;
     }
-    const int done = all && last && tribo_constraints_create(&c, direction, metric, all, n, last);
+    const int done = all && last && tribo_constraints_create(&c, direction, mass, all, n, last);
     const size_t rank = done ? c.rank : n + 1;
     if (done) {
         tribo_constraints_free(&c);
@@ -86,7 +86,7 @@ static size_t rank_of(const struct matrix *direction, const struct matrix *metri
     return rank;
 }
 
-int tribo_hidden(const struct matrix *direction, const struct matrix *metric, const double *x, const double *r,
+int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *x, const double *r,
                  struct hidden *where)
 {
     const size_t n = direction->rows;
@@ -101,7 +101,7 @@ int tribo_hidden(const struct matrix *direction, const struct matrix *metric, co
         return 0;
     }
     double *work = malloc(n * n * sizeof *work);
-    const size_t rank = rank_of(direction, metric);
+    const size_t rank = rank_of(direction, mass);
     int hidden = -1;
     if (work && rank <= n) {
         memcpy(work, r, n * n * sizeof *work);

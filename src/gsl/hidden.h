@@ -11,7 +11,7 @@ struct hidden {
 
 /* r [ncontact][ncontact] = J X, X being what forces of the contacts do to the bodies: x [ncontact][ndof]. 1 if bodies are hidden,
  * 0 if not, -1 if out of memory. */
-int tribo_hidden(const struct matrix *direction, const struct matrix *metric, const double *x, const double *r,
+int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *x, const double *r,
                  struct hidden *where);
 
 #endif

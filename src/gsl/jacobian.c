@@ -55,24 +55,11 @@ static int create_dense(tribo_system *sys)
     return 0;
 }
 
-/* c += factor a b; a [rows][inner], b [inner][cols]. Skips zeros of a, of which diagonal operators have many. */
-static void multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
-{
-    for (size_t i = 0; i < rows; i++) {
-        for (size_t k = 0; k < inner; k++) {
-            const double x = factor * a[i * inner + k];
-            for (size_t j = 0; x != 0.0 && j < cols; j++) {
-                c[i * cols + j] += x * b[k * cols + j];
-            }
-        }
-    }
-}
-
 /* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
 int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
 {
     tribo_system *sys = params;
-    const size_t n = sys->ndof, m = sys->ncontact, size = 2 * n + 1;
+    const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
     sys->jacobians++;
     if (!sys->dense && !create_dense(sys)) {
         sys->status = tribo_set_message(sys->contacts, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
@@ -87,10 +74,10 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
 
     /* pull = (df/da) J,  df/dq = -pull AK,  df/du = (df/dv) J - pull AC */
     memset(d.df_dq, 0, 3 * m * n * sizeof *d.df_dq);
-    multiply_add(m, m, n, 1.0, d.df_da, d.direction, d.pull);
-    multiply_add(m, n, n, -1.0, d.pull, d.stiffness, d.df_dq);
-    multiply_add(m, n, n, -1.0, d.pull, d.damping, d.df_du);
-    multiply_add(m, m, n, 1.0, d.df_dv, d.direction, d.df_du);
+    tribo_multiply_add(m, m, n, 1.0, d.df_da, d.direction, d.pull);
+    tribo_multiply_add(m, n, n, -1.0, d.pull, d.stiffness, d.df_dq);
+    tribo_multiply_add(m, n, n, -1.0, d.pull, d.damping, d.df_du);
+    tribo_multiply_add(m, m, n, 1.0, d.df_dv, d.direction, d.df_du);
 
     /* df/dt = -(df/dv) b' + (df/da) (J load' - b'') */
     double *df_dt = sys->feq;
@@ -102,8 +89,8 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     tribo_system_loads(sys, 1, 1, -1.0, sys->dv_dt);
     tribo_system_loads(sys, 1, 2, -1.0, sys->a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
-    multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
-    multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
+    tribo_multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
+    tribo_multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
 
     memset(dfdy, 0, size * size * sizeof *dfdy);
     memset(dfdt, 0, size * sizeof *dfdt);
@@ -114,17 +101,21 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
             row[j] = -d.stiffness[i * n + j];
             row[n + j] = -d.damping[i * n + j];
         }
-        multiply_add(1, m, n, 1.0, d.response + i * m, d.df_dq, row);
-        multiply_add(1, m, n, 1.0, d.response + i * m, d.df_du, row + n);
+        tribo_multiply_add(1, m, n, 1.0, d.response + i * m, d.df_dq, row);
+        tribo_multiply_add(1, m, n, 1.0, d.response + i * m, d.df_du, row + n);
         dfdt[n + i] = d.load[i];
-        multiply_add(1, m, 1, 1.0, d.response + i * m, df_dt, dfdt + n + i);
+        tribo_multiply_add(1, m, 1, 1.0, d.response + i * m, df_dt, dfdt + n + i);
     }
-    /* power = -power f.v */
+    /* power = -sum of tally f v */
+    for (size_t i = 0; i < m; i++) {
+        sys->v[i] *= sys->tally[i];
+        sys->f[i] *= sys->tally[i];
+    }
     double *row = dfdy + 2 * n * size;
-    multiply_add(1, m, n, -sys->power, sys->v, d.df_dq, row);
-    multiply_add(1, m, n, -sys->power, sys->v, d.df_du, row + n);
-    multiply_add(1, m, n, -sys->power, sys->f, d.direction, row + n);
-    multiply_add(1, m, 1, -sys->power, sys->v, df_dt, dfdt + 2 * n);
-    multiply_add(1, m, 1, -sys->power, sys->f, sys->dv_dt, dfdt + 2 * n);
+    tribo_multiply_add(1, m, n, -1.0, sys->v, d.df_dq, row);
+    tribo_multiply_add(1, m, n, -1.0, sys->v, d.df_du, row + n);
+    tribo_multiply_add(1, m, n, -1.0, sys->f, d.direction, row + n);
+    tribo_multiply_add(1, m, 1, -1.0, sys->v, df_dt, dfdt + 2 * n);
+    tribo_multiply_add(1, m, 1, -1.0, sys->f, sys->dv_dt, dfdt + 2 * n);
     return GSL_SUCCESS;
 }

@@ -71,7 +71,9 @@ void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, c
         size_t k = 0;
         for (; k + 4 <= inner; k += 4) {
             const double f[] = {factor * row[k], factor * row[k + 1], factor * row[k + 2], factor * row[k + 3]};
-            add_four(c + i * cols, b + k * cols, cols, f);
+            if (f[0] != 0.0 || f[1] != 0.0 || f[2] != 0.0 || f[3] != 0.0) {
+                add_four(c + i * cols, b + k * cols, cols, f);
+            }
         }
         for (; k < inner; k++) {
             tribo_add(c + i * cols, factor * row[k], b + k * cols, cols);

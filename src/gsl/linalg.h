@@ -10,7 +10,8 @@ double tribo_largest(const double *x, size_t n);
 void tribo_add(double *to, double factor, const double *x, size_t n);
 int tribo_dense_finite(const double *x, size_t n);
 
-/* c [rows][cols] += factor a b, a [rows][inner], b [inner][cols]; to [cols][rows] = the transpose of a [rows][cols]. */
+/* c [rows][cols] += factor a b, a [rows][inner], b [inner][cols], skipping zeros of a, of which diagonal operators have many;
+ * to [cols][rows] = the transpose of a [rows][cols]. */
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 

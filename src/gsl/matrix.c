@@ -105,7 +105,7 @@ int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const do
     return speed_up(a);
 }
 
-int tribo_matrix_identity(struct matrix *a, size_t n)
+int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
 {
     if (!create(a, n, n, n)) {
         return 0;
@@ -113,7 +113,7 @@ int tribo_matrix_identity(struct matrix *a, size_t n)
     for (size_t i = 0; i < n; i++) {
         a->first[i + 1] = i + 1;
         a->col[i] = i;
-        a->val[i] = 1.0;
+        a->val[i] = entries ? entries[i] : 1.0;
     }
     return speed_up(a);
 }
@@ -184,6 +184,21 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
     free(by_row);
     free(start);
     return done && speed_up(a);
+}
+
+int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
+{
+    size_t *row = malloc((from->first[from->rows] + 1) * sizeof *row);
+    for (size_t i = 0; row && i < from->rows; i++) {
+        for (size_t k = from->first[i]; k < from->first[i + 1]; k++) {
+            row[k] = i;
+        }
+    }
+    memset(a, 0, sizeof *a);
+    const int done =
+        row && tribo_matrix_from_triplets(a, from->cols, from->rows, from->first[from->rows], from->col, row, from->val);
+    free(row);
+    return done;
 }
 
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
@@ -376,19 +391,19 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
     return dense;
 }
 
-int tribo_matrix_scale_rows(struct matrix *a, const double *factor)
+void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             a->val[k] *= factor[i];
         }
+        for (size_t d = 0; d < a->diagonals; d++) {
+            a->fast[d * a->rows + i] *= factor[i];
+        }
+        for (size_t j = 0; a->fast && !a->diagonals && j < a->cols; j++) {
+            a->fast[i * a->cols + j] *= factor[i];
+        }
     }
-    free(a->offset);
-    free(a->fast);
-    a->offset = NULL;
-    a->fast = NULL;
-    a->diagonals = 0;
-    return speed_up(a);
 }
 
 double tribo_matrix_get(const struct matrix *a, size_t i, size_t j)

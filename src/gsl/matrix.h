@@ -21,8 +21,9 @@ int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const do
 int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
                                const double *v);
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
-int tribo_matrix_identity(struct matrix *a, size_t n);
+int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries); /* NULL: ones */
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
+int tribo_matrix_transpose(struct matrix *a, const struct matrix *from);
 
 /* A copy of count things of so many bytes, NULL for NULL. *done becomes 0 if out of memory. */
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);
@@ -51,8 +52,8 @@ double *tribo_matrix_to_dense(const struct matrix *a);
 /* The same of the transpose: [cols][rows]. */
 double *tribo_matrix_transpose_to_dense(const struct matrix *a);
 
-/* Multiplies row i by factor[i]. 1, or 0 if out of memory. */
-int tribo_matrix_scale_rows(struct matrix *a, const double *factor);
+/* Multiplies row i by factor[i]. */
+void tribo_matrix_scale_rows(struct matrix *a, const double *factor);
 
 /* Finds an entry that is not finite, or, with symmetric, one that differs from its mirror image: 1 and its place and values, or
  * 0. */

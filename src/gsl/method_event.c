@@ -189,10 +189,10 @@ static int expand(struct event *e, double t, const double *y)
         for (size_t i = 0; i < c; i++) {
             const signed char slip = e->events.stick_slip.slip[i];
             if (slip == 1 || slip == -1) {
-                power -= slip * (falls ? falling_power(e, i, k) : sliding_power(e, i, k));
+                power += sys->tally[i] * slip * (falls ? falling_power(e, i, k) : sliding_power(e, i, k));
             }
         }
-        e->d[k + 1] = -sys->power * power / (double)(k + 1);
+        e->d[k + 1] = power / (double)(k + 1);
     }
     return TRIBO_OK;
 }
@@ -405,7 +405,7 @@ static void state(void *motion, double tau, const double *from, double *to)
     const struct event *e = motion;
     const size_t n = e->sys->ndof;
     (void)from;
-    memset(to, 0, (2 * n + 1) * sizeof *to);
+    memset(to, 0, tribo_system_dimension(e->sys) * sizeof *to);
     for (size_t k = e->order + 1; k-- > 0;) {
         for (size_t i = 0; i < n; i++) {
             to[i] = to[i] * tau + e->q[k * n + i];

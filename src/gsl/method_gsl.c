@@ -155,7 +155,7 @@ static double longest(const struct adaptive *a, const tribo_driver *drv)
  * error below rounding. */
 static int find_tolerance(const struct adaptive *a, tribo_driver *drv, double t, const double *y)
 {
-    const size_t n = drv->sys->ndof, dimension = 2 * n + 1;
+    const size_t n = drv->sys->ndof, dimension = tribo_system_dimension(drv->sys);
     const double q = drv->abstol + drv->reltol * tribo_largest(y, n), u = drv->abstol + drv->reltol * tribo_largest(y + n, n);
     for (size_t d = 0; d < n; d++) {
         a->tolerance[d] = q;

@@ -136,7 +136,7 @@ static int set_bodies(struct moreau *m, const tribo_system *sys)
 static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, double h)
 {
     struct hidden where;
-    switch (tribo_hidden(&sys->direction, &sys->metric, m->response, r, &where)) {
+    switch (tribo_hidden(&sys->direction, &sys->mass, m->response, r, &where)) {
     case 0:
         break;
     case 1:
@@ -153,8 +153,7 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-/* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B, made symmetric by the contacts'
- * weights. */
+/* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B. */
 static int prepare(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
@@ -181,7 +180,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
             for (size_t k = sys->direction.first[i]; k < sys->direction.first[i + 1]; k++) {
                 sum += sys->direction.val[k] * column[sys->direction.col[k]];
             }
-            r[i * c + j] = sum / tribo_system_weight(sys, j);
+            r[i * c + j] = sum;
         }
     }
     status = set_operator(m, sys, r, h);
@@ -205,9 +204,6 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_revision(sys->contacts);
     tribo_get_limit(sys->contacts, m->limit);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->limit[i] *= tribo_system_weight(sys, i);
-    }
     tribo_set_limit(m->contacts, m->limit);
     if (m->settings != revision) {
         tribo_get_static(sys->contacts, m->ratio, m->velocity);
@@ -264,7 +260,6 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
         return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(m->contacts));
     }
     for (size_t i = 0; i < c; i++) {
-        s->f[i] /= tribo_system_weight(sys, i);
         for (size_t d = 0; d < n; d++) {
             s->u[d] += h * s->f[i] * m->response[i * n + d];
         }

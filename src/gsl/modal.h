@@ -29,7 +29,7 @@ struct modal {
 
     size_t moving, *dof; /* degrees of freedom that move */
     size_t modes;
-    double *phi, *psi; /* [modes][moving] and W phi */
+    double *phi, *psi; /* [modes][moving] and M phi */
     double *omega2, *damping;
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
     unsigned char *drifts; /* [modes] omega = 0 and no damping */

@@ -33,7 +33,7 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
             b->rest[b->h->rest++] = i;
         }
     }
-    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->metric, b->rest, b->h->rest, NULL)) {
+    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->mass, b->rest, b->h->rest, NULL)) {
         return 0;
     }
     if (b->ties.rank < b->h->rest) {
@@ -47,19 +47,21 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
 
-/* K or C: as given, or W times what accelerates. */
+/* K or C: as given, or M times what accelerates. */
 static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
                                          struct matrix *own)
 {
-    if (given->rows || !sys->metric.rows) {
+    if (given->rows || !sys->mass.rows) {
         return given->rows ? given : accelerates;
     }
     double *mass = malloc(sys->ndof * sizeof *mass);
     for (size_t d = 0; mass && d < sys->ndof; d++) {
-        mass[d] = tribo_matrix_get(&sys->metric, d, d);
+        mass[d] = tribo_matrix_get(&sys->mass, d, d);
     }
-    int done = mass && tribo_matrix_copy(own, accelerates);
-    done = done && tribo_matrix_scale_rows(own, mass);
+    const int done = mass && tribo_matrix_copy(own, accelerates);
+    if (done) {
+        tribo_matrix_scale_rows(own, mass);
+    }
     free(mass);
     return done ? own : NULL;
 }
@@ -72,7 +74,7 @@ static int find_forces(struct modal_build *b)
     return b->stiffness && (b->damping || !sys->damping.rows);
 }
 
-/* Factor of Z'WZ. Returns a status. */
+/* Factor of Z'MZ. Returns a status. */
 static int factorize_mass(struct modal_build *b, const struct matrix *z, struct cholesky *c)
 {
     const size_t m = z->cols;
@@ -80,7 +82,7 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     struct matrix w = {0};
     size_t where = 0;
     int status = TRIBO_ERR_MEMORY;
-    if (mass && tribo_matrix_congruent(&b->sys->metric, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
+    if (mass && tribo_matrix_congruent(&b->sys->mass, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
         status = tribo_cholesky_create(c, &w, &where, &pivot);
     }
     tribo_matrix_free(&w);
@@ -135,7 +137,7 @@ static int find_modes(struct modal_build *b)
     return !status;
 }
 
-/* W phi, K phi and C phi. */
+/* M phi, K phi and C phi. */
 static int multiply_modes(struct modal_build *b)
 {
     const size_t n = b->n, m = b->h->modes;
@@ -147,7 +149,7 @@ static int multiply_modes(struct modal_build *b)
     }
     for (size_t k = 0; k < m; k++) {
         const double *phi = b->phi + k * n;
-        tribo_modal_add_mass(b, 1.0, phi, b->psi + k * n);
+        tribo_system_add_mass(b->sys, 1.0, phi, b->psi + k * n);
         tribo_matrix_multiply_add(b->stiffness, 1.0, phi, b->k_phi + k * n);
         if (b->damping) {
             tribo_matrix_multiply_add(b->damping, 1.0, phi, b->c_phi + k * n);

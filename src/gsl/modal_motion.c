@@ -228,18 +228,19 @@ static double dissipated(const struct modal_motion *x, const tribo_system *sys, 
         for (size_t e = j->first[i]; x->slip[i] && e < j->first[i + 1]; e++) {
             way += j->val[e] * x->dq[j->col[e]];
         }
-        energy -= x->force[i] * way;
+        energy -= sys->tally[i] * x->force[i] * way;
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
         for (size_t e = 0; w->moves_base && e < w->count; e++) {
+            const size_t i = w->index[e];
             const double c = w->cosine[e], d = w->sine[e];
             const double way =
                 w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
-            energy += x->slip[w->index[e]] ? x->force[w->index[e]] * way : 0.0;
+            energy += x->slip[i] ? sys->tally[i] * x->force[i] * way : 0.0;
         }
     }
-    return sys->power * energy;
+    return energy;
 }
 
 /* eta (into now) and eta' (into work) where go() was. */
@@ -282,7 +283,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     amplitudes(x, sys);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
-        memcpy(to, from, (2 * n + 1) * sizeof *to);
+        memcpy(to, from, tribo_system_dimension(sys) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         double dq = h->y0[i] * tau, u = h->y0[i];
@@ -336,9 +337,8 @@ static void find_constant(struct modal_motion *x, const tribo_system *sys, const
     for (size_t o = 0; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         const double push = o < h->sliding ? x->force[out->contact] : -offset(sys, out->contact, y);
-        const double weight = tribo_system_weight(sys, out->contact);
         for (size_t k = 0; k < m; k++) {
-            x->now[k] += weight * push * out->on_rate[k];
+            x->now[k] += push * out->on_rate[k];
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {

@@ -129,7 +129,7 @@ static int output_parting(struct modal_build *b, struct output *all, size_t *use
     return 1;
 }
 
-/* What the held contacts carry, J_I'f = K q + C q' + W q'' - W load: by modes, by harmonics, and per unit of time. */
+/* What the held contacts carry, J_I'f = K q + C q' + M q'' - M load: by modes, by harmonics, and per unit of time. */
 struct holding {
     double *by_q, *by_u;     /* [modes][rest] */
     double *wave_r, *wave_i; /* [harmonics][rest] */
@@ -137,7 +137,7 @@ struct holding {
     double *force[2], *load; /* [ndof] workspace */
 };
 
-/* Mode k, with K phi_k = omega_k^2 W phi_k + J_I'f, and so with damping. */
+/* Mode k, with K phi_k = omega_k^2 M phi_k + J_I'f, and so with damping. */
 static void hold_mode(const struct modal_build *b, struct holding *f, size_t k)
 {
     const struct modal *h = b->h;
@@ -145,14 +145,14 @@ static void hold_mode(const struct modal_build *b, struct holding *f, size_t k)
     const double *psi = b->psi + k * n;
     memcpy(f->load, b->k_phi + k * n, n * sizeof *f->load);
     tribo_add(f->load, -h->omega2[k], psi, n);
-    tribo_modal_hold(b, f->load, f->by_q + k * s);
+    tribo_constraints_react(&b->ties, f->load, f->by_q + k * s);
     if (b->damping) {
         memcpy(f->load, b->c_phi + k * n, n * sizeof *f->load);
         for (size_t l = 0; h->coupling && l < h->modes; l++) {
             tribo_add(f->load, -h->coupling[l * h->modes + k], b->psi + l * n, n);
         }
         tribo_add(f->load, h->coupling ? 0.0 : -h->damping[k], psi, n);
-        tribo_modal_hold(b, f->load, f->by_u + k * s);
+        tribo_constraints_react(&b->ties, f->load, f->by_u + k * s);
     }
 }
 
@@ -164,7 +164,7 @@ static void hold_load(const struct modal_build *b, struct holding *f, const stru
         for (size_t e = 0; e < wave->count; e++) {
             f->load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
         }
-        tribo_modal_add_mass(b, 1.0, f->load, f->force[part]);
+        tribo_system_add_mass(b->sys, 1.0, f->load, f->force[part]);
     }
 }
 
@@ -177,7 +177,7 @@ static void hold_motion(const struct modal_build *b, struct holding *f, double o
             tribo_matrix_multiply_add(b->damping, 1.0, y[part], f->force[part]);
         }
         tribo_matrix_multiply_add(b->stiffness, turn / omega, y[part], f->force[1 - part]);
-        tribo_modal_add_mass(b, -turn * omega, y[part], f->force[1 - part]);
+        tribo_system_add_mass(b->sys, -turn * omega, y[part], f->force[1 - part]);
     }
 }
 

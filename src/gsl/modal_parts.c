@@ -59,27 +59,10 @@ size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
 
 /* ----------------------------------------------------------------------------------------------------- the contacts that hold */
 
-void tribo_modal_add_mass(const struct modal_build *b, double factor, const double *x, double *to)
-{
-    if (b->sys->metric.rows) {
-        tribo_matrix_multiply_add(&b->sys->metric, factor, x, to);
-    } else {
-        tribo_add(to, factor, x, b->n);
-    }
-}
-
-void tribo_modal_hold(const struct modal_build *b, const double *force, double *f)
-{
-    tribo_constraints_react(&b->ties, force, f);
-    for (size_t p = 0; p < b->h->rest; p++) {
-        f[p] /= tribo_system_weight(b->sys, b->rest[p]);
-    }
-}
-
 void tribo_modal_react(const struct modal_build *b, double *force, double *f)
 {
     for (size_t k = 0; k < b->h->modes; k++) {
         tribo_add(force, -tribo_dot(b->phi + k * b->n, force, b->n), b->psi + k * b->n, b->n);
     }
-    tribo_modal_hold(b, force, f);
+    tribo_constraints_react(&b->ties, force, f);
 }

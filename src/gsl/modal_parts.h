@@ -14,7 +14,7 @@ struct modal_build {
     struct constraints ties;                  /* and what they tie together */
     const struct matrix *stiffness, *damping; /* K and C, or NULL */
     struct matrix own_stiffness, own_damping; /* where the system has only AK and AC */
-    double *phi, *psi, *k_phi, *c_phi;        /* and W phi, K phi, C phi */
+    double *phi, *psi, *k_phi, *c_phi;        /* and M phi, K phi, C phi */
     double *yr, *yi;                          /* [harmonics][ndof] */
     double *y0;                               /* [ndof] velocities from belts of constant speed */
     void *scratch;                            /* list of what is freed at the end */
@@ -30,12 +30,7 @@ double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
 void tribo_modal_give_back(void *list);
 
-/* to [ndof] += factor W x. */
-void tribo_modal_add_mass(const struct modal_build *b, double factor, const double *x, double *to);
-
-/* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. The other one takes out of force first what moves the
- * modes instead. */
-void tribo_modal_hold(const struct modal_build *b, const double *force, double *f);
+/* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
 /* The exponents of eta. Returns a status. */

@@ -44,7 +44,7 @@ static int check_operator(const struct model *m, const tribo_system *sys, const 
 {
     struct hidden where;
     double *x = tribo_matrix_transpose_to_dense(&sys->response);
-    const int hidden = x ? tribo_hidden(&sys->direction, &sys->metric, x, r, &where) : -1;
+    const int hidden = x ? tribo_hidden(&sys->direction, &sys->mass, x, r, &where) : -1;
     free(x);
     if (hidden < 0) {
         return tribo_model_no_memory(m);

@@ -20,6 +20,10 @@ int tribo_model_fail(const struct model *m, int status, const char *format, ...)
     ;
 int tribo_model_no_memory(const struct model *m);
 
+/* structure.c: builds the system, and frees the matrices of the model in any case. */
+int tribo_model_build(struct model *m, tribo_system **sys);
+void tribo_model_free(struct model *m);
+
 /* The Cholesky factor of the mass matrix, or an error. */
 int tribo_model_factorize(const struct model *m, struct cholesky *c);
 

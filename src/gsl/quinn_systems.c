@@ -1,78 +1,19 @@
-/* Quinn's three reference systems, all with M = I. */
-#include <math.h>
+/* Quinn's three reference systems, as structures like any other. */
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "system.h"
+#include "model.h"
 
-/* A matrix under construction. */
-struct list {
-    size_t count;
-    size_t *i, *j;
-    double *v;
-};
-
-static int list_create(struct list *l, size_t room)
+/* Hands the system over, or destroys it. */
+static int finish(tribo_system **sys, tribo_system *made, int status)
 {
-    l->count = 0;
-    l->i = malloc(room * sizeof *l->i);
-    l->j = malloc(room * sizeof *l->j);
-    l->v = malloc(room * sizeof *l->v);
-    return l->i && l->j && l->v;
-}
-
-static void list_free(struct list *l)
-{
-    free(l->i);
-    free(l->j);
-    free(l->v);
-}
-
-static void put(struct list *l, size_t i, size_t j, double v)
-{
-    l->i[l->count] = i;
-    l->j[l->count] = j;
-    l->v[l->count++] = v;
-}
-
-/* A system of unit masses with these stiffnesses and directions, one contact a row; and its limits. */
-static int build(tribo_system **sys, size_t n, const struct list *stiffness, const struct list *direction, const double *limit)
-{
-    struct matrix k, c = {0}, j, b;
-    const int done[] = {
-        tribo_matrix_from_triplets(&k, n, n, stiffness->count, stiffness->i, stiffness->j, stiffness->v),
-        tribo_matrix_from_triplets(&j, n, n, direction->count, direction->i, direction->j, direction->v),
-        tribo_matrix_from_triplets(&b, n, n, direction->count, direction->j, direction->i, direction->v),
-    };
-    if (!done[0] || !done[1] || !done[2]) {
-        tribo_matrix_free(&k);
-        tribo_matrix_free(&j);
-        tribo_matrix_free(&b);
-        return TRIBO_ERR_MEMORY;
-    }
-    double *ones = malloc(n * sizeof *ones);
-    tribo_system *s;
-    int status = tribo_system_build(&s, n, n, &k, &c, &j, &b);
-    if (status || !ones) {
-        tribo_system_destroy(status ? NULL : s);
-        free(ones);
-        return TRIBO_ERR_MEMORY;
-    }
-    for (size_t i = 0; i < n; i++) {
-        ones[i] = 1.0;
-    }
-    s->loads_accelerate = 1;
-    status = tribo_set_operator_mass(s->contacts, n, ones, s->direction.first, s->direction.col, s->direction.val);
-    free(ones);
-    if (!status) {
-        status = tribo_set_limit(s->contacts, limit);
-    }
     if (status) {
-        tribo_system_destroy(s);
-        return status;
+        tribo_system_destroy(made);
+    } else {
+        *sys = made;
     }
-    *sys = s;
-    return TRIBO_OK;
+    return status;
 }
 
 int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega)
@@ -80,55 +21,70 @@ int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, doub
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    size_t zero = 0;
-    double one = 1.0;
-    const struct list unit = {1, &zero, &zero, &one};
-    tribo_system *s;
-    if (!isfinite(alpha)) {
-        return TRIBO_ERR_NOT_FINITE;
-    }
-    int status = build(&s, 1, &unit, &unit, &limit);
-    if (status) {
-        return status;
-    }
-    status = tribo_system_add_load(s, omega, NULL, &alpha);
-    if (status) {
-        tribo_system_destroy(s);
-        return status;
-    }
-    *sys = s;
-    return TRIBO_OK;
+    const double one = 1.0;
+    tribo_system *s = NULL;
+    int status = tribo_system_linear(&s, 1, 1, &one, NULL, &one, &one, 0, NULL, 0);
+    status = status ? status : tribo_set_limit(s->contacts, &limit);
+    status = status ? status : tribo_system_add_load(s, omega, NULL, &alpha);
+    return finish(sys, s, status);
 }
 
-/* Multiplied by n, the chain's equations have unit masses, forces f_i, and n^2 for every spring. */
-static void chain_stiffness(struct list *k, size_t n)
+int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega)
 {
-    const double spring = (double)n * (double)n;
-    put(k, 0, 0, spring);
-    put(k, 0, 1, -spring);
-    for (size_t i = 1; i + 1 < n; i++) {
-        put(k, i, i - 1, -spring);
-        put(k, i, i, 2.0 * spring);
-        put(k, i, i + 1, -spring);
+    if (!sys) {
+        return TRIBO_ERR_NULL;
     }
-    put(k, n - 1, n - 2, -4.0 / 3.0 * spring);
-    put(k, n - 1, n - 1, 4.0 * spring);
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1.0, 0.0, 0.0, kappa}, direction[] = {1.0, 0.0, -1.0, 1.0};
+    const double limit[] = {limit1, limit2}, motion[] = {speed, 0.0};
+    tribo_system *s = NULL;
+    int status = tribo_system_linear(&s, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0);
+    status = status ? status : tribo_set_limit(s->contacts, limit);
+    status = status ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
+    return finish(sys, s, status);
 }
 
-/* With 3/4 of the last row the stiffness is symmetric. */
-static int set_metric(tribo_system *sys, size_t n)
+/* ----------------------------------------------------------------------------------------------------------------- chain */
+
+/* Springs of stiffness n between neighbours, and one of 2 n that ties the last block to the ground. */
+static int chain_stiffness(struct matrix *k, size_t n)
 {
-    double *weight = malloc(n * sizeof *weight), pivot;
-    size_t where;
-    int status = weight && tribo_matrix_identity(&sys->metric, n) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    for (size_t i = 0; !status && i < n; i++) {
-        weight[i] = i + 1 < n ? 1.0 : 0.75;
+    const double spring = (double)n;
+    size_t *row = malloc(3 * n * sizeof *row), *column = malloc(3 * n * sizeof *column), count = 0;
+    double *value = malloc(3 * n * sizeof *value);
+    int done = row && column && value;
+    for (size_t i = 0; done && i < n; i++) {
+        for (size_t j = i ? i - 1 : 0; j < n && j <= i + 1; j++) {
+            row[count] = i;
+            column[count] = j;
+            value[count++] = j != i ? -spring : i == 0 ? spring : i + 1 < n ? 2.0 * spring : 3.0 * spring;
+        }
     }
-    if (!status && !tribo_matrix_scale_rows(&sys->metric, weight)) {
-        status = TRIBO_ERR_MEMORY;
+    done = done && tribo_matrix_from_triplets(k, n, n, count, row, column, value);
+    free(row);
+    free(column);
+    free(value);
+    return done;
+}
+
+/* The last of the paper's equations is 4/3 of one that makes the stiffness symmetric: its block has only 3/4 of the mass and of
+ * the friction of the others. */
+static void share_out(double *each, size_t n, double whole)
+{
+    for (size_t i = 0; i < n; i++) {
+        each[i] = (i + 1 < n ? 1.0 : 0.75) * whole / (double)n;
     }
-    free(weight);
-    return status ? status : tribo_cholesky_create(&sys->factor, &sys->metric, &where, &pivot);
+}
+
+static int build_chain(tribo_system **sys, size_t n, double *mass)
+{
+    struct model m = {.ndof = n, .ncontact = n};
+    share_out(mass, n, 1.0);
+    if (tribo_matrix_diagonal(&m.mass, n, mass) && tribo_matrix_diagonal(&m.direction, n, NULL) &&
+        chain_stiffness(&m.stiffness, n)) {
+        return tribo_model_build(&m, sys);
+    }
+    tribo_model_free(&m);
+    return TRIBO_ERR_MEMORY;
 }
 
 int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha, double omega)
@@ -139,64 +95,19 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
     if (n < 2 || n > SIZE_MAX / 1024) {
         return TRIBO_ERR_SIZE;
     }
-    if (!isfinite(alpha)) {
-        return TRIBO_ERR_NOT_FINITE;
-    }
-    struct list k, j;
-    double *limits = malloc(n * sizeof *limits), *load = calloc(n, sizeof *load);
-    const int lists[] = {list_create(&k, 3 * n), list_create(&j, n)};
-    int status = TRIBO_ERR_MEMORY;
     tribo_system *s = NULL;
-    if (limits && load && lists[0] && lists[1]) {
-        chain_stiffness(&k, n);
-        for (size_t i = 0; i < n; i++) {
-            put(&j, i, i, 1.0);
-            limits[i] = limit;
-        }
-        load[0] = (double)n * alpha;
-        status = build(&s, n, &k, &j, limits);
-        if (!status) {
-            s->power = 1.0 / (double)n;
-            status = set_metric(s, n);
-        }
-        if (!status) {
-            status = tribo_system_add_load(s, omega, NULL, load);
-        }
+    double *each = malloc(n * sizeof *each); /* of masses, limits, loads */
+    int status = each ? build_chain(&s, n, each) : TRIBO_ERR_MEMORY;
+    if (!status) {
+        s->tally[n - 1] = 4.0 / 3.0; /* the paper counts all friction in full */
+        share_out(each, n, limit);
+        status = tribo_set_limit(s->contacts, each);
     }
-    list_free(&k);
-    list_free(&j);
-    free(limits);
-    free(load);
-    if (status) {
-        tribo_system_destroy(s);
-        return status;
+    if (!status) {
+        memset(each, 0, n * sizeof *each);
+        each[0] = alpha;
+        status = tribo_system_add_load(s, omega, NULL, each);
     }
-    *sys = s;
-    return TRIBO_OK;
-}
-
-int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega)
-{
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    if (!isfinite(kappa) || !isfinite(speed)) {
-        return TRIBO_ERR_NOT_FINITE;
-    }
-    size_t k_at[] = {0, 1}, j_row[] = {0, 1, 1}, j_col[] = {0, 0, 1};
-    double k_value[] = {1.0, kappa}, j_value[] = {1.0, -1.0, 1.0};
-    const struct list k = {2, k_at, k_at, k_value}, j = {3, j_row, j_col, j_value};
-    const double limits[] = {limit1, limit2}, motion[] = {speed, 0.0};
-    tribo_system *s;
-    int status = build(&s, 2, &k, &j, limits);
-    if (status) {
-        return status;
-    }
-    status = tribo_system_add_base_motion(s, omega, NULL, motion);
-    if (status) {
-        tribo_system_destroy(s);
-        return status;
-    }
-    *sys = s;
-    return TRIBO_OK;
+    free(each);
+    return finish(sys, s, status);
 }

@@ -56,16 +56,13 @@ static int find_modes(const struct model *m, double *modes, double *omega)
 /* a = diag(factor x), or of the squares of x; zeroed if out of memory. */
 static int diagonal_matrix(struct matrix *a, const double *x, double factor, int square, size_t n)
 {
-    double *scale = malloc(n * sizeof *scale);
-    int done = scale != NULL && tribo_matrix_identity(a, n);
-    for (size_t i = 0; done && i < n; i++) {
-        scale[i] = factor * x[i] * (square ? x[i] : 1.0);
+    double *entries = malloc(n * sizeof *entries);
+    for (size_t i = 0; entries && i < n; i++) {
+        entries[i] = factor * x[i] * (square ? x[i] : 1.0);
     }
-    if (!done || !tribo_matrix_scale_rows(a, scale)) {
-        *a = (struct matrix){0};
-        done = 0;
-    }
-    free(scale);
+    *a = (struct matrix){0};
+    const int done = entries && tribo_matrix_diagonal(a, n, entries);
+    free(entries);
     return done;
 }
 

@@ -1,5 +1,5 @@
-/* Lanczos' method for the highest eigenvalue, in the metric W in which the matrices are symmetric. Contacts at rest only lower
- * it. */
+/* Lanczos' method for the highest eigenvalue, in the metric of the mass matrix, in which AK is symmetric. Contacts at rest only
+ * lower it. */
 #include "spectrum.h"
 #include "../common/real.h"
 
@@ -17,18 +17,14 @@ struct lanczos {
     const tribo_system *sys;
     double stiffness, damping;
     size_t n;
-    double *v, *wv, *before, *next, *w_next; /* [n] a vector, W times it, the one before, the next, W times that */
+    double *v, *mv, *before, *next, *m_next; /* [n] a vector, M times it, the one before, the next, M times that */
     double *alpha, *beta;                    /* [MOST_VECTORS] */
 };
 
-static void apply_metric(const tribo_system *sys, const double *x, double *y)
+static void apply_mass(const tribo_system *sys, const double *x, double *y)
 {
-    if (sys->metric.rows == 0) {
-        memcpy(y, x, sys->ndof * sizeof *y);
-        return;
-    }
     memset(y, 0, sys->ndof * sizeof *y);
-    tribo_matrix_multiply_add(&sys->metric, 1.0, x, y);
+    tribo_system_add_mass(sys, 1.0, x, y);
 }
 
 static void apply(const struct lanczos *l, const double *x, double *y)
@@ -50,7 +46,7 @@ static void scatter(double *x, size_t n, uint64_t seed)
     }
 }
 
-/* Symmetric to rounding: x'W AC y is y'W AC x for two vectors that nothing is special about. */
+/* Symmetric to rounding: x'M AC y is y'M AC x for two vectors that nothing is special about. */
 static int symmetric_damping(struct lanczos *l)
 {
     const tribo_system *sys = l->sys;
@@ -60,10 +56,10 @@ static int symmetric_damping(struct lanczos *l)
     for (int k = 0; k < 2; k++) {
         memset(l->next, 0, l->n * sizeof *l->next);
         tribo_matrix_multiply_add(&sys->damping, 1.0, k ? l->v : l->before, l->next);
-        apply_metric(sys, l->next, l->w_next);
-        sum[k] = tribo_dot(k ? l->before : l->v, l->w_next, l->n);
+        apply_mass(sys, l->next, l->m_next);
+        sum[k] = tribo_dot(k ? l->before : l->v, l->m_next, l->n);
         for (size_t i = 0; i < l->n; i++) {
-            size += fabs(l->w_next[i]);
+            size += fabs(l->m_next[i]);
         }
     }
     return fabs(sum[0] - sum[1]) <= 1e-10 * size;
@@ -106,12 +102,12 @@ static int extend(struct lanczos *l, size_t k, double size)
 {
     const size_t n = l->n;
     apply(l, l->v, l->next);
-    l->alpha[k] = tribo_dot(l->wv, l->next, n);
+    l->alpha[k] = tribo_dot(l->mv, l->next, n);
     for (size_t i = 0; i < n; i++) {
         l->next[i] -= l->alpha[k] * l->v[i] + (k ? l->beta[k - 1] * l->before[i] : 0.0);
     }
-    apply_metric(l->sys, l->next, l->w_next);
-    const double square = tribo_dot(l->next, l->w_next, n);
+    apply_mass(l->sys, l->next, l->m_next);
+    const double square = tribo_dot(l->next, l->m_next, n);
     l->beta[k] = square > 0.0 ? sqrt(square) : 0.0;
     if (!(l->beta[k] > 1e-13 * size)) {
         return 0;
@@ -119,7 +115,7 @@ static int extend(struct lanczos *l, size_t k, double size)
     for (size_t i = 0; i < n; i++) {
         l->before[i] = l->v[i];
         l->v[i] = l->next[i] / l->beta[k];
-        l->wv[i] = l->w_next[i] / l->beta[k];
+        l->mv[i] = l->m_next[i] / l->beta[k];
     }
     return 1;
 }
@@ -129,11 +125,11 @@ static double iterate(struct lanczos *l)
     const size_t most = l->n < MOST_VECTORS ? l->n : MOST_VECTORS;
     double value = 0.0, last = -HUGE_VAL, size = 0.0;
     scatter(l->v, l->n, 3);
-    apply_metric(l->sys, l->v, l->wv);
-    const double length = sqrt(tribo_dot(l->v, l->wv, l->n));
+    apply_mass(l->sys, l->v, l->mv);
+    const double length = sqrt(tribo_dot(l->v, l->mv, l->n));
     for (size_t i = 0; i < l->n; i++) {
         l->v[i] /= length;
-        l->wv[i] /= length;
+        l->mv[i] /= length;
         l->before[i] = 0.0;
     }
     for (size_t k = 1, check = 8; k <= most; k++) {
@@ -152,24 +148,10 @@ static double iterate(struct lanczos *l)
     return value * (1.0 + CLOSE);
 }
 
-/* What no eigenvalue exceeds. */
-static double row_sum(const struct matrix *a)
-{
-    double most = 0.0;
-    for (size_t i = 0; i < a->rows; i++) {
-        double sum = 0.0;
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            sum += fabs(a->val[k]);
-        }
-        most = greater(most, sum);
-    }
-    return most;
-}
-
 int tribo_system_highest(const tribo_system *sys, double stiffness, double damping, double *value)
 {
     const size_t n = sys->ndof;
-    const double bound = stiffness * row_sum(&sys->stiffness) + damping * row_sum(&sys->damping);
+    const double bound = stiffness * tribo_matrix_row_sum(&sys->stiffness) + damping * tribo_matrix_row_sum(&sys->damping);
     *value = bound;
     if (bound == 0.0 || !isfinite(bound)) {
         return TRIBO_OK;
@@ -180,10 +162,10 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the frequencies of %zu degrees of freedom", n);
     }
     l.v = work;
-    l.wv = work + n;
+    l.mv = work + n;
     l.before = work + 2 * n;
     l.next = work + 3 * n;
-    l.w_next = work + 4 * n;
+    l.m_next = work + 4 * n;
     l.alpha = work + 5 * n;
     l.beta = l.alpha + MOST_VECTORS;
     if (sys->damping.rows == 0 || !symmetric_damping(&l)) {

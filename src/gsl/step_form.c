@@ -56,9 +56,9 @@ double tribo_step_form_power(const tribo_system *sys, const double *f, const dou
 {
     double sum = 0.0;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        sum += 0.5 * f[i] * (before[i] + after[i]);
+        sum -= sys->tally[i] * f[i] * (before[i] + after[i]);
     }
-    return -sys->power * sum;
+    return 0.5 * sum;
 }
 
 int tribo_step_form_grew(tribo_driver *drv, double t)

@@ -1,12 +1,14 @@
-/* How it is decided. Contacts without velocity are at rest for now, and
+/* How it is decided, at an instant:
  *
+ *     contacts without velocity, or with none left in the direction of their slip, are at rest
  *     repeat
- *         forces from the problem with bounds, min 1/2 f'Rf + a'f, |f| <= limit for those at rest
- *         those of them slide whose force is at the limit, and whose acceleration is more than rounding
- *         if others are just at their limit: the same problem a moment later tells whether they slide
- *     until none does
- *
- * At last an independent set of those at rest is chosen to hold. */
+ *         find the forces: min 1/2 f'Rf + a'f, with |f| <= limit at rest, and f at its limit where a contact slides
+ *         contacts at rest slide if their force is at the limit and their acceleration is more than rounding
+ *         if none does, but some are just at their limit: solve for a moment later, and contacts at their limit then slide
+ *         if still none does: of the forces that hold all at rest, the one most beyond its limit makes its contact slide
+ *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on
+ *     until none begins to slide
+ *     an independent set of those at rest holds: it keeps all of them where they are */
 #include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"
@@ -180,7 +182,7 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t re
         const signed char tied = m->tied[m->at[p]];
         m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
     }
-    const int done = tribo_constraints_create(&c, &sys->direction, &sys->metric, m->at, rest, m->last);
+    const int done = tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
     for (size_t k = done ? c.rank : rest; k < rest; k++) {
         m->holds[m->at[c.order[k]]] = 0;
     }

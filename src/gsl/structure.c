@@ -33,7 +33,7 @@ static int check(const struct model *m)
 /* The system owns the mass matrix and its factor from now on. */
 static void give_mass(struct model *m, tribo_system *sys, struct cholesky *c)
 {
-    sys->metric = m->mass;
+    sys->mass = m->mass;
     sys->factor = *c;
     m->mass = (struct matrix){0};
     *c = (struct cholesky){0};
@@ -47,20 +47,16 @@ static int build_diagonal(struct model *m, tribo_system **sys)
     if (status) {
         return status;
     }
-    double *inverse = malloc(n * sizeof *inverse), *entries = tribo_matrix_transpose_to_dense(&m->direction);
+    double *inverse = malloc(n * sizeof *inverse);
     struct matrix b = {0};
-    status = inverse && entries && tribo_matrix_from_dense(&b, n, m->ncontact, entries) ? TRIBO_OK : tribo_model_no_memory(m);
-    free(entries);
-    for (size_t i = 0; !status && i < n; i++) {
-        inverse[i] = 1.0 / tribo_matrix_get(&m->mass, i, i);
-    }
-    if (!status && !(tribo_matrix_scale_rows(&b, inverse) && tribo_matrix_scale_rows(&m->stiffness, inverse) &&
-                     (!m->damping.rows || tribo_matrix_scale_rows(&m->damping, inverse)))) {
-        status = tribo_model_no_memory(m);
-    }
-    if (status) {
-        tribo_matrix_free(&b);
-    } else {
+    status = inverse && tribo_matrix_transpose(&b, &m->direction) ? TRIBO_OK : tribo_model_no_memory(m);
+    if (!status) {
+        for (size_t i = 0; i < n; i++) {
+            inverse[i] = 1.0 / tribo_matrix_get(&m->mass, i, i);
+        }
+        tribo_matrix_scale_rows(&b, inverse);
+        tribo_matrix_scale_rows(&m->stiffness, inverse);
+        tribo_matrix_scale_rows(&m->damping, inverse);
         status = tribo_system_build(sys, n, m->ncontact, &m->stiffness, &m->damping, &m->direction, &b);
         m->stiffness = m->damping = m->direction = (struct matrix){0};
         status = status ? tribo_model_no_memory(m) : TRIBO_OK;
@@ -129,7 +125,7 @@ static int build_solved(struct model *m, tribo_system **sys)
     return status;
 }
 
-static void model_free(struct model *m)
+void tribo_model_free(struct model *m)
 {
     tribo_matrix_free(&m->mass);
     tribo_matrix_free(&m->damping);
@@ -137,8 +133,7 @@ static void model_free(struct model *m)
     tribo_matrix_free(&m->direction);
 }
 
-/* Builds the system from the model, whose matrices it frees. */
-static int build(tribo_system **sys, struct model *m)
+int tribo_model_build(struct model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
     int status = check(m);
@@ -147,7 +142,7 @@ static int build(tribo_system **sys, struct model *m)
                  : tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, &s)
                                                       : build_solved(m, &s);
     }
-    model_free(m);
+    tribo_model_free(m);
     if (status) {
         tribo_system_destroy(s);
         return status;
@@ -188,10 +183,10 @@ int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const 
     if (!tribo_matrix_from_dense(&m.mass, ndof, ndof, mass) || !tribo_matrix_from_dense(&m.stiffness, ndof, ndof, stiffness) ||
         !tribo_matrix_from_dense(&m.direction, ncontact, ndof, direction) ||
         (damping && !tribo_matrix_from_dense(&m.damping, ndof, ndof, damping))) {
-        model_free(&m);
+        tribo_model_free(&m);
         return tribo_model_no_memory(&m);
     }
-    return build(sys, &m);
+    return tribo_model_build(&m, sys);
 }
 
 static int check_square(const struct model *m, const char *name, const gsl_spmatrix *a, size_t rows)
@@ -226,8 +221,8 @@ int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, con
     }
     if (!tribo_matrix_from_sparse(&m.mass, mass) || !tribo_matrix_from_sparse(&m.stiffness, stiffness) ||
         !tribo_matrix_from_sparse(&m.direction, direction) || (damping && !tribo_matrix_from_sparse(&m.damping, damping))) {
-        model_free(&m);
+        tribo_model_free(&m);
         return tribo_model_no_memory(&m);
     }
-    return build(sys, &m);
+    return tribo_model_build(&m, sys);
 }

@@ -24,7 +24,8 @@ int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
     if (!y) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
     }
-    for (size_t i = 0; i < 2 * sys->ndof + 1; i++) {
+    const size_t dimension = tribo_system_dimension(sys);
+    for (size_t i = 0; i < dimension; i++) {
         if (!isfinite(y[i])) {
             return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g is not finite", i, y[i]);
         }
@@ -69,6 +70,15 @@ const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------------ structure */
 
+void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to)
+{
+    if (sys->mass.rows) {
+        tribo_matrix_multiply_add(&sys->mass, factor, x, to);
+    } else {
+        tribo_add(to, factor, x, sys->ndof);
+    }
+}
+
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to)
 {
     if (sys->modes) {
@@ -87,8 +97,8 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         tribo_half_solve(&sys->factor, to, 1);
         tribo_half_solve_back(&sys->factor, to, 1);
     }
-    for (size_t i = 0; !sys->factor.factor && !sys->loads_accelerate && i < sys->ndof; i++) {
-        to[i] *= 1.0 / tribo_matrix_get(&sys->metric, i, i);
+    for (size_t i = 0; !sys->factor.factor && i < sys->ndof; i++) {
+        to[i] *= 1.0 / tribo_matrix_get(&sys->mass, i, i);
     }
 }
 
@@ -109,12 +119,6 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
         sum += a->val[k] * tribo_matrix_get(&sys->response, a->col[k], j);
     }
     return sum;
-}
-
-double tribo_system_weight(const tribo_system *sys, size_t i)
-{
-    /* only the chain has a metric of its own, and there contact i is on degree of freedom i */
-    return sys->loads_accelerate && sys->metric.rows ? tribo_matrix_get(&sys->metric, i, i) : 1.0;
 }
 
 /* Which of its two degrees of freedom a contact at rest moves by rounding of the other: the second, but no heavy one by a light

@@ -28,7 +28,6 @@ struct table {
 struct tribo_system {
     size_t ndof, ncontact;
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
-    double power;                                          /* dissipated power is -power * f.v */
     tribo_context *contacts;
 
     size_t harmonics, base_harmonics; /* the latter are those that move the base */
@@ -41,22 +40,21 @@ struct tribo_system {
     size_t ours, seen;   /* of the context's revision: how much the table added, and where it left it */
     double time, low;    /* that cos_t and sin_t belong to (NaN: none yet), and what rounding left of it (below) */
 
-    /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: W AK and W AC are
+    /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: M AK and M AC are
      * K and C to rounding of every entry. */
     struct matrix elastic, viscous;
 
-    /* The metric W, in which AK is symmetric: the mass matrix, but for chain and reduced systems. No rows: the identity. */
-    struct matrix metric;
-    struct cholesky factor; /* of W */
+    struct matrix mass;     /* no rows: the identity, of reduced systems */
+    struct cholesky factor; /* of it */
 
-    /* How forces on the given degrees of freedom become accelerations: by the modes, or as they are, or by the mass matrix W. */
+    /* Forces on the given degrees of freedom become accelerations by the modes, or by the mass matrix. */
     size_t given;
     double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
-    int loads_accelerate;
 
     gsl_odeiv2_system odeiv2;
     size_t evaluations, jacobians;
     int status;                      /* what the last evaluation returned */
+    double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
     double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
     double *acceleration;            /* [ndof] workspace */
     double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
@@ -104,9 +102,6 @@ double tribo_system_fastest(const tribo_system *sys);
 /* R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
-/* w_i such that W B_i = w_i J_i'. */
-double tribo_system_weight(const tribo_system *sys, size_t i);
-
 /* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0) and have one degree of freedom, or
  * the difference of two. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
@@ -116,6 +111,9 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
 
 /* dydt with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
+
+/* to [ndof] += factor M x. */
+void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to);
 
 /* to [ndof] = M^-1 force, force [given]. */
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to);

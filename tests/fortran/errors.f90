@@ -202,6 +202,9 @@ contains
     law = blank_integer
     call tribo_law_find('', law, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called ""' // laws)
+    ! What stands in quotes is the caller's, and no index.
+    call tribo_law_find('contact 3[1]', law, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "contact 3[1]"' // laws)
     call require(untouched(law), 'tribo_law_find: law')
     f = blank
     df_dv = blank
@@ -236,6 +239,9 @@ contains
     call make(c)
     call c%set_law(6, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'law = 6 is none of the 6 laws')
+    ! No number is cut to the half of it that an int of C takes, where integers have eight bytes: that half is a law.
+    call c%set_law(shiftl(1, bit_size(1)/2), stat)
+    call require(stat == TRIBO_ERR_RANGE, 'set_law: a large number')
     call c%set_law('Quin', stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "Quin"' // laws)
     call c%set_law(repeat('x', 500), stat, msg)

@@ -320,7 +320,7 @@ contains
     type(tribo_system) :: s
     type(tribo_driver) :: d
     type(stopper), target :: sees
-    real(dp) :: t, y(3)
+    real(dp) :: t, x, y(3)
     integer :: i
 
     call s%oscillator(0.1_dp, 1.0_dp, 1.0_dp)
@@ -354,10 +354,18 @@ contains
     call d%count(7, i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 7 is none of the counts of a driver')
     call require(untouched(i), 'count: output')
+    x = blank
+    call d%real(7, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 7 is no real quantity of a driver')
     call d%set_max_step(1.0_dp, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'method exact has no largest step')
     call d%create(s, 'RK8PD', 0.1_dp, 1e-6_dp)
     call require(d%method() == 'rk8pd', 'create: letters of any case')
+    call d%real(TRIBO_REAL_EXCESS, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, "this method does not know how far it strays from Coulomb's law")
+    call require(untouched(x), 'real: output')
+    call d%create(s, 'mode 3[1]', 0.1_dp, stat=stat, errmsg=msg)
+    call require(index(msg, '"mode 3[1]"') > 0, 'create: a name stays as it is: ' // msg)
     call d%set_max_step(0.0_dp, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'h = 0 is not positive')
     call d%set_max_step(nan, stat, msg)
@@ -371,6 +379,9 @@ contains
     call d%advance(t, 1.0_dp, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_STOPPED, 'the observer answered 5 at t = 0.25')
     call require(abs(t - 0.25_dp) <= 0 .and. sees%calls == 1, 'where the observer stopped')
+    sees%answer = shiftl(1, bit_size(1)/2)
+    call d%advance(t, 1.0_dp, y, stat)
+    call require(stat == TRIBO_ERR_STOPPED, 'the observer answers a large number')
     sees%answer = 0
     call d%advance(t, 1.0_dp, y)
     call require(sees%calls == 4, 'what the observer saw')

@@ -174,7 +174,7 @@ TEST(ratio_of_one)
     double y[2][17] = {{0.0}};
     for (int k = 0; k < 2; k++) {
         tribo_system *sys;
-        double limit[8] = {1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.0};
+        double limit[8] = {0.1, 0.0, 0.1, 0.12, 0.0, 0.1, 0.1, 0.1};
         assert_ok(tribo_system_chain(&sys, 8, 1.0, 0.4, 0.5));
         assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
         assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 1e-3));

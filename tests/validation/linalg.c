@@ -19,7 +19,7 @@ static struct matrix dense(size_t rows, size_t cols, const double *entries)
 static struct matrix diagonal(size_t n, const double *entries)
 {
     struct matrix a;
-    require(tribo_matrix_identity(&a, n) && tribo_matrix_scale_rows(&a, entries), "out of memory");
+    require(tribo_matrix_diagonal(&a, n, entries), "out of memory");
     return a;
 }
 

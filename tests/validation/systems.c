@@ -47,6 +47,12 @@ TEST(oscillator_equations)
 
 #define BLOCKS 5
 
+/* Of a block's mass and friction in the paper's equations, what it has itself: the last equation is 4/3 of a symmetric one. */
+static double part(size_t i)
+{
+    return (i + 1 < BLOCKS ? 1.0 : 0.75) / BLOCKS;
+}
+
 /* Block i's balance without friction, times n: what f_eq has to hold. */
 static double elastic(const double *u, size_t i, double load)
 {
@@ -68,7 +74,7 @@ TEST(chain_equations)
     widen(sys, 0.5);
     for (int k = 0; k < 100; k++) {
         const double t = uniform(&g, 0.0, 9.0), load = 0.25 * sin(0.5 * t);
-        double y[2 * BLOCKS + 1], got[2 * BLOCKS + 1], want[2 * BLOCKS + 1], feq[BLOCKS], f[BLOCKS];
+        double y[2 * BLOCKS + 1], got[2 * BLOCKS + 1], want[2 * BLOCKS + 1], feq[BLOCKS], f[BLOCKS], force[BLOCKS];
         want[2 * BLOCKS] = y[2 * BLOCKS] = 0.0;
         for (size_t i = 0; i < 2 * BLOCKS; i++) {
             y[i] = uniform(&g, -0.1, 0.1) * (i < BLOCKS ? 1.0 : 5.0);
@@ -82,11 +88,73 @@ TEST(chain_equations)
         }
         rate_of(sys, t, y, got);
         assert_all_close(got, want, 2 * BLOCKS + 1, 2e-14);
-        assert_ok(tribo_system_contacts(sys, t, y, NULL, feq, NULL));
+        assert_ok(tribo_system_contacts(sys, t, y, NULL, feq, force));
         for (size_t i = 0; i < BLOCKS; i++) {
-            assert_close(feq[i], elastic(y, i, load), 2e-14);
+            assert_close(feq[i], part(i) * elastic(y, i, load), 2e-14);
+            assert_close(force[i], part(i) * f[i], 2e-14);
         }
     }
+    tribo_system_destroy(sys);
+}
+
+TEST(chain_settings)
+{
+    tribo_system *sys;
+    double limit[BLOCKS];
+    assert_ok(tribo_system_chain(&sys, BLOCKS, 0.7, 0.25, 0.5));
+    assert_ok(tribo_get_limit(tribo_system_context(sys), limit));
+    for (size_t i = 0; i < BLOCKS; i++) {
+        assert_close(limit[i], 0.7 * part(i), 1e-16);
+    }
+    /* a load is a force, as on any structure */
+    double y[2 * BLOCKS + 1] = {0.0}, rate[2 * BLOCKS + 1];
+    const double pull[BLOCKS] = {[BLOCKS - 2] = 7.0, [BLOCKS - 1] = 3.0};
+    assert_ok(tribo_system_clear_loads(sys));
+    assert_ok(tribo_system_add_load(sys, 0.0, pull, NULL));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.0));
+    rate_of(sys, 0.0, y, rate);
+    assert_close(rate[2 * BLOCKS - 2], 7.0 / part(BLOCKS - 2), 1e-13);
+    assert_close(rate[2 * BLOCKS - 1], 3.0 / part(BLOCKS - 1), 1e-13);
+    tribo_system_destroy(sys);
+}
+
+/* The ways that blocks have slid, all and that of the last one. */
+struct way {
+    double before[BLOCKS], all, last;
+};
+
+static int measure(double t, const double *y, int event, void *data)
+{
+    struct way *way = data;
+    (void)t;
+    (void)event;
+    for (size_t i = 0; i < BLOCKS; i++) {
+        way->all += fabs(y[i] - way->before[i]);
+    }
+    way->last += fabs(y[BLOCKS - 1] - way->before[BLOCKS - 1]);
+    memcpy(way->before, y, sizeof way->before);
+    return 0;
+}
+
+/* The paper's D is (1/n) mu N times the ways of all blocks alike, also where the last one slides. */
+TEST(chain_dissipation)
+{
+    static const struct {
+        const char *name;
+        double dt, tolerance, off;
+    } methods[] = {{"exact", 1.0, 0.0, 1e-13},        {"event", 1.0, 1e-12, 1e-10},   {"central/fixed", 1e-3, 0.0, 2e-3},
+                   {"moreau/fixed", 1e-3, 0.0, 2e-3}, {"rk4/fixed", 1e-3, 0.0, 2e-3}, {"rk4imp", 1e-3, 1e-6, 2e-3}};
+    double t = 0.0, y[2 * BLOCKS + 1] = {0.0};
+    struct way way = {{0.0}, 0.0, 0.0};
+    tribo_system *sys;
+    assert_ok(tribo_system_chain(&sys, BLOCKS, 0.7, 2.5, 0.5));
+    widen(sys, 1e-3);
+    tribo_driver *drv = driver_create(sys, methods[_i].name, methods[_i].dt, methods[_i].tolerance);
+    assert_ok(tribo_driver_set_observer(drv, measure, &way));
+    driver_advance(drv, &t, 8.0 * PI, y);
+    require(way.last > 0.03 * way.all, "the last block slides %g of %g", way.last, way.all);
+    assert_close(y[2 * BLOCKS] / (0.7 / BLOCKS * way.all), 1.0, methods[_i].off);
+    tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 }
 
@@ -320,6 +388,6 @@ TEST(reduced)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("systems", {oscillator_equations, 2}, {chain_equations, 2}, {belt_equations, 2}, {long_chain, 1}, {sizes, 1},
-          {acceptance, 1}, {creation_errors, 1}, {load_errors, 1}, {loads_add_up, 2}, {state_errors, 1},
-          {operator_of_a_system, 1}, {unreduced, 1}, {reduced, 1})
+TEST_MAIN("systems", {oscillator_equations, 2}, {chain_equations, 2}, {chain_settings, 1}, {chain_dissipation, 6},
+          {belt_equations, 2}, {long_chain, 1}, {sizes, 1}, {acceptance, 1}, {creation_errors, 1}, {load_errors, 1},
+          {loads_add_up, 2}, {state_errors, 1}, {operator_of_a_system, 1}, {unreduced, 1}, {reduced, 1})

@@ -1,0 +1,343 @@
+! Written by interface.awk from the headers of C, and not to be changed by hand: see target fortran-refresh.
+
+!> The constants, as in C.
+module tribo_gsl_constants
+  implicit none
+  private
+
+  !> accepted steps
+  integer, parameter, public :: TRIBO_COUNT_STEPS = 100
+  !> steps tried and undone
+  integer, parameter, public :: TRIBO_COUNT_REJECTED = 101
+  !> evaluations of the right-hand side
+  integer, parameter, public :: TRIBO_COUNT_EVALUATIONS = 102
+  !> evaluations of its Jacobian
+  integer, parameter, public :: TRIBO_COUNT_JACOBIANS = 103
+  !> events located
+  integer, parameter, public :: TRIBO_COUNT_EVENTS = 104
+
+  !> the largest force of a contact at rest beyond its limit
+  integer, parameter, public :: TRIBO_REAL_EXCESS = 100
+  !> the largest velocity of a contact against the direction in which its force takes it to slide
+  integer, parameter, public :: TRIBO_REAL_BACKSLIP = 101
+end module tribo_gsl_constants
+
+!> The functions of C, see interface.awk. Not for programs.
+module tribo_gsl_c
+  use, intrinsic :: iso_c_binding
+  implicit none
+  public
+
+  interface
+    function c_system_oscillator(sys, limit, alpha, omega) result(answer) bind(c,name='tribo_system_oscillator')
+      import
+      type(c_ptr), intent(inout) :: sys
+      real(c_double), value :: limit
+      real(c_double), value :: alpha
+      real(c_double), value :: omega
+      integer(c_int) :: answer
+    end function c_system_oscillator
+
+    function c_system_chain(sys, n, limit, alpha, omega) result(answer) bind(c,name='tribo_system_chain')
+      import
+      type(c_ptr), intent(inout) :: sys
+      integer(c_size_t), value :: n
+      real(c_double), value :: limit
+      real(c_double), value :: alpha
+      real(c_double), value :: omega
+      integer(c_int) :: answer
+    end function c_system_chain
+
+    function c_system_belt(sys, kappa, limit1, limit2, speed, omega) result(answer) bind(c,name='tribo_system_belt')
+      import
+      type(c_ptr), intent(inout) :: sys
+      real(c_double), value :: kappa
+      real(c_double), value :: limit1
+      real(c_double), value :: limit2
+      real(c_double), value :: speed
+      real(c_double), value :: omega
+      integer(c_int) :: answer
+    end function c_system_belt
+
+    function c_system_linear(sys, ndof, ncontact, mass, damping, stiffness, direction, nmode, message, size) &
+      result(answer) bind(c,name='tribo_system_linear')
+      import
+      type(c_ptr), intent(inout) :: sys
+      integer(c_size_t), value :: ndof
+      integer(c_size_t), value :: ncontact
+      real(c_double), intent(in), optional :: mass(*)
+      real(c_double), intent(in), optional :: damping(*)
+      real(c_double), intent(in), optional :: stiffness(*)
+      real(c_double), intent(in), optional :: direction(*)
+      integer(c_size_t), value :: nmode
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_system_linear
+
+    function c_system_linear_sparse(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
+      bind(c,name='tribo_system_linear_sparse')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: damping
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_system_linear_sparse
+
+    subroutine c_system_destroy(sys) bind(c,name='tribo_system_destroy')
+      import
+      type(c_ptr), value :: sys
+    end subroutine c_system_destroy
+
+    function c_system_clone(sys, copy) result(answer) bind(c,name='tribo_system_clone')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr), intent(inout) :: copy
+      integer(c_int) :: answer
+    end function c_system_clone
+
+    function c_system_add_load(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_load')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(in), optional :: cosine(*)
+      real(c_double), intent(in), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_system_add_load
+
+    function c_system_clear_loads(sys) result(answer) bind(c,name='tribo_system_clear_loads')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int) :: answer
+    end function c_system_clear_loads
+
+    function c_system_add_base_motion(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_base_motion')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(in), optional :: cosine(*)
+      real(c_double), intent(in), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_system_add_base_motion
+
+    function c_system_add_load_table(sys, knots, time, value, pattern) result(answer) &
+      bind(c,name='tribo_system_add_load_table')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t), value :: knots
+      real(c_double), intent(in), optional :: time(*)
+      real(c_double), intent(in), optional :: value(*)
+      real(c_double), intent(in), optional :: pattern(*)
+      integer(c_int) :: answer
+    end function c_system_add_load_table
+
+    function c_system_set_limit_table(sys, knots, time, limit) result(answer) bind(c,name='tribo_system_set_limit_table')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t), value :: knots
+      real(c_double), intent(in), optional :: time(*)
+      real(c_double), intent(in), optional :: limit(*)
+      integer(c_int) :: answer
+    end function c_system_set_limit_table
+
+    function c_system_set_damping_ratio(sys, zeta) result(answer) bind(c,name='tribo_system_set_damping_ratio')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: zeta
+      integer(c_int) :: answer
+    end function c_system_set_damping_ratio
+
+    function c_system_get_frequencies(sys, omega) result(answer) bind(c,name='tribo_system_get_frequencies')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), intent(inout), optional :: omega(*)
+      integer(c_int) :: answer
+    end function c_system_get_frequencies
+
+    function c_system_expand(sys, reduced, full) result(answer) bind(c,name='tribo_system_expand')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), intent(in), optional :: reduced(*)
+      real(c_double), intent(inout), optional :: full(*)
+      integer(c_int) :: answer
+    end function c_system_expand
+
+    function c_system_ndof(sys) result(answer) bind(c,name='tribo_system_ndof')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t) :: answer
+    end function c_system_ndof
+
+    function c_system_ncontact(sys) result(answer) bind(c,name='tribo_system_ncontact')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t) :: answer
+    end function c_system_ncontact
+
+    function c_system_dimension(sys) result(answer) bind(c,name='tribo_system_dimension')
+      import
+      type(c_ptr), value :: sys
+      integer(c_size_t) :: answer
+    end function c_system_dimension
+
+    function c_system_context(sys) result(answer) bind(c,name='tribo_system_context')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr) :: answer
+    end function c_system_context
+
+    function c_system_odeiv2(sys) result(answer) bind(c,name='tribo_system_odeiv2')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr) :: answer
+    end function c_system_odeiv2
+
+    function c_system_contacts(sys, t, y, v, feq, f) result(answer) bind(c,name='tribo_system_contacts')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: v(*)
+      real(c_double), intent(inout), optional :: feq(*)
+      real(c_double), intent(inout), optional :: f(*)
+      integer(c_int) :: answer
+    end function c_system_contacts
+
+    function c_system_accept(sys, t, y) result(answer) bind(c,name='tribo_system_accept')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_system_accept
+
+    function c_driver_create(drv, sys, method, dt, abstol, reltol) result(answer) bind(c,name='tribo_driver_create')
+      import
+      type(c_ptr), intent(inout) :: drv
+      type(c_ptr), value :: sys
+      character(kind=c_char), intent(in), optional :: method(*)
+      real(c_double), value :: dt
+      real(c_double), value :: abstol
+      real(c_double), value :: reltol
+      integer(c_int) :: answer
+    end function c_driver_create
+
+    function c_driver_method(drv) result(answer) bind(c,name='tribo_driver_method')
+      import
+      type(c_ptr), value :: drv
+      type(c_ptr) :: answer
+    end function c_driver_method
+
+    function c_method_count() result(answer) bind(c,name='tribo_method_count')
+      import
+      integer(c_int) :: answer
+    end function c_method_count
+
+    function c_method_name(method) result(answer) bind(c,name='tribo_method_name')
+      import
+      integer(c_int), value :: method
+      type(c_ptr) :: answer
+    end function c_method_name
+
+    function c_driver_advance(drv, t, t1, y) result(answer) bind(c,name='tribo_driver_advance')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: t(*)
+      real(c_double), value :: t1
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_driver_advance
+
+    function c_driver_count(drv, which, value) result(answer) bind(c,name='tribo_driver_count')
+      import
+      type(c_ptr), value :: drv
+      integer(c_int), value :: which
+      integer(c_size_t), intent(inout) :: value
+      integer(c_int) :: answer
+    end function c_driver_count
+
+    function c_driver_real(drv, which, value) result(answer) bind(c,name='tribo_driver_real')
+      import
+      type(c_ptr), value :: drv
+      integer(c_int), value :: which
+      real(c_double), intent(inout), optional :: value(*)
+      integer(c_int) :: answer
+    end function c_driver_real
+
+    function c_driver_set_observer(drv, seen, data) result(answer) bind(c,name='tribo_driver_set_observer')
+      import
+      type(c_ptr), value :: drv
+      type(c_funptr), value :: seen
+      type(c_ptr), value :: data
+      integer(c_int) :: answer
+    end function c_driver_set_observer
+
+    function c_driver_set_max_step(drv, h) result(answer) bind(c,name='tribo_driver_set_max_step')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: h
+      integer(c_int) :: answer
+    end function c_driver_set_max_step
+
+    function c_driver_message(drv) result(answer) bind(c,name='tribo_driver_message')
+      import
+      type(c_ptr), value :: drv
+      type(c_ptr) :: answer
+    end function c_driver_message
+
+    subroutine c_driver_destroy(drv) bind(c,name='tribo_driver_destroy')
+      import
+      type(c_ptr), value :: drv
+    end subroutine c_driver_destroy
+
+    pure function c_fortran_ndof(held) result(answer) bind(c,name='tribo_fortran_ndof')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_ndof
+
+    pure function c_fortran_ncontact(held) result(answer) bind(c,name='tribo_fortran_ncontact')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_ncontact
+
+    function c_fortran_linear(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
+      bind(c,name='tribo_fortran_linear')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: damping
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_fortran_linear
+
+    function c_fortran_derivative(sys, t, y, dydt) result(answer) bind(c,name='tribo_fortran_derivative')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: dydt(*)
+      integer(c_int) :: answer
+    end function c_fortran_derivative
+
+    function c_fortran_jacobian(sys, t, y, dfdy, dfdt) result(answer) bind(c,name='tribo_fortran_jacobian')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: dfdy(*)
+      real(c_double), intent(inout), optional :: dfdt(*)
+      integer(c_int) :: answer
+    end function c_fortran_jacobian
+  end interface
+end module tribo_gsl_c
