@@ -60,6 +60,7 @@ module tribo_contexts
     generic :: set_limit => set_limit_each, set_limit_all
     procedure :: set_normal_load
     procedure :: get_limit
+    procedure :: set_static, get_static
     procedure, private :: set_epsilon_each, set_epsilon_all
     generic :: set_epsilon => set_epsilon_each, set_epsilon_all
     procedure :: get_epsilon
@@ -391,6 +392,38 @@ contains
     if (w%status == TRIBO_OK) w%status = c_set_normal_load(w%ctx, mu, load)
     call finish(w, stat, errmsg)
   end subroutine set_normal_load
+
+  !> Static friction above kinetic: a contact at rest holds up to ratio*limit, ratio >= 1. Without velocity its limit drops to
+  !> limit once it slides; with it the limit is limit*(1 + (ratio - 1)*exp(-abs(v)/velocity)), velocity > 0 (Stribeck). See tribo.h
+  !> for what that means in each law. Without ratio, or all 1: no contact is different at rest.
+  subroutine set_static(this, ratio, velocity, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in), optional, contiguous :: ratio(:), velocity(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (present(ratio)) call expect_size(w, 'ratio', ratio, w%n)
+    if (present(velocity)) call expect_size(w, 'velocity', velocity, w%n)
+    if (w%status == TRIBO_OK) w%status = c_set_static(w%ctx, ratio, velocity)
+    call finish(w, stat, errmsg)
+  end subroutine set_static
+
+  !> ratio is 1 where nothing was set, and velocity 0 where there is none.
+  subroutine get_static(this, ratio, velocity, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    real(dp), intent(inout), optional, contiguous :: ratio(:), velocity(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (present(ratio)) call expect_size(w, 'ratio', ratio, w%n)
+    if (present(velocity)) call expect_size(w, 'velocity', velocity, w%n)
+    if (w%status == TRIBO_OK) w%status = c_get_static(w%ctx, ratio, velocity)
+    call finish(w, stat, errmsg)
+  end subroutine get_static
 
   subroutine set_limit_all(this, limit, stat, errmsg)
     class(tribo_context), intent(inout) :: this
