@@ -393,9 +393,9 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_normal_load
 
-  !> Static friction above kinetic: a contact at rest holds up to ratio*limit, ratio >= 1. Without velocity its limit drops to
-  !> limit once it slides; with it the limit is limit*(1 + (ratio - 1)*exp(-abs(v)/velocity)), velocity > 0 (Stribeck). See tribo.h
-  !> for what that means in each law. Without ratio, or all 1: no contact is different at rest.
+  !> Static friction above kinetic: a contact at rest holds up to ratio*limit, ratio >= 1. Once it slides, its limit drops to
+  !> limit at once; with velocity > 0 (Stribeck) it is limit*(1 + (ratio - 1)*exp(-abs(v)/velocity)). Without ratio, or all 1:
+  !> rest makes no difference. tribo.h tells what that means in each law.
   subroutine set_static(this, ratio, velocity, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in), optional, contiguous :: ratio(:), velocity(:)

@@ -187,7 +187,8 @@ TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
 /* Number of contacts. */
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 
-/* Law of all contacts; clears the reversal memory. Returns TRIBO_ERR_RANGE for a number that is no law. */
+/* Law of all contacts; clears the reversal memory. Returns TRIBO_ERR_RANGE for a number that is no law, TRIBO_ERR_UNSUPPORTED for
+ * one that knows no stick where limits drop at once (tribo_set_static). */
 TRIBO_API int tribo_set_law(tribo_context *ctx, int law);
 TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
 
@@ -201,21 +202,28 @@ TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);
  * negative the contact has lifted off, and is open. Returns as tribo_set_limit; limits beyond 1e300 are cut to it. */
 TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *load);
 
-/* Static friction above kinetic: a contact at rest holds up to ratio*limit. Once it slides its limit is
- *     limit                                                 without velocities: it drops at once;
- *     N(|v|) = limit (1 + (ratio - 1) exp(-|v|/velocity))   with them (Stribeck): it falls with the speed.
- * ratio     [n] in, or NULL   static limit over limit, finite and >= 1; NULL or all 1: no contact is different at rest
+/* Static friction above kinetic: a contact at rest holds up to ratio*limit; once it slides, its limit is
+ *     limit                                                         without velocities: it drops at once;
+ *     N(|v|) = limit (1 + (ratio - 1) exp(-|v|/velocity))           with them (Stribeck): it falls with the speed.
+ * ratio     [n] in, or NULL   static limit over limit, finite and >= 1; NULL, or all 1: rest makes no difference
  * velocity  [n] in, or NULL   > 0
- * Where it drops at once, contacts near stick (|v| <= epsilon, or v = 0; those that read f_eq) have the static limit in place of
- * limit in their law, and hold while |f_eq| <= ratio*limit. Those that cannot hold have limit, all of them together, and the
- * others are decided about again, until none breaks away any more: of several solutions the one in which as many hold as can in
- * this order. Those that broke away and that the others hold after all rest with |f| <= limit. In the partition coupling, in which
- * f_eq knows nothing of that, each contact goes by its own f_eq. Forces jump at |v| = epsilon, so that integrators are of first
- * order across it. VELOCITY_LIMITED and SMOOTH have no stick and need velocities.
- * Where it falls with the speed, N(|v|) stands in the place of limit in every law, all of which stay continuous in v if they were.
- * Epsilon, where it follows limits, and MAX_RATE are those of the static limit. tribo_solve_box does not know of it.
- * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (the
- * law has no stick; so does tribo_set_law, then). */
+ *
+ * A limit that drops at once. Contacts near stick (|v| <= epsilon; COULOMB: v = 0) go by ratio*limit in the place of limit, and
+ * the others by limit. tribo_balance finds the forces, and those near stick whose |f_eq| is above ratio*limit break away: they go
+ * by limit from there on, all of them at the same time, and the forces are found again, until none breaks away. So contacts only
+ * leave, their order does not matter, and where several answers are possible this is the one. What has broken away may yet be
+ * held by the others, with |f| <= limit. A contact whose load just reaches its static limit holds; it counts as sliding in
+ * tribo_get_slip. In the partition coupling nothing is found again: each contact goes by its own f_eq, and so it does in
+ * tribo_force. Forces jump at |v| = epsilon, so that integrators are of first order there. VELOCITY_LIMITED and SMOOTH know no
+ * stick, and need velocities.
+ *
+ * A limit that falls with the speed. N(|v|) takes the place of limit in every law and coupling; forces are as continuous in v as
+ * they were.
+ *
+ * TRIBO_REAL_MAX_RATE is that of static limits, and so is the epsilon of tribo_set_epsilon_step. TRIBO_COUNT_SOLVES counts each
+ * time that forces of an island are found. tribo_solve_box knows no limits, and so no static ones.
+ * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (a
+ * law without stick needs velocities; tribo_set_law returns it too); on error all stays as it was. */
 TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
 
 /* ratio, velocity [n] out, each or NULL: 1 where nothing was set, and velocity 0 where there is none. */
@@ -326,9 +334,9 @@ TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const 
 
 /* Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step,
  * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
- * With static limits (tribo_set_static) v_end = 0 where |f| <= ratio*limit can hold all that are at rest; those that it cannot hold
- * slide by limit, or by N(|v_end|) with the v_end that static limits would leave, and the others are decided about again. That is
- * of first order in dt: a contact breaks away at the beginning of a step.
+ * With static limits (tribo_set_static) a contact sticks if it can: v_end is found with |f| <= ratio*limit; contacts that slide
+ * then go by limit, or by N(|v_end|), all of them at the same time, and v_end is found again, until all others stick. Of first
+ * order in dt, since contacts break away, and their limits fall, from the beginning of a step on.
  * dt     in       step, > 0
  * vfree  [n] in   relative velocity that the step would end with without friction
  * f      [n] out  friction force, |f| <= limit

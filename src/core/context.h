@@ -66,12 +66,12 @@ struct settings {
 
 /* What follows from settings and operator. */
 struct following {
-    struct contacts contacts;       /* all of them, as laws see them; of far limits with what is cut: */
-    double *cut_limit, *cut_factor; /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
+    struct contacts contacts;        /* all of them, as laws see them; of far limits with what is cut: */
+    double *cut_limit, *cut_factor;  /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
     double *hold, *hold_width, *now; /* [n] with static limits: these; epsilon; the limits of the last call. cut_limit, cut_factor
                                         are then the limits by which contacts slide, and rates */
-    double largest, steepest;       /* limit; and factor, or 1 */
-    struct chunk *chunk;            /* [chunks] */
+    double largest, steepest;        /* limit; and factor, or 1 */
+    struct chunk *chunk;             /* [chunks] */
 };
 
 /* What the last call found. */
@@ -203,8 +203,8 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
 /* The near contacts of a problem hold, for now. */
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p);
 
-/* Those that the solution cannot hold, by their f_eq, have the limit by which they slide from here on: at the end of a step of dt,
- * or (0) from rest. Returns how many. */
+/* Those that the solution cannot hold, by their f_eq, have the limit by which they slide from here on, at the end of a step of
+ * dt or (0) from rest. Returns how many. */
 size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
 
 /* The same for contacts in no group, from their forces with static limits; these become right. */

@@ -40,8 +40,8 @@ static int allocate(tribo_context *ctx, size_t n)
         ctx->spare.stored = (unsigned char *)(ctx->spare.of + m);
     }
     return ctx->message && ctx->follow.chunk && ctx->last.did.of && ctx->spare.of && ctx->set.limit && ctx->set.width &&
-           ctx->set.rate && ctx->set.ratio && ctx->follow.cut_limit && ctx->follow.cut_factor && ctx->moving && ctx->last.feq && ctx->last.f &&
-           ctx->last.v && ctx->last.tangent;
+           ctx->set.rate && ctx->set.ratio && ctx->follow.cut_limit && ctx->follow.cut_factor && ctx->moving && ctx->last.feq &&
+           ctx->last.f && ctx->last.v && ctx->last.tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)

@@ -38,7 +38,8 @@ void tribo_write_modes(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.did.stored[k] != NONE_STORED || ctx->follow.chunk[k].least == 0.0) {
-            find_modes(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds, ctx->last.did.of + i);
+            find_modes(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds,
+                       ctx->last.did.of + i);
             ctx->last.did.stored[k] = SOME_STORED;
             ctx->last.did.all_stored = 0;
         }

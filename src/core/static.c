@@ -1,6 +1,6 @@
 /* Static friction above kinetic: the limits by which contacts go are then found in every call, and stand in now.
  *
- * With a Stribeck velocity the limit is a continuous function N(|v|) of the speed, and N(|v|) takes the limit's place in every law.
+ * With a Stribeck velocity the limit is a continuous function N(|v|) of the speed, which takes the limit's place in every law.
  * Without one it drops at once. Then contacts near stick have the static limit, the others the kinetic one, and
  *
  *     repeat

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/real.h"
-
 int tribo_breakaway_create(struct breakaway *b, size_t contacts)
 {
     const size_t c = contacts + 1;
@@ -33,15 +31,6 @@ int tribo_system_falls(const tribo_system *sys)
     return sys->ncontact && sys->v[0] > 0.0;
 }
 
-static void add_sizes(const struct matrix *a, const double *x, double *y)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            y[i] += fabs(a->val[k]) * x[a->col[k]];
-        }
-    }
-}
-
 /* The largest row sum of |J| |B| diag(slopes at rest). */
 static double steepest(const struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
 {
@@ -49,9 +38,9 @@ static double steepest(const struct breakaway *b, const tribo_system *sys, doubl
     for (size_t i = 0; i < sys->ncontact; i++) {
         contact[i] = -tribo_breakaway_slope(b, i, 0.0);
     }
-    add_sizes(&sys->response, contact, dof);
+    tribo_matrix_add_sizes(&sys->response, contact, dof);
     memset(contact, 0, sys->ncontact * sizeof *contact);
-    add_sizes(&sys->direction, dof, contact);
+    tribo_matrix_add_sizes(&sys->direction, dof, contact);
     return tribo_largest(contact, sys->ncontact);
 }
 
@@ -79,16 +68,16 @@ void tribo_breakaway_limits(struct breakaway *b, const tribo_system *sys, const 
     tribo_system_limits(sys, b->kinetic, b->kinetic_rate);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double more = (b->ratio[i] - 1.0) * part_at(b, i, slip[i] ? v[i] : 0.0);
-        limit[i] = b->kinetic[i] * (1.0 + more);
-        limit_rate[i] = b->kinetic_rate[i] * (1.0 + more);
-        b->stick[i] = b->ratio[i] * b->kinetic[i];
-        b->stick_rate[i] = b->ratio[i] * b->kinetic_rate[i];
+        limit[i] = product(1.0 + more, b->kinetic[i]);
+        limit_rate[i] = product(1.0 + more, b->kinetic_rate[i]);
+        b->stick[i] = tribo_breakaway_most(b, i);
+        b->stick_rate[i] = product(b->ratio[i], b->kinetic_rate[i]);
     }
 }
 
 double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v)
 {
-    return b->falls ? quotient(-(b->ratio[i] - 1.0) * b->kinetic[i] * part_at(b, i, v), b->velocity[i]) : 0.0;
+    return b->falls ? quotient(product(1.0 - b->ratio[i], b->kinetic[i]) * part_at(b, i, v), b->velocity[i]) : 0.0;
 }
 
 int tribo_breakaway_lets_go(struct breakaway *b, size_t i)
@@ -99,6 +88,14 @@ int tribo_breakaway_lets_go(struct breakaway *b, size_t i)
     b->stick[i] = b->kinetic[i];
     b->stick_rate[i] = b->kinetic_rate[i];
     return 1;
+}
+
+int tribo_breakaway_restore(struct breakaway *b, size_t i)
+{
+    const int less = b->stick[i] < tribo_breakaway_most(b, i);
+    b->stick[i] = tribo_breakaway_most(b, i);
+    b->stick_rate[i] = product(b->ratio[i], b->kinetic_rate[i]);
+    return less;
 }
 
 double tribo_breakaway_series(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,

@@ -7,6 +7,7 @@
 #define TRIBO_BREAKAWAY_H
 
 #include "system.h"
+#include "../common/real.h"
 
 /* Whether limits fall with the speed. */
 int tribo_system_falls(const tribo_system *sys);
@@ -33,14 +34,23 @@ void tribo_breakaway_limits(struct breakaway *b, const tribo_system *sys, const 
 /* dN/d|v| of contact i. */
 double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v);
 
+/* The static limit of contact i. */
+static inline double tribo_breakaway_most(const struct breakaway *b, size_t i)
+{
+    return product(b->ratio[i], b->kinetic[i]);
+}
+
 /* Whether contact i, at rest, would let go of more than rounding by breaking away: then that must be certain. */
 static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
 {
-    return b->some && b->ratio[i] > 1.0 && b->stick[i] >= b->ratio[i] * b->kinetic[i];
+    return b->some && b->ratio[i] > 1.0 && b->stick[i] >= tribo_breakaway_most(b, i);
 }
 
 /* The contact holds no more by its static limit; 0 if it has none, or does not already. */
 int tribo_breakaway_lets_go(struct breakaway *b, size_t i);
+
+/* It holds by its static limit again; 1 if it did not: it broke away, and the others hold it after all. */
+int tribo_breakaway_restore(struct breakaway *b, size_t i);
 
 /* The next coefficient, the k-th, of N(|v|) in powers of time: v [k + 1], part [k] those of |v| times side, and of
  * exp(-|v|/velocity), of which this finds the k-th too; each stride doubles apart. */

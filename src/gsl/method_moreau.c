@@ -18,11 +18,11 @@ struct moreau {
     size_t below, above;
     double *band;
     unsigned int *pivot;
-    double *response; /* [ncontact][ndof] */
-    double *limit;    /* [ncontact] */
+    double *response;         /* [ncontact][ndof] */
+    double *limit;            /* [ncontact] */
     double *ratio, *velocity; /* [ncontact] of static limits */
-    size_t settings;  /* revision of the system's context, from which these are */
-    double *load;     /* [ndof] at the end of the step before */
+    size_t settings;          /* revision of the system's context, from which these are */
+    double *load;             /* [ndof] at the end of the step before */
     tribo_context *contacts;
 };
 

@@ -100,16 +100,6 @@ void tribo_stick_slip_free(struct stick_slip *m)
 
 /* ---------------------------------------------------------------------------------------------------------- rounding */
 
-/* y += |a| |x| */
-static void add_sizes(const struct matrix *a, const double *x, double *y)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            y[i] += fabs(a->val[k] * x[a->col[k]]);
-        }
-    }
-}
-
 /* y += amplitudes of the order-th derivatives of loads, or of b. */
 static void add_amplitudes(const tribo_system *sys, int moves_base, int order, double *y)
 {
@@ -127,7 +117,7 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
 {
     memset(m->noise, 0, sys->ncontact * sizeof *m->noise);
     add_amplitudes(sys, 1, 0, m->noise);
-    add_sizes(&sys->direction, y + sys->ndof, m->noise);
+    tribo_matrix_add_sizes(&sys->direction, y + sys->ndof, m->noise);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->noise[i] = VELOCITY_NOISE * greater(m->noise[i], m->seen[i]);
         m->seen[i] = 0.0;
@@ -148,14 +138,14 @@ static void find_gains(struct stick_slip *m, const tribo_system *sys, const doub
         m->size[d] = fabs(m->size[d]);
     }
     add_amplitudes(sys, 0, 0, m->size);
-    add_sizes(&sys->stiffness, y, m->size);
+    tribo_matrix_add_sizes(&sys->stiffness, y, m->size);
     if (sys->damping.rows) {
-        add_sizes(&sys->damping, y + sys->ndof, m->size);
+        tribo_matrix_add_sizes(&sys->damping, y + sys->ndof, m->size);
     }
-    add_sizes(&sys->response, m->force, m->size);
+    tribo_matrix_add_sizes(&sys->response, m->force, m->size);
     memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
     add_amplitudes(sys, 1, 1, m->gain);
-    add_sizes(&sys->direction, m->size, m->gain);
+    tribo_matrix_add_sizes(&sys->direction, m->size, m->gain);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->gain[i] *= NOISE * m->doubt;
         m->allowance[i] = m->diagonal[i] > 0.0 ? ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
@@ -545,18 +535,6 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-/* Contacts that broke away, and that the others hold after all, hold by their static limits again. */
-static void restore_static(struct stick_slip *m)
-{
-    struct breakaway *b = &m->breakaway;
-    for (size_t i = 0; b->some && i < m->contacts; i++) {
-        const double stick = b->ratio[i] * b->kinetic[i];
-        m->tied[i] = (signed char)(m->stick[i] < stick ? 0 : m->tied[i]);
-        b->stick[i] = stick;
-        b->stick_rate[i] = b->ratio[i] * b->kinetic_rate[i];
-    }
-}
-
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_system_set_time(sys, t);
@@ -588,7 +566,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     if (m->breakaway.some && !status) {
         find_gains(m, sys, y);
     }
-    restore_static(m);
+    for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
+        m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
+    }
     return status ? status : find_holds(m, sys);
 }
 

@@ -454,4 +454,5 @@ TEST(refusal)
 }
 
 TEST_MAIN("breakaway", {belt, 6}, {code_aster_sdnd106, 2}, {equal_blocks, 4}, {up_to_the_limit, 8}, {ratio_of_one, 7},
-          {undone, 2}, {chains, 4}, {held_after_all, 4}, {coupled, 40}, {coupled_and_falling, 20}, {relieved_by_speed, 1}, {falling_on_a_belt, 2}, {falling_to_rest, 1}, {steps, 6}, {steppers, 6}, {refusal, 1})
+          {undone, 2}, {chains, 4}, {held_after_all, 4}, {coupled, 40}, {coupled_and_falling, 20}, {relieved_by_speed, 1},
+          {falling_on_a_belt, 2}, {falling_to_rest, 1}, {steps, 6}, {steppers, 6}, {refusal, 1})
