@@ -41,7 +41,7 @@ TEST(one_block)
     check_slip(c, 0, 2);
     check_pair(c, _i % 2, TWO(-1.5, 0.0), TWO(1.5, 0.0));
     check_pair(c, _i % 2, TWO(-1.5 - 1e-13, 0.0), TWO(1.0, 0.0));
-    check_slip(c, 1 - 2, 2);
+    check_slip(c, -1, 2);
     check_pair(c, _i % 2, TWO(1.2, 0.0), TWO(-1.2, 0.0));
     check_slip(c, 0, 2);
     check_pair(c, _i % 2, TWO(1.6, 0.0), TWO(-1.0, 0.0));
@@ -122,49 +122,53 @@ TEST(decided_again)
     tribo_destroy(c);
 }
 
-/* Round by round in long double, by Gauss-Seidel. */
-static int reference(const struct problem *p, const double *hold, long double *f)
+/* a_i + sum of R_ij f_j over j != i. */
+static long double rest_of(const struct problem *p, const long double *f, size_t i)
 {
-    long double bound[LARGEST], change, x, rest;
+    long double rest = p->a[i];
+    for (size_t j = 0; j < p->n; j++) {
+        rest += j == i ? 0.0L : p->r[i * p->n + j] * f[j];
+    }
+    return rest;
+}
+
+/* Gauss-Seidel in long double within these bounds, until a sweep changes nothing. */
+static void gauss_seidel(const struct problem *p, const long double *bound, long double *f)
+{
+    long double change = 1.0L;
+    for (size_t sweep = 0; change > 1e-18L; sweep++) {
+        require(sweep < 20000, "no reference");
+        change = 0.0L;
+        for (size_t i = 0; i < p->n; i++) {
+            const long double x = fminl(fmaxl(-rest_of(p, f, i) / p->r[i * p->n + i], -bound[i]), bound[i]);
+            change = fmaxl(change, fabsl(x - f[i]));
+            f[i] = x;
+        }
+    }
+}
+
+/* Round by round. */
+static void reference(const struct problem *p, const double *hold, long double *f)
+{
+    long double bound[LARGEST], pull[LARGEST];
     size_t broken = 1;
     for (size_t i = 0; i < p->n; i++) {
         f[i] = 0.0L;
         bound[i] = hold[i];
     }
     while (broken) {
-        size_t sweeps = 0;
-        do {
-            change = 0.0L;
-            for (size_t i = 0; i < p->n; i++) {
-                rest = p->a[i];
-                for (size_t j = 0; j < p->n; j++) {
-                    rest += j == i ? 0.0L : p->r[i * p->n + j] * f[j];
-                }
-                x = fminl(fmaxl(-rest / p->r[i * p->n + i], -bound[i]), bound[i]);
-                change = fmaxl(change, fabsl(x - f[i]));
-                f[i] = x;
-            }
-            if (++sweeps > 20000) {
-                return 0;
-            }
-        } while (change > 1e-18L);
+        gauss_seidel(p, bound, f);
         broken = 0;
-        long double feq[LARGEST];
         for (size_t i = 0; i < p->n; i++) {
-            rest = p->a[i];
-            for (size_t j = 0; j < p->n; j++) {
-                rest += j == i ? 0.0L : p->r[i * p->n + j] * f[j];
-            }
-            feq[i] = fabsl(rest / p->r[i * p->n + i]);
+            pull[i] = fabsl(rest_of(p, f, i) / p->r[i * p->n + i]);
         }
         for (size_t i = 0; i < p->n; i++) {
-            if (feq[i] > hold[i] * (1.0L + 1e-12L) && bound[i] > p->limit[i]) {
+            if (pull[i] > hold[i] * (1.0L + 1e-12L) && bound[i] > p->limit[i]) {
                 bound[i] = p->limit[i];
                 broken++;
             }
         }
     }
-    return 1;
 }
 
 TEST(many_contacts)
@@ -179,7 +183,7 @@ TEST(many_contacts)
         ratio[i] = below(&g, 4) ? uniform(&g, 1.0, 2.0) : 1.0;
         hold[i] = ratio[i] * p.limit[i];
     }
-    require(reference(&p, hold, want), "no reference");
+    reference(&p, hold, want);
     for (int law = 0; law < tribo_law_count(); law++) {
         tribo_context *c = problem_context(&p, law, TRIBO_CONSISTENT);
         if (law != TRIBO_VELOCITY_LIMITED && law != TRIBO_SMOOTH) {
@@ -187,7 +191,6 @@ TEST(many_contacts)
             assert_ok(tribo_balance(c, p.v, p.a, NULL, f));
             assert_ok(tribo_step_force(c, 1.0, p.a, step));
             for (size_t i = 0; i < n; i++) {
-                /* beyond its limit the reversal law's force falls, but for contacts that have not been sliding */
                 assert_close(f[i], (double)want[i], 1e-11 * hold[i]);
                 assert_close(step[i], (double)want[i], 1e-11 * hold[i]);
             }
