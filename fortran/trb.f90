@@ -40,6 +40,8 @@
 !>   TRBSTA(IH, N, RATIO, VSTR, IERR)                RATIO(N) >= 1 static limit to limit; VSTR(N) > 0: falls with the speed, or
 !>                                                   VSTR(1) = 0: drops at once, VSTR(2) and on are not read
 !>   TRBGST(IH, N, RATIO, VSTR, IERR)                                                  RATIO(N), VSTR(N), 0 if it drops at once
+!>   TRBPLN(IH, NPL, IFIRST, IERR)                   contacts IFIRST(NPL) and the next of each are the two directions of one
+!>                                                   planar contact; NPL 0: none are
 !>   TRBLM1(IH, FMUN, IERR)                          FMUN one for all
 !>   TRBGLM(IH, N, FMUN, IERR)                                                         FMUN(N)
 !>   TRBEPS(IH, N, EPS, IERR)                        EPS(N) > 0
@@ -69,6 +71,7 @@
 !>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
 !>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of the last TRBBTN
 !>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
+!>   TRBSTM(IH, N, DT, V, VFREE, F, IERR)            DT, V(N) at its start, VFREE(N)       F(N): the same to second order
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
 !>   TRBACC(IH, N, V, FEQ, IERR)                     V(N), FEQ(N) of an accepted step
 !> Queries
@@ -449,6 +452,16 @@ subroutine trbgst(ih, n, ratio, vstr, ierr)
   call find(ih, ctx, ierr, n)
   if (ierr == TRIBO_OK) ierr = c_get_static(ctx, ratio, vstr)
 end subroutine trbgst
+subroutine trbpln(ih, npl, ifirst, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, npl, ifirst(*)
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call borrow(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%set_planar(ifirst(:max(npl, 0)), ierr)
+end subroutine trbpln
 
 subroutine trblm1(ih, fmun, ierr)
   use tribo_fixed
@@ -716,6 +729,19 @@ subroutine trbstf(ih, n, dt, vfree, f, ierr)
   call find(ih, ctx, ierr, n)
   if (ierr == TRIBO_OK) ierr = c_step_force(ctx, dt, vfree, f)
 end subroutine trbstf
+
+subroutine trbstm(ih, n, dt, v, vfree, f, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: dt, v(*), vfree(*)
+  real(dp), intent(inout) :: f(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_step_force_mean(ctx, dt, v, vfree, f)
+end subroutine trbstm
 
 subroutine trbbox(ih, n, a, flo, fup, f, ierr)
   use tribo_fixed

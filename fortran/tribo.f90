@@ -59,6 +59,7 @@ module tribo_contexts
     procedure, private :: set_limit_each, set_limit_all
     generic :: set_limit => set_limit_each, set_limit_all
     procedure :: set_normal_load
+    procedure :: set_planar
     procedure :: get_limit
     procedure :: set_static, get_static
     procedure, private :: set_epsilon_each, set_epsilon_all
@@ -71,7 +72,7 @@ module tribo_contexts
     procedure :: set_sharing, get_sharing
     procedure :: force, force_tangent
     procedure :: balance, balance_tangent, tangent_product
-    procedure :: step_force
+    procedure :: step_force, step_force_mean
     procedure :: solve_box
     procedure :: accept
     procedure :: get_slip
@@ -424,6 +425,23 @@ contains
     if (w%status == TRIBO_OK) w%status = c_get_static(w%ctx, ratio, velocity)
     call finish(w, stat, errmsg)
   end subroutine get_static
+  !> Planar contacts: contacts first(k) and first(k) + 1 become the two tangential directions of one, with limits as semi-axes; an
+  !> array without elements: there are none.
+  subroutine set_planar(this, first, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(in) :: first(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    integer :: k
+
+    call begin(this, w)
+    do k = 1, size(first)
+      if (first(k) < 1 .or. first(k) >= w%n) call fail_at(w, TRIBO_ERR_RANGE, 'first', k, first(k), 'is out of range')
+    end do
+    if (w%status == TRIBO_OK) w%status = c_set_planar(w%ctx, size(first, kind=c_size_t), from_zero(first))
+    call finish(w, stat, errmsg)
+  end subroutine set_planar
 
   subroutine set_limit_all(this, limit, stat, errmsg)
     class(tribo_context), intent(inout) :: this
@@ -780,6 +798,23 @@ contains
     if (w%status == TRIBO_OK) w%status = c_step_force(w%ctx, dt, vfree, f)
     call finish(w, stat, errmsg)
   end subroutine step_force
+
+  !> The same to second order where sliding turns in the plane or reverses within the step, v being the velocities at its start.
+  subroutine step_force_mean(this, dt, v, vfree, f, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in) :: dt, v(:), vfree(:)
+    real(dp), intent(inout) :: f(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    call expect_size(w, 'v', v, w%n)
+    call expect_size(w, 'vfree', vfree, w%n)
+    call expect_size(w, 'f', f, w%n)
+    if (w%status == TRIBO_OK) w%status = c_step_force_mean(w%ctx, dt, v, vfree, f)
+    call finish(w, stat, errmsg)
+  end subroutine step_force_mean
 
   !> The box-constrained problem behind it all, the minimum of f'Rf/2 + a'f with lower <= f <= upper, for laws of the caller's own.
   !> Neither limits nor law nor epsilon matter.

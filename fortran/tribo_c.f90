@@ -73,6 +73,8 @@ module tribo_constants
   integer, parameter, public :: TRIBO_COUNT_REVERSALS = 7
   !> of the solves: those that ended with the stick set and the factor they began with
   integer, parameter, public :: TRIBO_COUNT_REUSED = 8
+  !> planar contacts
+  integer, parameter, public :: TRIBO_COUNT_PLANAR = 9
 
   integer, parameter, public :: TRIBO_REAL_RESIDUAL = 0
   integer, parameter, public :: TRIBO_REAL_MAX_RATE = 1
@@ -305,6 +307,14 @@ module tribo_c
       integer(c_int) :: answer
     end function c_get_epsilon
 
+    function c_set_planar(ctx, count, first) result(answer) bind(c,name='tribo_set_planar')
+      import
+      type(c_ptr), value :: ctx
+      integer(c_size_t), value :: count
+      integer(c_size_t), intent(in), optional :: first(*)
+      integer(c_int) :: answer
+    end function c_set_planar
+
     function c_set_operator_diagonal(ctx, r) result(answer) bind(c,name='tribo_set_operator_diagonal')
       import
       type(c_ptr), value :: ctx
@@ -441,6 +451,16 @@ module tribo_c
       real(c_double), intent(inout), optional :: f(*)
       integer(c_int) :: answer
     end function c_step_force
+
+    function c_step_force_mean(ctx, dt, v, vfree, f) result(answer) bind(c,name='tribo_step_force_mean')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), value :: dt
+      real(c_double), intent(in), optional :: v(*)
+      real(c_double), intent(in), optional :: vfree(*)
+      real(c_double), intent(inout), optional :: f(*)
+      integer(c_int) :: answer
+    end function c_step_force_mean
 
     function c_solve_box(ctx, a, lower, upper, f) result(answer) bind(c,name='tribo_solve_box')
       import

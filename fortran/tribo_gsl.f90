@@ -50,7 +50,7 @@ module tribo_systems
     procedure :: clone => clone_system
     procedure, private :: linear_dense, linear_sparse
     generic :: linear => linear_dense, linear_sparse
-    procedure :: add_load, add_base_motion, add_load_table
+    procedure :: add_load, add_base_motion, add_load_table, add_limit
     procedure :: clear_loads
     procedure :: set_limit_table, set_damping_ratio
     procedure :: get_frequencies, expand
@@ -381,6 +381,23 @@ contains
     call finish(w, stat, errmsg)
   end subroutine add_base_motion
 
+  !> Adds a harmonic to the limits, limit(t) = max(0, ... + cosine*cos(omega*t) + sine*sin(omega*t)), e.g. of a normal load that
+  !! changes: mu times it. At 0 the contact has lifted off. What is set in the context, or the table's, is what they are added to.
+  subroutine add_limit(this, omega, cosine, sine, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    real(dp), intent(in) :: omega
+    real(dp), intent(in), optional, contiguous :: cosine(:), sine(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_system(this, w)
+    if (present(cosine)) call expect_size(w, 'cosine', cosine, w%n)
+    if (present(sine)) call expect_size(w, 'sine', sine, w%n)
+    if (w%status == TRIBO_OK) w%status = c_system_add_limit(w%object, omega, cosine, sine)
+    call finish(w, stat, errmsg)
+  end subroutine add_limit
+
   !> Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay.
   subroutine clear_loads(this, stat, errmsg)
     class(tribo_system), intent(inout) :: this
@@ -410,8 +427,8 @@ contains
   end subroutine add_load_table
 
   !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside, instead of
-  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends: limits are again those that
-  !> the context had before.
+  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends, and harmonics of the limits
+  !> do: limits are again those that the context had before.
   subroutine set_limit_table(this, time, limit, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: time(:), limit(:,:)

@@ -136,6 +136,15 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_add_load_table
 
+    function c_system_add_limit(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_limit')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(in), optional :: cosine(*)
+      real(c_double), intent(in), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_system_add_limit
+
     function c_system_set_limit_table(sys, knots, time, limit) result(answer) bind(c,name='tribo_system_set_limit_table')
       import
       type(c_ptr), value :: sys

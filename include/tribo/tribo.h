@@ -29,7 +29,7 @@
  * same time, the message is that of one of them, or, from compilers other than GCC and Clang, a mixture; it is to be read when
  * none of them is at work). Everything else wants one context a thread: tribo_clone. From compilers other than GCC and Clang
  * copies of one context are made, given another operator, and destroyed by one thread at a time. Memory is allocated by
- * tribo_create, tribo_clone and tribo_set_operator_... only.
+ * tribo_create, tribo_clone, tribo_set_planar and tribo_set_operator_... only.
  *
  * Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397,
  * doi:10.1115/1.1760564, "the paper" below. All functions: since 1.0, unless said otherwise.
@@ -223,7 +223,8 @@ TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const 
  * TRIBO_REAL_MAX_RATE is that of static limits, and so is the epsilon of tribo_set_epsilon_step. TRIBO_COUNT_SOLVES counts each
  * time that forces of an island are found. tribo_solve_box knows no limits, and so no static ones.
  * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (a
- * law without stick needs velocities; tribo_set_law returns it too); on error all stays as it was. */
+ * law without stick needs velocities; tribo_set_law returns it too. A ratio above 1 in a context with planar contacts;
+ * tribo_set_planar returns it too. tribo_step_force_mean returns it for static limits); on error all stays as it was. */
 TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
 
 /* ratio, velocity [n] out, each or NULL: 1 where nothing was set, and velocity 0 where there is none. */
@@ -241,6 +242,26 @@ TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
  * lambda_dt  in  > 0; the paper takes 1 for the oscillator and 0.4 for the chain; rk4 is stable to 2.785 */
 TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);
 TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
+
+/* Planar contacts: directions first[k] and first[k] + 1, 0 <= k < count, are the two tangential ones of one contact, and friction
+ * is one force in their plane. All other contacts stay scalar, and R couples them as before; all arrays keep one entry for each
+ * direction. count 0: there are none. (A "contact" is a direction wherever n is their number.)
+ *   limit     the semi-axes of the ellipse that holds f; equal: a disc. Both 0: open. One 0: the other direction is a scalar contact.
+ *   sliding   f = -limit^2 v/|limit v|, by direction, which is -limit v/|v| for a disc: the most that friction can dissipate
+ *   epsilon   the contact slides where |limit v| >= the larger limit epsilon of its two directions. After tribo_set_epsilon_step
+ *             both have the epsilon that the largest eigenvalue of their own 2x2 block of R asks for in the place of R_ii
+ *   laws      those of one direction, along the direction of motion; QUINN and QUINN_REVERSAL (which remembers nothing of
+ *             planar contacts) take the f that minimizes 1/2 f'Rf + (a + R_d kappa)'f, R_d being the blocks on the diagonal and
+ *             kappa = (2 limit/epsilon) v, over the lens: f and f + kappa are both within the limits. On a line that is the scalar
+ *             law; the choice of tangential directions does not matter; and where R_d is not the same in all directions, as
+ *             where limits are not, it is Coulomb's law at v = 0 all the same.
+ *   sharing   of redundant contacts in a group with planar ones R f is unique, and f one of the solutions, near that of the last call
+ * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R is
+ * kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
+ * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_DUPLICATE (a direction of two contacts),
+ * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling, and not beside static limits, tribo_set_static), TRIBO_ERR_MEMORY; on
+ * error all stays as it was. */
+TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 
 /* The operator R of z'' = R f + a. On error the old one stays. That of the context of a tribo_system is the system's, and cannot
  * be changed: TRIBO_ERR_UNSUPPORTED.
@@ -299,12 +320,14 @@ TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
 /* Friction force of every contact from its law, f_eq being known.
  * v    [n] in   relative velocity
  * feq  [n] in   balancing force; read only where |v| <= epsilon
- * f    [n] out  friction force, |f| <= limit
+ * f    [n] out  friction force, |f| <= limit; of a planar contact the point of its lens that is nearest to f_eq - kappa, as R_d
+ *               measures it (f'R_d f; the identity before there is an operator)
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE. The paper, Eq. 4. */
 TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 
 /* The same with derivatives. f, df_dv, df_dfeq, df_dlimit [n] out, each or NULL. Where epsilon follows the limit
- * (tribo_set_epsilon_step), df_dlimit takes that into account. */
+ * (tribo_set_epsilon_step), df_dlimit takes that into account. Derivatives are those of scalar contacts: TRIBO_ERR_UNSUPPORTED if one
+ * is planar. */
 TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
                                   double *df_dfeq, double *df_dlimit);
 
@@ -313,7 +336,8 @@ TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, con
  * a    [n] in   relative acceleration without friction (minus the contact's driven acceleration)
  * feq  [n] out  or NULL; 0 for open contacts
  * f    [n] out  or NULL; |f| <= limit
- * Consistent coupling: f = law(v, feq) and R_ii feq_i = -(a_i + sum of R_ij f_j over j != i), to rounding. Where
+ * Consistent coupling: f = law(v, feq) and R_ii feq_i = -(a_i + sum of R_ij f_j over j != i), to rounding (R_d, and the other
+ * contacts' j, for planar ones). Where
  * contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing. QUINN_REVERSAL: f_eq of
  * contacts near stick balances Quinn's forces.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
@@ -321,7 +345,8 @@ TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a
 
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
  * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink. Of redundant contacts only R times
- * it is unique: it is then the least in norm. On TRIBO_ERR_INCONSISTENT they are not written. */
+ * it is unique: it is then the least in norm (with planar contacts: in parts of limits). Where the band of a planar contact ends
+ * they grow beyond all bounds from inside, like 1/sqrt(1 - |v|/epsilon); there and outside they are those of sliding. On TRIBO_ERR_INCONSISTENT they are not written. */
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
 
@@ -339,12 +364,22 @@ TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const 
  * order in dt, since contacts break away, and their limits fall, from the beginning of a step on.
  * dt     in       step, > 0
  * vfree  [n] in   relative velocity that the step would end with without friction
- * f      [n] out  friction force, |f| <= limit
+ * f      [n] out  friction force, |f| <= limit; of a planar contact f = -limit^2 v_end/|limit v_end|, or v_end = 0
  * Moreau (1988); Jean and Moreau (1992). */
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
 
+/* The same to second order also where sliding turns or reverses within the step, which tribo_step_force is not.
+ *   planar contacts  that tribo_step_force leaves at v_end = 0 stick; the others slide along their mean velocity, f = -limit^2 w/|limit w|
+ *                    with w = v + v_end, unless they turn back by more than a right angle
+ *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until then and
+ *                    the other way after: f is the mean of that, |f| < limit, and tribo_get_slip tells the direction of the end
+ * All others are as there. It costs up to two solutions.
+ * v  [n] in  relative velocity at the start of the step
+ * Returns TRIBO_ERR_UNSUPPORTED for static limits (tribo_set_static). */
+TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
+
 /* The box-constrained problem behind it all, min 1/2 f'Rf + a'f with lower <= f <= upper, for laws of the caller's own. Neither
- * limits nor law nor epsilon matter.
+ * limits nor law nor epsilon matter, nor which contacts are planar.
  * a, lower, upper  [n] in   finite, lower <= upper
  * f                [n] out */
 TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);
@@ -357,7 +392,8 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 /* ----------------------------------------------------------------------------------------------------------- queries */
 
 /* What each contact did in the last tribo_balance or tribo_step_force. slip [n] out: 0 stuck, +1 and -1 sliding in that
- * direction (the force is -limit * slip), 2 open; by the limits that it had.
+ * direction (the force is -limit * slip), 2 open; both directions of a planar contact 0, 2, or 3 sliding in the plane; by the limits
+ * that it had.
  * Returns TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or tribo_set_operator_... since. */
 TRIBO_API int tribo_get_slip(const tribo_context *ctx, signed char *slip);
 
@@ -372,7 +408,8 @@ enum {
     TRIBO_COUNT_FACTORIZATIONS = 5, /* matrices factorized */
     TRIBO_COUNT_UPDATES = 6,        /* contacts that entered or left a stick set */
     TRIBO_COUNT_REVERSALS = 7,      /* reversal marks that tribo_accept has set or cleared */
-    TRIBO_COUNT_REUSED = 8          /* of the solves: those that ended with the stick set and the factor they began with */
+    TRIBO_COUNT_REUSED = 8,         /* of the solves: those that ended with the stick set and the factor they began with */
+    TRIBO_COUNT_PLANAR = 9          /* planar contacts */
 };
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
 

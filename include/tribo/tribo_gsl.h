@@ -93,9 +93,18 @@ TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, cons
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
 
+/* Adds a harmonic to the limits, limit(t) = max(0, limit + cosine cos(omega t) + sine sin(omega t) + ...), e.g. of a normal load
+ * that changes: mu times it. Where the sum is not above 0 the contact has lifted off: it has no force, and no memory; it touches
+ * down sliding, or, without velocity, sticks if it can. tribo_system_set_limit_table with knots = 0 takes these harmonics away.
+ * cosine, sine  [ncontact] in, each or NULL; forces
+ * The limit that they are added to is what is set in the context, before or after, or the table's. The context's limits follow
+ * the time that was last looked at: tribo_get_limit answers limit(t) of then, and to set just that again changes nothing.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (limits beyond 1e300), TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
+
 /* Lets the limits follow a table, linear between its knots and constant outside, instead of what the context says.
- * time   [knots] in   ascending; knots = 0 ends it: limits are again those that the context had before
- * limit  [knots][ncontact] in   >= 0
+ * time   [knots] in   ascending; knots = 0 ends it, and harmonics: limits are again those that the context had before
+ * limit  [knots][ncontact] in   >= 0; 0: lifted off
  * Limits that are set in the context meanwhile have no effect. */
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
 
@@ -133,7 +142,7 @@ typedef struct tribo_driver tribo_driver;
 
 /* An integrator for a system, which it borrows and which must live longer.
  * method   in   in any case of letters. Coulomb's law itself, epsilon -> 0:
- *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads
+ *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads and limits
  *               "event": high-order steps between events, with the tolerances; any system
  *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt
  *               that is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule

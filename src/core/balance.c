@@ -37,11 +37,10 @@ void tribo_remember_forces(tribo_context *ctx)
 /* The groups with a contact near stick among those from i to end. */
 static void find_near_groups(tribo_context *ctx, size_t i, size_t end)
 {
-    const struct delassus *op = ctx->op;
     struct memory *m = &ctx->memory;
     for (size_t n; (n = tribo_next_near(ctx->last.did.of, &i, end)) > 0; i += n) {
         for (size_t k = i; k < i + n; k++) {
-            const size_t g = op->group_of[k];
+            const size_t g = ctx->group_of[k];
             if (g != TRIBO_ALONE && !m->solved[g]) {
                 m->solved[g] = 1;
                 m->solved_list[m->nsolved++] = g;
@@ -226,7 +225,7 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
         status = one ? one : status;
         near_forces(ctx, p, v);
     }
-    return status;
+    return status || !ctx->planar ? status : tribo_planar_balance(ctx, v, a);
 }
 
 int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
@@ -249,6 +248,9 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     ctx->last.holds = ctx->set.law->holds;
     if (feq) {
         feq_of_others(ctx, a);
+        if (ctx->planar) {
+            tribo_planar_feq(ctx, a);
+        }
         tribo_copy(feq, ctx->last.feq, ctx->n);
     }
     if (f) {

@@ -11,6 +11,7 @@
 
 #include "operator/operator.h"
 #include "law/law.h"
+#include "planar.h"
 #include "../common/compiler.h"
 #include "../common/real.h"
 
@@ -100,7 +101,10 @@ struct tribo_context {
     struct following follow;
     struct delassus *op;   /* constant; clones have it in common */
     struct memory memory;  /* of the groups, from call to call */
-    unsigned char *moving; /* [n] reversal memory */
+    struct planar *planar; /* NULL: all contacts are scalar */
+    struct plane plane;
+    const size_t *group_of; /* [n] the group in which a box is solved for, or TRIBO_ALONE */
+    unsigned char *moving;  /* [n] reversal memory */
     struct last last;
     struct deeds spare; /* room for the next call */
     struct counters count;
@@ -141,6 +145,23 @@ static inline int tribo_need_operator(const tribo_context *ctx)
 static inline int tribo_need_epsilon(const tribo_context *ctx)
 {
     return ctx->set.step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
+}
+
+/* The arguments of a step. */
+static inline int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f)
+{
+    if (!isfinite(dt)) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
+    }
+    if (dt <= 0.0) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
+    }
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    if (status) {
+        return status;
+    }
+    return !f && ctx->n ? tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL") : TRIBO_OK;
 }
 
 /* settings.c: brings what follows from settings and operator up to date: after a change of limits; or of anything, then with
@@ -190,6 +211,9 @@ void tribo_refresh_static(tribo_context *ctx);
 /* Whether a law can do without stick what breaking wants of it; a status. */
 int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
 
+/* For what knows no static limits: fails if there are any. who: "... knows no". */
+int tribo_refuse_static(const tribo_context *ctx, const char *who);
+
 /* limit [n] = the limits of contacts i, i + 1, ... at v by these f_eq; NULL: those near stick hold. Where limits are static. */
 void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit);
 
@@ -220,11 +244,66 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
     return ctx->last.far ? tribo_cut(p, k, f) : f;
 }
 
+/* Bounds of all contacts; lower NULL: -upper. */
+struct bounds {
+    const double *lower, *upper;
+};
+
+/* step.c: solves v_end = v + dt R f for all contacts, f [n]; known [n], or NULL for none: not 0 for scalar contacts of
+ * clusters that have a force already, there. */
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f);
+
 /* Views of group k. */
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
 {
     return tribo_memory_problem(ctx->op, &ctx->memory, k);
 }
+
+/* planar.c: contacts and clusters for an operator that op is to become, and their taking the place of the old ones. */
+int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
+                         struct planar **planar, struct plane *plane);
+void tribo_planar_install(tribo_context *ctx, struct planar *planar, const struct plane *plane);
+
+/* Groups, with what planar contacts join counted as one, and single contacts. */
+static inline size_t tribo_islands(const tribo_context *ctx)
+{
+    return ctx->planar && ctx->op->diagonal ? ctx->planar->islands : ctx->op->islands;
+}
+
+
+/* planar_force.c, for contexts with planar contacts: forces of the clusters, once those of all others are known, in ctx->last.f; a
+ * status. f_eq of their contacts. */
+int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a);
+int tribo_planar_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
+void tribo_planar_feq(tribo_context *ctx, const double *a);
+
+/* Forces f of planar contacts whose f_eq is known, which where it matters must be finite; a status. */
+int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq);
+int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
+
+/* R f at place k of a cluster, with the contact's own force or without it. */
+double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, size_t k, int own);
+
+/* What planar contact k did in the last call; and slip of the directions of all. */
+signed char tribo_planar_slip(const tribo_context *ctx, size_t k);
+void tribo_planar_slips(const tribo_context *ctx, signed char *slip);
+
+/* The rate at which planar contact k relaxes. */
+double tribo_planar_rate(const tribo_context *ctx, size_t k);
+
+/* The problem of a cluster: the contacts in it, which are near stick at v: returns whether there are any; and their pull and beginning,
+ * when all other forces are known. The units of force and R in it. */
+struct unit {
+    double force, r;
+};
+int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v);
+void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a);
+struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g);
+
+/* planar_tangent.c: the derivatives of a cluster's forces at the last tribo_balance_tangent. */
+void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a);
+void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da);
+void tribo_planar_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 
 /* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */
 void tribo_begin_call(tribo_context *ctx);

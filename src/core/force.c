@@ -15,6 +15,14 @@ TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const doub
     }
 }
 
+/* Of planar contacts something else tells whether it matters. */
+static void skip_planar(const tribo_context *ctx, size_t i, size_t n, double *used)
+{
+    for (size_t k = 0; k < n; k++) {
+        used[k] = ctx->planar->role[i + k] == ROLE_SCALAR ? used[k] : 0.0;
+    }
+}
+
 /* The same for the n contacts from i on. */
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
@@ -22,6 +30,9 @@ static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double 
         double room[TRIBO_CHUNK];
         const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
         select_feq(n, v + i, band, feq + i, used);
+        if (ctx->planar) {
+            skip_planar(ctx, i, n, used);
+        }
     } else {
         memset(used, 0, n * sizeof *used);
     }
@@ -54,7 +65,7 @@ static int check_force(const tribo_context *ctx, const double *v, const double *
             }
         }
     }
-    return TRIBO_OK;
+    return ctx->planar && ctx->set.law->uses_feq ? tribo_planar_check_feq(ctx, v, feq) : TRIBO_OK;
 }
 
 static void hand_out(size_t n, const struct tangent *d, double *df_dv, double *df_dfeq, double *df_dlimit)
@@ -109,7 +120,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
     evaluate(ctx, v, feq, f, NULL, NULL, NULL);
-    return TRIBO_OK;
+    return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
 int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
@@ -119,10 +130,16 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
         return TRIBO_ERR_NULL;
     }
     const int status = check_force(ctx, v, feq);
-    if (!status) {
-        evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
+    if (status) {
+        return status;
     }
-    return status;
+    if (ctx->planar && (df_dv || df_dfeq || df_dlimit)) {
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                          "derivatives of planar contact %zu are no diagonals: see tribo_balance_tangent",
+                          ctx->planar->first[0]);
+    }
+    evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
+    return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
 static double limit_near(const tribo_context *ctx, size_t i, double v, double feq)
@@ -149,6 +166,9 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     ctx->last.linearized = 0;
     for (size_t i = 0; i < ctx->n; i++) {
         const unsigned char before = ctx->moving[i];
+        if (ctx->planar && ctx->planar->role[i] != ROLE_SCALAR) {
+            continue;
+        }
         if (fabs(v[i]) > tribo_epsilon_of(&ctx->follow.contacts, i)) {
             ctx->moving[i] = 1;
         } else if (fabs(feq[i]) <= limit_near(ctx, i, v[i], feq[i])) {

@@ -86,7 +86,9 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     c->owner = NULL;
     c->op = tribo_operator_share(ctx->op);
     c->memory = (struct memory){0};
-    if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op)) {
+    c->planar = tribo_planar_share(ctx->planar);
+    c->plane = (struct plane){0};
+    if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) || !tribo_plane_create(&c->plane, c->planar, n)) {
         tribo_destroy(c);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }
@@ -96,6 +98,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     tribo_copy(c->set.rate, ctx->set.rate, n);
     tribo_copy(c->last.feq, ctx->last.feq, n);
     tribo_copy(c->last.f, ctx->last.f, n);
+    tribo_copy(c->plane.y, ctx->plane.y, c->planar ? n : 0);
     memcpy(c->moving, ctx->moving, n);
     memcpy(c->follow.chunk, ctx->follow.chunk, tribo_chunks(n) * sizeof *c->follow.chunk);
     memcpy(c->last.did.of, ctx->last.did.of, n);
@@ -118,6 +121,8 @@ void tribo_destroy(tribo_context *ctx)
     }
     tribo_operator_release(ctx->op);
     tribo_memory_free(&ctx->memory);
+    tribo_planar_release(ctx->planar);
+    tribo_plane_free(&ctx->plane);
     free(ctx->message);
     free(ctx->set.limit);
     free(ctx->set.width);

@@ -44,6 +44,9 @@ void tribo_write_modes(tribo_context *ctx)
             ctx->last.did.all_stored = 0;
         }
     }
+    if (ctx->planar && ctx->last.modes == MODES_IN_FORCES) {
+        tribo_planar_slips(ctx, ctx->last.did.of);
+    }
     ctx->last.modes = ctx->last.modes == NO_MODES ? NO_MODES : MODES_WRITTEN;
 }
 
@@ -64,6 +67,9 @@ int tribo_get_slip(const tribo_context *ctx, signed char *mode)
     }
     if (ctx->last.modes == MODES_IN_FORCES) {
         find_modes(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, mode);
+        if (ctx->planar) {
+            tribo_planar_slips(ctx, mode);
+        }
     }
     return TRIBO_OK;
 }
@@ -73,6 +79,12 @@ static size_t count_stuck(const tribo_context *ctx)
     size_t stuck = 0;
     for (size_t i = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i++) {
         stuck += mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
+    }
+    for (size_t k = 0; ctx->planar && ctx->last.modes == MODES_IN_FORCES && k < ctx->planar->count; k++) {
+        for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
+            stuck -= mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
+            stuck += tribo_planar_slip(ctx, k) == 0;
+        }
     }
     for (size_t i = 0; ctx->last.modes == MODES_WRITTEN && i < ctx->n; i++) {
         stuck += ctx->last.did.of[i] == 0;
@@ -91,13 +103,14 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     const size_t counts[] = {
         [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
         [TRIBO_COUNT_RANK] = ctx->last.rank,
-        [TRIBO_COUNT_ISLANDS] = ctx->op->islands,
+        [TRIBO_COUNT_ISLANDS] = tribo_islands(ctx),
         [TRIBO_COUNT_SOLVES] = ctx->count.solves,
         [TRIBO_COUNT_SKIPPED] = ctx->count.skipped,
         [TRIBO_COUNT_FACTORIZATIONS] = ctx->memory.problem.work.factorizations,
         [TRIBO_COUNT_UPDATES] = ctx->memory.problem.work.updates,
         [TRIBO_COUNT_REVERSALS] = ctx->count.marks,
         [TRIBO_COUNT_REUSED] = ctx->count.reused,
+        [TRIBO_COUNT_PLANAR] = ctx->planar ? ctx->planar->count : 0,
     };
     if (which < 0 || which >= (int)(sizeof counts / sizeof *counts)) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);
@@ -113,9 +126,12 @@ static double max_rate(const tribo_context *ctx)
 {
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
-        if (ctx->follow.contacts.limit[i] > 0.0) {
+        if (ctx->follow.contacts.limit[i] > 0.0 && !(ctx->planar && ctx->planar->role[i] != ROLE_SCALAR)) {
             rate = greater(rate, product(tribo_steepest_slope(ctx, i), ctx->op->diagonal[i]));
         }
+    }
+    for (size_t k = 0; ctx->planar && k < ctx->planar->count; k++) {
+        rate = greater(rate, tribo_planar_rate(ctx, k));
     }
     if (!ctx->set.law->uses_feq) {
         return product(0.5 * rate, ctx->op->growth);

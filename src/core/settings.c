@@ -12,6 +12,17 @@ static int epsilon_follows(const tribo_context *ctx)
     return ctx->set.step > 0.0 && ctx->op->diagonal;
 }
 
+/* A planar contact has one epsilon for all directions: for R_ii stands the largest eigenvalue of its own block. */
+static void follow_planar(tribo_context *ctx, size_t k, double time)
+{
+    const double *own = ctx->planar->own[k], turned[2] = {0.5 * own[0] - 0.5 * own[2], own[1]};
+    const double largest = 0.5 * own[0] + 0.5 * own[2] + tribo_length(2, turned), half = greater(product(largest, time), DBL_MIN);
+    for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
+        ctx->set.width[i] = 2.0 * half;
+        ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+    }
+}
+
 /* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
 static void follow_step(tribo_context *ctx)
 {
@@ -20,6 +31,9 @@ static void follow_step(tribo_context *ctx)
         const double half = greater(product(ctx->op->diagonal[i], time), DBL_MIN);
         ctx->set.width[i] = 2.0 * half;
         ctx->set.rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+    }
+    for (size_t k = 0; ctx->planar && k < ctx->planar->count; k++) {
+        follow_planar(ctx, k, time);
     }
 }
 
@@ -95,6 +109,7 @@ void tribo_refresh_limits(tribo_context *ctx)
 
 void tribo_refresh(tribo_context *ctx)
 {
+    ctx->group_of = ctx->planar && ctx->op->diagonal ? ctx->planar->group_of : ctx->op->group_of;
     if (epsilon_follows(ctx)) {
         follow_step(ctx);
     }
@@ -299,6 +314,10 @@ int tribo_set_coupling(tribo_context *ctx, int coupling)
     }
     if (coupling != TRIBO_CONSISTENT && coupling != TRIBO_PARTITION) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "coupling = %d is neither TRIBO_CONSISTENT nor TRIBO_PARTITION", coupling);
+    }
+    if (coupling == TRIBO_PARTITION && ctx->planar) {
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
+                          ctx->planar->first[0]);
     }
     ctx->set.coupling = coupling;
     ctx->last.linearized = 0;

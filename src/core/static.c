@@ -161,6 +161,16 @@ static int check(const tribo_context *ctx, const double *ratio, const double *ve
     return status;
 }
 
+int tribo_refuse_static(const tribo_context *ctx, const char *who)
+{
+    for (size_t i = 0; ctx->set.breaking && i < ctx->n; i++) {
+        if (ctx->set.ratio[i] > 1.0) {
+            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "%s static limits, and ratio[%zu] = %g", who, i, ctx->set.ratio[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
 int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int breaking, const double *ratio)
 {
     for (size_t i = 0; breaking == DROPS && !law->uses_feq && i < ctx->n; i++) {
@@ -184,6 +194,11 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
     status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
     if (status) {
         return status;
+    }
+    if (breaking && ctx->planar) {
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                          "ratio[%zu] = %g: there are no static limits beside planar contacts, and contact %zu is one", above,
+                          ratio[above], ctx->planar->first[0]);
     }
     tribo_write_modes(ctx);
     ctx->set.breaking = breaking;

@@ -15,11 +15,6 @@ TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, 
     }
 }
 
-/* Bounds of all contacts; lower NULL: -upper. */
-struct bounds {
-    const double *lower, *upper;
-};
-
 static inline double lower_of(const struct bounds *b, size_t i)
 {
     return b->lower ? b->lower[i] : -b->upper[i];
@@ -30,6 +25,7 @@ struct call {
     struct bounds b;
     double dt, scale;
     const double *v;
+    const size_t *group_of;
     int all;       /* contacts take part, whatever friction can do against the pull */
     int breaks;    /* limits are static */
     int estimates; /* the pull tells something, and what limits can do against it is found from the sums of R's rows first */
@@ -77,7 +73,7 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
-            const size_t g = op->group_of[j];
+            const size_t g = c->group_of[j];
             if (g != TRIBO_ALONE && !m->solved[g] &&
                 !(c->estimates && out_of_reach(c->scale, c->v[j], op->row_sum[j], largest))) {
                 m->solved[g] = 1;
@@ -197,12 +193,12 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
     return status;
 }
 
-/* Solves for all contacts. */
-static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
+/* Solves for all contacts, but for clusters. */
+static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
     const int breaks = !b.lower && ctx->set.breaking, all = b.lower || breaks;
     const int estimates = !all && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
-    const struct call c = {b, dt, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, all, breaks, estimates};
+    const struct call c = {b, dt, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, group_of, all, breaks, estimates};
     tribo_store_all(ctx);
     box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
     if (breaks) {
@@ -211,14 +207,37 @@ static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds
     if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
-    const int status = solve_candidates(ctx, &c);
-    if (status) {
-        return status;
-    }
+    return solve_candidates(ctx, &c);
+}
+
+static inline void hand_out(tribo_context *ctx, double *f)
+{
     ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
     tribo_copy(f, ctx->last.f, ctx->n);
-    return TRIBO_OK;
+}
+
+/* Solves for all contacts, which are scalar. */
+static int box_all(tribo_context *ctx, double dt, const double *v, struct bounds b, double *f)
+{
+    const int status = solve_boxes(ctx, dt, v, b, ctx->op->group_of);
+    if (!status) {
+        hand_out(ctx, f);
+    }
+    return status;
+}
+
+int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f)
+{
+    if (!ctx->planar) {
+        return box_all(ctx, dt, v, b, f);
+    }
+    int status = solve_boxes(ctx, dt, v, b, ctx->group_of);
+    status = status ? status : tribo_planar_step(ctx, dt, v, known);
+    if (!status) {
+        hand_out(ctx, f);
+    }
+    return status;
 }
 
 int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
@@ -226,23 +245,14 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (!isfinite(dt)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
-    }
-    if (dt <= 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
-    }
-    int status = tribo_need_operator(ctx);
-    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    int status = tribo_check_step(ctx, dt, vfree, f);
     if (status) {
         return status;
     }
-    if (!f && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
-    }
     tribo_begin_call(ctx);
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->set.breaking ? ctx->n : 0);
-    status = box_all(ctx, dt, vfree, (struct bounds){NULL, ctx->follow.contacts.limit}, f);
+    const struct bounds b = {NULL, ctx->follow.contacts.limit};
+    status = ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;
         ctx->last.holds = 1.0;

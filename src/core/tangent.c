@@ -4,10 +4,13 @@
 #include "context.h"
 
 /* What every contact's law says at the last balance, which was at v. */
-static void linearize_laws(tribo_context *ctx, const double *v)
+static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
 {
     tribo_law_tangents(ctx, &ctx->follow.contacts, 0, ctx->n, v, ctx->last.feq, ctx->last.tangent);
     tribo_copy(ctx->last.v, v, ctx->n);
+    if (ctx->planar) {
+        tribo_planar_linearize(ctx, v, a);
+    }
     ctx->last.linearized = 1;
 }
 
@@ -134,7 +137,7 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
         return status;
     }
     const size_t n = ctx->n;
-    linearize_laws(ctx, v);
+    linearize_laws(ctx, v, a);
     for (int by_v = 0; by_v < 2; by_v++) {
         double *out = by_v ? df_dv : df_da;
         if (out) {
@@ -148,6 +151,9 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
     }
     for (size_t k = 0; (df_dv || df_da) && k < ctx->memory.nsolved; k++) {
         solved_columns(ctx, tribo_collect(ctx, ctx->memory.solved_list[k]), df_dv, df_da);
+    }
+    if (ctx->planar) {
+        tribo_planar_columns(ctx, df_dv, df_da);
     }
     return TRIBO_OK;
 }
@@ -182,6 +188,9 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
         for (size_t k = 0; k < size; k++) {
             df[member[k]] = p->gradient[k];
         }
+    }
+    if (ctx->planar) {
+        tribo_planar_product(ctx, dv, da, df);
     }
     return TRIBO_OK;
 }

@@ -1,6 +1,7 @@
 #include "breakaway.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,6 +9,7 @@ int tribo_breakaway_create(struct breakaway *b, size_t contacts)
 {
     const size_t c = contacts + 1;
     memset(b, 0, sizeof *b);
+    b->revision = SIZE_MAX;
     b->ratio = calloc(6 * c, sizeof *b->ratio);
     if (!b->ratio) {
         return 0;
@@ -27,14 +29,16 @@ void tribo_breakaway_free(struct breakaway *b)
 
 int tribo_system_falls(const tribo_system *sys)
 {
-    tribo_get_static(sys->contacts, NULL, sys->v);
-    return sys->ncontact && sys->v[0] > 0.0;
+    double *velocity = sys->feq;
+    tribo_get_static(sys->contacts, NULL, velocity);
+    return sys->ncontact && velocity[0] > 0.0;
 }
 
-/* The largest row sum of |J| |B| diag(slopes at rest). */
-static double steepest(const struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
+/* The largest row sum of |J| |B| diag(slopes at rest, with the largest limits that there will be). */
+static double steepest(struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
 {
     memset(dof, 0, sys->ndof * sizeof *dof);
+    tribo_system_most_limits(sys, b->kinetic);
     for (size_t i = 0; i < sys->ncontact; i++) {
         contact[i] = -tribo_breakaway_slope(b, i, 0.0);
     }
@@ -52,8 +56,10 @@ void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, 
     for (size_t i = 0; i < sys->ncontact; i++) {
         b->some |= b->ratio[i] > 1.0;
     }
-    tribo_system_limits(sys, b->kinetic, b->kinetic_rate);
-    b->steepest = b->falls ? steepest(b, sys, dof, contact) : 0.0;
+    if (b->revision != tribo_system_revision(sys)) {
+        b->steepest = b->falls ? steepest(b, sys, dof, contact) : 0.0;
+        b->revision = tribo_system_revision(sys);
+    }
 }
 
 /* exp(-|v|/velocity), or 0 where limits drop at once. */
@@ -62,11 +68,16 @@ static double part_at(const struct breakaway *b, size_t i, double v)
     return b->falls ? exp(-quotient(fabs(v), b->velocity[i])) : 0.0;
 }
 
-void tribo_breakaway_limits(struct breakaway *b, const tribo_system *sys, const signed char *slip, const double *v, double *limit,
+void tribo_breakaway_take(struct breakaway *b, size_t contacts, const double *limit, const double *limit_rate)
+{
+    memcpy(b->kinetic, limit, contacts * sizeof *limit);
+    memcpy(b->kinetic_rate, limit_rate, contacts * sizeof *limit_rate);
+}
+
+void tribo_breakaway_limits(struct breakaway *b, size_t contacts, const signed char *slip, const double *v, double *limit,
                             double *limit_rate)
 {
-    tribo_system_limits(sys, b->kinetic, b->kinetic_rate);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t i = 0; i < contacts; i++) {
         const double more = (b->ratio[i] - 1.0) * part_at(b, i, slip[i] ? v[i] : 0.0);
         limit[i] = product(1.0 + more, b->kinetic[i]);
         limit_rate[i] = product(1.0 + more, b->kinetic_rate[i]);
@@ -98,15 +109,22 @@ int tribo_breakaway_restore(struct breakaway *b, size_t i)
     return less;
 }
 
-double tribo_breakaway_series(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
-                              double *part)
+double tribo_breakaway_part(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
+                            const double *part)
 {
     double sum = 0.0;
     for (size_t j = 1; j <= k; j++) {
         sum += (double)j * v[j * stride] * part[(k - j) * stride];
     }
-    part[k * stride] = k ? -side * sum / ((double)k * b->velocity[i]) : part_at(b, i, v[0]);
-    const double alone = k == 0 ? b->kinetic[i] : k == 1 ? b->kinetic_rate[i] : 0.0;
-    const double before = k ? b->kinetic_rate[i] * part[(k - 1) * stride] : 0.0;
-    return alone + (b->ratio[i] - 1.0) * (b->kinetic[i] * part[k * stride] + before);
+    return k ? -side * sum / ((double)k * b->velocity[i]) : part_at(b, i, v[0]);
+}
+
+double tribo_breakaway_series(const struct breakaway *b, size_t i, size_t k, size_t stride, size_t terms, const double *limit,
+                              const double *part)
+{
+    double sum = 0.0;
+    for (size_t j = 0; j <= k && j < terms; j++) {
+        sum += limit[j * stride] * part[(k - j) * stride];
+    }
+    return (k < terms ? limit[k * stride] : 0.0) + (b->ratio[i] - 1.0) * sum;
 }

@@ -17,6 +17,7 @@ struct breakaway {
     double *ratio, *velocity;       /* [ncontact] */
     double *kinetic, *kinetic_rate; /* [ncontact] limit at high speed, and its rate */
     double *stick, *stick_rate;     /* [ncontact] room for static limits */
+    size_t revision;                /* of the system, that steepest is of */
     double steepest;                /* no faster does falling friction make anything grow */
 };
 
@@ -27,12 +28,21 @@ void tribo_breakaway_free(struct breakaway *b);
 /* Takes the static limits of the system's context. dof, contact: workspace. */
 void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact);
 
-/* stick, and limit [ncontact] of contacts with this slip and v, at the time set; and their rates, but for what v adds. */
-void tribo_breakaway_limits(struct breakaway *b, const tribo_system *sys, const signed char *slip, const double *v, double *limit,
+/* Takes limits at high speed, 0 where contacts are open, and their rates; both [contacts]. */
+void tribo_breakaway_take(struct breakaway *b, size_t contacts, const double *limit, const double *limit_rate);
+
+/* What follows from them: stick, and limit [contacts] of contacts with this slip and v; and their rates, but for what v adds. */
+void tribo_breakaway_limits(struct breakaway *b, size_t contacts, const signed char *slip, const double *v, double *limit,
                             double *limit_rate);
 
 /* dN/d|v| of contact i. */
 double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v);
+
+/* How many times its limit to slide the limit to stick of contact i is. */
+static inline double tribo_breakaway_ratio(const struct breakaway *b, size_t i)
+{
+    return b->some ? b->ratio[i] : 1.0;
+}
 
 /* The static limit of contact i. */
 static inline double tribo_breakaway_most(const struct breakaway *b, size_t i)
@@ -43,7 +53,7 @@ static inline double tribo_breakaway_most(const struct breakaway *b, size_t i)
 /* Whether contact i, at rest, would let go of more than rounding by breaking away: then that must be certain. */
 static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
 {
-    return b->some && b->ratio[i] > 1.0 && b->stick[i] >= tribo_breakaway_most(b, i);
+    return b->some && b->stick[i] > b->kinetic[i];
 }
 
 /* The contact holds no more by its static limit; 0 if it has none, or does not already. */
@@ -52,9 +62,13 @@ int tribo_breakaway_lets_go(struct breakaway *b, size_t i);
 /* It holds by its static limit again; 1 if it did not: it broke away, and the others hold it after all. */
 int tribo_breakaway_restore(struct breakaway *b, size_t i);
 
-/* The next coefficient, the k-th, of N(|v|) in powers of time: v [k + 1], part [k] those of |v| times side, and of
- * exp(-|v|/velocity), of which this finds the k-th too; each stride doubles apart. */
-double tribo_breakaway_series(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
-                              double *part);
+/* Coefficients of powers of time, each stride doubles apart: the next one, the k-th, of exp(-|v|/velocity), from the others and v
+ * [k + 1], which is side |v|; */
+double tribo_breakaway_part(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
+                            const double *part);
+
+/* and the k-th of N(|v|), from those of the limit at high speed (limit [terms], the others are 0) and part [k + 1]. */
+double tribo_breakaway_series(const struct breakaway *b, size_t i, size_t k, size_t stride, size_t terms, const double *limit,
+                              const double *part);
 
 #endif

@@ -85,9 +85,22 @@ static int check_parameters(const tribo_system *sys, const struct method *method
     return TRIBO_OK;
 }
 
+/* Methods that follow each contact from stick to slip know scalar ones only; and contacts may become planar at any time. */
+static int check_planar(const tribo_system *sys, const struct method *m)
+{
+    const int scalar_only = m == &tribo_method_event || m == &tribo_method_exact || m == &automatic;
+    size_t planar = 0;
+    tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
+    return !planar || !scalar_only ? TRIBO_OK
+                                      : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                                          "method %s knows no planar contacts, and there are %zu contacts of that kind",
+                                                          m->name, planar);
+}
+
 static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
 {
     int status = check_parameters(sys, m, dt, abstol, reltol);
+    status = status ? status : check_planar(sys, m);
     if (status) {
         return status;
     }
@@ -308,7 +321,8 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     if (t1 < *t) {
         return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
     }
-    return TRIBO_OK;
+    const int unfit = check_planar(drv->sys, drv->method);
+    return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 
 int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)

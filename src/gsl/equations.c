@@ -10,7 +10,7 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     const size_t n = sys->ndof;
     tribo_system_set_time(sys, t);
     memset(acceleration, 0, n * sizeof *acceleration);
-    tribo_system_loads(sys, 0, 0, 1.0, acceleration);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, acceleration);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, acceleration);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
@@ -18,8 +18,8 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
     if (sys->base_harmonics) {
-        tribo_system_loads(sys, 1, 0, -1.0, v);
-        tribo_system_loads(sys, 1, 1, -1.0, a);
+        tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
+        tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, a);
     }
     tribo_matrix_multiply_add(&sys->direction, 1.0, y + n, v);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
@@ -114,7 +114,7 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
 {
     tribo_system *s = calloc(1, sizeof *s);
     int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
-    double *work = status ? NULL : calloc(7 * (ncontact + 1) + ndof, sizeof *work);
+    double *work = status ? NULL : calloc(8 * (ncontact + 1) + ndof, sizeof *work);
     if (!work) {
         tribo_system_destroy(s);
         tribo_matrix_free(stiffness);
@@ -137,8 +137,9 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     s->feq = work + 3 * (ncontact + 1);
     s->dv_dt = work + 4 * (ncontact + 1);
     s->given_limit = work + 5 * (ncontact + 1);
-    s->tally = work + 6 * (ncontact + 1);
-    s->acceleration = work + 7 * (ncontact + 1);
+    s->put_limit = work + 6 * (ncontact + 1);
+    s->tally = work + 7 * (ncontact + 1);
+    s->acceleration = work + 8 * (ncontact + 1);
     for (size_t i = 0; i < ncontact; i++) {
         s->tally[i] = 1.0;
     }
@@ -155,6 +156,7 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->revision = sys->revision;
     to->given = sys->given;
     memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
+    memcpy(to->put_limit, sys->put_limit, sys->ncontact * sizeof *to->put_limit);
     memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);
     int done = 1;
     to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);

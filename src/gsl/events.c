@@ -25,7 +25,7 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
         return status;
     }
     e->next = malloc(tribo_system_dimension(sys) * sizeof *e->next);
-    e->search.guard = malloc((2 * sys->ncontact + 1) * sizeof *e->search.guard);
+    e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
     if (!e->next || !e->search.guard) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contacts", sys->ncontact);
     }
@@ -83,6 +83,19 @@ void tribo_events_guard_part(struct events *e, size_t i, struct guard guard)
     guard.slides = 1;
     guard.allowance = e->stick_slip.parting[i];
     append_both(e, i, guard);
+}
+
+void tribo_events_guard_limit(struct events *e, size_t i, struct guard guard)
+{
+    const struct stick_slip *m = &e->stick_slip;
+    const int keeps = m->slip[i] == 0 && !tribo_stick_slip_follows(m, i);
+    const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
+    guard.limit *= times;
+    guard.offset = times * guard.offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
+    guard.slides = 0;
+    guard.side = 0.0;
+    guard.allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
+    append(e, i, guard);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- events */

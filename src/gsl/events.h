@@ -35,10 +35,12 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
 
 /* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest,
  * or two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or
- * force is side * value. */
+ * force is side * value. Or one of its limit, which is offset + limit * value: whether the contact lifts off, or touches down, or
+ * has its limit fall to the force that it keeps. */
 void tribo_events_clear_guards(struct events *e);
 void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard);
 void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard);
 void tribo_events_guard_part(struct events *e, size_t i, struct guard guard);
+void tribo_events_guard_limit(struct events *e, size_t i, struct guard guard);
 
 #endif

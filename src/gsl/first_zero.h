@@ -7,13 +7,14 @@
 #include "quintic.h"
 
 /* What must not fall below zero while a contact does what it does: side times its velocity (slides), or what is left between
- * side times its force and the limit. */
+ * side times its force and the limit, or what presses it together, or keeps it apart. */
 struct guard {
     size_t contact;
     int slides;
     double side;
     const void *output;         /* the motion's own */
     double offset, start, ramp; /* the motion's own */
+    double limit;               /* how many times the limit, as far as that is the motion's own, is in it */
     double size, bend;          /* bounds, from where the search is on, of its parts together and of its sixth derivative */
     double allowance;           /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
     double lowest;              /* below zero by this much at most, so far */

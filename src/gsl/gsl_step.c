@@ -99,6 +99,12 @@ static int out_of_memory(tribo_system *sys)
 
 /* ---------------------------------------------------------------------------------------------------------- callbacks */
 
+/* Open contacts carry nothing, and nearly nothing just before they lift off, or after they have touched down: no jump. */
+static int jumps(signed char before, signed char after)
+{
+    return before != after && before != 2 && after != 2;
+}
+
 /* Whether a contact sticks, breaks away or turns between where the step begins and the last evaluation, in a step that is longer
  * than so much beside the time in which it relaxes; one of rate 0 does not relax but jumps. */
 static int passes_a_change(const struct gsl_step *g, double part)
@@ -108,7 +114,7 @@ static int passes_a_change(const struct gsl_step *g, double part)
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
-        if (g->mode[i] != g->mode[n + i] && (g->rate[i] * g->h > part || g->rate[i] == 0.0)) {
+        if (jumps(g->mode[i], g->mode[n + i]) && (g->rate[i] * g->h > part || g->rate[i] == 0.0)) {
             return 1;
         }
     }

@@ -55,6 +55,27 @@ static int create_dense(tribo_system *sys)
     return 0;
 }
 
+/* A time short beside the fastest motion, for differences. */
+#define SHORT 1e-7
+
+/* df_dt [ncontact] = what limits that vary do to the forces, by the difference over a short time. Returns a status. */
+static int find_limit_rates(tribo_system *sys, double *df_dt)
+{
+    const double fastest = tribo_system_fastest(sys), later = SHORT / (fastest > 0.0 ? fastest : 1.0);
+    if (!tribo_system_limits_vary(sys)) {
+        memset(df_dt, 0, sys->ncontact * sizeof *df_dt);
+        return TRIBO_OK;
+    }
+    tribo_system_put_limits(sys, later);
+    int status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->dv_dt);
+    tribo_system_put_limits(sys, 0.0);
+    status = status ? status : tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        df_dt[i] = (sys->dv_dt[i] - sys->f[i]) / later;
+    }
+    return status;
+}
+
 /* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
 int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
 {
@@ -67,7 +88,11 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     }
     const struct dense d = dense_of(sys);
     tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
-    sys->status = tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
+    double *df_dt = sys->feq;
+    sys->status = find_limit_rates(sys, df_dt);
+    if (!sys->status) {
+        sys->status = tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
+    }
     if (sys->status) {
         return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
     }
@@ -79,15 +104,13 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     tribo_multiply_add(m, n, n, -1.0, d.pull, d.damping, d.df_du);
     tribo_multiply_add(m, m, n, 1.0, d.df_dv, d.direction, d.df_du);
 
-    /* df/dt = -(df/dv) b' + (df/da) (J load' - b'') */
-    double *df_dt = sys->feq;
+    /* df/dt = -(df/dv) b' + (df/da) (J load' - b'') + (df/dlimit) limit' */
     memset(d.load, 0, n * sizeof *d.load);
     memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
     memset(sys->a, 0, m * sizeof *sys->a);
-    memset(df_dt, 0, m * sizeof *df_dt);
-    tribo_system_loads(sys, 0, 1, 1.0, d.load);
-    tribo_system_loads(sys, 1, 1, -1.0, sys->dv_dt);
-    tribo_system_loads(sys, 1, 2, -1.0, sys->a);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, d.load);
+    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, sys->dv_dt);
+    tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
     tribo_multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
     tribo_multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);

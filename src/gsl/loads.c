@@ -1,8 +1,9 @@
-/* What comes from outside and changes with time: loads on the structure, motion of the bases, limits that follow a table. */
+/* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
 #include "system.h"
 #include "../common/real.h"
 #include "../common/twofold.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -80,6 +81,7 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
         done = copy_table(&sys->table[sys->tables++], &from->table[k], 1, sys->ndof);
     }
     sys->base_harmonics = from->base_harmonics;
+    sys->limit_harmonics = from->limit_harmonics;
     return done && copy_table(&sys->limits, &from->limits, sys->ncontact, 0);
 }
 
@@ -108,15 +110,44 @@ static double look_up(const tribo_system *sys, const struct table *table, size_t
     return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
 }
 
-/* Makes the limits of the context those of the table, at the time set. */
-static void follow_limits(tribo_system *sys)
+int tribo_system_limits_vary(const tribo_system *sys)
+{
+    return sys->limits.knots || sys->limit_harmonics;
+}
+
+/* Finds out which limits are given in the context: those that it has before they vary, and those that it gets while harmonics,
+ * but no table, change them. */
+static void find_given_limits(tribo_system *sys)
+{
+    const size_t bytes = sys->ncontact * sizeof *sys->v;
+    const int vary = tribo_system_limits_vary(sys);
+    tribo_get_limit(sys->contacts, sys->v);
+    if (!vary || (!sys->limits.knots && memcmp(sys->v, sys->put_limit, bytes) != 0)) {
+        memcpy(sys->given_limit, sys->v, bytes);
+    }
+    memcpy(sys->put_limit, sys->v, bytes);
+}
+
+void tribo_system_put_limits(tribo_system *sys, double later)
 {
     const size_t before = tribo_revision(sys->contacts);
-    sys->limits.at = knot_at(&sys->limits, sys->time);
-    tribo_system_limits(sys, sys->v, sys->a);
-    tribo_set_limit(sys->contacts, sys->v);
+    tribo_system_limits(sys, sys->put_limit, sys->feq);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        sys->put_limit[i] = clamp(sys->put_limit[i] + later * sys->feq[i], 0.0, DBL_MAX);
+    }
+    tribo_set_limit(sys->contacts, sys->put_limit);
     sys->seen = tribo_revision(sys->contacts);
     sys->ours += sys->seen - before;
+}
+
+/* Makes the limits of the context those of the time set. */
+static void follow_limits(tribo_system *sys)
+{
+    if (sys->seen != tribo_revision(sys->contacts)) {
+        find_given_limits(sys);
+    }
+    sys->limits.at = knot_at(&sys->limits, sys->time);
+    tribo_system_put_limits(sys, 0.0);
 }
 
 /* An angle so small has the cosine 1 and is its own sine. */
@@ -159,21 +190,8 @@ void tribo_system_set_time(tribo_system *sys, double t)
     if (moves) {
         set_loads(sys, t);
     }
-    if (sys->limits.knots && (moves || sys->seen != tribo_revision(sys->contacts))) {
+    if (tribo_system_limits_vary(sys) && (moves || sys->seen != tribo_revision(sys->contacts))) {
         follow_limits(sys);
-    }
-}
-
-void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
-{
-    if (sys->limits.knots == 0) {
-        tribo_get_limit(sys->contacts, limit);
-        memset(rate, 0, sys->ncontact * sizeof *rate);
-        return;
-    }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] = look_up(sys, &sys->limits, sys->ncontact, i, 0);
-        rate[i] = look_up(sys, &sys->limits, sys->ncontact, i, 1);
     }
 }
 
@@ -202,31 +220,113 @@ void tribo_system_tables(const tribo_system *sys, int order, double factor, doub
     }
 }
 
-void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to)
+/* The order-th derivatives of cos(omega t) and sin(omega t) at the time set. */
+static void differentiate(const struct harmonic *h, int order, double *c, double *s)
+{
+    *c = h->cos_t;
+    *s = h->sin_t;
+    for (int d = 0; d < order; d++) {
+        const double dc = -h->omega * *s;
+        *s = h->omega * *c;
+        *c = dc;
+    }
+}
+
+void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *h = &sys->harmonic[k];
-        if (h->moves_base != moves_base) {
+        if (h->drives != drives) {
             continue;
         }
-        double c = h->cos_t, s = h->sin_t;
-        for (int d = 0; d < order; d++) {
-            const double dc = -h->omega * s;
-            s = h->omega * c;
-            c = dc;
-        }
+        double c, s;
+        differentiate(h, order, &c, &s);
         for (size_t i = 0; i < h->count; i++) {
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
-    if (!moves_base && sys->tables) {
+    if (drives == DRIVES_LOAD && sys->tables) {
         tribo_system_tables(sys, order, factor, to);
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------------------- limits */
+
+/* The order-th derivative of the limit of contact i without harmonics. */
+static double steady_limit(const tribo_system *sys, size_t i, int order)
+{
+    if (sys->limits.knots) {
+        return order < 2 ? look_up(sys, &sys->limits, sys->ncontact, i, order) : 0.0;
+    }
+    return order ? 0.0 : sys->given_limit[i];
+}
+
+void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
+{
+    if (!tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, limit);
+        memset(rate, 0, sys->ncontact * sizeof *rate);
+        return;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] = steady_limit(sys, i, 0);
+        rate[i] = steady_limit(sys, i, 1);
+    }
+    tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
+    tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
+}
+
+double tribo_system_swing(const tribo_system *sys, size_t i)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *h = &sys->harmonic[k];
+        sum += h->drives == DRIVES_LIMIT ? hypot(h->cosine[i], h->sine[i]) : 0.0;
+    }
+    return sum;
+}
+
+void tribo_system_most_limits(const tribo_system *sys, double *most)
+{
+    if (!tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, most);
+        return;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        most[i] = sys->limits.knots ? 0.0 : sys->given_limit[i];
+        for (size_t k = 0; k < sys->limits.knots; k++) {
+            most[i] = greater(most[i], sys->limits.value[k * sys->ncontact + i]);
+        }
+        most[i] += tribo_system_swing(sys, i);
+    }
+}
+
+/* A limit of which so many derivatives are nothing but rounding is 0. */
+#define DERIVATIVES 9
+
+int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
+{
+    for (int order = 0; order < DERIVATIVES; order++) {
+        double sum = steady_limit(sys, i, order), size = fabs(sum);
+        for (size_t k = 0; k < sys->harmonics; k++) {
+            const struct harmonic *h = &sys->harmonic[k];
+            double c, s;
+            if (h->drives == DRIVES_LIMIT) {
+                differentiate(h, order, &c, &s);
+                sum += h->cosine[i] * c + h->sine[i] * s;
+                size += hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
+            }
+        }
+        if (fabs(sum) > TRIBO_LIMIT_NOISE * doubt * size) {
+            return sum > 0.0;
+        }
+    }
+    return 0;
+}
+
 /* ------------------------------------------------------------------------------------------------------------------ harmonics */
 
-/* Keeps only entries in which cosine or sine is not zero. */
+/* Keeps only entries in which cosine or sine is not zero, but all those of limits, which are looked up contact by contact. */
 static int compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
 {
     h->index = malloc((n + 1) * sizeof *h->index);
@@ -236,7 +336,7 @@ static int compress(struct harmonic *h, size_t n, const double *cosine, const do
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
-        if (cosine[i] != 0.0 || sine[i] != 0.0) {
+        if (cosine[i] != 0.0 || sine[i] != 0.0 || h->drives == DRIVES_LIMIT) {
             h->index[h->count] = i;
             h->cosine[h->count] = cosine[i];
             h->sine[h->count++] = sine[i];
@@ -255,30 +355,46 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
     return TRIBO_OK;
 }
 
-static int add_harmonic(tribo_system *sys, int moves_base, double omega, const double *cosine, const double *sine)
+/* Limits, and what is computed from them, are to remain numbers. */
+#define MOST_LIMIT 1e300
+
+static int check_limits(const tribo_system *sys, const double *cosine, const double *sine)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double most =
+            sys->given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
+        if (!(most <= MOST_LIMIT)) {
+            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
+                                     MOST_LIMIT);
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    const size_t given = moves_base ? sys->ncontact : sys->given, n = moves_base ? sys->ncontact : sys->ndof;
+    const int of_contacts = drives != DRIVES_LOAD;
+    const size_t given = of_contacts ? sys->ncontact : sys->given, n = of_contacts ? sys->ncontact : sys->ndof;
     if (!isfinite(omega)) {
         return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
     int status = check_amplitudes(sys, "cosine", cosine, given);
-    if (!status) {
-        status = check_amplitudes(sys, "sine", sine, given);
-    }
+    status = status ? status : check_amplitudes(sys, "sine", sine, given);
+    status = status || drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);
     if (status) {
         return status;
     }
-    struct harmonic h = {.omega = omega, .moves_base = moves_base};
+    struct harmonic h = {.omega = omega, .drives = drives};
     double *parts = calloc(2 * n + 1, sizeof *parts);
     struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
     sys->harmonic = all ? all : sys->harmonic;
     int done = parts && all;
     for (int part = 0; done && part < 2; part++) {
         const double *from = part ? sine : cosine;
-        if (from && moves_base) {
+        if (from && of_contacts) {
             memcpy(parts + (size_t)part * n, from, n * sizeof *parts);
         } else if (from) {
             tribo_system_accelerate(sys, from, parts + (size_t)part * n);
@@ -291,7 +407,8 @@ static int add_harmonic(tribo_system *sys, int moves_base, double omega, const d
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
     }
     sys->harmonic[sys->harmonics++] = h;
-    sys->base_harmonics += (size_t)moves_base;
+    sys->base_harmonics += drives == DRIVES_BASE;
+    sys->limit_harmonics += drives == DRIVES_LIMIT;
     sys->revision++;
     sys->time = NAN;
     return TRIBO_OK;
@@ -299,7 +416,20 @@ static int add_harmonic(tribo_system *sys, int moves_base, double omega, const d
 
 int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, 0, omega, cosine, sine);
+    return add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
+}
+
+static void remove_harmonics(tribo_system *sys, enum drives drives)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        if (sys->harmonic[k].drives != drives) {
+            sys->harmonic[kept++] = sys->harmonic[k];
+        } else {
+            free_harmonic(&sys->harmonic[k]);
+        }
+    }
+    sys->harmonics = kept;
 }
 
 int tribo_system_clear_loads(tribo_system *sys)
@@ -307,18 +437,10 @@ int tribo_system_clear_loads(tribo_system *sys)
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    size_t kept = 0;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        if (sys->harmonic[k].moves_base) {
-            sys->harmonic[kept++] = sys->harmonic[k];
-        } else {
-            free_harmonic(&sys->harmonic[k]);
-        }
-    }
+    remove_harmonics(sys, DRIVES_LOAD);
     for (size_t k = 0; k < sys->tables; k++) {
         free_table(&sys->table[k]);
     }
-    sys->harmonics = kept;
     sys->tables = 0;
     sys->revision++;
     sys->time = NAN;
@@ -327,7 +449,16 @@ int tribo_system_clear_loads(tribo_system *sys)
 
 int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, 1, omega, cosine, sine);
+    return add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
+}
+
+int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    find_given_limits(sys);
+    return add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- tables */
@@ -402,10 +533,11 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
             return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
         }
     }
-    if (!sys->limits.knots && knots) {
-        tribo_get_limit(sys->contacts, sys->given_limit);
-    } else if (sys->limits.knots && !knots) {
+    find_given_limits(sys);
+    if (!knots && tribo_system_limits_vary(sys)) {
         tribo_set_limit(sys->contacts, sys->given_limit);
+        remove_harmonics(sys, DRIVES_LIMIT);
+        sys->limit_harmonics = 0;
     }
     free_table(&sys->limits);
     sys->limits = t;

@@ -51,7 +51,7 @@ static int kick(tribo_driver *drv, double from, double t, double to, const doubl
     tribo_step_form_begin(s, sys, from, u);
     tribo_system_set_time(sys, t);
     memset(s->a, 0, n * sizeof *s->a);
-    tribo_system_loads(sys, 0, 0, 1.0, s->a);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, s->a);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, u, s->a);

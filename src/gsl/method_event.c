@@ -22,13 +22,18 @@ struct event {
     double tolerance; /* relative */
     double fastest;   /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
-    double tau, length;    /* where go() was; that of the step, and what bounds hold for */
-    double *q, *u;         /* [order + 1][ndof] coefficients of the powers of time */
-    double *watch;         /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
-    double *d;             /* [order + 1] dissipated energy */
-    double *slide, *part;  /* [order + 1][ncontact] limits that fall with the speed, and exp(-|v|/velocity) of sliding contacts */
-    double *size, *bend;   /* [ncontact] bounds of what is watched, and of its sixth derivative */
-    double *cosine, *sine; /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
+    double tau, length;              /* where go() was; that of the step, and what bounds hold for */
+    double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
+    double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
+    double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
+    size_t terms;                    /* so many rows of them are not zero */
+    double *slide;                   /* [order + 1][ncontact] limits by which contacts slide: these, unless they fall with the speed; */
+    size_t slide_terms;              /* so many rows */
+    double *fall, *part;             /* [order + 1][ncontact] room for such that fall, and exp(-|v|/velocity) */
+    double *d;                       /* [order + 1] dissipated energy */
+    double *size, *bend;             /* [ncontact] bounds of what is watched, and of its sixth derivative; */
+    double *limit_size, *limit_bend; /* [ncontact] the same of limits */
+    double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
 };
 
@@ -52,26 +57,45 @@ static void expand_harmonics(struct event *e, double t)
 }
 
 /* to += factor times the k-th coefficient of the harmonics that load the structure, or move the base. */
-static void add_harmonics(const struct event *e, int moves_base, size_t k, double factor, double *to)
+static void add_harmonics(const struct event *e, enum drives drives, size_t k, double factor, double *to)
 {
     for (size_t s = 0; s < e->sys->harmonics; s++) {
         const struct harmonic *w = &e->sys->harmonic[s];
         const double c = factor * e->cosine[k * e->sys->harmonics + s], d = factor * e->sine[k * e->sys->harmonics + s];
-        for (size_t i = 0; w->moves_base == moves_base && i < w->count; i++) {
+        for (size_t i = 0; w->drives == drives && i < w->count; i++) {
             to[w->index[i]] += c * w->cosine[i] + d * w->sine[i];
         }
     }
 }
 
-/* The k-th coefficient of the limit by which contact i slides. */
-static double sliding_limit(struct event *e, size_t i, size_t k)
+/* Coefficients of the limits, at the time that the harmonics have been expanded for. Of such that fall with the speed each
+ * coefficient has to wait for the velocity's. */
+static void expand_limits(struct event *e)
+{
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    const int falls = e->events.stick_slip.breakaway.falls;
+    e->slide = falls ? e->fall : e->limit;
+    e->slide_terms = falls ? e->order + 1 : e->terms;
+    tribo_system_limits(sys, e->limit, e->limit + c);
+    for (size_t k = 2; k < e->slide_terms; k++) {
+        memset(e->limit + k * c, 0, c * sizeof *e->limit);
+        add_harmonics(e, DRIVES_LIMIT, k, 1.0, e->limit + k * c);
+    }
+}
+
+/* The k-th coefficients of limits that fall with the speed, for contacts that slide. */
+static void expand_falling(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t c = e->sys->ncontact;
-    if (!m->breakaway.falls) {
-        return k == 0 ? m->limit[i] : k == 1 ? m->limit_rate[i] : 0.0;
+    for (size_t i = 0; i < c; i++) {
+        double *part = e->part + i;
+        if (m->slip[i] == 1 || m->slip[i] == -1) {
+            part[k * c] = tribo_breakaway_part(&m->breakaway, i, m->slip[i], k, c, e->watch + i, part);
+            e->fall[k * c + i] = tribo_breakaway_series(&m->breakaway, i, k, c, e->terms, e->limit + i, part);
+        }
     }
-    return e->slide[k * c + i] = tribo_breakaway_series(&m->breakaway, i, m->slip[i], k, c, e->watch + i, e->part + i);
 }
 
 /* The k-th coefficient of f for the contacts that do not hold: those that slide follow their limit, and so do those that are just
@@ -80,10 +104,9 @@ static void given_forces(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        const double rate = k == 1 && m->tied[i] ? m->stick_rate[i] : 0.0;
-        const double kept = k == 0 ? m->force[i] : m->force[i] > 0.0 ? rate : -rate;
-        const int slides = m->slip[i] == 1 || m->slip[i] == -1;
-        e->given[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : slides ? -m->slip[i] * sliding_limit(e, i, k) : kept;
+        const int keeps = k == 0 && m->slip[i] == 0 && !m->holds[i];
+        const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact, side = tribo_stick_slip_follows(m, i);
+        e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
     }
 }
 
@@ -93,7 +116,7 @@ static void find_velocities(const struct event *e, size_t k, double *v)
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t c = e->sys->ncontact;
     memset(v, 0, c * sizeof *v);
-    add_harmonics(e, 1, k, -1.0, v);
+    add_harmonics(e, DRIVES_BASE, k, -1.0, v);
     tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
     for (size_t i = 0; k == 0 && i < c; i++) {
         v[i] = m->rested[i] ? 0.0 : v[i];
@@ -107,24 +130,25 @@ static int expand_forces(struct event *e, size_t k)
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     const double *q = e->q + k * n, *u = e->u + k * n;
-    const int given = k < 2 || m->breakaway.falls;
+    const int given = k < e->slide_terms;
     double *acc = e->acceleration, *watch = e->watch + k * c;
     memset(acc, 0, n * sizeof *acc);
-    add_harmonics(e, 0, k, 1.0, acc);
+    add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, acc);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
     }
+    tribo_system_tables(sys, (int)k, 1.0, acc);
     find_velocities(e, k, watch);
-    if (k < 2) {
-        tribo_system_tables(sys, (int)k, 1.0, acc);
+    if (m->breakaway.falls) {
+        expand_falling(e, k);
     }
     if (given) {
         given_forces(e, k);
         tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
     }
     memset(e->base, 0, c * sizeof *e->base);
-    add_harmonics(e, 1, k + 1, (double)(k + 1), e->base);
+    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
     for (size_t i = 0; i < c; i++) {
         e->a[i] = -e->base[i];
     }
@@ -143,33 +167,34 @@ static int expand_forces(struct event *e, size_t k)
     return tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
 }
 
-/* The k-th coefficient of limit times velocity of contact i, which slides, with a limit linear in time; or that falls. */
-static inline double sliding_power(const struct event *e, size_t i, size_t k)
+/* The power of the sliding contacts: limits times velocities. */
+static void expand_energy(struct event *e)
 {
-    const size_t c = e->sys->ncontact;
-    const double rate = k ? e->events.stick_slip.limit_rate[i] * e->watch[(k - 1) * c + i] : 0.0;
-    return e->events.stick_slip.limit[i] * e->watch[k * c + i] + rate;
-}
-
-static double falling_power(const struct event *e, size_t i, size_t k)
-{
-    const size_t c = e->sys->ncontact;
-    double sum = 0.0;
-    for (size_t j = 0; j <= k; j++) {
-        sum += e->slide[j * c + i] * e->watch[(k - j) * c + i];
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    for (size_t k = 0; k < e->order; k++) {
+        double power = 0.0;
+        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
+            for (size_t i = 0; i < c; i++) {
+                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
+            }
+        }
+        e->d[k + 1] = power / (double)(k + 1);
     }
-    return sum;
 }
 
 /* Coefficients of the motion from (t, y) on. Returns a status. */
 static int expand(struct event *e, double t, const double *y)
 {
     tribo_system *sys = e->sys;
-    const size_t n = sys->ndof, c = sys->ncontact;
+    const size_t n = sys->ndof;
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[2 * n];
     expand_harmonics(e, t);
+    expand_limits(e);
     for (size_t k = 0; k <= e->order; k++) {
         const int status = expand_forces(e, k);
         if (status) {
@@ -182,18 +207,7 @@ static int expand(struct event *e, double t, const double *y)
         }
     }
     sys->evaluations += e->order + 1;
-    const int falls = e->events.stick_slip.breakaway.falls;
-    /* power of the sliding contacts */
-    for (size_t k = 0; k < e->order; k++) {
-        double power = 0.0;
-        for (size_t i = 0; i < c; i++) {
-            const signed char slip = e->events.stick_slip.slip[i];
-            if (slip == 1 || slip == -1) {
-                power += sys->tally[i] * slip * (falls ? falling_power(e, i, k) : sliding_power(e, i, k));
-            }
-        }
-        e->d[k + 1] = power / (double)(k + 1);
-    }
+    expand_energy(e);
     return TRIBO_OK;
 }
 
@@ -220,10 +234,13 @@ static double step_length(const struct event *e)
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
-            /* forces of contacts at rest to the same part of their limit, or of what it becomes */
-            const double limit = m->stick[i] + (m->stick_rate[i] != 0.0 ? fabs(m->stick_rate[i]) * lesser(most, DBL_MAX) : 0.0);
-            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? e->tolerance * limit : u;
+            /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
+            const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
+            const double force = e->tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
+            const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : u;
             term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
+            term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
         h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
     }
@@ -237,28 +254,42 @@ static void go(void *motion, double tau)
     ((struct event *)motion)->tau = tau;
 }
 
+/* Adds factor times a polynomial at s with so many terms, c apart, and its derivatives. */
+static void add_polynomial(struct sample *to, double factor, size_t terms, size_t c, const double *term, double s)
+{
+    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
+    for (size_t k = terms; k-- > 0;) {
+        v2 = v2 * s + v1;
+        v1 = v1 * s + v0;
+        v0 = v0 * s + term[k * c];
+    }
+    to->g += factor * v0;
+    to->d += factor * v1;
+    to->e += 2.0 * factor * v2;
+}
+
 static struct sample read_guard(const void *motion, const struct guard *g)
 {
     const struct event *e = motion;
     const size_t c = e->sys->ncontact;
-    const double *output = g->output, s = e->tau;
-    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
-    for (size_t k = e->order + 1; k-- > 0;) {
-        v2 = v2 * s + v1;
-        v1 = v1 * s + v0;
-        v0 = v0 * s + output[k * c];
+    struct sample x = {g->offset, 0.0, 0.0};
+    if (g->side != 0.0) {
+        add_polynomial(&x, g->side, e->order + 1, c, g->output, e->tau);
     }
-    return (struct sample){g->offset + g->ramp * s + g->side * v0, g->ramp + g->side * v1, 2.0 * g->side * v2};
+    if (g->limit != 0.0) {
+        add_polynomial(&x, g->limit, e->terms, c, e->limit + g->contact, e->tau);
+    }
+    return x;
 }
 
-/* Bounds of all that is watched over [0, h]. */
-TRIBO_SIMD static void find_bounds(size_t c, size_t order, double h, const double *restrict watch, double *restrict size,
+/* Bounds of so many terms of all that is watched, or of limits, over [0, h]. */
+TRIBO_SIMD static void find_bounds(size_t c, size_t terms, double h, const double *restrict watch, double *restrict size,
                                    double *restrict bend)
 {
     double power = 1.0;
     memset(size, 0, c * sizeof *size);
     memset(bend, 0, c * sizeof *bend);
-    for (size_t k = 0; k <= order; k++) {
+    for (size_t k = 0; k < terms; k++) {
         const double six =
             k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) / (h * h * h * h * h * h);
         const double *restrict w = watch + k * c;
@@ -278,8 +309,9 @@ static double bound(void *motion, double tau)
     (void)tau;
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
-        g->size = e->size[g->contact] + fabs(g->offset) + fabs(g->ramp) * e->length;
-        g->bend = e->bend[g->contact];
+        const double side = fabs(g->side), limit = fabs(g->limit);
+        g->size = side * e->size[g->contact] + limit * e->limit_size[g->contact] + fabs(g->offset);
+        g->bend = side * e->bend[g->contact] + limit * e->limit_bend[g->contact];
     }
     return HUGE_VAL;
 }
@@ -299,23 +331,37 @@ static double parts_of_velocity(const struct event *e, size_t i, double h)
     return size;
 }
 
+/* Whether the limit of contact i may fall to 0, or to the force that it keeps, while no other guard of it looks after that. A
+ * limit that only follows a table has its zeros at knots, where steps end. */
+static int limit_tells(const struct stick_slip *m, size_t i, int varies)
+{
+    const int keeps = m->slip[i] == 0 && !m->holds[i] && !tribo_stick_slip_follows(m, i);
+    return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
+}
+
 static void set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const double h = e->length;
+    const int varies = e->terms > 1;
     tribo_events_clear_guards(&e->events);
-    find_bounds(m->contacts, e->order, h, e->watch, e->size, e->bend);
+    find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
+    find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
     for (size_t i = 0; i < m->contacts; i++) {
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct guard g = {.output = e->watch + i};
         if (m->slip[i] == 1 || m->slip[i] == -1) {
             tribo_events_guard_slip(&e->events, i, g);
         } else if (tribo_stick_slip_may_part(m, i)) {
             e->size[i] = parts_of_velocity(e, i, h);
             tribo_events_guard_part(&e->events, i, g);
-        } else if (m->slip[i] == 0 && e->size[i] >= lesser(m->stick[i], m->stick[i] + m->stick_rate[i] * h)) {
-            g.offset = tribo_stick_slip_most(m, i);
-            g.ramp = m->stick_rate[i];
+        }
+        g.limit = varies ? ratio : 0.0;
+        g.offset = (varies ? 0.0 : ratio * e->limit[i]) + tribo_stick_slip_slack(m, i);
+        if (m->holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
             tribo_events_guard_stick(&e->events, i, g);
+        } else if (limit_tells(m, i, varies)) {
+            tribo_events_guard_limit(&e->events, i, (struct guard){.limit = 1.0});
         }
     }
 }
@@ -353,7 +399,7 @@ static int create(tribo_driver *drv)
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
-    double *work = malloc((terms * (2 * n + 3 * c + 1) + n + 6 * c + 1) * sizeof *work);
+    double *work = malloc((terms * (2 * n + 4 * c + 1) + n + 8 * c + 1) * sizeof *work);
     if (!work) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
@@ -362,8 +408,9 @@ static int create(tribo_driver *drv)
     e->q = work;
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
-    e->slide = e->watch + terms * c;
-    e->part = e->slide + terms * c;
+    e->limit = e->watch + terms * c;
+    e->fall = e->limit + terms * c;
+    e->part = e->fall + terms * c;
     e->d = e->part + terms * c;
     e->acceleration = e->d + terms;
     e->base = e->acceleration + n;
@@ -372,6 +419,8 @@ static int create(tribo_driver *drv)
     e->held = e->given + c;
     e->size = e->held + c;
     e->bend = e->size + c;
+    e->limit_size = e->bend + c;
+    e->limit_bend = e->limit_size + c;
     e->events.search.go = go;
     e->events.search.read = read_guard;
     e->events.search.bound = bound;
@@ -395,6 +444,7 @@ static int prepare(struct event *e)
     }
     e->cosine = more;
     e->sine = more + room;
+    e->terms = sys->limit_harmonics ? e->order + 1 : sys->limits.knots ? 2 : 1;
     e->fastest = tribo_system_fastest(sys);
     e->revision = sys->revision;
     return TRIBO_OK;

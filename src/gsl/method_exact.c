@@ -2,7 +2,7 @@
  * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (first_zero.h), since
  * the sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
  * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is
- * closed too: a sliding force is constant, so that it dissipates its size times the distance slid. */
+ * closed too (modal_energy.c). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -95,14 +95,30 @@ static void move_to(void *motion, double tau, const double *from, double *to)
 /* A guard where go() was. */
 static struct sample read_guard(const void *motion, const struct guard *g)
 {
-    const struct sample v = tribo_modal_motion_output(&((const struct exact *)motion)->motion, g->output, g->start, g->ramp);
-    return (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+    const struct modal_motion *x = &((const struct exact *)motion)->motion;
+    struct sample v = {0.0, 0.0, 0.0};
+    if (g->output) {
+        v = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
+    }
+    v = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+    if (g->limit != 0.0) {
+        const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+        v = (struct sample){v.g + g->limit * limit.g, v.d + g->limit * limit.d, v.e + g->limit * limit.e};
+    }
+    return v;
 }
 
 /* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */
 static void bound_guard(const struct exact *x, struct guard *g)
 {
-    tribo_modal_motion_output_bounds(&x->motion, g->output, &g->size, &g->bend);
+    g->size = g->bend = 0.0;
+    if (g->output) {
+        tribo_modal_motion_output_bounds(&x->motion, g->output, &g->size, &g->bend);
+    }
+    if (g->limit != 0.0) {
+        g->size += fabs(g->limit) * x->events.stick_slip.swing[g->contact];
+        g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
+    }
     g->size += fabs(g->offset) + fabs(g->start) + fabs(g->ramp) * x->motion.longest;
 }
 
@@ -123,23 +139,43 @@ static double bound(void *motion, double tau)
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
 }
 
+/* The limit without harmonics. */
+static double steady_limit(const struct exact *x, size_t i)
+{
+    return x->events.stick_slip.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.limit[i];
+}
+
 /* Guards of an output. now is its value at t0. */
 static void add_guards(struct exact *x, const struct output *w, int of_velocity, double now)
 {
     const size_t i = w->contact;
-    struct guard g = {.output = w};
+    const struct stick_slip *m = &x->events.stick_slip;
+    struct guard g = {.output = w, .contact = i};
     tribo_modal_motion_line(&x->motion, w, of_velocity, now, &g.start, &g.ramp);
-    if (of_velocity && x->events.stick_slip.slip[i] == 0) {
+    if (of_velocity && m->slip[i] == 0) {
         tribo_events_guard_part(&x->events, i, g);
     } else if (of_velocity) {
         tribo_events_guard_slip(&x->events, i, g);
     } else {
         bound_guard(x, &g);
-        g.offset = tribo_stick_slip_most(&x->events.stick_slip, i);
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
+        g.limit = m->swing[i] > 0.0 ? ratio : 0.0;
+        g.offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
         /* nothing to guard if it is far from the limit for the whole phase */
-        if (g.size >= g.offset) {
+        if (g.size >= g.offset - ratio * m->swing[i]) {
             tribo_events_guard_stick(&x->events, i, g);
         }
+    }
+}
+
+/* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
+ * hold have guards of their forces. */
+static void add_limit_guard(struct exact *x, size_t i)
+{
+    const struct stick_slip *m = &x->events.stick_slip;
+    if (m->swing[i] > 0.0 && !m->holds[i]) {
+        const struct guard g = {.offset = x->sys->given_limit[i], .limit = 1.0};
+        tribo_events_guard_limit(&x->events, i, g);
     }
 }
 
@@ -157,6 +193,9 @@ static void set_guards(struct exact *x, const double *y)
             add_guards(x, w, of_velocity, of_velocity ? v : m->force[i]);
         }
     }
+    for (size_t i = 0; i < m->contacts; i++) {
+        add_limit_guard(x, i);
+    }
 }
 
 static int begin(void *motion, double t, const double *y, double *reach)
@@ -166,6 +205,9 @@ static int begin(void *motion, double t, const double *y, double *reach)
     const int status = find_held(x, &h);
     if (status) {
         return status;
+    }
+    if (!tribo_modal_motion_reserve(&x->motion, h->harmonics)) {
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", h->harmonics);
     }
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     set_guards(x, y);
@@ -205,21 +247,8 @@ static int create(tribo_driver *drv)
     x->events.begin = begin;
     x->events.state = move_to;
     x->events.shows_between = 1;
-    if (!tribo_modal_motion_create(&x->motion, drv->sys, x->events.stick_slip.slip, x->events.stick_slip.force)) {
+    if (!tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
-    }
-    return TRIBO_OK;
-}
-
-/* Room for the harmonics of the system, which may have become more since the last advance; what was held knew the old ones. */
-static int prepare(struct exact *x, tribo_system *sys)
-{
-    if (x->revision != sys->revision || !x->motion.cos_t) {
-        if (!tribo_modal_motion_reserve(&x->motion)) {
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", sys->harmonics);
-        }
-        drop_helds(x);
-        x->revision = sys->revision;
     }
     return TRIBO_OK;
 }
@@ -230,16 +259,18 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     tribo_system *sys = drv->sys;
     if (sys->tables || sys->limits.knots) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes harmonic loads only; method event takes tables too");
+                                 "method exact takes harmonic loads and limits only; method event takes tables too");
     }
     if (tribo_system_falls(sys)) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                  "method exact takes static limits that drop at once; method event takes such that fall with "
                                  "the speed too");
     }
-    const int status = prepare(x, sys);
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts))
-                  : tribo_events_advance(&x->events, drv, t, t1, y, continues);
+    if (x->revision != sys->revision) {
+        drop_helds(x);
+        x->revision = sys->revision;
+    }
+    return tribo_events_advance(&x->events, drv, t, t1, y, continues);
 }
 
 const struct method tribo_method_exact = {"exact", WITHOUT_TOLERANCES, create, destroy, advance, NULL};

@@ -89,7 +89,7 @@ static void find_cap(struct adaptive *a, const tribo_system *sys, size_t i, doub
 /* What the contacts ask of velocities and steps, with the limits that they have. */
 static void find_bands(struct adaptive *a, tribo_system *sys)
 {
-    double *limit = a->rate, most = 0.0, fastest = 0.0, bound;
+    double *limit = a->rate, *ratio = sys->feq, most = 0.0, fastest = 0.0, bound;
     int law;
     tribo_get_law(sys->contacts, &law);
     tribo_get_limit(sys->contacts, limit);
@@ -98,9 +98,9 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     for (size_t d = 0; d < sys->ndof; d++) {
         a->cap[d] = HUGE_VAL;
     }
-    tribo_get_static(sys->contacts, sys->v, NULL);
+    tribo_get_static(sys->contacts, ratio, NULL);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] *= sys->v[i];
+        limit[i] *= ratio[i];
         most = greater(most, limit[i]);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -255,7 +255,7 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     if ((a->kind->takes_slope || law == TRIBO_QUINN_REVERSAL) && tribo_system_begin_step(drv->sys, t, y, drv->slope)) {
         return tribo_driver_explain(drv, t, a->h);
     }
-    if (drv->sys->limits.knots) {
+    if (tribo_system_limits_vary(drv->sys)) {
         find_bands(a, drv->sys);
     }
     return find_tolerance(a, drv, t, y);

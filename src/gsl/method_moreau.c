@@ -197,7 +197,7 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
 {
     tribo_system_set_time(sys, t);
     memset(m->load, 0, sys->ndof * sizeof *m->load);
-    tribo_system_loads(sys, 0, 0, 1.0, m->load);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
 static void take_limits(struct moreau *m, const tribo_system *sys)

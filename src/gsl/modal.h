@@ -23,6 +23,13 @@ struct output {
     double ramp;     /* from belts of constant speed */
 };
 
+/* What forces the modes: a harmonic of the system; or of a limit, what it makes of the force of one contact that does not hold,
+ * per direction of that. */
+struct forcing {
+    double omega;
+    size_t harmonic, contact; /* contact: the system's ncontact if it is none's */
+};
+
 struct modal {
     signed char *key; /* [ncontact] 1: the contact rests, 2: and holds */
     size_t rest;      /* contacts at rest that hold; others depend on them */
@@ -40,9 +47,10 @@ struct modal {
     double *rr, *ri;           /* eta = Re(r z), coupled only: [modes][exponents] */
     size_t *owner;             /* the mode of an exponent, if not coupled (then r = 1) */
 
-    size_t harmonics;
+    size_t given, harmonics;   /* as many as the system has, and in its order; and with those of single contacts after them */
+    struct forcing *forcing;   /* [harmonics] */
     double *gr, *gi, *xr, *xi; /* [harmonics][modes] forcing and response of eta */
-    double *yr, *yi;           /* [harmonics][moving] velocities from the belts that hold */
+    double *yr, *yi;           /* [given][moving] velocities from the belts that hold */
     double *y0;                /* [moving] the same from belts of constant speed */
     double *drag;              /* [modes] forcing by damping, from belts of constant speed */
     double *ramp;              /* [modes] forcing per unit of time, from belts of constant speed */

@@ -226,7 +226,7 @@ static int find_drifts(struct modal_build *b)
 static int compress(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, s = h->harmonics;
+    const size_t n = b->n, m = h->modes, s = h->given;
     h->dof = tribo_modal_keep_indices(b, n);
     for (size_t d = 0; h->dof && d < n; d++) {
         int moves = b->y0[d] != 0.0;

@@ -1,4 +1,5 @@
 #include "modal_motion.h"
+#include "divided.h"
 #include "../common/real.h"
 
 #include <math.h>
@@ -8,13 +9,13 @@
 /* Over a time this short, in terms of the fastest exponent, three terms of a series are all of it. */
 #define CLOSE 1e-6
 
-int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const signed char *slip, const double *force)
+int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
 {
     const size_t n = sys->ndof;
     double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
                                 &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
     double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
-    double *work = malloc((10 * n + 20 * n + 1) * sizeof *work);
+    double *work = malloc((10 * n + 20 * n + 3 * sys->ncontact + 1) * sizeof *work);
     if (!work) {
         return 0;
     }
@@ -23,8 +24,10 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
         *by_exponent[k] = work + (10 + 2 * k) * n;
     }
     x->sys = sys;
-    x->slip = slip;
-    x->force = force;
+    x->start = work + 30 * n;
+    x->ramp = x->start + sys->ncontact;
+    x->steady = x->ramp + sys->ncontact;
+    x->contacts = contacts;
     return 1;
 }
 
@@ -34,13 +37,17 @@ void tribo_modal_motion_free(struct modal_motion *x)
     free(x->cos_t);
 }
 
-int tribo_modal_motion_reserve(struct modal_motion *x)
+int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics)
 {
-    const size_t room = x->sys->harmonics + 1;
+    const size_t room = harmonics + 1;
+    if (room <= x->room) {
+        return 1;
+    }
     double *more = realloc(x->cos_t, 4 * room * sizeof *more);
     if (!more) {
         return 0;
     }
+    x->room = room;
     x->cos_t = more;
     x->sin_t = more + room;
     x->cos_0 = more + 2 * room;
@@ -48,43 +55,28 @@ int tribo_modal_motion_reserve(struct modal_motion *x)
     return 1;
 }
 
-/* ------------------------------------------------------------------------------------------------------------------- later on */
-
-/* (e^{delta tau} - 1)/delta. */
-static void ramp_up(double dr, double di, double tau, double *re, double *im)
+/* How many times a harmonic is in what happens: those of limits as many times as the force of their contact follows it. */
+static double side_of(const struct modal_motion *x, size_t s)
 {
-    const double size = hypot(dr, di);
-    if (size * tau < 0.5) {
-        double tr = tau, ti = 0.0;
-        *re = tr;
-        *im = ti;
-        for (int k = 2; k < 20; k++) {
-            const double nr = (tr * dr - ti * di) * tau / k, ni = (tr * di + ti * dr) * tau / k;
-            tr = nr;
-            ti = ni;
-            *re += tr;
-            *im += ti;
-        }
-        return;
-    }
-    const double e = exp(dr * tau), er = e * cos(di * tau) - 1.0, ei = e * sin(di * tau), square = size * size;
-    *re = (er * dr + ei * di) / square;
-    *im = (ei * dr - er * di) / square;
+    const size_t contact = x->h->forcing[s].contact;
+    return contact < x->sys->ncontact ? tribo_stick_slip_follows(x->contacts, contact) : 1.0;
 }
 
+/* ------------------------------------------------------------------------------------------------------------------- later on */
+
 /* Adds what a resonant harmonic does to an exponent, from nothing at t0 on: z' = lambda z - (i/nu) Re(g e^{i Omega t}). */
-static void add_resonance(struct modal_motion *x, const tribo_system *sys, size_t p, size_t s, double tau)
+static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau)
 {
     const struct modal *h = x->h;
-    const double omega = sys->harmonic[s].omega, nu = h->li[p];
+    const double omega = h->forcing[s].omega, nu = h->li[p];
     const double c0 = x->cos_0[s], s0 = x->sin_0[s];
     const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
     const double e = exp(h->lr[p] * tau), er = e * cos(nu * tau), ei = e * sin(nu * tau);
     double zr = 0.0, zi = 0.0;
     for (int conjugate = 0; conjugate < 2; conjugate++) {
         const double side = conjugate ? -1.0 : 1.0;
-        double ur, ui;
-        ramp_up(-h->lr[p], side * omega - nu, tau, &ur, &ui);
+        const double complex u = tau * tribo_exp_1(tau * (-h->lr[p] + (side * omega - nu) * I));
+        const double ur = creal(u), ui = cimag(u);
         /* (g e^{i Omega t0})/2, or its conjugate, times e^{lambda tau} times u */
         const double ar = 0.5 * (gr * c0 - gi * s0), ai = 0.5 * side * (gr * s0 + gi * c0);
         const double br = ar * er - ai * ei, bi = ar * ei + ai * er;
@@ -103,13 +95,13 @@ static void add_resonance(struct modal_motion *x, const tribo_system *sys, size_
     x->w2i[p] += h->lr[p] * y1i + nu * y1r + rate;
 }
 
-static void for_resonances(struct modal_motion *x, const tribo_system *sys, double tau)
+static void for_resonances(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         for (size_t p = 0; p < h->exponents; p++) {
             if (h->resonant[s * h->modes + h->owner[p]]) {
-                add_resonance(x, sys, p, s, tau);
+                add_resonance(x, p, s, tau);
             }
         }
     }
@@ -134,12 +126,11 @@ static void grow_little(const struct modal *h, size_t p, double delta, double *r
 /* From t0, or, if that is close, from where it was. */
 void tribo_modal_motion_go(struct modal_motion *x, double tau)
 {
-    const tribo_system *sys = x->sys;
     const struct modal *h = x->h;
     const double delta = tau - x->tau;
     const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = sys->harmonic[s].omega;
+        const double omega = h->forcing[s].omega;
         if (close) {
             const double turn = omega * delta, c = 1.0 - 0.5 * turn * turn, ct = x->cos_t[s], st = x->sin_t[s];
             x->cos_t[s] = c * ct - turn * st;
@@ -164,7 +155,7 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
         x->w2r[p] = lr * w1r - li * w1i;
         x->w2i[p] = lr * w1i + li * w1r;
     }
-    for_resonances(x, sys, tau);
+    for_resonances(x, tau);
     x->tau = tau;
 }
 
@@ -177,13 +168,38 @@ struct sample tribo_modal_motion_output(const struct modal_motion *x, const stru
         v2 += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
     }
     for (size_t s = 0; s < x->h->harmonics; s++) {
-        const double omega = x->sys->harmonic[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
+        const double omega = x->h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
         const double re = w->rr[s] * ct - w->ri[s] * st, im = -w->rr[s] * st - w->ri[s] * ct;
         v0 += re;
         v1 += omega * im;
         v2 -= omega * omega * re;
     }
     return (struct sample){v0, v1, v2};
+}
+
+struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
+{
+    struct sample sum = {0.0, 0.0, 0.0};
+    for (size_t s = 0; s < x->h->given; s++) {
+        const struct harmonic *w = &x->sys->harmonic[s];
+        if (w->drives == DRIVES_LIMIT) {
+            const double c = w->cosine[i], d = w->sine[i], value = c * x->cos_t[s] + d * x->sin_t[s];
+            sum.g += value;
+            sum.d += w->omega * (d * x->cos_t[s] - c * x->sin_t[s]);
+            sum.e -= w->omega * w->omega * value;
+        }
+    }
+    return sum;
+}
+
+double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
+{
+    double sum = 0.0;
+    for (size_t s = 0; s < x->h->given; s++) {
+        const struct harmonic *w = &x->sys->harmonic[s];
+        sum += w->drives == DRIVES_LIMIT ? pow(w->omega, 6.0) * hypot(w->cosine[i], w->sine[i]) : 0.0;
+    }
+    return sum;
 }
 
 void tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, double now, double *start,
@@ -212,39 +228,14 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
         *size += w->size[p] * x->growth[p];
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        *size += w->wave[s];
-        *bend += w->wave_bend[s];
+        const double side = fabs(side_of(x, s));
+        *size += side * w->wave[s];
+        *bend += side * w->wave_bend[s];
     }
-}
-
-/* Energy dissipated since t0: a sliding contact's constant force times the distance slid, J dq minus the belt's way. */
-static double dissipated(const struct modal_motion *x, const tribo_system *sys, double tau)
-{
-    const struct matrix *j = &sys->direction;
-    double energy = 0.0;
-    for (size_t k = 0; k < x->h->sliding; k++) {
-        const size_t i = x->h->output[k].contact;
-        double way = 0.0;
-        for (size_t e = j->first[i]; x->slip[i] && e < j->first[i + 1]; e++) {
-            way += j->val[e] * x->dq[j->col[e]];
-        }
-        energy -= sys->tally[i] * x->force[i] * way;
-    }
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *w = &sys->harmonic[s];
-        for (size_t e = 0; w->moves_base && e < w->count; e++) {
-            const size_t i = w->index[e];
-            const double c = w->cosine[e], d = w->sine[e];
-            const double way =
-                w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
-            energy += x->slip[i] ? sys->tally[i] * x->force[i] * way : 0.0;
-        }
-    }
-    return energy;
 }
 
 /* eta (into now) and eta' (into work) where go() was. */
-static void amplitudes(struct modal_motion *x, const tribo_system *sys)
+static void amplitudes(struct modal_motion *x)
 {
     const struct modal *h = x->h;
     const size_t m = h->modes, e = h->exponents;
@@ -265,7 +256,7 @@ static void amplitudes(struct modal_motion *x, const tribo_system *sys)
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = sys->harmonic[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
+        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
             x->now[k] += xr * ct - xi * st;
@@ -280,15 +271,15 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const struct modal *h = x->h;
     const size_t n = sys->ndof;
     tribo_modal_motion_go(x, tau);
-    amplitudes(x, sys);
+    amplitudes(x);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
         memcpy(to, from, tribo_system_dimension(sys) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         double dq = h->y0[i] * tau, u = h->y0[i];
-        for (size_t s = 0; s < h->harmonics; s++) {
-            const double omega = sys->harmonic[s].omega, yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
+        for (size_t s = 0; s < h->given; s++) {
+            const double omega = h->forcing[s].omega, yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
             u += yr * x->cos_t[s] - yi * x->sin_t[s];
             dq += omega != 0.0 ? (yr * (x->sin_t[s] - x->sin_0[s]) + yi * (x->cos_t[s] - x->cos_0[s])) / omega : 0.0;
         }
@@ -305,7 +296,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     for (size_t i = 0; i < h->moving; i++) {
         to[h->dof[i]] += x->dq[h->dof[i]];
     }
-    to[2 * n] += dissipated(x, sys, tau);
+    to[2 * n] += tribo_modal_motion_dissipated(x, tau);
 }
 
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
@@ -320,7 +311,7 @@ static double offset(const tribo_system *sys, size_t i, const double *q)
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
-        for (size_t e = 0; w->moves_base && w->omega != 0.0 && e < w->count; e++) {
+        for (size_t e = 0; w->drives == DRIVES_BASE && w->omega != 0.0 && e < w->count; e++) {
             sum -= w->index[e] == i ? (w->cosine[e] * w->sin_t - w->sine[e] * w->cos_t) / w->omega : 0.0;
         }
     }
@@ -336,15 +327,29 @@ static void find_constant(struct modal_motion *x, const tribo_system *sys, const
     memcpy(x->now, h->drag, m * sizeof *x->now);
     for (size_t o = 0; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
-        const double push = o < h->sliding ? x->force[out->contact] : -offset(sys, out->contact, y);
+        const double push = o < h->sliding ? x->steady[out->contact] : -offset(sys, out->contact, y);
         for (size_t k = 0; k < m; k++) {
             x->now[k] += push * out->on_rate[k];
         }
     }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        for (size_t k = 0; sys->harmonic[s].omega == 0.0 && k < m; k++) {
+    for (size_t s = 0; s < h->given; s++) {
+        for (size_t k = 0; h->forcing[s].omega == 0.0 && k < m; k++) {
             x->now[k] += h->gr[s * m + k];
         }
+    }
+}
+
+/* The forces of contacts but for harmonics of limits that they follow. */
+static void find_steady_forces(struct modal_motion *x, const tribo_system *sys)
+{
+    memcpy(x->steady, x->contacts->force, sys->ncontact * sizeof *x->steady);
+    for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
+        double limit = sys->given_limit[i];
+        for (size_t s = 0; s < sys->harmonics; s++) {
+            const struct harmonic *w = &sys->harmonic[s];
+            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
+        }
+        x->steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
     }
 }
 
@@ -355,8 +360,10 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     const size_t n = sys->ndof, m = h->modes;
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
-        x->cos_0[s] = sys->harmonic[s].cos_t;
-        x->sin_0[s] = sys->harmonic[s].sin_t;
+        const struct forcing *f = &h->forcing[s];
+        const double side = side_of(x, s);
+        x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
+        x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
     }
     for (size_t k = 0; k < m; k++) {
         const double *psi = h->psi + k * h->moving;
@@ -368,6 +375,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
         x->eta[k] = q;
         x->rate[k] = u;
     }
+    find_steady_forces(x, sys);
     find_constant(x, sys, y);
     for (size_t k = 0; k < m; k++) {
         const double force = x->now[k];
@@ -391,7 +399,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
         for (size_t s = 0; s < h->harmonics; s++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
             q += xr * x->cos_0[s] - xi * x->sin_0[s];
-            u -= sys->harmonic[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
+            u -= h->forcing[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
         }
         x->now[k] = x->eta[k] - q;
         x->work[k] = x->rate[k] - u;
@@ -407,6 +415,17 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
             x->zr[p] = tribo_dot(h->ar + p * m, x->now, m) + tribo_dot(h->br + p * m, x->work, m);
             x->zi[p] = tribo_dot(h->ai + p * m, x->now, m) + tribo_dot(h->bi + p * m, x->work, m);
         }
+    }
+}
+
+/* The part of the velocities of sliding contacts that is linear in time. */
+static void find_lines(struct modal_motion *x, const double *y)
+{
+    const struct stick_slip *m = x->contacts;
+    for (size_t o = 0; o < x->h->sliding; o++) {
+        const size_t i = x->h->output[o].contact;
+        const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+        tribo_modal_motion_line(x, &x->h->output[o], 1, v, &x->start[i], &x->ramp[i]);
     }
 }
 
@@ -443,10 +462,13 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
     x->h = h;
     x->t0 = t;
     split_motion(x, x->sys, y);
+    if (x->sys->limit_harmonics) {
+        find_lines(x, y);
+    }
     x->tau = 0.0;
     x->fastest = h->fastest;
     for (size_t s = 0; s < h->harmonics; s++) {
-        x->fastest = greater(x->fastest, fabs(x->sys->harmonic[s].omega));
+        x->fastest = greater(x->fastest, fabs(h->forcing[s].omega));
         x->cos_t[s] = x->cos_0[s];
         x->sin_t[s] = x->sin_0[s];
     }

@@ -4,12 +4,12 @@
 
 #include "modal.h"
 #include "quintic.h"
+#include "stick_slip.h"
 
 /* It began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
 struct modal_motion {
     tribo_system *sys;
-    const signed char *slip; /* [ncontact] of the contacts, as struct stick_slip has it, and their forces; the caller's */
-    const double *force;
+    const struct stick_slip *contacts; /* the caller's */
     const struct modal *h;
     double t0, tau;                          /* tau: where w is */
     double fastest;                          /* exponent or harmonic */
@@ -18,18 +18,21 @@ struct modal_motion {
     double *zr, *zi;                         /* [exponents] at t0 */
     double *wr, *wi, *w1r, *w1i, *w2r, *w2i; /* [exponents] z and its derivatives at tau */
     double *growth, *growth6;                /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
-    double *cos_t, *sin_t, *cos_0, *sin_0;   /* [harmonics] at t0 + tau, at t0 */
-    double *now, *work;                      /* [modes] eta and eta' at tau; workspace */
-    double *dq;                              /* [ndof] */
-    double longest;                          /* so long do bounds hold */
+    size_t room;
+    double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] at t0 + tau, at t0; of contacts times the direction of the force */
+    double *now, *work;                    /* [modes] eta and eta' at tau; workspace */
+    double *dq;                            /* [ndof] by how much q has changed at tau */
+    double *steady;                        /* [ncontact] force of a sliding contact, without harmonics of its limit; */
+    double *start, *ramp;                  /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
+    double longest;                        /* so long do bounds hold */
 };
 
 /* 1, or 0 if out of memory. tribo_modal_motion_free takes what failed too. */
-int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const signed char *slip, const double *force);
+int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts);
 void tribo_modal_motion_free(struct modal_motion *x);
 
-/* Room for the harmonics that the system has; 1, or 0 if out of memory. */
-int tribo_modal_motion_reserve(struct modal_motion *x);
+/* Room for so many harmonics; 1, or 0 if out of memory. */
+int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics);
 
 /* Starts at (t, y) with h held, for a time of longest. Returns for how long its bounds can hold. */
 double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, double t, const double *y, double longest);
@@ -40,9 +43,16 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau);
 /* An output there, with two derivatives: its part that is linear in time is start + ramp tau. */
 struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, double start, double ramp);
 
+/* What harmonics add to the limit of contact i there, with two derivatives; and a bound of the sixth derivative of that. */
+struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
+double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
+
 /* What start, and ramp, are of an output that is now at t0. */
 void tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, double now, double *start,
                              double *ramp);
+
+/* Energy dissipated until t0 + tau, where dq is. */
+double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
 
 /* Goes to t0 + tau: the state there. from is the state at t0; to may be the same. */
 void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to);

@@ -24,7 +24,7 @@ static void output_mode(const struct modal_build *b, struct output *w, size_t k,
         w->ci[p] += fr * ri + fi * rr;
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = b->sys->harmonic[s].omega, xr = h->xr[s * m + k], xi = h->xi[s * m + k];
+        const double omega = h->forcing[s].omega, xr = h->xr[s * m + k], xi = h->xi[s * m + k];
         w->rr[s] += position * xr - velocity * omega * xi;
         w->ri[s] += position * xi + velocity * omega * xr;
     }
@@ -55,7 +55,7 @@ static void finish_output(const struct modal_build *b, struct output *w)
     }
     for (size_t s = 0; s < b->h->harmonics; s++) {
         w->wave[s] = hypot(w->rr[s], w->ri[s]);
-        w->wave_bend[s] = w->wave[s] * sixth_power(b->sys->harmonic[s].omega);
+        w->wave_bend[s] = w->wave[s] * sixth_power(b->h->forcing[s].omega);
     }
 }
 
@@ -75,7 +75,7 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 {
     const struct matrix *j = &b->sys->direction;
     int any = 0;
-    for (size_t s = 0; s < b->h->harmonics; s++) {
+    for (size_t s = 0; s < b->h->given; s++) {
         const struct harmonic *wave = &b->sys->harmonic[s];
         const double *yr = b->yr + s * b->n, *yi = b->yi + s * b->n, most = largest(yr, yi, b->n);
         double re = 0.0, im = 0.0, size = 0.0;
@@ -84,7 +84,7 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
             im += j->val[e] * yi[j->col[e]];
             size += fabs(j->val[e]) * most;
         }
-        for (size_t e = 0; wave->moves_base && wave->omega != 0.0 && e < wave->count; e++) {
+        for (size_t e = 0; wave->drives == DRIVES_BASE && wave->omega != 0.0 && e < wave->count; e++) {
             re -= wave->index[e] == i ? wave->cosine[e] : 0.0;
             im += wave->index[e] == i ? wave->sine[e] : 0.0;
         }
@@ -103,12 +103,8 @@ static int output_sliding(struct modal_build *b, struct output *w, size_t i)
     if (!create_output(b, w, i)) {
         return 0;
     }
-    const struct matrix *j = &b->sys->direction;
     for (size_t k = 0; k < b->h->modes; k++) {
-        double shape = 0.0;
-        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-            shape += j->val[e] * b->phi[k * b->n + j->col[e]];
-        }
+        const double shape = tribo_modal_shape(b, i, k);
         w->on_rate[k] = shape;
         output_mode(b, w, k, 0.0, shape);
     }
@@ -181,16 +177,28 @@ static void hold_motion(const struct modal_build *b, struct holding *f, double o
     }
 }
 
+/* The force of another contact, which follows its limit. */
+static void hold_limit(const struct modal_build *b, struct holding *f, const struct harmonic *limit, size_t i)
+{
+    const struct matrix *j = &b->sys->direction;
+    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        f->force[0][j->col[e]] = -j->val[e] * limit->cosine[i];
+        f->force[1][j->col[e]] = j->val[e] * limit->sine[i];
+    }
+}
+
 static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t w)
 {
-    const struct harmonic *wave = &b->sys->harmonic[w];
+    const struct forcing *forcing = &b->h->forcing[w];
+    const struct harmonic *wave = &b->sys->harmonic[forcing->harmonic];
     const size_t n = b->n, s = b->h->rest;
-    const double *const y[] = {b->yr + w * n, b->yi + w * n};
     memset(f->force[0], 0, n * sizeof **f->force);
     memset(f->force[1], 0, n * sizeof **f->force);
-    if (wave->moves_base) {
-        hold_motion(b, f, wave->omega, y);
-    } else {
+    if (forcing->contact < b->sys->ncontact) {
+        hold_limit(b, f, wave, forcing->contact);
+    } else if (wave->drives == DRIVES_BASE) {
+        hold_motion(b, f, wave->omega, (const double *const[]){b->yr + w * n, b->yi + w * n});
+    } else if (wave->drives == DRIVES_LOAD) {
         hold_load(b, f, wave);
     }
     tribo_modal_react(b, f->force[0], f->wave_r + w * s);
@@ -213,7 +221,7 @@ static int find_holding(struct modal_build *b, struct holding *f)
         hold_mode(b, f, k);
     }
     for (size_t w = 0; w < h->harmonics; w++) {
-        if (b->sys->harmonic[w].omega != 0.0) {
+        if (h->forcing[w].omega != 0.0) {
             hold_harmonic(b, f, w);
         }
     }
@@ -223,10 +231,11 @@ static int find_holding(struct modal_build *b, struct holding *f)
     return 1;
 }
 
-/* 1 if what contact p of those that hold carries changes at all. */
-static int changes(const struct modal *h, const struct holding *f, size_t p)
+/* 1 if what contact p of those that hold carries, or its limit, changes at all. */
+static int changes(const struct modal_build *b, const struct holding *f, size_t p)
 {
-    int found = f->ramp[p] != 0.0;
+    const struct modal *h = b->h;
+    int found = f->ramp[p] != 0.0 || tribo_system_swing(b->sys, b->rest[p]) > 0.0;
     for (size_t k = 0; k < h->modes; k++) {
         found |= f->by_q[k * h->rest + p] != 0.0 || f->by_u[k * h->rest + p] != 0.0;
     }
@@ -236,7 +245,7 @@ static int changes(const struct modal *h, const struct holding *f, size_t p)
     return found;
 }
 
-/* Outputs of those contacts that hold and do not always carry the same. */
+/* Outputs of those contacts that hold and do not always carry the same part of their limit. */
 static int output_held(struct modal_build *b, struct output *all, size_t *used)
 {
     struct modal *h = b->h;
@@ -245,7 +254,7 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
         return 0;
     }
     for (size_t p = 0; p < h->rest; p++) {
-        if (!changes(h, &f, p)) {
+        if (!changes(b, &f, p)) {
             continue;
         }
         struct output *output = &all[(*used)++];

@@ -45,6 +45,11 @@ struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count)
     return take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->output);
 }
 
+struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count)
+{
+    return take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->forcing);
+}
+
 double *tribo_modal_scratch(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
@@ -58,6 +63,16 @@ size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
 }
 
 /* ----------------------------------------------------------------------------------------------------- the contacts that hold */
+
+double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k)
+{
+    const struct matrix *j = &b->sys->direction;
+    double shape = 0.0;
+    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        shape += j->val[e] * b->phi[k * b->n + j->col[e]];
+    }
+    return shape;
+}
 
 void tribo_modal_react(const struct modal_build *b, double *force, double *f)
 {

@@ -15,7 +15,7 @@ struct modal_build {
     const struct matrix *stiffness, *damping; /* K and C, or NULL */
     struct matrix own_stiffness, own_damping; /* where the system has only AK and AC */
     double *phi, *psi, *k_phi, *c_phi;        /* and M phi, K phi, C phi */
-    double *yr, *yi;                          /* [harmonics][ndof] */
+    double *yr, *yi;                          /* [given][ndof] */
     double *y0;                               /* [ndof] velocities from belts of constant speed */
     void *scratch;                            /* list of what is freed at the end */
     int status;                               /* of a failure other than of memory */
@@ -26,9 +26,13 @@ double *tribo_modal_keep(struct modal_build *b, size_t count);
 size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count);
 unsigned char *tribo_modal_keep_bytes(struct modal_build *b, size_t count);
 struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count);
+struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count);
 double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
 void tribo_modal_give_back(void *list);
+
+/* J_i phi_k. */
+double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k);
 
 /* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);

@@ -32,14 +32,52 @@ static void base_part(const struct modal_build *b, const struct harmonic *w, int
     }
 }
 
+/* Lists the harmonics of the system, and then those of limits again, contact by contact that does not hold. */
+static int list_forcing(struct modal_build *b)
+{
+    struct modal *h = b->h;
+    const tribo_system *sys = b->sys;
+    const size_t c = sys->ncontact;
+    h->given = h->harmonics = sys->harmonics;
+    h->forcing = tribo_modal_keep_forcing(b, sys->harmonics + sys->limit_harmonics * (c - h->rest));
+    if (!h->forcing) {
+        return 0;
+    }
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *w = &sys->harmonic[k];
+        h->forcing[k] = (struct forcing){w->omega, k, c};
+        for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
+            if (h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
+                h->forcing[h->harmonics++] = (struct forcing){w->omega, k, i};
+            }
+        }
+    }
+    return 1;
+}
+
+/* Forcing of eta by a limit. */
+static void force_by_limit(struct modal_build *b, size_t w)
+{
+    struct modal *h = b->h;
+    const size_t m = h->modes, i = h->forcing[w].contact;
+    const struct harmonic *limit = &b->sys->harmonic[h->forcing[w].harmonic];
+    for (size_t k = 0; k < m; k++) {
+        const double push = tribo_modal_shape(b, i, k);
+        h->gr[w * m + k] = push * limit->cosine[i];
+        h->gi[w * m + k] = -push * limit->sine[i];
+    }
+}
+
 /* Forcing of eta by each harmonic, and what the held contacts are moved by. */
 int tribo_modal_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes, count = b->sys->harmonics;
-    h->harmonics = count;
-    h->gr = tribo_modal_keep(b, count * m);
-    h->gi = tribo_modal_keep(b, count * m);
+    if (!list_forcing(b)) {
+        return 0;
+    }
+    h->gr = tribo_modal_keep(b, h->harmonics * m);
+    h->gi = tribo_modal_keep(b, h->harmonics * m);
     h->ramp = tribo_modal_keep(b, m);
     h->drag = tribo_modal_keep(b, m);
     b->yr = tribo_modal_scratch(b, count * n);
@@ -52,18 +90,18 @@ int tribo_modal_forcing(struct modal_build *b)
     for (size_t w = 0; w < count; w++) {
         const struct harmonic *wave = &b->sys->harmonic[w];
         double *g[] = {h->gr + w * m, h->gi + w * m}, *y[] = {b->yr + w * n, b->yi + w * n};
-        for (int part = 0; !wave->moves_base && part < 2; part++) {
+        for (int part = 0; wave->drives == DRIVES_LOAD && part < 2; part++) {
             for (size_t k = 0; k < m; k++) {
                 for (size_t i = 0; i < wave->count; i++) {
                     g[part][k] += (part ? -wave->sine[i] : wave->cosine[i]) * b->psi[k * n + wave->index[i]];
                 }
             }
         }
-        for (int part = 0; wave->moves_base && part < 2; part++) {
+        for (int part = 0; wave->drives == DRIVES_BASE && part < 2; part++) {
             base_part(b, wave, part, x);
             belt_velocities(b, x, y[part]);
         }
-        for (int part = 0; wave->moves_base && part < 2; part++) {
+        for (int part = 0; wave->drives == DRIVES_BASE && part < 2; part++) {
             if (wave->omega == 0.0) {
                 if (part == 0) {
                     tribo_add(b->y0, 1.0, y[0], n);
@@ -84,6 +122,9 @@ int tribo_modal_forcing(struct modal_build *b)
             }
         }
     }
+    for (size_t w = count; w < h->harmonics; w++) {
+        force_by_limit(b, w);
+    }
     memset(pull, 0, n * sizeof *pull);
     memset(drag, 0, n * sizeof *drag);
     tribo_matrix_multiply_add(b->stiffness, -1.0, b->y0, pull);
@@ -101,7 +142,7 @@ int tribo_modal_forcing(struct modal_build *b)
 static void respond_alone(struct modal_build *b, size_t w)
 {
     struct modal *h = b->h;
-    const double omega = b->sys->harmonic[w].omega;
+    const double omega = b->h->forcing[w].omega;
     for (size_t k = 0; k < h->modes; k++) {
         const size_t at = w * h->modes + k;
         const double gr = h->gr[at], gi = h->gi[at];
@@ -120,7 +161,7 @@ static int respond_together(struct modal_build *b, size_t w, double *a, double *
 {
     struct modal *h = b->h;
     const size_t m = h->modes, size = 2 * m;
-    const double omega = b->sys->harmonic[w].omega;
+    const double omega = b->h->forcing[w].omega;
     memset(a, 0, size * size * sizeof *a);
     for (size_t k = 0; k < m; k++) {
         a[k * size + k] = a[(m + k) * size + m + k] = h->omega2[k] - omega * omega;
@@ -156,9 +197,9 @@ int tribo_modal_response(struct modal_build *b)
     size_t *pivot = tribo_modal_scratch_indices(b, size);
     int done = h->xr && h->xi && h->resonant && a && x && pivot;
     for (size_t w = 0; done && w < count; w++) {
-        if (b->sys->harmonic[w].omega != 0.0 && h->coupling) {
+        if (b->h->forcing[w].omega != 0.0 && h->coupling) {
             done = respond_together(b, w, a, x, pivot);
-        } else if (b->sys->harmonic[w].omega != 0.0) {
+        } else if (b->h->forcing[w].omega != 0.0) {
             respond_alone(b, w);
         }
     }

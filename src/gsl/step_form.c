@@ -30,7 +30,7 @@ void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
     if (sys->base_harmonics) {
         tribo_system_set_time(sys, t);
         memset(s->base, 0, sys->ncontact * sizeof *s->base);
-        tribo_system_loads(sys, 1, 0, 1.0, s->base);
+        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, s->base);
     }
 }
 
@@ -70,7 +70,7 @@ int tribo_step_form_grew(tribo_driver *drv, double t)
 
 void tribo_step_form_set_limits(tribo_system *sys, double middle)
 {
-    if (sys->limits.knots) {
+    if (tribo_system_limits_vary(sys)) {
         tribo_system_set_time(sys, middle);
     }
 }

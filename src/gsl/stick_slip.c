@@ -9,7 +9,6 @@
  *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on
  *     until none begins to slide
  *     an independent set of those at rest holds: it keeps all of them where they are */
-#include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"
 
@@ -43,9 +42,9 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit,    &m->limit_rate, &m->force,   &m->allowance, &m->base, &m->noise,
-                                   &m->diagonal, &m->seen,       &m->parting, &m->excess,    &m->v,    &m->a,
-                                   &m->gain,     &m->lo,         &m->hi,      &m->f,         &m->still};
+    double **const by_contact[] = {&m->limit,    &m->limit_rate, &m->force,   &m->allowance, &m->base,  &m->noise,
+                                   &m->diagonal, &m->seen,       &m->parting, &m->excess,    &m->v,     &m->a,
+                                   &m->gain,     &m->lo,         &m->hi,      &m->f,         &m->still, &m->swing};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
@@ -101,12 +100,12 @@ void tribo_stick_slip_free(struct stick_slip *m)
 /* ---------------------------------------------------------------------------------------------------------- rounding */
 
 /* y += amplitudes of the order-th derivatives of loads, or of b. */
-static void add_amplitudes(const tribo_system *sys, int moves_base, int order, double *y)
+static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
 {
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
         const double rate = order ? fabs(w->omega) : 1.0;
-        for (size_t k = 0; w->moves_base == moves_base && k < w->count; k++) {
+        for (size_t k = 0; w->drives == drives && k < w->count; k++) {
             y[w->index[k]] += rate * (fabs(w->cosine[k]) + fabs(w->sine[k]));
         }
     }
@@ -116,7 +115,7 @@ static void add_amplitudes(const tribo_system *sys, int moves_base, int order, d
 static void find_noise(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->noise, 0, sys->ncontact * sizeof *m->noise);
-    add_amplitudes(sys, 1, 0, m->noise);
+    add_amplitudes(sys, DRIVES_BASE, 0, m->noise);
     tribo_matrix_add_sizes(&sys->direction, y + sys->ndof, m->noise);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->noise[i] = VELOCITY_NOISE * greater(m->noise[i], m->seen[i]);
@@ -137,130 +136,42 @@ static void find_gains(struct stick_slip *m, const tribo_system *sys, const doub
     for (size_t d = 0; d < sys->ndof; d++) {
         m->size[d] = fabs(m->size[d]);
     }
-    add_amplitudes(sys, 0, 0, m->size);
+    add_amplitudes(sys, DRIVES_LOAD, 0, m->size);
     tribo_matrix_add_sizes(&sys->stiffness, y, m->size);
     if (sys->damping.rows) {
         tribo_matrix_add_sizes(&sys->damping, y + sys->ndof, m->size);
     }
     tribo_matrix_add_sizes(&sys->response, m->force, m->size);
     memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
-    add_amplitudes(sys, 1, 1, m->gain);
+    add_amplitudes(sys, DRIVES_BASE, 1, m->gain);
     tribo_matrix_add_sizes(&sys->direction, m->size, m->gain);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->gain[i] *= NOISE * m->doubt;
         m->allowance[i] = m->diagonal[i] > 0.0 ? ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
         m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- contacts that hold */
-
-int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
-{
-    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        f[i] = m->holds[i] ? -a[i] / m->diagonal[i] : 0.0;
-    }
-    return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
-}
-
-/* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
- * there. */
-static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t rest)
-{
-    struct constraints c;
-    for (size_t p = 0; p < rest; p++) {
-        const signed char tied = m->tied[m->at[p]];
-        m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
-    }
-    const int done = tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
-    for (size_t k = done ? c.rank : rest; k < rest; k++) {
-        m->holds[m->at[c.order[k]]] = 0;
-    }
-    tribo_constraints_free(&c);
-    return done;
-}
-
-/* Which of the contacts at rest hold. */
-static int find_holds(struct stick_slip *m, const tribo_system *sys)
-{
-    const size_t c = sys->ncontact;
-    size_t rest = 0, changes = 0;
-    for (size_t i = 0; i < c; i++) {
-        const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
-        changes += now != m->before[i];
-        m->before[i] = now;
-        m->at[rest] = i;
-        rest += m->slip[i] == 0 && m->diagonal[i] > 0.0;
-    }
-    if (changes == 0 && !m->fresh) {
-        return TRIBO_OK;
-    }
-    m->fresh = 0;
-    for (size_t i = 0; i < c; i++) {
-        m->holds[i] = m->slip[i] == 0 && m->diagonal[i] > 0.0;
-    }
-    m->dependents = 0;
-    if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
-    }
-    for (size_t i = 0; i < c; i++) {
-        m->dependents += m->slip[i] == 0 && !m->holds[i];
-        m->loose[i] = !m->holds[i];
-        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
-    }
-    return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
-}
-
-/* 1 if J x - base is more than the rounding of x for a contact that holds. */
-static int moves(struct stick_slip *m, const tribo_system *sys, const double *base, const double *x)
-{
-    const struct matrix *j = &sys->direction;
-    for (size_t i = 0; i < m->contacts; i++) {
-        double sum = -base[i], size = fabs(base[i]);
-        for (size_t k = m->holds[i] ? j->first[i] : j->first[i + 1]; k < j->first[i + 1]; k++) {
-            sum += j->val[k] * x[j->col[k]];
-            size += fabs(j->val[k] * x[j->col[k]]);
-        }
-        if (m->holds[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* First the last bits of simple contacts; then, if there is more, x -= B_I R_II^-1 (J_I x - base), twice, since the first time
- * leaves rounding of what it takes away. */
-int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
-{
-    tribo_system_snap(sys, m->loose, base, x);
-    if (m->simple || !moves(m, sys, base, x)) {
-        return TRIBO_OK;
-    }
-    for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < m->contacts; i++) {
-            m->lo[i] = -base[i];
-        }
-        tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->lo);
-        const int status = tribo_stick_slip_balance(m, m->lo, m->f);
-        if (status) {
-            return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
-        }
-        tribo_matrix_multiply_add(&sys->response, 1.0, m->f, x);
-    }
-    tribo_system_snap(sys, m->loose, base, x);
-    return TRIBO_OK;
-}
-
 /* ------------------------------------------------------------------------------------------------------ who is at rest */
+
+double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
+{
+    if (m->slip[i] == 0) {
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
+        return m->holds[i] || !m->tied[i] ? 0.0 : m->force[i] > 0.0 ? ratio : -ratio;
+    }
+    return m->slip[i] == 2 ? 0.0 : -m->slip[i];
+}
 
 int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
 {
     return m->base_moves && m->slip[i] == 0 && !m->holds[i];
 }
 
-double tribo_stick_slip_most(const struct stick_slip *m, size_t i)
+double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
 {
-    return m->stick[i] + (tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0);
+    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0;
 }
 
 double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
@@ -278,19 +189,27 @@ static signed char slip_of(const struct stick_slip *m, size_t i, double v)
     return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? 0 : v > 0.0 ? 1 : -1);
 }
 
+static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    return m->swing[i] > 0.0 ? tribo_system_presses(sys, i, m->doubt) : m->limit[i] != 0.0 || m->limit_rate[i] != 0.0;
+}
+
 /* Brings limits, and with them which contacts are open, up to the time set. */
 static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    if (sys->limits.knots) {
+    if (tribo_system_limits_vary(sys) || m->breakaway.some) {
         tribo_system_limits(sys, m->limit, m->limit_rate);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->limit[i] == 0.0 && m->limit_rate[i] == 0.0) {
+        if (!presses(m, sys, i)) {
+            m->limit[i] = m->limit_rate[i] = 0.0;
             m->slip[i] = 2;
         } else if (m->slip[i] == 2) {
             m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
         }
+        m->limit[i] = greater(m->limit[i], 0.0);
     }
+    tribo_breakaway_take(&m->breakaway, sys->ncontact, m->limit, m->limit_rate);
 }
 
 /* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
@@ -299,7 +218,7 @@ static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y
 {
     int status = TRIBO_OK;
     for (size_t found = 1; !status && found;) {
-        status = find_holds(m, sys);
+        status = tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
         found = 0;
         for (size_t i = 0; !status && i < sys->ncontact; i++) {
@@ -352,7 +271,7 @@ static int find_forces(struct stick_slip *m, tribo_system *sys)
 static void contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     memset(to, 0, sys->ncontact * sizeof *to);
-    tribo_system_loads(sys, 1, order, -1.0, to);
+    tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
@@ -374,6 +293,12 @@ static int breaks_away(struct stick_slip *m, size_t i, signed char direction, do
     return 1;
 }
 
+/* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
+static signed char direction_of(const struct stick_slip *m, size_t i, double force)
+{
+    return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
+}
+
 /* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
 static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
 {
@@ -392,7 +317,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
         const double room = m->stick[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / ALLOWED;
         if (m->slip[i] == 0 && room <= within) {
-            const signed char direction = m->force[i] > 0.0 ? -1 : 1;
+            const signed char direction = direction_of(m, i, m->force[i]);
             m->tied[i] = 1;
             changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             *ties += m->tied[i] != 0;
@@ -416,7 +341,7 @@ static void find_static(struct stick_slip *m, const tribo_system *sys, const dou
         for (size_t i = 0; i < sys->ncontact; i++) {
             m->v[i] = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
         }
-        tribo_breakaway_limits(&m->breakaway, sys, m->slip, m->v, m->limit, m->limit_rate);
+        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->slip, m->v, m->limit, m->limit_rate);
     }
 }
 
@@ -448,7 +373,7 @@ static void set_bounds_ahead(struct stick_slip *m)
 static void find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->rate, 0, sys->ndof * sizeof *m->rate);
-    tribo_system_loads(sys, 0, 1, 1.0, m->rate);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->rate);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->rate);
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, m->acceleration, m->rate);
@@ -477,8 +402,8 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (m->slip[i] == 0 && m->limit[i] > 0.0 && room >= 0.0) {
-            const signed char direction = m->f[i] > 0.0 ? -1 : 1;
+        if (m->slip[i] == 0 && room >= 0.0) {
+            const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
             const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             *changes += (size_t)leaves;
@@ -493,7 +418,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 /* f = the forces that hold all contacts at rest where they are, the others having theirs. */
 static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
-    int status = find_holds(m, sys);
+    int status = tribo_stick_slip_find_holds(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->holds[i] ? 0.0 : m->force[i];
     }
@@ -539,7 +464,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 {
     tribo_system_set_time(sys, t);
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
-    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     memset(m->tied, 0, sys->ncontact);
     find_noise(m, sys, y);
     update_limits(m, sys, y);
@@ -569,7 +494,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
         m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
     }
-    return status ? status : find_holds(m, sys);
+    return status ? status : tribo_stick_slip_find_holds(m, sys);
 }
 
 int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
@@ -580,17 +505,20 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     m->stick = m->breakaway.some ? m->breakaway.stick : m->limit;
     m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
-    tribo_system_loads(sys, 1, 0, 1.0, m->base);
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->swing[i] = tribo_system_swing(sys, i);
     }
     m->fresh = 1;
     m->doubt = 1.0;
     m->reached = m->contacts;
     m->base_moves = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
-        m->base_moves |= sys->harmonic[k].moves_base && sys->harmonic[k].count > 0;
+        m->base_moves |= sys->harmonic[k].drives == DRIVES_BASE && sys->harmonic[k].count > 0;
     }
     const double most = tribo_system_fastest(sys) + m->breakaway.steepest;
     m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);

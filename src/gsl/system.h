@@ -7,10 +7,13 @@
 
 #include "linalg.h"
 
-/* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero. */
+/* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
+enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
+
+/* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
 struct harmonic {
     double omega, cos_t, sin_t; /* at the time sys->time */
-    int moves_base;             /* adds to b(t) of contacts, not to the load */
+    enum drives drives;
     size_t count;
     size_t *index;
     double *cosine, *sine;
@@ -30,14 +33,15 @@ struct tribo_system {
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
     tribo_context *contacts;
 
-    size_t harmonics, base_harmonics; /* the latter are those that move the base */
+    size_t harmonics, base_harmonics, limit_harmonics; /* the latter are those of b(t) and of limits */
     struct harmonic *harmonic;
     size_t tables;
     struct table *table;
-    struct table limits; /* knots 0: the limits are those of the context */
-    double *given_limit; /* [ncontact] those that it had before the table */
+    struct table limits; /* knots 0: the limits are those given in the context, and harmonics on top */
+    double *given_limit; /* [ncontact] while limits vary: those given in the context, */
+    double *put_limit;   /* [ncontact] and those that it was told last, to see whether others have been given since */
     size_t revision;     /* counts changes of loads, tables and damping */
-    size_t ours, seen;   /* of the context's revision: how much the table added, and where it left it */
+    size_t ours, seen;   /* of the context's revision: how much varying limits added, and where they left it */
     double time, low;    /* that cos_t and sin_t belong to (NaN: none yet), and what rounding left of it (below) */
 
     /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: M AK and M AC are
@@ -75,21 +79,40 @@ void tribo_loads_free(tribo_system *sys);
 /* The loads, motions and tables of from for sys, which has none; 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
-/* Prepares the loads for time t, and sets the limits of the context if they follow a table. */
+/* Prepares the loads for time t, and sets the limits of the context if they vary. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
 /* From here on every time means t + low, at which events happen between two numbers t. */
 void tribo_system_set_low(tribo_system *sys, double low);
 
-/* Adds factor times the order-th derivative of b(t) (moves_base) or of the accelerations that the load makes to `to`, at the time
- * set. */
-void tribo_system_loads(const tribo_system *sys, int moves_base, int order, double factor, double *to);
+/* Adds factor times the order-th derivative of b(t), of the accelerations that the load makes, or of what harmonics add to the
+ * limits, to `to`, at the time set. */
+void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to);
 
-/* The part of it that comes from tables. */
+/* The part of the load's that comes from tables. */
 void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to);
 
-/* limit, and its derivative, each [ncontact], at the time set. */
+/* Whether limits change with time, by a table or harmonics. */
+int tribo_system_limits_vary(const tribo_system *sys);
+
+/* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
+
+/* Tells the context the limits of the time set, and what their rates make of them in a time so much later. */
+void tribo_system_put_limits(tribo_system *sys, double later);
+
+/* By how much harmonics change the limit of contact i at most; 0 for one that they leave alone. */
+double tribo_system_swing(const tribo_system *sys, size_t i);
+
+/* The largest limits that contacts ever have, most [ncontact]. */
+void tribo_system_most_limits(const tribo_system *sys, double *most);
+
+/* Limits are known to this part of what they are the sum of. */
+#define TRIBO_LIMIT_NOISE 4e-14
+
+/* Whether contact i is pressed from the time set on, by the first derivative of its limit that is more than rounding, or more
+ * than so many times that. */
+int tribo_system_presses(const tribo_system *sys, size_t i, double doubt);
 
 /* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
 double tribo_system_next_kink(const tribo_system *sys, double t);

@@ -34,6 +34,7 @@ TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
 TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
 TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);
 TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
+TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 TRIBO_API int tribo_set_operator_diagonal(tribo_context *ctx, const double *r);
 TRIBO_API int tribo_set_operator_dense(tribo_context *ctx, const double *r);
 TRIBO_API int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val);
@@ -54,6 +55,7 @@ TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const d
                                     double *df_da);
 TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
+TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
 TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);
 TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);
 TRIBO_API int tribo_get_slip(const tribo_context *ctx, signed char *slip);

@@ -16,6 +16,7 @@ TRIBO_API int tribo_system_clear_loads(tribo_system *sys);
 TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
+TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);

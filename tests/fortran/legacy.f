@@ -137,6 +137,7 @@ C     Where things begin in W and IWORK
    30 CONTINUE
       CALL TRBCPL(IH, 0, IERR)
       CALL CMPI('TRBCPL', IERR)
+      CALL PLANAR(IH)
       CALL TRBSTP(IH, 0.01D0, 0.4D0, IERR)
       CALL CMPI('TRBSTP', IERR)
       CALL SETTIN(IH)
@@ -234,7 +235,7 @@ C
    20 CONTINUE
       CALL CMPR('TRBSLP', 4, X)
       CALL EXPECT('around', MODE(1) .EQ. 9 .AND. MODE(6) .EQ. 9)
-      DO 30 I = 0, 8
+      DO 30 I = 0, 9
          CALL TRBCNT(IH, I, IVAL, IERR)
          CALL CMPI('TRBCNT', IERR)
          CALL CMPI('TRBCNT', IVAL)
@@ -244,6 +245,30 @@ C
          CALL CMPI('TRBVAL', IERR)
          CALL CMPR('TRBVAL', 1, VAL)
    40 CONTINUE
+      END
+C
+      SUBROUTINE PLANAR(IH)
+      INTEGER N
+      PARAMETER (N = 4)
+      INTEGER IH, IERR, K, IFIRST(1)
+      DOUBLE PRECISION V(N), A(N), FEQ(N), F(N)
+      IFIRST(1) = 2
+      CALL TRBPLN(IH, 1, IFIRST, IERR)
+      CALL CMPI('TRBPLN', IERR)
+      DO 10 K = 1, 5
+         CALL SCSTAT(K, V, A, FEQ)
+         CALL TRBBAL(IH, N, V, A, FEQ, F, IERR)
+         CALL CMPI('TRBBAL', IERR)
+         CALL CMPR('TRBBAL', N, FEQ)
+         CALL CMPR('TRBBAL', N, F)
+         CALL QUERY(IH)
+         CALL TRBSTM(IH, N, 0.125D0, A, V, F, IERR)
+         CALL CMPI('TRBSTM', IERR)
+         CALL CMPR('TRBSTM', N, F)
+         CALL QUERY(IH)
+   10 CONTINUE
+      CALL TRBPLN(IH, 0, IFIRST, IERR)
+      CALL CMPI('TRBPLN', IERR)
       END
 C
       SUBROUTINE FORCES(IH, FLO, FUP)
@@ -307,6 +332,9 @@ C        On failure C's outputs were f_eq and derivatives
          CALL CMPI('TRBSTF', IERR)
          CALL CMPR('TRBSTF', N, F)
          CALL QUERY(IH)
+         CALL TRBSTM(IH, N, 0.125D0, A, V, F, IERR)
+         CALL CMPI('TRBSTM', IERR)
+         CALL CMPR('TRBSTM', N, F)
          CALL TRBBOX(IH, N, A, FLO, FUP, F, IERR)
          CALL CMPI('TRBBOX', IERR)
          CALL CMPR('TRBBOX', N, F)
@@ -473,6 +501,7 @@ C     The errors of calls with a handle that is one.
       INTEGER IPAR(2)
       DOUBLE PRECISION X(4), Y(4), Z(4), D(4), E(4), Q(4,4), P(4,4)
       DOUBLE PRECISION NEG(3), VAL(4)
+      INTEGER IPL(2)
       CHARACTER*60 SAYS
       LOGICAL SAME
       EXTERNAL MINV
@@ -556,6 +585,14 @@ C     A number of contacts that is not that of the handle
 C     Values
       CALL TRBLIM(IH, N, NEG, IERR)
       CALL WANTED('TRBLIM', IH, IERR, 3, 'limit(3) = -1 is negative')
+      IPL(1) = 1
+      IPL(2) = N
+      CALL TRBPLN(IH, 2, IPL, IERR)
+      CALL WANTED('TRBPLN', IH, IERR, 5, 'first(2) = 3 is out of range')
+      IPL(2) = 2
+      CALL TRBPLN(IH, 2, IPL, IERR)
+      CALL WANTED('TRBPLN', IH, IERR, 22,
+     1            'first(2) takes contact 2, which first(1) has taken')
       CALL TRBNLD(IH, N, NEG, X, IERR)
       CALL WANTED('TRBNLD', IH, IERR, 3, 'mu(3) = -1 is negative')
       CALL TRBSTA(IH, N, NEG, X, IERR)

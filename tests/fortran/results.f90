@@ -128,6 +128,7 @@ contains
     end do
     call c%set_coupling(TRIBO_CONSISTENT, stat)
     call compare('set_coupling', stat)
+    call planar(c)
     call c%set_epsilon(step=0.01_dp, lambda_dt=0.4_dp, stat=stat)
     call compare('set_epsilon, step and lambda_dt', stat)
     call settings(c)
@@ -159,6 +160,28 @@ contains
     call c%destroy()
     call c%destroy()
   end subroutine contexts
+
+  subroutine planar(c)
+    type(tribo_context), intent(inout) :: c
+    real(dp) :: feq(n), f(n)
+    integer :: stat, k
+
+    call c%set_planar([2], stat)
+    call compare('set_planar', stat)
+    do k = 1, states
+      call c%balance(scene_v(:, k), scene_a(:, k), feq, f, stat)
+      call compare('planar: balance', stat)
+      call compare('planar: feq', feq)
+      call compare('planar: f', f)
+      call queries(c)
+      call c%step_force_mean(0.125_dp, scene_a(:, k), scene_v(:, k), f, stat)
+      call compare('planar: step_force_mean', stat)
+      call compare('planar: step_force_mean: f', f)
+      call queries(c)
+    end do
+    call c%set_planar([integer ::], stat)
+    call compare('set_planar', stat)
+  end subroutine planar
 
   subroutine set_operator(c, form)
     type(tribo_context), intent(inout) :: c
@@ -286,6 +309,10 @@ contains
         call compare('step_force', stat)
         call compare('step_force: f', f)
         call queries(c)
+        f = wiped
+        call c%step_force_mean(0.125_dp, a, v, f, stat)
+        call compare('step_force_mean', stat)
+        call compare('step_force_mean: f', f)
         f = wiped
         call c%solve_box(a, scene_lower, scene_upper, f, stat)
         call compare('solve_box', stat)

@@ -8,7 +8,7 @@
 #define N 4
 #define NDOF 6
 #define STATES 5
-#define COUNTS 9
+#define COUNTS 10
 #define REALS 3
 
 /* gfortran takes it for granted that they are aligned as its own arrays would be. */
@@ -142,6 +142,8 @@ static void forces(tribo_context *c)
         put_one(tribo_step_force(c, 0.125, v, f));
         put(N, f);
         queries(c);
+        put_one(tribo_step_force_mean(c, 0.125, a, v, f));
+        put(N, f);
         put_one(tribo_solve_box(c, a, scene_lower, scene_upper, f));
         put(N, f);
         put_one(tribo_accept(c, v, feq));
@@ -182,6 +184,23 @@ static void set_operator(tribo_context *c, int form)
     }
 }
 
+static void planar(tribo_context *c)
+{
+    const size_t first = 1;
+    double feq[N] = {0.0}, f[N] = {0.0};
+    put_one(tribo_set_planar(c, 1, &first));
+    for (size_t k = 0; k < STATES; k++) {
+        put_one(tribo_balance(c, scene_v[k], scene_a[k], feq, f));
+        put(N, feq);
+        put(N, f);
+        queries(c);
+        put_one(tribo_step_force_mean(c, 0.125, scene_a[k], scene_v[k], f));
+        put(N, f);
+        queries(c);
+    }
+    put_one(tribo_set_planar(c, 0, NULL));
+}
+
 void scene_play(void)
 {
     registry();
@@ -210,6 +229,7 @@ void scene_play(void)
         }
     }
     put_one(tribo_set_coupling(c, TRIBO_CONSISTENT));
+    planar(c);
     put_one(tribo_set_epsilon_step(c, 0.01, 0.4));
     settings(c);
     put_one(tribo_set_epsilon_step(c, 0.01, 1.0));

@@ -5,7 +5,7 @@ module scene
   private
   public :: scene_play
 
-  integer, parameter, public :: n = 4, ndof = 6, states = 5, counts = 9, reals = 3
+  integer, parameter, public :: n = 4, ndof = 6, states = 5, counts = 10, reals = 3
 
   real(c_double), bind(c), public :: scene_limit(n), scene_epsilon(n), scene_diagonal(n), scene_dense(n, n)
   integer(c_size_t), bind(c), public :: scene_rowptr(n + 1), scene_col(8), scene_j_rowptr(n + 1), scene_j_col(5)

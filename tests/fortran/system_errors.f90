@@ -78,6 +78,8 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_system)
     call s%add_base_motion(1.0_dp, x, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_system)
+    call s%add_limit(1.0_dp, x, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, no_system)
     call s%add_load_table(x, x, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_system)
     call s%set_limit_table(x, q, stat, msg)
@@ -241,6 +243,10 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'cosine has size 2, not 1')
     call s%add_base_motion(1.0_dp, sine=[nan], stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'sine(1) = nan is not finite')
+    call s%add_limit(1.0_dp, x(:2), stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'cosine has size 2, not 1')
+    call s%add_limit(1.0_dp, sine=[nan], stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'sine(1) = nan is not finite')
     call s%add_load_table([0.0_dp, 1.0_dp], x, x(:2), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'value has size 3, not 2')
     call s%add_load_table([0.0_dp, 1.0_dp], x(:2), x, stat, msg)
@@ -390,7 +396,7 @@ contains
     call s%add_load_table([0.0_dp, 1.0_dp], [0.0_dp, 1.0_dp], [1.0_dp])
     call d%advance(t, 2.0_dp, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, &
-      'method exact takes harmonic loads only; method event takes tables too')
+      'method exact takes harmonic loads and limits only; method event takes tables too')
   end subroutine drivers
 
   !> A borrowed context does what its system does, and goes with it.

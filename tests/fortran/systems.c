@@ -119,6 +119,8 @@ static void linear(tribo_system *sys, int reduced)
     put_one(tribo_system_add_load(sys, 0.0, sine, NULL));
     put_one(tribo_system_add_base_motion(sys, 0.75, motion, NULL));
     put_one(tribo_system_add_base_motion(sys, 0.5, NULL, limits));
+    put_one(tribo_system_add_limit(sys, 1.5, limits, motion));
+    put_one(tribo_system_add_limit(sys, 0.5, NULL, limits));
     if (reduced) {
         put_one(tribo_system_set_damping_ratio(sys, 0.02));
         put_one(tribo_system_get_frequencies(sys, omega));

@@ -160,6 +160,10 @@ contains
     call compare('add_base_motion', stat)
     call sys%add_base_motion(0.5_dp, sine=limits, stat=stat)
     call compare('add_base_motion', stat)
+    call sys%add_limit(1.5_dp, limits, motion, stat)
+    call compare('add_limit', stat)
+    call sys%add_limit(0.5_dp, sine=limits, stat=stat)
+    call compare('add_limit', stat)
     if (reduced) then
       call sys%set_damping_ratio(0.02_dp, stat)
       call compare('set_damping_ratio', stat)
@@ -281,6 +285,8 @@ contains
     rows(1, :ncontact) = motion
     call a%add_base_motion(1.0_dp, motion, motion)
     call b%add_base_motion(1.0_dp, rows(1, :ncontact), rows(1, :ncontact))
+    call a%add_limit(2.0_dp, motion, motion)
+    call b%add_limit(2.0_dp, rows(1, :ncontact), rows(1, :ncontact))
     call a%add_load_table(times, values, sine)
     rows(1, 1::4) = times
     rows(1, 2::4) = values

@@ -212,7 +212,7 @@ static void load(struct bytes *b, struct scene *s)
     time[1] = time[0] + positive(b);
     time[2] = time[1] + positive(b);
     s->wild |= wild(&omega, 1) || wild(cosine, MOST_DOFS) || wild(sine, MOST_DOFS) || wild(value, COUNT(value)) || wild(time, 3);
-    switch (choose(b, 5)) {
+    switch (choose(b, 6)) {
     case 0:
         check(s, tribo_system_add_load(s->sys, omega, some ? cosine : NULL, some < 2 ? sine : NULL));
         break;
@@ -227,6 +227,9 @@ static void load(struct bytes *b, struct scene *s)
             value[k] = fabs(value[k]);
         }
         check(s, tribo_system_set_limit_table(s->sys, knots, time, value));
+        break;
+    case 4:
+        check(s, tribo_system_add_limit(s->sys, omega, some ? cosine : NULL, some < 2 ? sine : NULL));
         break;
     default:
         check(s, tribo_system_set_damping_ratio(s->sys, 0.1 * positive(b)));

@@ -18,6 +18,8 @@
 
 struct scene {
     struct structure structure;
+    size_t swings; /* harmonics of the limits */
+    struct wave swing[2];
     int table; /* limits follow this, from DURATION KNOTS on constant */
     double time[KNOTS], limit[KNOTS * MOST_CONTACTS];
 };
@@ -240,12 +242,56 @@ static void limit_table(struct scene *c, struct random *g)
         }
     }
     add_load(s, g, 1.0);
+    for (size_t k = 0; k < 2 && chance(g, 0.5); k++) {
+        const double omegas[] = {0.5, 1.0, 2.0};
+        s->motion[k].omega = any_of(g, omegas, COUNT(omegas));
+        for (size_t i = 0; i < s->ncontact; i++) {
+            s->motion[k].sine[i] = i < s->ndof || chance(g, 0.7) ? 1.0 : 0.5;
+        }
+    }
     c->table = 1;
     for (size_t k = 0; k < KNOTS; k++) {
         const double time[KNOTS] = {0.0, 1.0, 2.5, 4.0, 8.0};
         c->time[k] = time[k];
         for (size_t i = 0; i < s->ncontact; i++) {
             c->limit[k * s->ncontact + i] = even ? 0.25 * (double)below(g, 4) : uniform(g, 0.0, 1.0);
+        }
+    }
+}
+
+/* Limits that swing, with small whole numbers and all alike, or at random: contacts lift off and touch down, alone and together,
+ * graze, and meet loads that do the same. */
+static void swinging_limits(struct scene *c, struct random *g)
+{
+    const double omegas[] = {0.0, 0.5, 1.0, 2.0}, sizes[] = {0.0, 0.25, 0.5, 0.5, -0.5, 1.0};
+    struct structure *s = &c->structure;
+    const int even = chance(g, 0.6), alike = chance(g, 0.5);
+    make_row(s, g, 1 + below(g, 4), even);
+    s->ncontact = s->ndof + below(g, 3);
+    const double limit = any_of(g, sizes, COUNT(sizes)), cosine = any_of(g, sizes, COUNT(sizes)),
+                 sine = any_of(g, sizes, COUNT(sizes));
+    for (size_t i = 0; i < s->ncontact; i++) {
+        connect(s, i, i % s->ndof, chance(g, 0.4));
+        s->limit[i] = fabs(alike ? limit : even ? any_of(g, sizes, COUNT(sizes)) : uniform(g, 0.0, 1.0));
+        for (size_t k = 0; k < 2; k++) {
+            c->swing[k].cosine[i] = k ? 0.0 : alike ? cosine : even ? any_of(g, sizes, COUNT(sizes)) : uniform(g, -1.0, 1.0);
+            c->swing[k].sine[i] = alike && !k ? sine : even ? any_of(g, sizes, COUNT(sizes)) : uniform(g, -1.0, 1.0);
+        }
+    }
+    c->swings = 2;
+    c->swing[0].omega = any_of(g, omegas, COUNT(omegas));
+    c->swing[1].omega = any_of(g, omegas, COUNT(omegas));
+    if (chance(g, 0.7)) {
+        add_load(s, g, chance(g, 0.5) ? 1.0 : uniform(g, 0.2, 2.0));
+    }
+    if (chance(g, 0.3)) {
+        s->motion[0].omega = any_of(g, omegas, COUNT(omegas));
+        s->motion[0].sine[0] = 1.0;
+        s->motion[0].cosine[0] = chance(g, 0.5) ? 0.5 : 0.0;
+    }
+    if (chance(g, 0.5)) {
+        for (size_t i = 0; i < s->ndof; i++) {
+            s->start[i] = even ? 0.5 * (double)below(g, 4) : uniform(g, -1.0, 1.0);
         }
     }
 }
@@ -284,6 +330,7 @@ static const struct kind {
              {"parting bases", parting_bases, DURATION},
              {"doubled contacts", doubled, DURATION},
              {"limit table", limit_table, DURATION},
+             {"swinging limits", swinging_limits, DURATION},
              {"light and heavy", light_and_heavy, DURATION}};
 
 /* What a motion is compared by: largest differences, and how far it strays from Coulomb's law. */
@@ -305,6 +352,9 @@ static double move(const struct scene *c, double duration, int seed, const struc
     double t = s->begin, excess = 0.0;
     if (c->table) {
         assert_ok(tribo_system_set_limit_table(sys, KNOTS, c->time, c->limit));
+    }
+    for (size_t k = 0; k < c->swings; k++) {
+        assert_ok(tribo_system_add_limit(sys, c->swing[k].omega, c->swing[k].cosine, c->swing[k].sine));
     }
     memcpy(y, s->start, (2 * s->ndof + 1) * sizeof *y);
     assert_ok(tribo_driver_create(&drv, sys, method, dt, 1e-12, 1e-12));

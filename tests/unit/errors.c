@@ -152,7 +152,7 @@ TEST(getters)
     REFUSED(TRIBO_ERR_NULL, "sharing is NULL", tribo_get_sharing(c, NULL));
     REFUSED(TRIBO_ERR_NULL, "df is NULL", tribo_tangent_product(c, NULL, NULL, NULL));
     REFUSED(TRIBO_ERR_RANGE, "which = -1", tribo_get_count(c, -1, &out.count));
-    REFUSED(TRIBO_ERR_RANGE, "which = 9", tribo_get_count(c, TRIBO_COUNT_REUSED + 1, &out.count));
+    REFUSED(TRIBO_ERR_RANGE, "which = 10", tribo_get_count(c, TRIBO_COUNT_PLANAR + 1, &out.count));
     REFUSED(TRIBO_ERR_NULL, "value is NULL", tribo_get_real(c, TRIBO_REAL_RESIDUAL, NULL));
     REFUSED(TRIBO_ERR_RANGE, "which = -1", tribo_get_real(c, -1, &out.value));
     REFUSED(TRIBO_ERR_RANGE, "which = 3", tribo_get_real(c, TRIBO_REAL_MAX_STEP + 1, &out.value));

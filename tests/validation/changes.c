@@ -41,6 +41,11 @@ static void end_table(tribo_system *sys)
     assert_ok(tribo_system_set_limit_table(sys, 0, NULL, NULL));
 }
 
+static void add_limit(tribo_system *sys)
+{
+    assert_ok(tribo_system_add_limit(sys, 0.8, limit_table + 3, limit_table));
+}
+
 static void set_limit(tribo_system *sys)
 {
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit_table + 3));
@@ -104,7 +109,10 @@ static const struct {
                {"load table twice", add_table, add_table},
                {"static limits", nothing, begin_static},
                {"falling limits", begin_static, begin_falling},
-               {"no more static limits", begin_falling, end_static}};
+               {"no more static limits", begin_falling, end_static},
+               {"swinging limits", nothing, add_limit},
+               {"swinging limits, and limits", add_limit, set_limit},
+               {"swinging limits, and static ones", add_limit, begin_static}};
 
 static int chooses_steps(const char *method)
 {
@@ -115,10 +123,12 @@ static int chooses_steps(const char *method)
  * method that chooses its steps are farther apart than its tolerance. */
 static int possible(const char *method, size_t change)
 {
-    if (!strcmp(changes[change].name, "static limits")) {
+    const int falls = changes[change].change == begin_falling || changes[change].before == begin_falling;
+    const int table = strstr(changes[change].name, "table") || changes[change].before == begin_table;
+    if (changes[change].change == begin_static) {
         return !chooses_steps(method);
     }
-    return strcmp(method, "exact") || (!strstr(changes[change].name, "table") && changes[change].before == nothing);
+    return strcmp(method, "exact") || !(falls || table);
 }
 
 static tribo_driver *start(const char *method, tribo_system *sys)

@@ -33,6 +33,9 @@ static tribo_system *any_system(int kind)
             assert_ok(tribo_system_add_load_table(sys, 3, times, values, pattern));
             assert_ok(tribo_system_set_limit_table(sys, 3, times, limits));
         }
+        if (kind == 3) {
+            assert_ok(tribo_system_add_limit(sys, 0.75, limits + 3, limits));
+        }
     }
     return sys;
 }

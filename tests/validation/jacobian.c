@@ -5,6 +5,7 @@
 #include "model.h"
 
 #define LARGEST 17
+#define SYSTEMS 7 /* of the last two one has limits that vary, and one is reduced */
 #define STEP 1e-6
 
 static void rate_of(const gsl_odeiv2_system *ode, double t, const double *y, double *dydt)
@@ -76,6 +77,7 @@ static tribo_system *system_of(struct random *g, int which)
         break;
     case 3:
     case 4:
+    case 5:
         sys = model_system(&m, 1, 0, 1.0);
         break;
     default:
@@ -83,10 +85,11 @@ static tribo_system *system_of(struct random *g, int which)
         assert_ok(tribo_system_set_damping_ratio(sys, 0.05));
     }
     assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 0.5));
+    if (which == SYSTEMS - 2) {
+        assert_ok(tribo_system_add_limit(sys, 0.7, m.motion[0], m.motion[1]));
+    }
     return sys;
 }
-
-#define SYSTEMS 6
 
 /* Without Coulomb's law: its derivatives are zero wherever v is not. */
 static const int laws[] = {TRIBO_VELOCITY_LIMITED, TRIBO_SMOOTH, TRIBO_KARNOPP, TRIBO_QUINN, TRIBO_QUINN_REVERSAL};

@@ -94,6 +94,7 @@ static int make_copy(tribo_system **sys, tribo_driver **drv)
     int status = make_loaded(&from, drv);
     status = status ? status : tribo_system_add_load_table(from, 2, times, values, model->load[0]);
     status = status ? status : tribo_system_set_limit_table(from, 2, times, limits);
+    status = status ? status : tribo_system_add_limit(from, 1.0, limits, NULL);
     status = status ? status : tribo_system_clone(from, sys);
     tribo_system_destroy(from);
     return status;

@@ -59,9 +59,20 @@ static int out_of_memory(const tribo_context *ctx)
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contacts", ctx->n);
 }
 
-/* The new operator is right: it takes the old one's place, and its memory that of the old one's. */
+/* The new operator is right: it takes the old one's place, and its memory that of the old one's, if there is room for what it makes
+ * of planar contacts. */
 static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 {
+    struct planar *planar;
+    struct plane plane;
+    const int status = tribo_planar_prepare(ctx, ctx->planar ? ctx->planar->count : 0, ctx->planar ? ctx->planar->first : NULL, op, m,
+                                            &planar, &plane);
+    if (status) {
+        tribo_operator_release(op);
+        tribo_memory_free(m);
+        return status;
+    }
+    tribo_planar_install(ctx, planar, &plane);
     m->problem.work.factorizations += ctx->memory.problem.work.factorizations;
     m->problem.work.updates += ctx->memory.problem.work.updates;
     tribo_operator_release(ctx->op);

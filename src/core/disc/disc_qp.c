@@ -1,0 +1,259 @@
+/* Solves the problem of discs, lenses and intervals.
+ *
+ *     Newton's method from where the last call ended, its steps brought back to the set: in a call like the last it ends at once
+ *     if it does not end: an interior-point method, and Newton's method from there
+ *
+ * Either ends only when y is the nearest point of the set to y - gain gradient, up to rounding, which is to say that it is the
+ * solution. */
+#include "disc_qp.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../common/real.h"
+
+
+enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
+
+/* Distances of so much rounding are none. */
+#define SETTLED 4.0
+
+/* y = the point of the set that is nearest to from + part (aim - from). */
+static void project(struct disc_qp *p, const double *from, const double *aim, double part)
+{
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        double z[2];
+        for (size_t k = 0; k < p->wide[i]; k++) {
+            z[k] = part < 1.0 ? from[i + k] + part * (aim[i + k] - from[i + k]) : aim[i + k];
+        }
+        tribo_lens_project(p->wide[i], p->shift + i, z, p->y + i);
+    }
+}
+
+/* aim = where Newton's method leads from y, gradient and places being those at y. */
+static void find_aim(struct disc_qp *p)
+{
+    memcpy(p->from, p->y, p->size * sizeof *p->y);
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (size_t k = i; k < i + p->wide[i]; k++) {
+            p->y[k] = p->place[i] == LENS_INSIDE ? p->y[k] : p->to[k];
+        }
+    }
+    tribo_disc_linearize(p);
+    tribo_disc_gradients(p);
+    tribo_disc_follow(p, p->gradient, p->aim);
+    if (p->redundant) {
+        tribo_disc_slide(p, p->gradient, p->slide);
+    }
+    for (size_t i = 0; i < p->size; i++) {
+        p->aim[i] = cut(p->y[i] + p->aim[i] + (p->redundant ? p->slide[i] : 0.0));
+    }
+}
+
+static void step_newton(struct disc_qp *p)
+{
+    find_aim(p);
+    project(p, p->from, p->aim, 1.0);
+}
+
+/* Distances of this part of limits are none. */
+#define NEAR_ENOUGH 1e-13
+
+/* Returns what tribo_disc_places does. */
+static double look(struct disc_qp *p)
+{
+    tribo_disc_gradients(p);
+    return tribo_disc_places(p);
+}
+
+/* y is the solution up to what rounding may have done to it: steps that halve the distance still may find less. */
+static void polish(struct disc_qp *p)
+{
+    double before = HUGE_VAL;
+    while (p->residual > NEAR_ENOUGH && p->residual < 0.5 * before) {
+        before = p->residual;
+        memcpy(p->best, p->y, p->size * sizeof *p->y);
+        step_newton(p);
+        look(p);
+    }
+    if (p->residual >= before) {
+        memcpy(p->y, p->best, p->size * sizeof *p->y);
+        look(p);
+    }
+}
+
+/* Whether the objective at y is less than at from, where gradient and noise are those at y: the difference is found from the way
+ * between them, so that little of it is lost. */
+static int descends(const struct disc_qp *p)
+{
+    double change = 0.0, rounding = 0.0;
+    for (size_t i = 0; i < p->size; i++) {
+        double turn = 0.0;
+        for (size_t k = 0; k < p->size; k++) {
+            turn += p->s[i * p->size + k] * (p->y[k] - p->from[k]);
+        }
+        change += (p->y[i] - p->from[i]) * (p->gradient[i] - 0.5 * turn);
+        rounding += fabs(p->y[i] - p->from[i]) * p->noise[i];
+    }
+    return change <= rounding;
+}
+
+/* A contact at a time to the nearest point of its set to y - gain gradient: slow, but always downwards. */
+static void sweep(struct disc_qp *p)
+{
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        double z[2];
+        for (size_t k = 0; k < p->wide[i]; k++) {
+            double sum = p->pull[i + k];
+            for (size_t j = 0; j < p->size; j++) {
+                sum += p->s[(i + k) * p->size + j] * p->y[j];
+            }
+            z[k] = p->y[i + k] - product(p->gain[i], sum);
+        }
+        tribo_lens_project(p->wide[i], p->shift + i, z, p->y + i);
+    }
+}
+
+/* How far from may go towards aim until a contact that is inside meets a rim, which is one of |x + t step| = 1. */
+static double way_inside(const struct disc_qp *p)
+{
+    double way = 1.0;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (int d = 0; p->place[i] == LENS_INSIDE && d < 2; d++) {
+            double x[2], step[2];
+            for (size_t k = 0; k < p->wide[i]; k++) {
+                x[k] = p->from[i + k] + (d ? p->shift[i + k] : 0.0);
+                step[k] = p->aim[i + k] - p->from[i + k];
+            }
+            way = lesser(way, tribo_way_to_rim(p->wide[i], x, step));
+        }
+    }
+    return way;
+}
+
+/* As much of Newton's step as leads downwards; near the solution, where that drowns in rounding, all of it if it leads nearer. */
+static void step_down(struct disc_qp *p)
+{
+    const double before = p->residual;
+    find_aim(p);
+    const double way = way_inside(p);
+    project(p, p->from, p->aim, 1.0);
+    look(p);
+    if (p->residual < 0.5 * before) {
+        return;
+    }
+    for (double part = way; part > 1e-3 * way; part *= 0.5) {
+        project(p, p->from, p->aim, part);
+        tribo_disc_gradients(p);
+        if (descends(p)) {
+            return;
+        }
+    }
+    project(p, p->from, p->from, 1.0);
+    sweep(p);
+}
+
+static int settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p))
+{
+    for (int round = 0; look(p) > SETTLED; round++) {
+        if (round == rounds) {
+            return 0;
+        }
+        step(p);
+    }
+    polish(p);
+    return 1;
+}
+
+/* The nearest point of the set to y - gain gradient is the solution already where contacts do not feel each other. */
+static void begin(struct disc_qp *p)
+{
+    p->sets = (struct sets){0};
+    tribo_disc_gains(p);
+    project(p, p->y, p->y, 1.0);
+    look(p);
+    project(p, p->to, p->to, 1.0);
+}
+
+int tribo_disc_solve(struct disc_qp *p)
+{
+    begin(p);
+    if (settle(p, FROM_BEFORE, step_newton)) {
+        return 1;
+    }
+    tribo_disc_interior(p);
+    return settle(p, FROM_INTERIOR, step_down);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ room */
+
+enum { VECTORS = 19 }; /* of doubles, press being two of them */
+
+/* Makes vectors of store [VECTORS s]. */
+static void lay_out(struct disc_qp *p, double *store, size_t s)
+{
+    double **const vector[] = {&p->pull,   &p->shift,    &p->y,      &p->gradient, &p->noise, &p->gain,  &p->to,      &p->outward,
+                               &p->curvature, &p->step,  &p->spare,  &p->best,     &p->from,  &p->aim,   &p->slide,   &p->factor.q,
+                               &p->factor.row, &p->press};
+    for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
+        *vector[k] = store + k * s;
+    }
+}
+
+int tribo_disc_create(struct disc_qp *p, size_t most)
+{
+    const size_t s = most + 1;
+    struct box_qp *f = &p->factor;
+    *p = (struct disc_qp){0};
+    double *store = calloc(VECTORS * s, sizeof *store);
+    lay_out(p, store, s);
+    p->wide = calloc(s, 1);
+    p->place = malloc(s);
+    p->s = calloc(s * s, sizeof *p->s);
+    p->matrix = malloc(s * s * sizeof *p->matrix);
+    p->freedom = malloc(s * sizeof *p->freedom);
+    f->near = malloc(s * sizeof *f->near);
+    f->order = malloc(s * sizeof *f->order);
+    f->at = malloc(s);
+    f->l = malloc(s * s * sizeof *f->l);
+    f->basis = malloc(s * s * sizeof *f->basis);
+    return store && p->wide && p->place && p->s && p->matrix && p->freedom && f->near && f->order && f->at && f->l && f->basis;
+}
+
+void tribo_disc_free(struct disc_qp *p)
+{
+    free(p->pull);
+    free(p->wide);
+    free(p->place);
+    free(p->s);
+    free(p->matrix);
+    free(p->freedom);
+    free(p->factor.near);
+    free(p->factor.order);
+    free(p->factor.at);
+    free(p->factor.l);
+    free(p->factor.basis);
+    *p = (struct disc_qp){0};
+}
+
+int tribo_disc_single(const double *s, const double *pull, const double *shift, double *y)
+{
+    enum { S = 3 };
+    double store[VECTORS * S] = {0.0}, own[S * S] = {s[0], s[1], s[2], s[3]}, matrix[S * S], l[S * S], basis[S * S];
+    unsigned char wide[S] = {2}, place[S];
+    signed char at[S];
+    size_t near[S], order[S];
+    struct freedom freedom[S];
+    struct disc_qp p = {.size = 2, .wide = wide, .place = place, .s = own, .matrix = matrix, .freedom = freedom};
+    p.factor = (struct box_qp){.near = near, .order = order, .at = at, .l = l, .basis = basis};
+    lay_out(&p, store, S);
+    for (size_t k = 0; k < 2; k++) {
+        p.pull[k] = pull[k];
+        p.shift[k] = shift[k];
+    }
+    const int done = tribo_disc_solve(&p);
+    y[0] = p.y[0];
+    y[1] = p.y[1];
+    return done;
+}

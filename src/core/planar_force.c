@@ -1,0 +1,462 @@
+/* Forces of planar contacts, and of the scalar ones that R couples them with.
+ *
+ * In units of its limits, y = f/limit, a planar contact slides with y = -n, n being the direction of limit v. Near stick
+ * y is in the lens D ∩ (D - c), D being the unit disc and c = 2 |v|/epsilon n, which is kappa in these units; and y minimizes
+ * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its longer
+ * way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where it slides.
+ *
+ * Force and R come in any units: S is divided by a power of 2, and weights are limits beside the largest of the cluster. */
+#include <float.h>
+
+#include "context.h"
+
+/* Lenses of contacts that are nearer to the edge of their band than that have no inside for rounding. */
+#define EDGE (1.0 - 16.0 * DBL_EPSILON)
+
+struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v)
+{
+    const double reach[2] = {product(c->bound[i], tribo_epsilon_of(c, i)), product(c->bound[i + 1], tribo_epsilon_of(c, i + 1))};
+    const size_t far = reach[1] > reach[0] ? i + 1 : i;
+    struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .epsilon = tribo_epsilon_of(c, far)};
+    for (size_t k = 0; k < 2 && !s.open; k++) {
+        s.part[k] = c->bound[i + k] == c->bound[far] ? 1.0 : quotient(c->bound[i + k], c->bound[far]);
+        s.x[k] = product(s.part[k], v[k]);
+    }
+    s.length = tribo_length(2, s.x);
+    for (size_t k = 0; k < 2 && s.length > 0.0; k++) {
+        s.n[k] = s.x[k] / s.length;
+    }
+    s.speed = quotient(s.length, s.epsilon);
+    return s;
+}
+
+int tribo_planar_near(const struct law *law, const struct slide *s)
+{
+    if (!law->uses_feq || s->open) {
+        return 0;
+    }
+    return !law->sticks_in_band ? s->length == 0.0 : law->relaxes ? s->speed < EDGE : s->speed <= 1.0;
+}
+
+/* Laws that read no f_eq are those of a scalar contact, along the direction of motion. */
+double tribo_planar_carried(const struct law *law, double speed, double *slope)
+{
+    const double one = 1.0, two = 2.0, none = 0.0;
+    const unsigned char moving = 0;
+    const struct contacts c = {&one, &one, &one, &two, &moving, 0, 0};
+    double f = -1.0;
+    struct tangent d = {0.0, 0.0, 0.0};
+    if (!law->uses_feq) {
+        law->force(&c, 1, &speed, &none, &f);
+        law->tangent(&c, 1, &speed, &none, &d);
+    }
+    *slope = d.dv;
+    return f;
+}
+
+/* f of a contact that is not near stick. */
+static void slide_force(const tribo_context *ctx, size_t i, const struct slide *s, double *f)
+{
+    double ignored;
+    const double carried = tribo_planar_carried(ctx->set.law, s->speed, &ignored);
+    for (size_t k = 0; k < 2; k++) {
+        f[k] = carried * s->n[k] * ctx->set.limit[i + k];
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- clusters */
+
+/* Takes a contact with so many directions from place k on into the problem. */
+static void take(tribo_context *ctx, size_t k, int directions)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    for (int d = 0; d < directions; d++) {
+        p->wide[p->size] = (unsigned char)(d ? 0 : directions);
+        ctx->plane.near[p->size++] = k + (size_t)d;
+    }
+}
+
+/* Takes scalar contact i at place k if it is near stick. */
+static void take_scalar(tribo_context *ctx, size_t k, size_t i, double v)
+{
+    const struct law *law = ctx->set.law;
+    struct disc_qp *p = &ctx->plane.problem;
+    const double epsilon = tribo_epsilon_of(&ctx->follow.contacts, i), speed = quotient(fabs(v), epsilon);
+    const int near = !law->sticks_in_band ? v == 0.0 : law->relaxes ? speed < EDGE : speed <= 1.0;
+    if (near && law->uses_feq && ctx->set.limit[i] > 0.0) {
+        p->shift[p->size] = law->relaxes ? 2.0 * quotient(v, epsilon) : 0.0;
+        take(ctx, k, 1);
+    } else if (law->uses_feq && ctx->last.did.of[i] == STORED) {
+        ctx->last.f[i] = sliding(v, ctx->set.limit[i]);
+    }
+}
+
+/* Takes the planar contact that begins with direction i if it is near stick, or finds its force. */
+static void take_planar(tribo_context *ctx, size_t k, size_t i, const double *v)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v);
+    if (!tribo_planar_near(ctx->set.law, &s)) {
+        slide_force(ctx, i, &s, ctx->last.f + i);
+        return;
+    }
+    for (size_t d = 0; d < 2; d++) {
+        p->shift[p->size + d] = ctx->set.law->relaxes ? 2.0 * s.speed * s.n[d] : 0.0;
+    }
+    take(ctx, k, 2);
+}
+
+int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member;
+    p->size = 0;
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = member[k];
+        if (ctx->planar->role[i] == ROLE_FIRST) {
+            take_planar(ctx, k, i, v + i);
+        } else if (ctx->planar->role[i] == ROLE_SCALAR) {
+            take_scalar(ctx, k, i, v[i]);
+        }
+    }
+    return p->size > 0;
+}
+
+/* What the forces that are given make of a, and a itself: of a cluster's place k. */
+static double pull_of(const tribo_context *ctx, const struct cluster *g, size_t k, double a)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    const double *row = ctx->planar->r + g->r + k * g->size;
+    double sum = cut(a);
+    for (size_t j = 0, e = 0; j < g->size; j++) {
+        if (e < ctx->plane.problem.size && ctx->plane.near[e] == j) {
+            e++;
+        } else if (row[j] != 0.0) {
+            const double bound = ctx->follow.contacts.bound[member[j]];
+            sum += row[j] * clamp(tribo_force_of(ctx, member[j]), -bound, bound);
+        }
+    }
+    return sum;
+}
+
+struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    struct unit u = {0.0, 0.0};
+    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
+        const size_t k = ctx->plane.near[e];
+        u.force = greater(u.force, ctx->follow.contacts.bound[member[k]]);
+        u.r = greater(u.r, ctx->planar->r[g->r + k * (g->size + 1)]);
+    }
+    return u;
+}
+
+/* Of what pulls harder than anything that friction could do about it, in units of that, only the direction matters. */
+#define HARDEST 1e100
+
+void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const struct unit u = tribo_planar_units(ctx, g);
+    const size_t n = p->size, *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    const double *bound = ctx->follow.contacts.bound;
+    for (size_t e = 0; e < n; e++) {
+        const double weight = bound[member[near[e]]] / u.force, *row = ctx->planar->r + g->r + near[e] * g->size;
+        for (size_t j = 0; j < n; j++) {
+            p->s[e * n + j] = weight * (bound[member[near[j]]] / u.force) * (row[near[j]] / u.r);
+        }
+        p->pull[e] = pull_of(ctx, g, near[e], a[member[near[e]]]);
+        p->y[e] = ctx->plane.y[member[near[e]]];
+    }
+    for (size_t e = 0; e < n; e += p->wide[e]) {
+        const double length = tribo_length(p->wide[e], p->pull + e);
+        const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
+        for (size_t k = e; k < e + p->wide[e]; k++) {
+            p->pull[k] = length > 0.0 ? bound[member[near[k]]] / u.force * (p->pull[k] / length) * size : 0.0;
+            for (size_t j = e; j < e + p->wide[e]; j++) {
+                p->pull[k] += p->s[k * n + j] * p->shift[j];
+            }
+        }
+    }
+}
+
+static int solve(tribo_context *ctx, const struct cluster *g)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    p->factor.work.factorizations = 0;
+    const int done = tribo_disc_solve(p);
+    ctx->plane.solved++;
+    ctx->count.solves++;
+    ctx->count.reused += p->factor.work.factorizations == 0;
+    ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
+    if (!done) {
+        return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
+                          "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing", p->size,
+                          member[near[0]], p->residual);
+    }
+    ctx->last.rank += p->sets.rank;
+    ctx->last.residual = greater(ctx->last.residual, p->residual);
+    for (size_t e = 0; e < p->size; e++) {
+        const size_t i = member[near[e]];
+        ctx->plane.y[i] = p->y[e];
+        ctx->last.f[i] = p->y[e] * ctx->follow.contacts.bound[i];
+    }
+    return TRIBO_OK;
+}
+
+/* Where planar contacts join islands there are fewer of them; and those that clusters solve for are not skipped. */
+static void count_skipped(tribo_context *ctx)
+{
+    ctx->count.skipped += ctx->planar->islands;
+    ctx->count.skipped -= ctx->op->islands + ctx->plane.solved;
+}
+
+/* The forces of planar contacts are stored, whatever they did. */
+static void store_planar(tribo_context *ctx)
+{
+    struct deeds *did = &ctx->last.did;
+    for (size_t k = 0; k < ctx->planar->count; k++) {
+        for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
+            unsigned char *stored = &did->stored[i / TRIBO_CHUNK];
+            did->of[i] = STORED;
+            *stored = *stored == NONE_STORED ? SOME_STORED : *stored;
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- f_eq */
+
+/* a + R f at place k of a cluster without the forces of the contact that begins at place from. */
+static double others(const tribo_context *ctx, const struct cluster *g, size_t k, size_t from, size_t directions, double a)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    const double *row = ctx->planar->r + g->r + k * g->size;
+    double sum = cut(a);
+    for (size_t j = 0; j < g->size; j++) {
+        const double bound = ctx->follow.contacts.bound[member[j]];
+        sum += j - from < directions ? 0.0 : row[j] * clamp(tribo_force_of(ctx, member[j]), -bound, bound);
+    }
+    return sum;
+}
+
+static double scalar_feq(const tribo_context *ctx, const struct cluster *g, size_t k, double a)
+{
+    return quotient(-others(ctx, g, k, k, 1, a), ctx->planar->r[g->r + k * (g->size + 1)]);
+}
+
+/* x = -R_d^-1 x. What friction cannot move, in a direction of its own or because the two are one, goes far away. */
+static void push(const double *own, double *x)
+{
+    const double mean = 0.5 * own[0] + 0.5 * own[2], half = 0.5 * own[0] - 0.5 * own[2];
+    const double turned[2] = {half, own[1]}, spread = tribo_length(2, turned);
+    const double great = mean + spread, small = greater(mean - spread, 0.0);
+    /* the direction of the greater eigenvalue */
+    const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half}, length = tribo_length(2, raw);
+    const double e[2] = {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0};
+    const double along = e[0] * x[0] + e[1] * x[1], across = e[0] * x[1] - e[1] * x[0];
+    const int lost = small <= 16.0 * DBL_EPSILON * great && fabs(across) <= 1e-12 * (fabs(x[0]) + fabs(x[1]));
+    const double first = quotient(-along, greater(great, TRIBO_IMMOVABLE));
+    const double second = lost ? 0.0 : quotient(-across, greater(small, TRIBO_IMMOVABLE));
+    x[0] = cut(e[0] * first - e[1] * second);
+    x[1] = cut(e[1] * first + e[0] * second);
+}
+
+static void planar_feq(const tribo_context *ctx, const struct cluster *g, size_t k, const double *a, double *feq)
+{
+    const double *r = ctx->planar->r + g->r + k * (g->size + 1), own[3] = {r[0], r[1], r[g->size + 1]};
+    feq[0] = others(ctx, g, k, k, 2, a[0]);
+    feq[1] = others(ctx, g, k + 1, k, 2, a[1]);
+    push(own, feq);
+}
+
+void tribo_planar_feq(tribo_context *ctx, const double *a)
+{
+    const struct planar *c = ctx->planar;
+    const double *limit = ctx->set.limit;
+    for (size_t q = 0; q < c->clusters; q++) {
+        const struct cluster *g = &c->cluster[q];
+        for (size_t k = 0; k < g->size; k++) {
+            const size_t i = c->member[g->member + k];
+            double *feq = ctx->last.feq + i;
+            if (c->role[i] == ROLE_SCALAR) {
+                *feq = limit[i] > 0.0 ? scalar_feq(ctx, g, k, a[i]) : 0.0;
+            } else if (c->role[i] == ROLE_FIRST && (limit[i] > 0.0 || limit[i + 1] > 0.0)) {
+                planar_feq(ctx, g, k, a + i, feq);
+            } else if (c->role[i] == ROLE_FIRST) {
+                feq[0] = feq[1] = 0.0;
+            }
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ calls */
+
+/* What the law says to the f_eq of a scalar contact. */
+static void scalar_laws(tribo_context *ctx, const struct cluster *g, const double *v, const double *a)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
+        const size_t i = member[ctx->plane.near[e]];
+        if (ctx->planar->role[i] == ROLE_SCALAR) {
+            const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+            ctx->last.feq[i] = scalar_feq(ctx, g, ctx->plane.near[e], a[i]);
+            ctx->set.law->force(&c, 1, v + i, ctx->last.feq + i, ctx->plane.v + i);
+        }
+    }
+    for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
+        const size_t i = member[ctx->plane.near[e]];
+        ctx->last.f[i] = ctx->planar->role[i] == ROLE_SCALAR ? ctx->plane.v[i] : ctx->last.f[i];
+    }
+}
+
+int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a)
+{
+    int status = TRIBO_OK;
+    store_planar(ctx);
+    ctx->plane.solved = 0;
+    for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
+        const struct cluster *g = &ctx->planar->cluster[k];
+        if (tribo_planar_collect(ctx, g, v)) {
+            tribo_planar_pose(ctx, g, a);
+            status = solve(ctx, g);
+            scalar_laws(ctx, g, v, a);
+        }
+    }
+    count_skipped(ctx);
+    return status;
+}
+
+/* All contacts of a cluster whose force is not known. */
+static int collect_free(tribo_context *ctx, const struct cluster *g, const signed char *known)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member;
+    const double *limit = ctx->set.limit;
+    p->size = 0;
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = member[k];
+        const int role = ctx->planar->role[i];
+        if (role == ROLE_FIRST && (limit[i] > 0.0 || limit[i + 1] > 0.0)) {
+            take(ctx, k, 2);
+        } else if (role == ROLE_SCALAR && limit[i] > 0.0 && !(known && known[i])) {
+            take(ctx, k, 1);
+        }
+    }
+    memset(p->shift, 0, p->size * sizeof *p->shift);
+    return p->size > 0;
+}
+
+int tribo_planar_step(tribo_context *ctx, double dt, const double *v, const signed char *known)
+{
+    int status = TRIBO_OK;
+    ctx->plane.solved = 0;
+    for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
+        const struct cluster *g = &ctx->planar->cluster[k];
+        const size_t *member = ctx->planar->member + g->member;
+        for (size_t j = 0; j < g->size; j++) {
+            ctx->plane.a[member[j]] = quotient(v[member[j]], dt);
+        }
+        if (collect_free(ctx, g, known)) {
+            tribo_planar_pose(ctx, g, ctx->plane.a);
+            status = solve(ctx, g);
+        }
+    }
+    count_skipped(ctx);
+    return status;
+}
+
+double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, size_t k, int own)
+{
+    return others(ctx, g, k, k, own ? 0 : 1, 0.0);
+}
+
+/* ------------------------------------------------------------------------------------------------ f_eq that is given */
+
+/* The point of the lens that is nearest to f_eq - kappa, as R_d measures it. */
+static int force_near(const tribo_context *ctx, size_t k, const struct slide *s, const double *feq, double *f)
+{
+    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * s->speed : 0.0;
+    const double *bound = ctx->follow.contacts.bound + ctx->planar->first[k], force = greater(bound[0], bound[1]);
+    const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
+    const double m[4] = {weight[0] * weight[0] * (own[0] / r), across, across, weight[1] * weight[1] * (own[2] / r)};
+    const double shift[2] = {turn * s->n[0], turn * s->n[1]};
+    double aim[2], pull[2], y[2];
+    for (int d = 0; d < 2; d++) {
+        aim[d] = bound[d] > 0.0 ? quotient(cut(feq[d]), bound[d]) : 0.0;
+    }
+    const double length = tribo_length(2, aim);
+    for (int d = 0; d < 2; d++) {
+        aim[d] = (length > HARDEST ? aim[d] / length * HARDEST : aim[d]) - shift[d];
+    }
+    for (int d = 0; d < 2; d++) {
+        pull[d] = -(m[2 * d] * aim[0] + m[2 * d + 1] * aim[1]);
+    }
+    const int done = tribo_disc_single(m, pull, shift, y);
+    f[0] = y[0] * bound[0];
+    f[1] = y[1] * bound[1];
+    return done;
+}
+
+int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq)
+{
+    for (size_t k = 0; k < ctx->planar->count; k++) {
+        const size_t i = ctx->planar->first[k];
+        const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v + i);
+        for (size_t j = i; tribo_planar_near(ctx->set.law, &s) && j < i + 2; j++) {
+            if (!isfinite(feq[j])) {
+                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
+{
+    for (size_t k = 0; k < ctx->planar->count; k++) {
+        const size_t i = ctx->planar->first[k];
+        const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v + i);
+        if (!tribo_planar_near(ctx->set.law, &s)) {
+            slide_force(ctx, i, &s, f + i);
+        } else if (!force_near(ctx, k, &s, feq + i, f + i)) {
+            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- queries */
+
+signed char tribo_planar_slip(const tribo_context *ctx, size_t k)
+{
+    const size_t i = ctx->planar->first[k];
+    const double *limit = ctx->set.limit + i, *f = ctx->last.f + i, rounding = 8.0 * DBL_EPSILON;
+    if (!(limit[0] > 0.0 || limit[1] > 0.0)) {
+        return OPEN;
+    }
+    const double y[2] = {limit[0] > 0.0 ? quotient(f[0], limit[0]) : 0.0, limit[1] > 0.0 ? quotient(f[1], limit[1]) : 0.0};
+    return tribo_length(2, y) >= ctx->last.holds * (1.0 - rounding) ? TRIBO_IN_PLANE : 0;
+}
+
+void tribo_planar_slips(const tribo_context *ctx, signed char *slip)
+{
+    for (size_t k = 0; k < ctx->planar->count; k++) {
+        slip[ctx->planar->first[k]] = slip[ctx->planar->first[k] + 1] = tribo_planar_slip(ctx, k);
+    }
+}
+
+double tribo_planar_rate(const tribo_context *ctx, size_t k)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const size_t i = ctx->planar->first[k];
+    const double *own = ctx->planar->own[k], none[2] = {0.0, 0.0};
+    const struct slide s = tribo_planar_slide(c, i, none);
+    const double far = s.part[0] == 1.0 ? c->bound[i] : c->bound[i + 1];
+    if (s.open) {
+        return 0.0;
+    }
+    const double a = s.part[0] * s.part[0] * own[0], b = s.part[0] * s.part[1] * own[1], d = s.part[1] * s.part[1] * own[2];
+    const double turned[2] = {0.5 * a - 0.5 * d, b};
+    return product(2.0 * quotient(far, s.epsilon), 0.5 * a + 0.5 * d + tribo_length(2, turned));
+}

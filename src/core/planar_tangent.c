@@ -1,0 +1,190 @@
+/* How the forces of a cluster follow velocities and accelerations: the contacts near stick stay in their places, and Newton's
+ * equations along what these leave them say how they stay balanced. */
+#include "context.h"
+
+void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a)
+{
+    tribo_copy(ctx->plane.v, v, ctx->n);
+    tribo_copy(ctx->plane.a, a, ctx->n);
+}
+
+/* The problem of a cluster as the last balance left it. */
+static void resume(tribo_context *ctx, const struct cluster *g)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    if (tribo_planar_collect(ctx, g, ctx->plane.v)) {
+        tribo_planar_pose(ctx, g, ctx->plane.a);
+        tribo_disc_gains(p);
+        tribo_disc_gradients(p);
+        tribo_disc_places(p);
+        tribo_disc_linearize(p);
+    }
+}
+
+/* df of a planar contact that is not near stick. */
+static void slide_product(const tribo_context *ctx, size_t i, const double *dv, double *df)
+{
+    const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, ctx->plane.v + i);
+    double slope;
+    const double carried = tribo_planar_carried(ctx->set.law, s.speed, &slope);
+    const double dx[2] = {product(s.part[0], dv[i]), product(s.part[1], dv[i + 1])};
+    const double along = s.n[0] * dx[0] + s.n[1] * dx[1];
+    for (size_t k = 0; k < 2; k++) {
+        const double turn = s.length > 0.0 ? carried * quotient(dx[k] - s.n[k] * along, s.length) : 0.0;
+        const double grow = slope * quotient(s.length > 0.0 ? s.n[k] * along : dx[k], s.epsilon);
+        df[i + k] = s.open ? 0.0 : product(ctx->set.limit[i + k], turn + grow);
+    }
+}
+
+/* df of all contacts of a cluster that are not near stick, and 0 of the others. */
+static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const double *dv, double *df)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = member[k];
+        if (ctx->planar->role[i] == ROLE_FIRST) {
+            slide_product(ctx, i, dv, df);
+        } else if (ctx->planar->role[i] == ROLE_SCALAR) {
+            df[i] = product(ctx->last.tangent[i].dv, dv[i]);
+        }
+    }
+    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
+        df[member[ctx->plane.near[e]]] = 0.0;
+    }
+}
+
+/* How the shift of direction e of the problem follows v. */
+static double shift_rate(const tribo_context *ctx, const size_t *member, size_t e)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const size_t i = member[ctx->plane.near[e]];
+    if (!ctx->set.law->relaxes) {
+        return 0.0;
+    }
+    if (ctx->planar->role[i] == ROLE_SCALAR) {
+        return 2.0 * quotient(1.0, tribo_epsilon_of(c, i));
+    }
+    const size_t second = ctx->planar->role[i] == ROLE_SECOND;
+    const struct slide s = tribo_planar_slide(c, i - second, ctx->plane.v + i - second);
+    return 2.0 * quotient(s.part[second], s.epsilon);
+}
+
+/* y of the contacts near stick goes with their shift; dshift [size]. */
+static void drag_all(const struct disc_qp *p, const double *dshift, double *dy)
+{
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        tribo_disc_drag(p, e, dshift + e, dy + e);
+    }
+}
+
+/* rhs [size] = the gradient that df, da and shifts leave to balance; dy: what shifts drag along. */
+static void find_rhs(const tribo_context *ctx, const struct cluster *g, const double *da, const double *df, const double *dshift,
+                     const double *dy, double *rhs)
+{
+    const struct disc_qp *p = &ctx->plane.problem;
+    const struct unit u = tribo_planar_units(ctx, g);
+    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near, n = p->size;
+    for (size_t e = 0; e < n; e++) {
+        const double *row = ctx->planar->r + g->r + near[e] * g->size;
+        double sum = cut(da[member[near[e]]]);
+        for (size_t j = 0; j < g->size; j++) {
+            sum += product(row[j], df[member[j]]);
+        }
+        rhs[e] = ctx->follow.contacts.bound[member[near[e]]] / u.force * quotient(quotient(cut(sum), u.r), u.force);
+        for (size_t j = 0; j < n; j++) {
+            rhs[e] += p->s[e * n + j] * dy[j];
+        }
+    }
+    for (size_t e = 0; e < n; e += p->wide[e]) {
+        for (size_t k = e; k < e + p->wide[e]; k++) {
+            for (size_t j = e; j < e + p->wide[e]; j++) {
+                rhs[k] += p->s[k * n + j] * dshift[j];
+            }
+        }
+    }
+}
+
+/* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit. before: the
+ * former, df: what becomes of them. */
+static void reverse(const tribo_context *ctx, const struct cluster *g, const double *dv, const double *da, const double *before,
+                    double *df)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
+        const size_t k = ctx->plane.near[e], i = member[k];
+        const double *row = ctx->planar->r + g->r + k * g->size;
+        const struct tangent *d = &ctx->last.tangent[i];
+        double sum = divisible(da[i], row[k]);
+        for (size_t j = 0; j < g->size; j++) {
+            sum += j == k ? 0.0 : row[j] * before[member[j]];
+        }
+        if (ctx->planar->role[i] == ROLE_SCALAR) {
+            df[i] = product(d->dv, dv[i]) - d->dfeq * quotient(sum, row[k]);
+        }
+    }
+}
+
+/* df of a cluster that was resumed. dv, da, df [n] */
+static void cluster_product(tribo_context *ctx, const struct cluster *g, const double *dv, const double *da, double *df)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
+    products_of_slips(ctx, g, dv, df);
+    for (size_t e = 0; e < p->size; e++) {
+        dshift[e] = product(shift_rate(ctx, member, e), dv[member[near[e]]]);
+    }
+    drag_all(p, dshift, dy);
+    find_rhs(ctx, g, da, df, dshift, dy, rhs);
+    if (p->size) {
+        tribo_disc_follow(p, rhs, move);
+    }
+    for (size_t e = 0; e < p->size; e++) {
+        df[member[near[e]]] = product(ctx->follow.contacts.bound[member[near[e]]], dy[e] + move[e]);
+    }
+    if (ctx->set.law->remembers) {
+        for (size_t k = 0; k < g->size; k++) {
+            ctx->plane.other[member[k]] = df[member[k]];
+        }
+        reverse(ctx, g, dv, da, ctx->plane.other, df);
+    }
+}
+
+static void write_column(const tribo_context *ctx, const struct cluster *g, size_t column, const double *df, double *out)
+{
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = ctx->planar->member[g->member + k];
+        out[i * ctx->n + column] = df[i];
+    }
+}
+
+void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da)
+{
+    double *unit = ctx->plane.unit, *zero = ctx->plane.zero, *df = ctx->plane.df;
+    for (size_t q = 0; q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        resume(ctx, g);
+        for (size_t k = 0; k < g->size; k++) {
+            const size_t i = ctx->planar->member[g->member + k];
+            unit[i] = 1.0;
+            if (df_dv) {
+                cluster_product(ctx, g, unit, zero, df);
+                write_column(ctx, g, i, df, df_dv);
+            }
+            if (df_da) {
+                cluster_product(ctx, g, zero, unit, df);
+                write_column(ctx, g, i, df, df_da);
+            }
+            unit[i] = 0.0;
+        }
+    }
+}
+
+void tribo_planar_product(tribo_context *ctx, const double *dv, const double *da, double *df)
+{
+    for (size_t q = 0; q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        resume(ctx, g);
+        cluster_product(ctx, g, dv ? dv : ctx->plane.zero, da ? da : ctx->plane.zero, df);
+    }
+}

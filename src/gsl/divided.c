@@ -1,0 +1,47 @@
+#include "divided.h"
+
+/* Closer to 0 series are taken, of so many terms. */
+#define CLOSE 0.5
+#define TERMS 18
+
+double complex tribo_exp_1(double complex z)
+{
+    if (cabs(z) >= CLOSE) {
+        return (cexp(z) - 1.0) / z;
+    }
+    double complex term = 1.0, sum = 1.0;
+    for (int k = 2; k < TERMS; k++) {
+        term *= z / k;
+        sum += term;
+    }
+    return sum;
+}
+
+/* exp[a, b], from the one of them that grows more: so nothing overflows that the result does not. */
+static double complex between(double complex a, double complex b)
+{
+    return creal(a) > creal(b) ? cexp(a) * tribo_exp_1(b - a) : cexp(b) * tribo_exp_1(a - b);
+}
+
+/* The sum of h_k(a, b)/(k + 2)!, h_k being that of all products of k factors a or b. */
+static double complex series(double complex a, double complex b)
+{
+    double complex products = 1.0, power = 1.0, sum = 0.0;
+    double factor = 0.5;
+    for (int k = 0; k < TERMS; k++) {
+        sum += factor * products;
+        factor /= k + 3;
+        power *= b;
+        products = a * products + power;
+    }
+    return sum;
+}
+
+double complex tribo_exp_2(double complex a, double complex b)
+{
+    if (cabs(a) < CLOSE && cabs(b) < CLOSE) {
+        return series(a, b);
+    }
+    const double complex far = cabs(a) < cabs(b) ? b : a, other = cabs(a) < cabs(b) ? a : b;
+    return (between(far, other) - tribo_exp_1(other)) / far;
+}

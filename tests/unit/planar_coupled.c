@@ -1,0 +1,378 @@
+/* Planar contacts that R couples with each other and with scalar ones: what makes their solution, in long double, and another
+ * method's. */
+#include <string.h>
+
+#include "problem.h"
+
+struct scene {
+    struct problem p;
+    size_t count, first[LARGEST];
+    int wide[LARGEST]; /* of the contact that begins with a direction: 1, 2, or 0 */
+};
+
+/* Some neighbours become planar contacts: discs, ellipses, and now and then a line. */
+static struct scene scene_create(struct random *g, const struct recipe *recipe)
+{
+    struct scene s = {.p = problem_create(g, recipe)};
+    for (size_t i = 0; i < s.p.n; i += (size_t)s.wide[i]) {
+        s.wide[i] = i + 1 < s.p.n && below(g, 3) > 0 ? 2 : 1;
+        if (s.wide[i] == 2) {
+            const size_t kind = below(g, 8);
+            s.first[s.count++] = i;
+            s.p.limit[i + 1] = kind < 5 ? s.p.limit[i] : kind < 7 ? s.p.limit[i] * uniform(g, 0.1, 1.0) : 0.0;
+            s.p.epsilon[i + 1] = s.p.epsilon[i];
+            s.p.v[i + 1] = s.p.v[i] == 0.0 ? 0.0 : s.p.epsilon[i] * uniform(g, -1.0, 1.0);
+        }
+    }
+    return s;
+}
+
+static tribo_context *scene_context(const struct scene *s, int law)
+{
+    tribo_context *c = problem_context(&s->p, law, TRIBO_CONSISTENT);
+    assert_ok(tribo_set_planar(c, s->count, s->first));
+    return c;
+}
+
+static long double norm(int wide, const long double *x)
+{
+    return wide == 2 ? hypotl(x[0], x[1]) : fabsl(x[0]);
+}
+
+/* c of the lens, kappa in parts of limits; relaxes 0: the disc. Where the contact slides: 1, and c is twice its direction. */
+static int shift_of(const struct scene *s, size_t i, int relaxes, long double *c)
+{
+    const double *b = s->p.limit + i, *v = s->p.v + i, e = s->p.epsilon[i];
+    const double far = s->wide[i] == 2 ? fmax(b[0], b[1]) : b[0];
+    for (int k = 0; k < s->wide[i]; k++) {
+        c[k] = far > 0.0 ? 2.0L * b[k] * v[k] / (far * e) : 0.0L;
+    }
+    const long double length = norm(s->wide[i], c);
+    const int slides = length >= 2.0L;
+    for (int k = 0; k < s->wide[i]; k++) {
+        c[k] *= slides ? 2.0L / length : relaxes ? 1.0L : 0.0L;
+    }
+    return slides;
+}
+
+/* Distance of z from y if y is in the lens, else infinity. */
+static long double distance(int wide, const long double *c, const long double *z, const long double *y)
+{
+    long double shifted[2], off[2];
+    for (int k = 0; k < wide; k++) {
+        shifted[k] = y[k] + c[k];
+        off[k] = y[k] - z[k];
+    }
+    return norm(wide, y) <= 1.0L + 1e-17L && norm(wide, shifted) <= 1.0L + 1e-17L ? norm(wide, off) : HUGE_VALL;
+}
+
+/* y = the point of the lens that is nearest to z: the best of all that may be. */
+static void project(int wide, const long double *c, const long double *z, long double *y)
+{
+    const long double length = norm(wide, c), w[2] = {z[0] + c[0], wide == 2 ? z[1] + c[1] : 0.0L};
+    const long double from = norm(wide, z), beyond = norm(wide, w);
+    const long double height = sqrtl(fmaxl((1.0L - 0.5L * length) * (1.0L + 0.5L * length), 0.0L)), per = length > 0.0L ? height / length : 0.0L;
+    const long double x = wide == 2 ? c[0] : 0.0L, t = wide == 2 ? c[1] : 0.0L;
+    const long double candidates[5][2] = {{z[0], z[1]},
+                                          {z[0] / from, z[1] / from},
+                                          {w[0] / beyond - c[0], wide == 2 ? w[1] / beyond - c[1] : 0.0L},
+                                          {-0.5L * c[0] - per * t, -0.5L * t + per * x},
+                                          {-0.5L * c[0] + per * t, -0.5L * t - per * x}};
+    long double best = HUGE_VALL;
+    for (size_t k = 0; k < COUNT(candidates); k++) {
+        const long double d = distance(wide, c, z, candidates[k]);
+        if (d < best) {
+            best = d;
+            memcpy(y, candidates[k], sizeof candidates[k]);
+        }
+    }
+    if (best == HUGE_VALL) { /* a corner, up to rounding */
+        const long double side = -z[0] * t + z[1] * x > 0.0L ? 3 : 4;
+        memcpy(y, candidates[(int)side], sizeof candidates[0]);
+    }
+}
+
+/* The largest eigenvalue of a contact's own block in parts of limits. */
+static long double stiffness(const struct scene *s, size_t i)
+{
+    const double *b = s->p.limit + i;
+    const size_t n = s->p.n;
+    const long double a = (long double)b[0] * b[0] * s->p.r[i * n + i];
+    if (s->wide[i] == 1) {
+        return a;
+    }
+    const long double d = (long double)b[1] * b[1] * s->p.r[(i + 1) * n + i + 1], m = (long double)b[0] * b[1] * s->p.r[i * n + i + 1];
+    return 0.5L * (a + d) + hypotl(0.5L * (a - d), m);
+}
+
+/* Where one step of the projection takes the contact at i, in parts of limits, from forces f; *noise: what rounding of f's sums may
+ * make of it. A contact that slides: where it is. */
+static void fixed_point(const struct scene *s, size_t i, int relaxes, const double *f, long double *y, double *noise)
+{
+    const struct problem *p = &s->p;
+    const long double stiff = stiffness(s, i);
+    long double c[2] = {0.0L, 0.0L}, z[2] = {0.0L, 0.0L};
+    *noise = 0.0;
+    if (shift_of(s, i, relaxes, c)) {
+        y[0] = -0.5L * c[0];
+        y[1] = -0.5L * c[1];
+        return;
+    }
+    for (int k = 0; k < s->wide[i]; k++) {
+        const size_t row = i + (size_t)k;
+        long double pull = acceleration(p, row, f);
+        double size = fabs(p->a[row]);
+        for (int j = 0; j < s->wide[i]; j++) {
+            pull += (long double)p->r[row * p->n + i + (size_t)j] * c[j] * p->limit[i + (size_t)j];
+        }
+        for (size_t j = 0; j < p->n; j++) {
+            size += fabs(p->r[row * p->n + j] * f[j]);
+        }
+        z[k] = (p->limit[row] > 0.0 ? f[row] / (long double)p->limit[row] : 0.0L) - pull * p->limit[row] / stiff;
+        *noise += (double)((double)(p->n + 4) * DBL_EPSILON * size * p->limit[row] / stiff);
+    }
+    project(s->wide[i], c, z, y);
+}
+
+static void check_fixed_point(const struct scene *s, int relaxes, const double *f)
+{
+    for (size_t i = 0; i < s->p.n; i += (size_t)s->wide[i]) {
+        long double y[2] = {0.0L, 0.0L};
+        double noise = 0.0;
+        const int open = !(stiffness(s, i) > 0.0L);
+        if (!open) {
+            fixed_point(s, i, relaxes, f, y, &noise);
+        }
+        for (int k = 0; k < s->wide[i]; k++) {
+            const double limit = s->p.limit[i + (size_t)k];
+            assert_close(f[i + (size_t)k], (double)(open ? 0.0L : y[k] * limit), (1e-12 + 4.0 * noise) * limit);
+        }
+    }
+}
+
+/* Sweeps of the projection, a contact after the other, until they move nothing; returns whether they came to that. */
+static int gauss_seidel(const struct scene *s, int relaxes, double *f)
+{
+    double moved = 1.0;
+    for (int sweep = 0; sweep < 4000 && moved > 1e-15; sweep++) {
+        moved = 0.0;
+        for (size_t i = 0; i < s->p.n; i += (size_t)s->wide[i]) {
+            long double y[2] = {0.0L, 0.0L};
+            double noise;
+            if (stiffness(s, i) > 0.0L) {
+                fixed_point(s, i, relaxes, f, y, &noise);
+            }
+            for (int k = 0; k < s->wide[i]; k++) {
+                const size_t row = i + (size_t)k;
+                const double to = (double)(y[k] * s->p.limit[row]);
+                moved = fmax(moved, s->p.limit[row] > 0.0 ? fabs(to - f[row]) / s->p.limit[row] : 0.0);
+                f[row] = to;
+            }
+        }
+    }
+    return moved <= 1e-15;
+}
+
+/* 1/2 f'Rf + (a + R_d kappa)'f */
+static long double objective(const struct scene *s, int relaxes, const double *f, long double *size)
+{
+    long double sum = 0.0L;
+    *size = 0.0L;
+    for (size_t i = 0; i < s->p.n; i += (size_t)s->wide[i]) {
+        long double c[2] = {0.0L, 0.0L};
+        shift_of(s, i, relaxes, c);
+        for (int k = 0; k < s->wide[i]; k++) {
+            const size_t row = i + (size_t)k;
+            long double pull = 0.5L * (acceleration(&s->p, row, f) + s->p.a[row]);
+            for (int j = 0; j < s->wide[i]; j++) {
+                pull += (long double)s->p.r[row * s->p.n + i + (size_t)j] * c[j] * s->p.limit[i + (size_t)j];
+            }
+            sum += pull * f[row];
+            *size += fabsl(pull * f[row]);
+        }
+    }
+    return sum;
+}
+
+/* The fixed point is met, no other method finds a lower objective, and where that one has come to an end R f is the same. */
+static void check_solution(const struct scene *s, int relaxes, const double *f, size_t *ended)
+{
+    double other[LARGEST] = {0.0};
+    long double size, ignored;
+    check_fixed_point(s, relaxes, f);
+    const int done = gauss_seidel(s, relaxes, other);
+    const long double mine = objective(s, relaxes, f, &size), theirs = objective(s, relaxes, other, &ignored);
+    require(mine <= theirs + 1e-13L * size, "objective %Lg, and %Lg can be", mine, theirs);
+    for (size_t i = 0; done && i < s->p.n; i++) {
+        const double scale = balancing_noise(&s->p, i, f) / ((double)(s->p.n + 4) * DBL_EPSILON) * s->p.r[i * s->p.n + i];
+        assert_close((double)acceleration(&s->p, i, f), (double)acceleration(&s->p, i, other), 1e-7 * scale);
+    }
+    *ended += (size_t)done;
+}
+
+/* Of every rank, discs, ellipses, lines, lenses and intervals; _i: decades of masses, arms and limits, so that masses differ by up to
+ * 1e8. */
+TEST(random_problems)
+{
+    struct random g = random_of(_i);
+    size_t solved = 0, ended = 0;
+    const int laws[] = {TRIBO_QUINN, TRIBO_COULOMB, TRIBO_KARNOPP};
+    for (int k = 0; k < 200; k++) {
+        const struct recipe recipe = recipe_random(&g, 12, (double)_i);
+        const struct scene s = scene_create(&g, &recipe);
+        const int law = laws[k % 4 == 3 ? 2 : 0];
+        double f[LARGEST];
+        tribo_context *c = scene_context(&s, law);
+        assert_ok(tribo_balance(c, s.p.v, s.p.a, NULL, f));
+        require(real_of(c, TRIBO_REAL_RESIDUAL) < 1e-12 || _i > 0, "residual %g", real_of(c, TRIBO_REAL_RESIDUAL));
+        check_solution(&s, law == TRIBO_QUINN, f, &ended);
+        solved += count_of(c, TRIBO_COUNT_SOLVES);
+        tribo_destroy(c);
+    }
+    require(solved > 100 && ended > 20, "%zu problems, and %zu with two methods", solved, ended);
+}
+
+/* The step form is the problem at rest with a = vfree/dt. */
+TEST(steps)
+{
+    struct random g = random_of(_i);
+    size_t ended = 0;
+    for (int k = 0; k < 50; k++) {
+        const struct recipe recipe = recipe_random(&g, 12, (double)_i);
+        struct scene s = scene_create(&g, &recipe);
+        double f[LARGEST], vfree[LARGEST];
+        tribo_context *c = scene_context(&s, TRIBO_QUINN);
+        for (size_t i = 0; i < s.p.n; i++) {
+            vfree[i] = 0.01 * s.p.a[i];
+            s.p.a[i] = vfree[i] / 0.01;
+            s.p.v[i] = 0.0;
+        }
+        assert_ok(tribo_step_force(c, 0.01, vfree, f));
+        check_solution(&s, 0, f, &ended);
+        tribo_destroy(c);
+    }
+}
+
+/* Other tangential directions, the same forces: each planar contact's are turned by an angle of its own. */
+TEST(turned)
+{
+    struct random g = random_of(_i);
+    for (int k = 0; k < 50; k++) {
+        const struct recipe recipe = recipe_regular(&g, 12);
+        struct scene s = scene_create(&g, &recipe), t;
+        const size_t n = s.p.n;
+        double turn[LARGEST * LARGEST] = {0.0}, f[LARGEST], got[LARGEST];
+        for (size_t i = 0; i < n; i += (size_t)s.wide[i]) {
+            const double angle = s.wide[i] == 2 ? uniform(&g, -PI, PI) : 0.0;
+            turn[i * n + i] = cos(angle);
+            if (s.wide[i] == 2) {
+                s.p.limit[i + 1] = s.p.limit[i];
+                turn[i * n + i + 1] = -sin(angle);
+                turn[(i + 1) * n + i] = sin(angle);
+                turn[(i + 1) * n + i + 1] = cos(angle);
+            }
+        }
+        t = s;
+        for (size_t i = 0; i < n; i++) {
+            t.p.v[i] = t.p.a[i] = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                t.p.v[i] += turn[i * n + j] * s.p.v[j];
+                t.p.a[i] += turn[i * n + j] * s.p.a[j];
+                t.p.r[i * n + j] = 0.0;
+                for (size_t l = 0; l < n * n; l++) {
+                    t.p.r[i * n + j] += turn[i * n + l / n] * s.p.r[l] * turn[j * n + l % n];
+                }
+            }
+        }
+        tribo_context *c = scene_context(&s, TRIBO_QUINN), *d = scene_context(&t, TRIBO_QUINN);
+        if (k % 2) {
+            assert_ok(tribo_set_epsilon_step(c, 0.1, 1.0));
+            assert_ok(tribo_set_epsilon_step(d, 0.1, 1.0));
+            assert_close(real_of(d, TRIBO_REAL_MAX_RATE), real_of(c, TRIBO_REAL_MAX_RATE), 1e-12);
+            assert_close(real_of(c, TRIBO_REAL_MAX_RATE), 10.0, 1e-13);
+        }
+        assert_ok(tribo_balance(c, s.p.v, s.p.a, NULL, f));
+        assert_ok(tribo_balance(d, t.p.v, t.p.a, NULL, got));
+        for (size_t i = 0; i < n; i++) {
+            double want = 0.0;
+            for (size_t j = 0; j < n; j++) {
+                want += turn[i * n + j] * f[j];
+            }
+            assert_close(got[i], want, 2e-10);
+        }
+        tribo_destroy(c);
+        tribo_destroy(d);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ derivatives */
+
+#define STEP 1e-7
+
+static void forces_at(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
+{
+    double v[LARGEST], a[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        v[i] = p->v[i] + step * dv[i];
+        a[i] = p->a[i] + step * da[i];
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+}
+
+/* Differences along (dv, da) where there is no kink; returns how many could be compared. */
+static size_t check_direction(tribo_context *c, const struct problem *p, const double *by_v, const double *by_a, const double *dv,
+                              const double *da)
+{
+    double f[LARGEST], before[LARGEST], after[LARGEST];
+    size_t smooth = 0;
+    forces_at(c, p, 0.0, dv, da, f);
+    forces_at(c, p, -STEP, dv, da, before);
+    forces_at(c, p, STEP, dv, da, after);
+    for (size_t i = 0; i < p->n; i++) {
+        const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP;
+        double want = 0.0, size = 1.0;
+        for (size_t j = 0; j < p->n; j++) {
+            want += by_v[i * p->n + j] * dv[j] + by_a[i * p->n + j] * da[j];
+            size += fabs(by_v[i * p->n + j] * dv[j]) + fabs(by_a[i * p->n + j] * da[j]);
+        }
+        if (fabs(forward - backward) < 1e-4 * size) {
+            assert_close(want, 0.5 * (forward + backward), 2e-5 * size);
+            smooth++;
+        }
+    }
+    return smooth;
+}
+
+TEST(tangents)
+{
+    struct random g = random_of(_i);
+    size_t smooth = 0, all = 0;
+    for (int k = 0; k < 60; k++) {
+        const struct recipe recipe = recipe_regular(&g, 10);
+        const struct scene s = scene_create(&g, &recipe);
+        const size_t n = s.p.n;
+        double by_v[LARGEST * LARGEST], by_a[LARGEST * LARGEST], dv[LARGEST], da[LARGEST], df[LARGEST], f[LARGEST];
+        tribo_context *c = scene_context(&s, k % tribo_law_count());
+        for (size_t i = 0; i < n; i++) {
+            const int jumps = k % tribo_law_count() == TRIBO_COULOMB;
+            dv[i] = jumps ? 0.0 : uniform(&g, -1.0, 1.0);
+            da[i] = uniform(&g, -1.0, 1.0);
+        }
+        assert_ok(tribo_balance_tangent(c, s.p.v, s.p.a, NULL, f, by_v, by_a));
+        assert_ok(tribo_tangent_product(c, dv, da, df));
+        for (size_t i = 0; i < n; i++) {
+            double want = 0.0, size = 1.0;
+            for (size_t j = 0; j < n; j++) {
+                want += by_v[i * n + j] * dv[j] + by_a[i * n + j] * da[j];
+                size += fabs(by_v[i * n + j] * dv[j]) + fabs(by_a[i * n + j] * da[j]);
+            }
+            assert_close(df[i], want, 1e-12 * size);
+        }
+        smooth += check_direction(c, &s.p, by_v, by_a, dv, da);
+        all += n;
+        tribo_destroy(c);
+    }
+    require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
+}
+
+TEST_MAIN("planar_coupled", {random_problems, 5}, {steps, 5}, {turned, 3}, {tangents, 3})
