@@ -37,6 +37,13 @@ int tribo_fortran_linear(tribo_system **sys, const struct tribo_rows *mass, cons
     return tribo_system_linear_sparse(sys, &m, damping ? &c : NULL, &k, &j, nmode, message, size);
 }
 
+int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *stiffness,
+                          const struct tribo_rows *direction, size_t nmode, int static_contacts, char *message, size_t size)
+{
+    const gsl_spmatrix m = borrow(mass), k = borrow(stiffness), j = borrow(direction);
+    return tribo_system_reduced(sys, &m, &k, &j, nmode, static_contacts, message, size);
+}
+
 /* GSL's status tells less than what the same state gets from tribo. */
 static int status_of(tribo_system *sys, double t, const double *y, int gsl_status)
 {

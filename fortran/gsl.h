@@ -28,6 +28,11 @@ TRIBO_API int tribo_fortran_linear(tribo_system **sys, const struct tribo_rows *
                                    const struct tribo_rows *stiffness, const struct tribo_rows *direction, size_t nmode,
                                    char *message, size_t size);
 
+/* tribo_system_reduced. */
+TRIBO_API int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *stiffness,
+                                    const struct tribo_rows *direction, size_t nmode, int static_contacts, char *message,
+                                    size_t size);
+
 /* The right-hand side of tribo_system_odeiv2 and its Jacobian, with a status of tribo's. */
 TRIBO_API int tribo_fortran_derivative(tribo_system *sys, double t, const double *y, double *dydt);
 TRIBO_API int tribo_fortran_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt);

@@ -50,10 +50,11 @@ module tribo_systems
     procedure :: clone => clone_system
     procedure, private :: linear_dense, linear_sparse
     generic :: linear => linear_dense, linear_sparse
+    procedure :: reduced
     procedure :: add_load, add_base_motion, add_load_table, add_limit
     procedure :: clear_loads
     procedure :: set_limit_table, set_damping_ratio
-    procedure :: get_frequencies, expand
+    procedure :: get_frequencies, expand, get_truncation
     procedure :: ndof, ncontact, dimension
     procedure :: context
     procedure :: derivative, jacobian
@@ -71,6 +72,9 @@ module tribo_systems
     procedure, private :: count_short, count_long
     generic :: count => count_short, count_long
     procedure :: real => driver_real
+    procedure :: find_periodic
+    procedure :: get_multipliers
+    procedure :: period_extremes, period_harmonic, period_dissipation, period_stick
     procedure :: set_observer
     procedure :: set_max_step
     procedure :: message => driver_message
@@ -348,6 +352,39 @@ contains
     call finish(w, stat, errmsg)
   end subroutine linear_sparse
 
+  !> A structure reduced to its lowest nmode modes and, unless static_contacts is .false., to what steady forces at its contacts do
+  !> beside them. A load's static response is had from a row of direction that is the load, as a contact whose limit stays 0.
+  subroutine reduced(this, mass, stiffness, direction, nmode, static_contacts, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    type(tribo_sparse), intent(in), target :: mass, stiffness, direction
+    integer, intent(in) :: nmode
+    logical, intent(in), optional :: static_contacts
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(rows_of), target :: rows(3)
+    type(c_ptr) :: sys
+    integer(c_int) :: statics
+    character(kind=c_char) :: message(240)
+
+    w%status = TRIBO_OK
+    call expect_given(w, 'mass', mass)
+    call expect_count(w, 'nmode', nmode)
+    call expect_given(w, 'stiffness', stiffness)
+    call expect_given(w, 'direction', direction)
+    statics = 1
+    if (present(static_contacts)) statics = merge(1_c_int, 0_c_int, static_contacts)
+    if (w%status == TRIBO_OK) then
+      message = c_null_char
+      rows = [borrowed(mass), borrowed(stiffness), borrowed(direction)]
+      w%status = c_fortran_reduced(sys, c_loc(rows(1)), c_loc(rows(2)), c_loc(rows(3)), modes(nmode), statics, message, &
+        size(message, kind=c_size_t))
+      call note(w, message)
+    end if
+    call adopt_system(this, w, sys, mass%rows)
+    call finish(w, stat, errmsg)
+  end subroutine reduced
+
   !> Adds a harmonic to the load, p(t) = ... + cosine*cos(omega*t) + sine*sin(omega*t); forces on the degrees of freedom of the
   !> matrices given, also for a reduced system.
   subroutine add_load(this, omega, cosine, sine, stat, errmsg)
@@ -484,6 +521,24 @@ contains
     if (w%status == TRIBO_OK) w%status = c_system_expand(w%object, reduced, full)
     call finish(w, stat, errmsg)
   end subroutine expand
+
+  !> Reduced systems: a bound on what forces at the contacts, up to the frequency omega, are short of by what was left out, in
+  !> terms of the work that they do on the whole elastic structure.
+  subroutine get_truncation(this, omega, error, stat, errmsg)
+    class(tribo_system), intent(in) :: this
+    real(dp), intent(in) :: omega
+    real(dp), intent(inout) :: error
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: found(1)
+
+    call find_system(this, w)
+    found = error
+    if (w%status == TRIBO_OK) w%status = c_system_get_truncation(w%object, omega, found)
+    error = found(1)
+    call finish(w, stat, errmsg)
+  end subroutine get_truncation
 
   !> Sizes; 0 for a system that has not been created. dimension is 2*ndof + 1. Arrays may be declared with them.
   pure integer function ndof(this)
@@ -692,7 +747,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine advance
 
-  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, since creation.
+  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, _PERIODS, _NEWTON, since creation, and
+  !> TRIBO_COUNT_FREEDOM, of the last periodic motion found.
   subroutine count_long(this, which, value, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     integer, intent(in) :: which
@@ -766,6 +822,124 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine driver_real
+
+  !> A motion that comes back after a period, from a guess y; see tribo_driver_find_periodic.
+  subroutine find_periodic(this, t, period, y, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: t, period
+    real(dp), intent(inout) :: y(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 'y', y, w%dimension)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_find_periodic(w%object, t, period, y)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine find_periodic
+
+  !> Floquet multipliers of the last periodic motion found, re(2*ndof) and im(2*ndof), the largest first.
+  subroutine get_multipliers(this, re, im, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(inout) :: re(:), im(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 're', re, w%dimension - 1)
+    call expect_size(w, 'im', im, w%dimension - 1)
+    if (w%status == TRIBO_OK) then
+      if (c_driver_get_multipliers(w%object, re, im) /= TRIBO_OK) &
+        call fail(w, TRIBO_ERR_STATE, 'no periodic motion was found: call find_periodic first')
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine get_multipliers
+
+  !> The extremes over that period of c(1:ndof)*q + c(ndof+1:2*ndof)*q'.
+  subroutine period_extremes(this, c, least, most, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(in) :: c(:)
+    real(dp), intent(inout) :: least, most
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: low(1), high(1)
+
+    call find_driver(this, w)
+    call expect_size(w, 'c', c, w%dimension - 1)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_extremes(w%object, c, low, high)
+      call keep_message(w)
+    end if
+    if (w%status == TRIBO_OK) then
+      least = low(1)
+      most = high(1)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_extremes
+
+  !> Its harmonic k >= 0, cosine*cos(k*2*pi*t/period) + sine*sin(k*2*pi*t/period).
+  subroutine period_harmonic(this, c, k, cosine, sine, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(in) :: c(:)
+    integer, intent(in) :: k
+    real(dp), intent(inout) :: cosine, sine
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    real(dp) :: re(1), im(1)
+
+    call find_driver(this, w)
+    call expect_size(w, 'c', c, w%dimension - 1)
+    if (w%status == TRIBO_OK .and. k < 0) call fail(w, TRIBO_ERR_NEGATIVE, 'k is negative')
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_harmonic(w%object, c, int(k, c_size_t), re, im)
+      call keep_message(w)
+    end if
+    if (w%status == TRIBO_OK) then
+      cosine = re(1)
+      sine = im(1)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_harmonic
+
+  !> What each contact dissipates in that period, energy(ncontact).
+  subroutine period_dissipation(this, energy, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(inout) :: energy(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 'energy', energy, w%n)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_dissipation(w%object, energy)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_dissipation
+
+  !> The share of it for which each contact is at rest, share(ncontact).
+  subroutine period_stick(this, share, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(inout) :: share(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    call expect_size(w, 'share', share, w%n)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_period_stick(w%object, share)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine period_stick
 
   !> Has observer%seen called from now on, see tribo_observer; without observer, nothing. The observer must have the attribute
   !> target (or be a pointer) where it is declared, and live as long as it may be called.

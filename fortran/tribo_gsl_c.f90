@@ -15,6 +15,12 @@ module tribo_gsl_constants
   integer, parameter, public :: TRIBO_COUNT_JACOBIANS = 103
   !> events located
   integer, parameter, public :: TRIBO_COUNT_EVENTS = 104
+  !> periods that tribo_driver_find_periodic integrated, of each search rounded up
+  integer, parameter, public :: TRIBO_COUNT_PERIODS = 105
+  !> steps of Newton's method that it took
+  integer, parameter, public :: TRIBO_COUNT_NEWTON = 106
+  !> no count: the dimension of the family that the last periodic motion found belongs to
+  integer, parameter, public :: TRIBO_COUNT_FREEDOM = 107
 
   !> the largest force of a contact at rest beyond its limit
   integer, parameter, public :: TRIBO_REAL_EXCESS = 100
@@ -88,6 +94,20 @@ module tribo_gsl_c
       integer(c_size_t), value :: size
       integer(c_int) :: answer
     end function c_system_linear_sparse
+
+    function c_system_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
+      bind(c,name='tribo_system_reduced')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_system_reduced
 
     subroutine c_system_destroy(sys) bind(c,name='tribo_system_destroy')
       import
@@ -176,6 +196,14 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_expand
 
+    function c_system_get_truncation(sys, omega, error) result(answer) bind(c,name='tribo_system_get_truncation')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: omega
+      real(c_double), intent(inout), optional :: error(*)
+      integer(c_int) :: answer
+    end function c_system_get_truncation
+
     function c_system_ndof(sys) result(answer) bind(c,name='tribo_system_ndof')
       import
       type(c_ptr), value :: sys
@@ -262,6 +290,56 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_driver_advance
 
+    function c_driver_find_periodic(drv, t, period, y) result(answer) bind(c,name='tribo_driver_find_periodic')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: t
+      real(c_double), value :: period
+      real(c_double), intent(inout), optional :: y(*)
+      integer(c_int) :: answer
+    end function c_driver_find_periodic
+
+    function c_driver_get_multipliers(drv, re, im) result(answer) bind(c,name='tribo_driver_get_multipliers')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: re(*)
+      real(c_double), intent(inout), optional :: im(*)
+      integer(c_int) :: answer
+    end function c_driver_get_multipliers
+
+    function c_driver_period_extremes(drv, c, least, most) result(answer) bind(c,name='tribo_driver_period_extremes')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(in), optional :: c(*)
+      real(c_double), intent(inout), optional :: least(*)
+      real(c_double), intent(inout), optional :: most(*)
+      integer(c_int) :: answer
+    end function c_driver_period_extremes
+
+    function c_driver_period_harmonic(drv, c, k, cosine, sine) result(answer) bind(c,name='tribo_driver_period_harmonic')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_size_t), value :: k
+      real(c_double), intent(inout), optional :: cosine(*)
+      real(c_double), intent(inout), optional :: sine(*)
+      integer(c_int) :: answer
+    end function c_driver_period_harmonic
+
+    function c_driver_period_dissipation(drv, energy) result(answer) bind(c,name='tribo_driver_period_dissipation')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: energy(*)
+      integer(c_int) :: answer
+    end function c_driver_period_dissipation
+
+    function c_driver_period_stick(drv, share) result(answer) bind(c,name='tribo_driver_period_stick')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(inout), optional :: share(*)
+      integer(c_int) :: answer
+    end function c_driver_period_stick
+
     function c_driver_count(drv, which, value) result(answer) bind(c,name='tribo_driver_count')
       import
       type(c_ptr), value :: drv
@@ -329,6 +407,20 @@ module tribo_gsl_c
       integer(c_size_t), value :: size
       integer(c_int) :: answer
     end function c_fortran_linear
+
+    function c_fortran_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
+      bind(c,name='tribo_fortran_reduced')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_fortran_reduced
 
     function c_fortran_derivative(sys, t, y, dydt) result(answer) bind(c,name='tribo_fortran_derivative')
       import

@@ -246,18 +246,18 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
 /* Planar contacts: directions first[k] and first[k] + 1, 0 <= k < count, are the two tangential ones of one contact, and friction
  * is one force in their plane. All other contacts stay scalar, and R couples them as before; all arrays keep one entry for each
  * direction. count 0: there are none. (A "contact" is a direction wherever n is their number.)
- *   limit     the semi-axes of the ellipse that holds f; equal: a disc. Both 0: open. One 0: the other direction is a scalar contact.
+ *   limit     the semi-axes of the ellipse that holds f; equal: a disc. Both 0: open. One 0: a scalar contact along the other
  *   sliding   f = -limit^2 v/|limit v|, by direction, which is -limit v/|v| for a disc: the most that friction can dissipate
  *   epsilon   the contact slides where |limit v| >= the larger limit epsilon of its two directions. After tribo_set_epsilon_step
  *             both have the epsilon that the largest eigenvalue of their own 2x2 block of R asks for in the place of R_ii
- *   laws      those of one direction, along the direction of motion; QUINN and QUINN_REVERSAL (which remembers nothing of
+ *   laws      those of one direction, along the direction of motion. QUINN and QUINN_REVERSAL (which remembers nothing of
  *             planar contacts) take the f that minimizes 1/2 f'Rf + (a + R_d kappa)'f, R_d being the blocks on the diagonal and
- *             kappa = (2 limit/epsilon) v, over the lens: f and f + kappa are both within the limits. On a line that is the scalar
- *             law; the choice of tangential directions does not matter; and where R_d is not the same in all directions, as
- *             where limits are not, it is Coulomb's law at v = 0 all the same.
- *   sharing   of redundant contacts in a group with planar ones R f is unique, and f one of the solutions, near that of the last call
- * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R is
- * kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
+ *             kappa = (2 limit/epsilon) v, over the lens: f and f + kappa are both within the limits. On a line that is the
+ *             scalar law; which tangential directions are taken does not matter; and at v = 0 it is Coulomb's law, also where
+ *             R_d or limits differ by direction.
+ *   sharing   of redundant contacts in a group with planar ones R f is unique, and f one of the solutions, near the last one
+ * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
+ * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
  * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_DUPLICATE (a direction of two contacts),
  * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling, and not beside static limits, tribo_set_static), TRIBO_ERR_MEMORY; on
  * error all stays as it was. */
@@ -326,8 +326,8 @@ TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
 TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 
 /* The same with derivatives. f, df_dv, df_dfeq, df_dlimit [n] out, each or NULL. Where epsilon follows the limit
- * (tribo_set_epsilon_step), df_dlimit takes that into account. Derivatives are those of scalar contacts: TRIBO_ERR_UNSUPPORTED if one
- * is planar. */
+ * (tribo_set_epsilon_step), df_dlimit takes that into account. Derivatives are those of scalar contacts: TRIBO_ERR_UNSUPPORTED
+ * if one is planar. */
 TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
                                   double *df_dfeq, double *df_dlimit);
 
@@ -346,7 +346,8 @@ TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
  * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink. Of redundant contacts only R times
  * it is unique: it is then the least in norm (with planar contacts: in parts of limits). Where the band of a planar contact ends
- * they grow beyond all bounds from inside, like 1/sqrt(1 - |v|/epsilon); there and outside they are those of sliding. On TRIBO_ERR_INCONSISTENT they are not written. */
+ * they grow beyond all bounds from inside, like 1/sqrt(1 - |v|/epsilon); there and outside they are those of sliding. On
+ * TRIBO_ERR_INCONSISTENT they are not written. */
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
 
@@ -369,10 +370,10 @@ TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const 
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
 
 /* The same to second order also where sliding turns or reverses within the step, which tribo_step_force is not.
- *   planar contacts  that tribo_step_force leaves at v_end = 0 stick; the others slide along their mean velocity, f = -limit^2 w/|limit w|
- *                    with w = v + v_end, unless they turn back by more than a right angle
- *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until then and
- *                    the other way after: f is the mean of that, |f| < limit, and tribo_get_slip tells the direction of the end
+ *   planar contacts  that tribo_step_force leaves at v_end = 0 stick; the others slide along their mean velocity, f = -limit^2
+ *                    w/|limit w| with w = v + v_end, unless they turn back by more than a right angle
+ *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until
+ *                    then and the other way after: f is the mean of that, and tribo_get_slip tells the direction of the end
  * All others are as there. It costs up to two solutions.
  * v  [n] in  relative velocity at the start of the step
  * Returns TRIBO_ERR_UNSUPPORTED for static limits (tribo_set_static). */
@@ -392,8 +393,8 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 /* ----------------------------------------------------------------------------------------------------------- queries */
 
 /* What each contact did in the last tribo_balance or tribo_step_force. slip [n] out: 0 stuck, +1 and -1 sliding in that
- * direction (the force is -limit * slip), 2 open; both directions of a planar contact 0, 2, or 3 sliding in the plane; by the limits
- * that it had.
+ * direction (the force is -limit * slip), 2 open; both directions of a planar contact 0, 2, or 3 sliding in the plane; by the
+ * limits that it had.
  * Returns TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or tribo_set_operator_... since. */
 TRIBO_API int tribo_get_slip(const tribo_context *ctx, signed char *slip);
 

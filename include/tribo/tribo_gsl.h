@@ -64,10 +64,25 @@ TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t nconta
                                   const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 
 /* The same from sparse matrices (any GSL format; ones that hold only one triangle of a symmetric matrix must be completed first).
- * Without reduction a mass matrix that is not diagonal makes the system dense. */
+ * Without reduction a mass matrix that is not diagonal makes the system dense.
+ *
+ * From 200 degrees of freedom on, of which at most a quarter are modes wanted, the modes come from Lanczos' method and sparse
+ * factors (CHOLMOD; a library built without it refuses more than 3000 degrees of freedom, TRIBO_ERR_UNSUPPORTED). Repeated
+ * frequencies and rigid-body motions are found as often as there are: the modes below a frequency are counted by the signs of a
+ * factor's pivots, and each is checked by its residual; what does not pass is TRIBO_ERR_NO_CONVERGENCE. A library with CHOLMOD
+ * also reduces structures with a mass matrix that is only semidefinite, if the stiffness holds what has no mass, to the modes
+ * that there are; of an indefinite one with more than 3000 rows it sees what the minors of two rows show. */
 TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
                                          char *message, size_t size);
+
+/* A structure reduced to its lowest nmode modes, as by tribo_system_linear_sparse, and with static_contacts not 0 to what steady
+ * forces at its contacts do beside them, too: of the displacements that contacts make, modes alone leave out much. The system's
+ * motions are orthonormal in M and orthogonal in K; ndof is nmode and at most one more a contact. Responses to a load are had
+ * in the same way, from a row of direction that is the load, as a contact whose limit stays 0.
+ * nmode > 0. Returns what tribo_system_linear does. */
+TRIBO_API int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
+                                   const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size);
 
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 
@@ -115,6 +130,16 @@ TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
  * full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in. Others: TRIBO_ERR_UNSUPPORTED. */
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
 TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
+
+/* Reduced systems: a bound on what the motions left out would do.
+ * omega  in   the highest frequency that matters: of the load, and of those of its harmonics that matter
+ * error  out  harmonic forces at the contacts, up to that frequency and in any proportion to each other, make displacements
+ *             there of which at most this part is missing, in terms of the work that the same forces do on the whole elastic
+ *             structure while they are steady. With static contacts it is (omega/omega_next)^4 and less, omega_next being the
+ *             first frequency left out. HUGE_VAL if modes that slow may be left out. The places where loads act count if they
+ *             are contacts, too
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (not reduced). */
+TRIBO_API int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error);
 
 /* Sizes; 0 for NULL. dimension is 2 ndof + 1. */
 TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
@@ -192,13 +217,57 @@ TRIBO_API const char *tribo_method_name(int method);
  * not known to two digits), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
+/* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact and event; others
+ * return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other (in energy), and there
+ * is such a motion, as symmetric as its loads, wherever motions are bounded. With it there may be none, or none is found.
+ * t       in       time at which the period begins
+ * period  in       > 0; that of the loads, or a multiple of it
+ * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
+ * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
+ * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be 1e-4 of
+ * what the loads would do against stiffness or inertia alone, at least. That it comes back is seen by following it through the
+ * period; if it does not, y is untouched and the message tells how near it came.
+ * Where all loads and motions of bases are odd harmonics of the period, the motion is one whose second half is minus the first.
+ * Where there is a family of motions (contacts that never slip keep any place within their limits), it is one near the guess; of
+ * such that may be odd, the odd one, unless the guess is clearly another one of the family. TRIBO_COUNT_FREEDOM counts its
+ * dimensions.
+ * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits, tribo_set_static),
+ * TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
+
+/* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary
+ * part. Motions next to it come closer by these factors a period. Contacts at rest forget: multipliers of 0.
+ * re, im  [2 ndof] out
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed). */
+TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
+
+/* What the last periodic motion found holds, in closed form from event to event: nothing is sampled. Each call follows the motion
+ * through its period once. The system must be as it was when the motion was found.
+ * c             [2 ndof] in   a combination of displacements and velocities, c'[q, q']
+ * least, most          out   its extremes
+ * k             in            a harmonic: cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
+ * cosine, sine         out
+ * energy        [ncontact] out   what each contact dissipates in a period
+ * share         [ncontact] out   the share of the period for which it is at rest
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
+ * TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in resonance with a mode that has next to no damping). */
+TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
+TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
+TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
+TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
+
 /* Counts since creation. */
 enum {
     TRIBO_COUNT_STEPS = 100,       /* accepted steps */
     TRIBO_COUNT_REJECTED = 101,    /* steps tried and undone */
     TRIBO_COUNT_EVALUATIONS = 102, /* evaluations of the right-hand side */
     TRIBO_COUNT_JACOBIANS = 103,   /* evaluations of its Jacobian */
-    TRIBO_COUNT_EVENTS = 104       /* events located */
+    TRIBO_COUNT_EVENTS = 104,      /* events located */
+    TRIBO_COUNT_PERIODS = 105,     /* periods that tribo_driver_find_periodic integrated, of each search rounded up */
+    TRIBO_COUNT_NEWTON = 106,      /* steps of Newton's method that it took */
+    TRIBO_COUNT_FREEDOM = 107      /* no count: the dimension of the family that the last periodic motion found belongs to */
 };
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
 

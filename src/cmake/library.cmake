@@ -68,7 +68,7 @@ endfunction()
 # The caller adds what is its own by target_link_libraries, and installs its headers or modules. C and Fortran sources.
 #
 #   tribo_library(<target> EXPORT <name> MAP <file> DESCRIPTION <text> SOURCES <file>...
-#                 [INCLUDES <folder>...] [REQUIRES <package>...] [REQUIRES_PRIVATE <package>...])
+#                 [INCLUDES <folder>...] [REQUIRES <package>...] [REQUIRES_PRIVATE <package>...] [LIBS_PRIVATE <flag>...])
 #
 #   <target>          is also the name of its pkg-config package
 #   EXPORT            the target is tribo::<name>, in the tree and installed; <name> is its component in find_package(tribo)
@@ -77,8 +77,9 @@ endfunction()
 #   INCLUDES          further include folders of consumers, relative to the installed include folder (e.g. of modules)
 #   REQUIRES          pkg-config packages whose headers or modules a consumer sees through those of this one
 #   REQUIRES_PRIVATE  pkg-config packages that this library needs by itself
+#   LIBS_PRIVATE      the same for libraries that pkg-config does not know
 function(tribo_library target)
-  cmake_parse_arguments(ARG "" "EXPORT;MAP;DESCRIPTION" "SOURCES;INCLUDES;REQUIRES;REQUIRES_PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "" "EXPORT;MAP;DESCRIPTION" "SOURCES;INCLUDES;REQUIRES;REQUIRES_PRIVATE;LIBS_PRIVATE" ${ARGN})
   add_library(${target} ${ARG_SOURCES})
   add_library(tribo::${ARG_EXPORT} ALIAS ${target})
   # A new SOVERSION is due when a symbol goes, or what a call means changes: the major version. The installed libraries find each
@@ -128,10 +129,11 @@ function(tribo_pkgconfig target)
   set(requires ${ARG_REQUIRES})
   set(requires_private ${ARG_REQUIRES_PRIVATE})
   set(libs "-L\${libdir} -l${target}")
-  set(libs_private "")
+  set(libs_private ${ARG_LIBS_PRIVATE})
   if(TRIBO_LIBM)
-    set(libs_private "-lm")
+    list(APPEND libs_private "-lm")
   endif()
+  list(JOIN libs_private " " libs_private)
   # A static library has no private needs: whoever links it links those too, with or without pkg-config --static.
   if(type STREQUAL "STATIC_LIBRARY")
     list(APPEND requires ${requires_private})

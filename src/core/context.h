@@ -270,9 +270,8 @@ static inline size_t tribo_islands(const tribo_context *ctx)
     return ctx->planar && ctx->op->diagonal ? ctx->planar->islands : ctx->op->islands;
 }
 
-
-/* planar_force.c, for contexts with planar contacts: forces of the clusters, once those of all others are known, in ctx->last.f; a
- * status. f_eq of their contacts. */
+/* planar_force.c, for contexts with planar contacts: forces of the clusters, once those of all others are known, in
+ * ctx->last.f; a status. f_eq of their contacts. */
 int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a);
 int tribo_planar_step(tribo_context *ctx, double dt, const double *vfree, const signed char *known);
 void tribo_planar_feq(tribo_context *ctx, const double *a);
@@ -291,7 +290,8 @@ void tribo_planar_slips(const tribo_context *ctx, signed char *slip);
 /* The rate at which planar contact k relaxes. */
 double tribo_planar_rate(const tribo_context *ctx, size_t k);
 
-/* The problem of a cluster: the contacts in it, which are near stick at v: returns whether there are any; and their pull and beginning,
+/* The problem of a cluster: the contacts in it, which are near stick at v: returns whether there are any; and their pull and
+ * beginning,
  * when all other forces are known. The units of force and R in it. */
 struct unit {
     double force, r;

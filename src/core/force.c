@@ -135,8 +135,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     }
     if (ctx->planar && (df_dv || df_dfeq || df_dlimit)) {
         return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                          "derivatives of planar contact %zu are no diagonals: see tribo_balance_tangent",
-                          ctx->planar->first[0]);
+                          "derivatives of planar contact %zu are no diagonals: see tribo_balance_tangent", ctx->planar->first[0]);
     }
     evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;

@@ -88,7 +88,8 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     c->memory = (struct memory){0};
     c->planar = tribo_planar_share(ctx->planar);
     c->plane = (struct plane){0};
-    if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) || !tribo_plane_create(&c->plane, c->planar, n)) {
+    if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) ||
+        !tribo_plane_create(&c->plane, c->planar, n)) {
         tribo_destroy(c);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
     }

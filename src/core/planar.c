@@ -238,12 +238,14 @@ static int check_first(const tribo_context *ctx, size_t count, const size_t *fir
     }
     for (size_t k = 0; k < count; k++) {
         if (ctx->n < 2 || first[k] > ctx->n - 2) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "first[%zu] is contact %zu of %zu contacts, and a planar one takes the next one, too",
-                              k, first[k], ctx->n);
+            return tribo_fail(ctx, TRIBO_ERR_RANGE,
+                              "first[%zu] is contact %zu of %zu contacts, and a planar one takes the next one, too", k, first[k],
+                              ctx->n);
         }
         for (size_t i = first[k]; i < first[k] + 2; i++) {
             if (owner[i] != SIZE_MAX) {
-                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "first[%zu] takes contact %zu, which first[%zu] has taken", k, i, owner[i]);
+                return tribo_fail(ctx, TRIBO_ERR_DUPLICATE, "first[%zu] takes contact %zu, which first[%zu] has taken", k, i,
+                                  owner[i]);
             }
             owner[i] = k;
         }
@@ -259,8 +261,8 @@ int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *f
     *plane = (struct plane){0};
     int status = count ? tribo_planar_create(planar, ctx->n, count, first, op, m, &large) : TRIBO_OK;
     if (status == TRIBO_ERR_UNSUPPORTED) {
-        return tribo_fail(ctx, status, "planar contacts couple %zu directions with each other, and not more than %d can be", large,
-                          TRIBO_CLUSTER_MOST);
+        return tribo_fail(ctx, status, "planar contacts couple %zu directions with each other, and not more than %d can be",
+                          large, TRIBO_CLUSTER_MOST);
     }
     if (status || !tribo_plane_create(plane, *planar, ctx->n)) {
         tribo_plane_free(plane);
@@ -287,7 +289,8 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "first is NULL");
     }
     if (count && ctx->set.coupling == TRIBO_PARTITION) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one", first[0]);
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
+                          first[0]);
     }
     size_t *owner = malloc((ctx->n + 1) * sizeof *owner);
     if (!owner) {

@@ -41,11 +41,11 @@ struct planar {
 /* What a context keeps from call to call, and its workspace. */
 struct plane {
     struct disc_qp problem;
-    size_t *near; /* [largest] places of the directions in the problem */
-    double *y;    /* [n] what was found, in parts of limits */
-    double *v, *a; /* [n] of the last tribo_balance_tangent */
+    size_t *near;                     /* [largest] places of the directions in the problem */
+    double *y;                        /* [n] what was found, in parts of limits */
+    double *v, *a;                    /* [n] of the last tribo_balance_tangent */
     double *unit, *zero, *df, *other; /* [n] workspace; the first two are zero between calls */
-    size_t solved; /* clusters, in the last call */
+    size_t solved;                    /* clusters, in the last call */
 };
 
 /* Of a cluster with more directions than this no matrix is kept. */
@@ -63,12 +63,12 @@ void tribo_plane_free(struct plane *plane);
 /* A contact in motion, in units in which the direction with the longer way to the edge of its band has limit 1. */
 struct slide {
     int open;
-    double part[2];  /* limits, in these units */
-    double x[2];     /* part v */
-    double n[2];     /* its direction, or 0 */
-    double length;   /* |x| */
-    double epsilon;  /* the length at which the contact slides */
-    double speed;    /* length/epsilon */
+    double part[2]; /* limits, in these units */
+    double x[2];    /* part v */
+    double n[2];    /* its direction, or 0 */
+    double length;  /* |x| */
+    double epsilon; /* the length at which the contact slides */
+    double speed;   /* length/epsilon */
 };
 struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v);
 

@@ -2,10 +2,11 @@
  *
  * In units of its limits, y = f/limit, a planar contact slides with y = -n, n being the direction of limit v. Near stick
  * y is in the lens D ∩ (D - c), D being the unit disc and c = 2 |v|/epsilon n, which is kappa in these units; and y minimizes
- * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its longer
- * way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where it slides.
+ * 1/2 y'Sy + pull'y over the lenses and intervals of its cluster, S = limit R limit. Limits that differ make an ellipse: its
+ * longer way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where
+ * it slides.
  *
- * Force and R come in any units: S is divided by a power of 2, and weights are limits beside the largest of the cluster. */
+ * Force and R come in any units: in S limits and R are parts of the largest ones near stick in the cluster. */
 #include <float.h>
 
 #include "context.h"
@@ -16,7 +17,7 @@
 struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v)
 {
     const double reach[2] = {product(c->bound[i], tribo_epsilon_of(c, i)), product(c->bound[i + 1], tribo_epsilon_of(c, i + 1))};
-    const size_t far = reach[1] > reach[0] ? i + 1 : i;
+    const size_t far = reach[1] > reach[0] || (reach[1] == reach[0] && c->bound[i + 1] > c->bound[i]) ? i + 1 : i;
     struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .epsilon = tribo_epsilon_of(c, far)};
     for (size_t k = 0; k < 2 && !s.open; k++) {
         s.part[k] = c->bound[i + k] == c->bound[far] ? 1.0 : quotient(c->bound[i + k], c->bound[far]);
@@ -192,8 +193,8 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
     if (!done) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
-                          "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing", p->size,
-                          member[near[0]], p->residual);
+                          "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing",
+                          p->size, member[near[0]], p->residual);
     }
     ctx->last.rank += p->sets.rank;
     ctx->last.residual = greater(ctx->last.residual, p->residual);
@@ -252,7 +253,8 @@ static void push(const double *own, double *x)
     const double turned[2] = {half, own[1]}, spread = tribo_length(2, turned);
     const double great = mean + spread, small = greater(mean - spread, 0.0);
     /* the direction of the greater eigenvalue */
-    const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half}, length = tribo_length(2, raw);
+    const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half},
+                 length = tribo_length(2, raw);
     const double e[2] = {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0};
     const double along = e[0] * x[0] + e[1] * x[1], across = e[0] * x[1] - e[1] * x[0];
     const int lost = small <= 16.0 * DBL_EPSILON * great && fabs(across) <= 1e-12 * (fabs(x[0]) + fabs(x[1]));
@@ -456,7 +458,8 @@ double tribo_planar_rate(const tribo_context *ctx, size_t k)
     if (s.open) {
         return 0.0;
     }
-    const double a = s.part[0] * s.part[0] * own[0], b = s.part[0] * s.part[1] * own[1], d = s.part[1] * s.part[1] * own[2];
+    const double a = product(s.part[0], product(s.part[0], own[0])), b = product(s.part[0], product(s.part[1], own[1]));
+    const double d = product(s.part[1], product(s.part[1], own[2]));
     const double turned[2] = {0.5 * a - 0.5 * d, b};
     return product(2.0 * quotient(far, s.epsilon), 0.5 * a + 0.5 * d + tribo_length(2, turned));
 }

@@ -104,8 +104,8 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const do
     }
 }
 
-/* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit. before: the
- * former, df: what becomes of them. */
+/* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit.
+ * before: the former, df: what becomes of them. */
 static void reverse(const tribo_context *ctx, const struct cluster *g, const double *dv, const double *da, const double *before,
                     double *df)
 {
@@ -116,13 +116,16 @@ static void reverse(const tribo_context *ctx, const struct cluster *g, const dou
         const struct tangent *d = &ctx->last.tangent[i];
         double sum = divisible(da[i], row[k]);
         for (size_t j = 0; j < g->size; j++) {
-            sum += j == k ? 0.0 : row[j] * before[member[j]];
+            sum += j == k ? 0.0 : product(row[j], before[member[j]]);
         }
         if (ctx->planar->role[i] == ROLE_SCALAR) {
-            df[i] = product(d->dv, dv[i]) - d->dfeq * quotient(sum, row[k]);
+            df[i] = product(d->dv, dv[i]) - product(d->dfeq, quotient(cut(sum), row[k]));
         }
     }
 }
+
+/* Lenses that move faster with v have the derivatives of these. */
+#define STEEPEST 1e150
 
 /* df of a cluster that was resumed. dv, da, df [n] */
 static void cluster_product(tribo_context *ctx, const struct cluster *g, const double *dv, const double *da, double *df)
@@ -132,7 +135,7 @@ static void cluster_product(tribo_context *ctx, const struct cluster *g, const d
     double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
     products_of_slips(ctx, g, dv, df);
     for (size_t e = 0; e < p->size; e++) {
-        dshift[e] = product(shift_rate(ctx, member, e), dv[member[near[e]]]);
+        dshift[e] = clamp(product(shift_rate(ctx, member, e), dv[member[near[e]]]), -STEEPEST, STEEPEST);
     }
     drag_all(p, dshift, dy);
     find_rhs(ctx, g, da, df, dshift, dy, rhs);

@@ -65,6 +65,7 @@ static double largest_around(const tribo_context *ctx, size_t k)
 static void find_candidates(tribo_context *ctx, const struct call *c)
 {
     const struct delassus *op = ctx->op;
+    const size_t *group_of = c->group_of;
     struct memory *m = &ctx->memory;
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
@@ -73,7 +74,7 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
-            const size_t g = c->group_of[j];
+            const size_t g = group_of[j];
             if (g != TRIBO_ALONE && !m->solved[g] &&
                 !(c->estimates && out_of_reach(c->scale, c->v[j], op->row_sum[j], largest))) {
                 m->solved[g] = 1;

@@ -1,6 +1,6 @@
-/* The force over a step to second order. Coulomb's law at the end of a step, which tribo_step_force gives, has two faults of first
- * order: a planar contact that turns slides in the direction of the end, and a scalar one that is driven through v = 0 stops there
- * until the step is over.
+/* The force over a step to second order. Coulomb's law at the end of a step, which tribo_step_force gives, has two faults of
+ * first order: a planar contact that turns slides in the direction of the end, and a scalar one that is driven through v = 0
+ * stops there until the step is over.
  *
  *     solve at the end of the step: which contacts stick, and what the others feel
  *     planar contacts that slide: in the direction of v + v_end, which is the same problem with v + vfree in the place of vfree
@@ -14,8 +14,8 @@ struct step {
     double dt;
     const double *v, *vfree;
     signed char *reverses; /* [n] direction of slip at the end, or 0 */
-    double *lower, *upper;        /* [n] of the second problem */
-    double *free;                 /* [n] the same, if there are planar contacts */
+    double *lower, *upper; /* [n] of the second problem */
+    double *free;          /* [n] the same, if there are planar contacts */
     size_t changes;
 };
 
@@ -132,7 +132,8 @@ static int solve_both(tribo_context *ctx, struct step *s, double *f)
         tribo_copy(f, ctx->last.f, ctx->n);
     } else {
         tribo_begin_call(ctx);
-        status = tribo_solve_step(ctx, s->dt, ctx->planar ? s->free : s->vfree, (struct bounds){s->lower, s->upper}, s->reverses, f);
+        status =
+            tribo_solve_step(ctx, s->dt, ctx->planar ? s->free : s->vfree, (struct bounds){s->lower, s->upper}, s->reverses, f);
     }
     return status;
 }

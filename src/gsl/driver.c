@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "breakaway.h"
-#include "driver.h"
+#include "shooting.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -91,10 +91,11 @@ static int check_planar(const tribo_system *sys, const struct method *m)
     const int scalar_only = m == &tribo_method_event || m == &tribo_method_exact || m == &automatic;
     size_t planar = 0;
     tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
-    return !planar || !scalar_only ? TRIBO_OK
-                                      : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                                          "method %s knows no planar contacts, and there are %zu contacts of that kind",
-                                                          m->name, planar);
+    return !planar || !scalar_only
+               ? TRIBO_OK
+               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "method %s knows no planar contacts, and there are %zu contacts of that kind", m->name,
+                                   planar);
 }
 
 static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
@@ -146,6 +147,7 @@ void tribo_driver_destroy(tribo_driver *drv)
     if (!drv) {
         return;
     }
+    tribo_shooting_free(drv->shooting);
     drv->method->destroy(drv);
     free(drv->state);
     free(drv);
@@ -223,6 +225,15 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
         return TRIBO_OK;
     case TRIBO_COUNT_EVENTS:
         *value = drv->events;
+        return TRIBO_OK;
+    case TRIBO_COUNT_PERIODS:
+        *value = drv->periods;
+        return TRIBO_OK;
+    case TRIBO_COUNT_NEWTON:
+        *value = drv->newton;
+        return TRIBO_OK;
+    case TRIBO_COUNT_FREEDOM:
+        *value = drv->shooting ? drv->shooting->freedom : 0;
         return TRIBO_OK;
     default:
         return TRIBO_ERR_RANGE;
@@ -437,4 +448,4 @@ static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, in
     return delegate(drv, EVENT, t, t1, y);
 }
 
-static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL};
+static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL, NULL};

@@ -7,6 +7,8 @@
 /* What a method wants to be told: no tolerances, tolerances, or these and a largest step. */
 enum { WITHOUT_TOLERANCES, WITH_TOLERANCES, WITH_LARGEST_STEP };
 
+struct events;
+
 struct method {
     const char *name;
     int adaptive; /* one of these */
@@ -16,6 +18,8 @@ struct method {
      * Returns a status; if it fails, t and y may be anything, since the driver goes back to the state accepted last. */
     int (*advance)(tribo_driver *drv, double *t, double t1, double *y, int continues);
     const void *with; /* the method's own */
+    /* Methods that are a loop over events (events.h): makes it ready and hands it out. Others: NULL. */
+    int (*open)(tribo_driver *drv, struct events **events);
 };
 
 struct tribo_driver {
@@ -28,10 +32,11 @@ struct tribo_driver {
     double time;           /* of the state accepted last */
     size_t revision;       /* of the system when the last advance ended */
     int knows;             /* what the method keeps is about time, state and revision */
-    size_t steps, rejected, evaluations, jacobians, events;
+    size_t steps, rejected, evaluations, jacobians, events, periods, newton;
     double excess, backslip; /* largest so far; NaN for methods that do not know them */
     int (*seen)(double t, const double *y, int event, void *data);
     void *data;
+    struct shooting *shooting; /* of periodic motions, made when it is first needed */
     char message[240];
 };
 

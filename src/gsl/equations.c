@@ -161,6 +161,7 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     int done = 1;
     to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);
     to->omega = tribo_copy_of(sys->omega, sys->ndof, sizeof *to->omega, &done);
+    to->truncation = sys->truncation;
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
            tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->mass, &sys->mass) &&
            tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);

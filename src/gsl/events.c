@@ -230,6 +230,10 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     memcpy(y, e->next, dimension * sizeof *y);
     *t = go_on(sys, *t, when, end);
+    status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
     drv->steps++;
     learn(e, drv);
     sys->evaluations += e->shows_between ? e->search.looks : 0;
@@ -242,6 +246,9 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         }
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
+    if (!status && event && e->company) {
+        e->company->decided(e->company);
+    }
     if (!status) {
         const int shown_now = event || (*t >= t1 && sys->low == 0.0) || !e->shows_between;
         status = shown_now ? tribo_driver_accept(drv, *t, y, event != NULL) : tribo_driver_keep(drv, *t, y);
@@ -266,4 +273,11 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     }
     tribo_system_set_low(drv->sys, 0.0);
     return status;
+}
+
+int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    struct events *e;
+    const int status = drv->method->open(drv, &e);
+    return status ? status : tribo_events_advance(e, drv, t, t1, y, continues);
 }

@@ -3,9 +3,17 @@
 #ifndef TRIBO_EVENTS_H
 #define TRIBO_EVENTS_H
 
+#include "signal.h"
 #include "stick_slip.h"
 
 #define TRIBO_SUSPECTS 8
+
+/* Who goes along with the motion: hears of a phase that has lasted tau and ends at (t, y), before contacts are decided about, and
+ * of an event once they are. ends returns a status, its message on the system's context. */
+struct company {
+    int (*ends)(struct company *c, double tau, double t, const double *y);
+    void (*decided)(struct company *c);
+};
 
 struct events {
     struct stick_slip stick_slip;
@@ -19,7 +27,14 @@ struct events {
     int (*begin)(void *motion, double t, const double *y, double *reach);
     /* The state at tau into the phase that began with `from`. */
     void (*state)(void *motion, double tau, const double *from, double *to);
+    /* Moves perturbations v [2 ndof][columns] of the state to tau into the phase, in which contacts at rest are held, and what
+     * would move these is taken away first. Returns a status, its message on the system's context. */
+    int (*transition)(void *motion, double tau, size_t columns, double *v);
+    /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
+    int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
+
+    struct company *company; /* NULL: nobody */
 
     double credit, paid;            /* how many more events there may be, as of when */
     size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
@@ -32,6 +47,9 @@ void tribo_events_free(struct events *e);
 
 /* As advance of struct method. */
 int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double t1, double *y, int continues);
+
+/* The advance of methods that have an open. */
+int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int continues);
 
 /* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest,
  * or two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or

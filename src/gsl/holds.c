@@ -77,14 +77,9 @@ static int moves(struct stick_slip *m, const tribo_system *sys, const double *ba
     return 0;
 }
 
-/* First the last bits of simple contacts; then, if there is more, x -= B_I R_II^-1 (J_I x - base), twice, since the first time
- * leaves rounding of what it takes away. */
-int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
+/* x -= B_I R_II^-1 (J_I x - base), twice, since the first time leaves rounding of what it takes away. */
+int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    tribo_system_snap(sys, m->loose, base, x);
-    if (m->simple || !moves(m, sys, base, x)) {
-        return TRIBO_OK;
-    }
     for (int pass = 0; pass < 2; pass++) {
         for (size_t i = 0; i < m->contacts; i++) {
             m->lo[i] = -base[i];
@@ -96,6 +91,19 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
         }
         tribo_matrix_multiply_add(&sys->response, 1.0, m->f, x);
     }
-    tribo_system_snap(sys, m->loose, base, x);
     return TRIBO_OK;
+}
+
+/* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
+int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
+{
+    tribo_system_snap(sys, m->loose, base, x);
+    if (m->simple || !moves(m, sys, base, x)) {
+        return TRIBO_OK;
+    }
+    const int status = tribo_stick_slip_project(m, sys, base, x);
+    if (!status) {
+        tribo_system_snap(sys, m->loose, base, x);
+    }
+    return status;
 }

@@ -95,6 +95,7 @@ void tribo_cholesky_free(struct cholesky *c)
     free(c->factor);
     free(c->order);
     free(c->root);
+    tribo_sparse_factor_free(c->sparse);
     memset(c, 0, sizeof *c);
 }
 
@@ -105,7 +106,7 @@ int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
     c->factor = tribo_copy_of(from->factor, from->n * from->n, sizeof *c->factor, &done);
     c->order = tribo_copy_of(from->order, from->n, sizeof *c->order, &done);
     c->root = tribo_copy_of(from->root, from->n, sizeof *c->root, &done);
-    return done;
+    return done & tribo_sparse_factor_copy(&c->sparse, from->sparse);
 }
 
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot)
@@ -113,6 +114,13 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *wh
     const int diagonal = tribo_matrix_is_diagonal(a);
     memset(c, 0, sizeof *c);
     c->n = a->rows;
+    if (!diagonal && tribo_sparse_available() && c->n >= SPARSE_LEAST) {
+        *pivot = NAN;
+        return tribo_sparse_factor_create(&c->sparse, a, where);
+    }
+    if (!diagonal && c->n > DENSE_MOST) {
+        return TRIBO_ERR_SIZE;
+    }
     c->root = malloc(c->n * sizeof *c->root);
     c->order = malloc(c->n * sizeof *c->order);
     c->factor = diagonal ? NULL : tribo_matrix_to_dense(a);
@@ -142,6 +150,18 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *wh
     return TRIBO_OK;
 }
 
+int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x)
+{
+    if (c->sparse) {
+        return tribo_sparse_factor_solve(c->sparse, count, x);
+    }
+    for (size_t k = 0; k < count; k++) {
+        tribo_half_solve(c, x + k * c->n, 1);
+        tribo_half_solve_back(c, x + k * c->n, 1);
+    }
+    return 1;
+}
+
 static void divide_by_root(const struct cholesky *c, double *x, size_t cols)
 {
     for (size_t i = 0; i < c->n; i++) {
@@ -153,6 +173,10 @@ static void divide_by_root(const struct cholesky *c, double *x, size_t cols)
 
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
 {
+    if (c->sparse) {
+        tribo_sparse_factor_half_solve(c->sparse, x, cols);
+        return;
+    }
     if (c->factor && cols) {
         gsl_permutation p = {c->n, c->order};
         gsl_matrix_view l = gsl_matrix_view_array(c->factor, c->n, c->n), b = gsl_matrix_view_array(x, c->n, cols);
@@ -167,6 +191,10 @@ void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
 
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
 {
+    if (c->sparse) {
+        tribo_sparse_factor_half_solve_back(c->sparse, x, cols);
+        return;
+    }
     divide_by_root(c, x, cols);
     if (c->factor && cols) {
         gsl_permutation p = {c->n, c->order};

@@ -3,6 +3,7 @@
 #define TRIBO_LINALG_H
 
 #include "matrix.h"
+#include "sparse_factor.h"
 
 /* x'y; the largest |x_i|; to += factor x; 1 if no x is an infinity or a NaN. All [n]. */
 double tribo_dot(const double *x, const double *y, size_t n);
@@ -15,18 +16,29 @@ int tribo_dense_finite(const double *x, size_t n);
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
-/* A^-1 = S S', S = P' L^-T D^-1/2 from P A P' = L D L', with L in the lower triangle of factor. A diagonal A has only root. */
+/* Matrices that are not diagonal are factored as sparse ones from SPARSE_LEAST rows on, if the library can do that; if not, dense
+ * ones may have DENSE_MOST. */
+#define SPARSE_LEAST 200
+#define DENSE_MOST 3000
+
+/* A^-1 = S S'. Dense: S = P' L^-T D^-1/2 from P A P' = L D L', with L in the lower triangle of factor. A diagonal A has only
+ * root, a sparse one neither. */
 struct cholesky {
     size_t n; /* 0: the identity */
     double *factor;
     size_t *order;
     double *root; /* [n] D^1/2 */
+    struct sparse_factor *sparse;
 };
 
-/* Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE with the place and value of a pivot that is not positive. */
+/* Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with the place of a
+ * pivot that is not positive, and its value, NaN if that is not known. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from); /* 1, or 0 if out of memory */
 void tribo_cholesky_free(struct cholesky *c);
+
+/* count vectors x [count][n] = A^-1 x. 1, or 0 if out of memory, which does not happen to a single one. */
+int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x);
 
 /* x [n][cols] = S' x, and x = S x; one after the other they solve A y = x. */
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols);

@@ -144,6 +144,25 @@ int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
     return speed_up(a);
 }
 
+int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b)
+{
+    if (!create(to, a->rows, a->cols, a->first[a->rows] + b->first[b->rows])) {
+        return 0;
+    }
+    size_t count = 0;
+    for (size_t i = 0; i < a->rows; i++) {
+        size_t k = a->first[i], l = b->first[i];
+        while (k < a->first[i + 1] || l < b->first[i + 1]) {
+            const size_t j = k < a->first[i + 1] ? a->col[k] : a->cols, m = l < b->first[i + 1] ? b->col[l] : b->cols;
+            const double x = j <= m ? factor * a->val[k++] : 0.0, y = m <= j ? other * b->val[l++] : 0.0;
+            to->col[count] = j < m ? j : m;
+            to->val[count++] = x + y;
+        }
+        to->first[i + 1] = count;
+    }
+    return speed_up(to);
+}
+
 /* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
 static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t *order_in, size_t *order_out, size_t *start)
 {
@@ -277,6 +296,36 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
             }
             y[i] += factor * sum;
         }
+    }
+}
+
+/* y [3][rows] = A x for three vectors. */
+static void multiply_three(const struct matrix *a, const double *restrict x, double *restrict y)
+{
+    const size_t n = a->cols, rows = a->rows;
+    for (size_t i = 0; i < rows; i++) {
+        double s0 = 0.0, s1 = 0.0, s2 = 0.0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            const double val = a->val[k], *from = x + a->col[k];
+            s0 += val * from[0];
+            s1 += val * from[n];
+            s2 += val * from[2 * n];
+        }
+        y[i] = s0;
+        y[rows + i] = s1;
+        y[2 * rows + i] = s2;
+    }
+}
+
+void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y)
+{
+    size_t k = 0;
+    for (; k + 3 <= count; k += 3) {
+        multiply_three(a, x + k * a->cols, y + k * a->rows);
+    }
+    memset(y + k * a->rows, 0, (count - k) * a->rows * sizeof *y);
+    for (; k < count; k++) {
+        tribo_matrix_multiply_add(a, 1.0, x + k * a->cols, y + k * a->rows);
     }
 }
 

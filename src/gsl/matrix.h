@@ -24,6 +24,7 @@ int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
 int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries); /* NULL: ones */
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from);
+int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b);
 
 /* A copy of count things of so many bytes, NULL for NULL. *done becomes 0 if out of memory. */
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);
@@ -35,6 +36,9 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
 
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
+
+/* count vectors y [count][rows] = A x, x [count][cols]: the matrix is read once for some of them. */
+void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const double *x, double *y);
 
 /* x'Ay, rounded only at the end: a form may be far smaller than its terms. */
 double tribo_matrix_form(const struct matrix *a, const double *x, const double *y);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "events.h"
+#include "series_transition.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -35,6 +36,7 @@ struct event {
     double *limit_size, *limit_bend; /* [ncontact] the same of limits */
     double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
+    struct series_transition perturbed;
 };
 
 /* ------------------------------------------------------------------------------------------------------------- series */
@@ -375,11 +377,14 @@ static void destroy(tribo_driver *drv)
         tribo_events_free(&e->events);
         free(e->q);
         free(e->cosine);
+        tribo_series_transition_free(&e->perturbed);
         free(e);
     }
 }
 
 static int begin(void *motion, double t, const double *y, double *reach);
+static int transition(void *motion, double tau, size_t columns, double *v);
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
 static void state(void *motion, double tau, const double *from, double *to);
 
 static int create(tribo_driver *drv)
@@ -427,6 +432,8 @@ static int create(tribo_driver *drv)
     e->events.search.motion = e->events.motion = e;
     e->events.begin = begin;
     e->events.state = state;
+    e->events.transition = transition;
+    e->events.signal = combine;
     return TRIBO_OK;
 }
 
@@ -480,12 +487,33 @@ static int begin(void *motion, double t, const double *y, double *reach)
     return TRIBO_OK;
 }
 
-static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
+static int transition(void *motion, double tau, size_t columns, double *v)
+{
+    struct event *e = motion;
+    return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, tau, columns, v);
+}
+
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+{
+    const struct event *e = motion;
+    const size_t n = e->sys->ndof;
+    (void)end;
+    if (!tribo_signal_reserve(to, 0, e->order)) {
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu powers", e->order);
+    }
+    to->tau = tau;
+    for (size_t k = 0; k <= e->order; k++) {
+        to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
+    }
+    return TRIBO_OK;
+}
+
+static int open_events(tribo_driver *drv, struct events **events)
 {
     struct event *e = drv->own;
     const int status = prepare(e);
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts))
-                  : tribo_events_advance(&e->events, drv, t, t1, y, continues);
+    *events = &e->events;
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 
-const struct method tribo_method_event = {"event", WITH_TOLERANCES, create, destroy, advance, NULL};
+const struct method tribo_method_event = {"event", WITH_TOLERANCES, create, destroy, tribo_events_method, NULL, open_events};

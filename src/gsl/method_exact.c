@@ -9,6 +9,7 @@
 
 #include "events.h"
 #include "modal_motion.h"
+#include "modal_transition.h"
 #include "../common/real.h"
 
 /* Decompositions are dropped when they take more than this. */
@@ -21,6 +22,8 @@ struct exact {
     size_t helds, room, bytes, revision;
 
     struct modal_motion motion; /* of the phase */
+    double *work;               /* of transitions, allocated when one is first asked for */
+    size_t columns;             /* for so many */
 };
 
 /* ---------------------------------------------------------------------------------------------- structures that are held */
@@ -214,6 +217,26 @@ static int begin(void *motion, double t, const double *y, double *reach)
     return TRIBO_OK;
 }
 
+static int transition(void *motion, double tau, size_t columns, double *v)
+{
+    struct exact *x = motion;
+    if (columns > x->columns) {
+        double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
+        if (!more) {
+            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", columns);
+        }
+        x->work = more;
+        x->columns = columns;
+    }
+    tribo_modal_transition(x->motion.h, x->sys, tau, columns, v, x->work);
+    return TRIBO_OK;
+}
+
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+{
+    return tribo_modal_motion_signal(&((struct exact *)motion)->motion, c, tau, end, to);
+}
+
 /* --------------------------------------------------------------------------------------------------------- the driver */
 
 static void destroy(tribo_driver *drv)
@@ -224,6 +247,7 @@ static void destroy(tribo_driver *drv)
         free(x->held);
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
+        free(x->work);
         free(x);
     }
 }
@@ -246,6 +270,8 @@ static int create(tribo_driver *drv)
     x->events.search.motion = x->events.motion = x;
     x->events.begin = begin;
     x->events.state = move_to;
+    x->events.transition = transition;
+    x->events.signal = combine;
     x->events.shows_between = 1;
     if (!tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
@@ -253,7 +279,7 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
+static int open_events(tribo_driver *drv, struct events **events)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
@@ -270,7 +296,8 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         drop_helds(x);
         x->revision = sys->revision;
     }
-    return tribo_events_advance(&x->events, drv, t, t1, y, continues);
+    *events = &x->events;
+    return TRIBO_OK;
 }
 
-const struct method tribo_method_exact = {"exact", WITHOUT_TOLERANCES, create, destroy, advance, NULL};
+const struct method tribo_method_exact = {"exact", WITHOUT_TOLERANCES, create, destroy, tribo_events_method, NULL, open_events};

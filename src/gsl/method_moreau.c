@@ -21,9 +21,10 @@ struct moreau {
     double *response;         /* [ncontact][ndof] */
     double *limit;            /* [ncontact] */
     double *ratio, *velocity; /* [ncontact] of static limits */
-    size_t settings;          /* revision of the system's context, from which these are */
+    size_t statics;           /* revision of the system's contacts that these came from; 0: contacts have not got them */
     double *load;             /* [ndof] at the end of the step before */
     tribo_context *contacts;
+    size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
 };
 
 static void destroy(tribo_driver *drv)
@@ -153,6 +154,34 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
     return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
 }
 
+static size_t planar_of(const tribo_context *contacts)
+{
+    size_t planar = 0;
+    return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
+}
+
+/* Whether the system's contacts may have become planar, or others than before. */
+static int planar_changed(const struct moreau *m, const tribo_system *sys)
+{
+    return (planar_of(sys->contacts) || planar_of(m->contacts)) && m->settings != tribo_revision(sys->contacts);
+}
+
+/* Contacts of its own, planar where the system's are. */
+static int make_contacts(struct moreau *m, const tribo_system *sys)
+{
+    if (m->contacts && !planar_of(sys->contacts) && !planar_of(m->contacts)) {
+        return 1;
+    }
+    tribo_destroy(m->contacts);
+    m->contacts = NULL;
+    m->settings = tribo_revision(sys->contacts);
+    m->statics = 0;
+    const int status =
+        planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
+    m->contacts = status ? NULL : m->contacts;
+    return !status;
+}
+
 /* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B. */
 static int prepare(struct moreau *m, const tribo_system *sys, double h)
 {
@@ -165,10 +194,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
     free(m->response);
     m->response = tribo_matrix_transpose_to_dense(&sys->response);
     double *r = calloc(c * c + 1, sizeof *r);
-    if (!m->contacts && tribo_create(&m->contacts, c)) {
-        m->contacts = NULL;
-    }
-    if (!m->response || !r || !m->contacts) {
+    if (!m->response || !r || !make_contacts(m, sys)) {
         free(r);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
@@ -205,10 +231,10 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
     const size_t revision = tribo_revision(sys->contacts);
     tribo_get_limit(sys->contacts, m->limit);
     tribo_set_limit(m->contacts, m->limit);
-    if (m->settings != revision) {
+    if (m->statics != revision) {
         tribo_get_static(sys->contacts, m->ratio, m->velocity);
         tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
-        m->settings = revision;
+        m->statics = revision;
     }
 }
 
@@ -221,7 +247,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     const double h = next - t;
     double *du = s->a, *u = y + n;
     /* steps of equal length differ by the rounding of time only */
-    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision) {
+    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
         const int status = prepare(m, sys, h);
         if (status) {
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
@@ -284,4 +310,4 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
     return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step);
 }
 
-const struct method tribo_method_moreau_fixed = {"moreau/fixed", WITHOUT_TOLERANCES, create, destroy, moreau_advance, NULL};
+const struct method tribo_method_moreau_fixed = {"moreau/fixed", WITHOUT_TOLERANCES, create, destroy, moreau_advance, NULL, NULL};

@@ -5,6 +5,7 @@
 #include "modal.h"
 #include "quintic.h"
 #include "stick_slip.h"
+#include "signal.h"
 
 /* It began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
 struct modal_motion {
@@ -62,5 +63,8 @@ void tribo_modal_motion_bound(struct modal_motion *x, double tau);
 
 /* and of what an output has of them and of harmonics, and of the sixth derivative of that. */
 void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend);
+
+/* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status. */
+int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to);
 
 #endif

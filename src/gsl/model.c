@@ -24,6 +24,14 @@ int tribo_model_no_memory(const struct model *m)
                             m->ncontact);
 }
 
+int tribo_model_too_large(const struct model *m)
+{
+    return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                            "%zu degrees of freedom are more than the %d that dense matrices are for: build tribo with "
+                            "TRIBO_SPARSE=ON, which needs CHOLMOD",
+                            m->ndof, DENSE_MOST);
+}
+
 int tribo_model_factorize(const struct model *m, struct cholesky *c)
 {
     size_t where;
@@ -34,6 +42,8 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c)
     case TRIBO_ERR_INDEFINITE:
         return tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "mass is not positive definite: pivot %g at degree of freedom %zu",
                                 pivot, where);
+    case TRIBO_ERR_SIZE:
+        return tribo_model_too_large(m);
     default:
         return tribo_model_no_memory(m);
     }

@@ -7,6 +7,7 @@
 /* What a caller gives, and where the text of an error goes. */
 struct model {
     size_t ndof, ncontact, nmode;
+    int statics; /* beside the modes, what steady forces at the contacts do */
     struct matrix mass, damping, stiffness, direction;
     char *message;
     size_t size;
@@ -19,6 +20,7 @@ int tribo_model_fail(const struct model *m, int status, const char *format, ...)
 #endif
     ;
 int tribo_model_no_memory(const struct model *m);
+int tribo_model_too_large(const struct model *m); /* for a build without sparse factors */
 
 /* structure.c: builds the system, and frees the matrices of the model in any case. */
 int tribo_model_build(struct model *m, tribo_system **sys);
@@ -32,5 +34,16 @@ int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z
 
 /* reduction.c: the system of the lowest nmode modes. */
 int tribo_model_reduce(struct model *m, tribo_system **sys);
+
+/* What a structure is reduced to: motions that are orthonormal in M and orthogonal in K. */
+struct reduced {
+    size_t count;
+    double *omega2, *phi; /* [count] ascending, [count][ndof] */
+    struct truncation truncation;
+};
+
+/* low_modes.c: the lowest nmode modes, and if asked for the static ones. Allocates, also on failure. */
+int tribo_model_find_modes(const struct model *m, struct reduced *r);
+void tribo_reduced_free(struct reduced *r);
 
 #endif

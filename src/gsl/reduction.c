@@ -3,62 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "normal_modes.h"
 #include "model.h"
 
-/* What to say of modes that were not found. */
-static int modes_failed(const struct model *m, int status, const struct doubt *doubt)
-{
-    switch (status) {
-    case TRIBO_ERR_MEMORY:
-        return tribo_model_no_memory(m);
-    case TRIBO_ERR_NOT_FINITE:
-        return tribo_model_fail(m, status, "stiffness over mass overflows");
-    case TRIBO_ERR_UNSUPPORTED:
-        return tribo_model_fail(
-            m, status,
-            "omega^2 = %g of mode %zu is hardly more than rounding of the stiffness, which comes to %g: make the stiffest "
-            "parts softer, or rigid",
-            doubt->omega2, doubt->mode, doubt->noise);
-    default:
-        return tribo_model_fail(m, status, "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes",
-                                doubt->omega2, doubt->mode);
-    }
-}
-
-/* The lowest nmode modes: modes [ndof][nmode] with modal mass 1, and omega [nmode]. */
-static int find_modes(const struct model *m, double *modes, double *omega)
-{
-    const struct matrix whole = {0};
-    struct cholesky c;
-    struct doubt doubt = {0};
-    double *phi = malloc(m->nmode * m->ndof * sizeof *phi);
-    int status = phi ? tribo_model_factorize(m, &c) : tribo_model_no_memory(m);
-    if (!status) {
-        status = tribo_normal_modes(&m->stiffness, &whole, &c, m->nmode, omega, phi, &doubt);
-        status = status ? modes_failed(m, status, &doubt) : TRIBO_OK;
-        tribo_cholesky_free(&c);
-    }
-    for (size_t j = 0; !status && j < m->nmode; j++) {
-        if (omega[j] < 0.0) {
-            status = tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode %zu",
-                                      omega[j], j);
-        }
-        omega[j] = sqrt(fabs(omega[j]));
-        for (size_t i = 0; i < m->ndof; i++) {
-            modes[i * m->nmode + j] = phi[j * m->ndof + i];
-        }
-    }
-    free(phi);
-    return status;
-}
-
-/* a = diag(factor x), or of the squares of x; zeroed if out of memory. */
-static int diagonal_matrix(struct matrix *a, const double *x, double factor, int square, size_t n)
+/* a = diag(factor x); zeroed if out of memory. */
+static int diagonal_matrix(struct matrix *a, const double *x, double factor, size_t n)
 {
     double *entries = malloc(n * sizeof *entries);
     for (size_t i = 0; entries && i < n; i++) {
-        entries[i] = factor * x[i] * (square ? x[i] : 1.0);
+        entries[i] = factor * x[i];
     }
     *a = (struct matrix){0};
     const int done = entries && tribo_matrix_diagonal(a, n, entries);
@@ -66,49 +18,75 @@ static int diagonal_matrix(struct matrix *a, const double *x, double factor, int
     return done;
 }
 
+/* The modes as the system keeps them, [ndof][count], and omega; takes what else it needs from r. 0 if out of memory. */
+static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
+{
+    const size_t count = r->count;
+    sys->given = given;
+    sys->modes = malloc(given * count * sizeof *sys->modes);
+    sys->omega = malloc(count * sizeof *sys->omega);
+    sys->truncation = r->truncation;
+    if (!sys->modes || !sys->omega) {
+        return 0;
+    }
+    tribo_transpose(count, given, r->phi, sys->modes);
+    for (size_t k = 0; k < count; k++) {
+        sys->omega[k] = sqrt(r->omega2[k]);
+    }
+    return 1;
+}
+
+/* shapes [ncontact][count] = J phi. */
+static void find_shapes(const struct model *m, const struct reduced *r, double *shapes)
+{
+    for (size_t k = 0; k < r->count; k++) {
+        for (size_t i = 0; i < m->ncontact; i++) {
+            double sum = 0.0;
+            for (size_t e = m->direction.first[i]; e < m->direction.first[i + 1]; e++) {
+                sum += m->direction.val[e] * r->phi[k * m->ndof + m->direction.col[e]];
+            }
+            shapes[i * r->count + k] = sum;
+        }
+    }
+}
+
+/* q'' + diag(omega^2) q = modes' p + shapes' f. responses [count][ncontact] out: transposed shapes. */
+static int build(const struct model *m, const struct reduced *r, double *responses, tribo_system **sys)
+{
+    const size_t count = r->count, c = m->ncontact;
+    struct matrix stiffness = {0}, damping = {0}, direction = {0}, response = {0};
+    double *shapes = malloc((c * count + 1) * sizeof *shapes);
+    int done = shapes != NULL;
+    if (done) {
+        find_shapes(m, r, shapes);
+        tribo_transpose(c, count, shapes, responses);
+        done = diagonal_matrix(&stiffness, r->omega2, 1.0, count) && tribo_matrix_from_dense(&direction, c, count, shapes) &&
+               tribo_matrix_from_dense(&response, count, c, responses);
+    }
+    free(shapes);
+    if (done) {
+        return tribo_system_build(sys, count, c, &stiffness, &damping, &direction, &response) ? tribo_model_no_memory(m)
+                                                                                              : TRIBO_OK;
+    }
+    tribo_matrix_free(&stiffness);
+    tribo_matrix_free(&direction);
+    tribo_matrix_free(&response);
+    return tribo_model_no_memory(m);
+}
+
 int tribo_model_reduce(struct model *m, tribo_system **sys)
 {
-    const size_t n = m->ndof, r = m->nmode, c = m->ncontact;
-    double *modes = malloc(n * r * sizeof *modes), *omega = malloc(r * sizeof *omega);
-    double *j = calloc(c * r + 1, sizeof *j), *z = calloc(c * r + 1, sizeof *z);
-    struct matrix kr = {0}, cr = {0}, jr = {0}, br = {0};
-    int status = modes && omega && j && z ? find_modes(m, modes, omega) : tribo_model_no_memory(m);
+    struct reduced r;
+    int status = tribo_model_find_modes(m, &r);
+    double *responses = status ? NULL : malloc((m->ncontact * r.count + 1) * sizeof *responses);
     if (!status) {
-        for (size_t i = 0; i < c; i++) {
-            for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
-                for (size_t mode = 0; mode < r; mode++) {
-                    j[i * r + mode] += m->direction.val[k] * modes[m->direction.col[k] * r + mode];
-                }
-            }
-            for (size_t mode = 0; mode < r; mode++) {
-                z[mode * c + i] = j[i * r + mode];
-            }
-        }
-        if (!(diagonal_matrix(&kr, omega, 1.0, 1, r) && tribo_matrix_from_dense(&jr, c, r, j) &&
-              tribo_matrix_from_dense(&br, r, c, z))) {
-            status = tribo_model_no_memory(m);
-        }
+        status = responses ? build(m, &r, responses, sys) : tribo_model_no_memory(m);
     }
-    free(j);
     if (!status) {
-        status = tribo_system_build(sys, r, c, &kr, &cr, &jr, &br);
-        status = status ? tribo_model_no_memory(m) : status;
-    } else {
-        tribo_matrix_free(&kr);
-        tribo_matrix_free(&jr);
-        tribo_matrix_free(&br);
+        status = take_modes(*sys, m->ndof, &r) ? tribo_model_set_operator(m, *sys, responses, r.count) : tribo_model_no_memory(m);
     }
-    if (status) {
-        free(modes);
-        free(omega);
-        free(z);
-        return status;
-    }
-    (*sys)->given = n;
-    (*sys)->modes = modes;
-    (*sys)->omega = omega;
-    status = tribo_model_set_operator(m, *sys, z, r);
-    free(z);
+    free(responses);
+    tribo_reduced_free(&r);
     return status;
 }
 
@@ -135,7 +113,7 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
         return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "zeta = %g is negative", zeta);
     }
     struct matrix damping;
-    if (!diagonal_matrix(&damping, sys->omega, 2.0 * zeta, 0, sys->ndof)) {
+    if (!diagonal_matrix(&damping, sys->omega, 2.0 * zeta, sys->ndof)) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu modes", sys->ndof);
     }
     tribo_matrix_free(&sys->damping);
@@ -175,5 +153,23 @@ int tribo_system_expand(const tribo_system *sys, const double *reduced, double *
         }
         full[i] = sum;
     }
+    return TRIBO_OK;
+}
+
+int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error)
+{
+    const int status = only_reduced(sys);
+    if (status) {
+        return status;
+    }
+    if (!error) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "error is NULL");
+    }
+    if (!isfinite(omega)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+    }
+    const struct truncation *t = &sys->truncation;
+    const double x = (omega * omega + t->shift) / t->above;
+    *error = x < 1.0 ? t->missing * (t->statics ? x * x : 1.0) / (1.0 - x) : HUGE_VAL;
     return TRIBO_OK;
 }

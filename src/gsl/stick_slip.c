@@ -458,6 +458,19 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     return status;
 }
 
+int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
+{
+    tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->f[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
+    contact_accelerations(sys, acceleration, 1, m->v);
+    const int status = tribo_stick_slip_balance(m, m->v, m->f);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
+    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
+}
+
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)

@@ -65,11 +65,16 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 
 /* Finds out which of the contacts at rest hold, as they are marked; a status. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
+/* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
+int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
 
 /* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
 
-/* Takes what is not zero in J x - base for the contacts at rest out of x [ndof]. */
+/* Makes J x = base for the contacts that hold by impulses of theirs. Returns a status. */
+int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
+
+/* The same where J x - base is rounding: takes that out of x [ndof]. Returns a status. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
 
 /* How many times its limit to slide the force of contact i is from here on: +1 or -1, at rest these times the ratio of static

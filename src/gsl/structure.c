@@ -88,6 +88,13 @@ static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct
 static int build_solved(struct model *m, tribo_system **sys)
 {
     struct cholesky c;
+    if (m->ndof > DENSE_MOST) {
+        return tribo_model_fail(
+            m, TRIBO_ERR_UNSUPPORTED,
+            "%zu degrees of freedom, of which %d may be solved for with a mass matrix that is not diagonal: make "
+            "it diagonal, or reduce the system to modes",
+            m->ndof, DENSE_MOST);
+    }
     int status = tribo_model_factorize(m, &c);
     if (status) {
         return status;
@@ -197,32 +204,49 @@ static int check_square(const struct model *m, const char *name, const gsl_spmat
     return TRIBO_OK;
 }
 
-int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
-                               const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode, char *message,
-                               size_t size)
+/* What both calls below do. */
+static int create_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping, const gsl_spmatrix *stiffness,
+                         const gsl_spmatrix *direction, struct model *m)
 {
-    struct model m = {.nmode = nmode, .message = message, .size = size};
     if (!sys || !mass || !stiffness || !direction) {
-        return tribo_model_fail(&m, TRIBO_ERR_NULL, "%s is NULL",
+        return tribo_model_fail(m, TRIBO_ERR_NULL, "%s is NULL",
                                 !sys         ? "sys"
                                 : !mass      ? "mass"
                                 : !stiffness ? "stiffness"
                                              : "direction");
     }
-    m.ndof = mass->size1;
-    m.ncontact = direction->size1;
-    int status = check_sizes(&m, damping != NULL);
-    status = status ? status : check_square(&m, "mass", mass, m.ndof);
-    status = status ? status : check_square(&m, "damping", damping, m.ndof);
-    status = status ? status : check_square(&m, "stiffness", stiffness, m.ndof);
-    status = status ? status : check_square(&m, "direction", direction, m.ncontact);
+    m->ndof = mass->size1;
+    m->ncontact = direction->size1;
+    int status = check_sizes(m, damping != NULL);
+    status = status ? status : check_square(m, "mass", mass, m->ndof);
+    status = status ? status : check_square(m, "damping", damping, m->ndof);
+    status = status ? status : check_square(m, "stiffness", stiffness, m->ndof);
+    status = status ? status : check_square(m, "direction", direction, m->ncontact);
     if (status) {
         return status;
     }
-    if (!tribo_matrix_from_sparse(&m.mass, mass) || !tribo_matrix_from_sparse(&m.stiffness, stiffness) ||
-        !tribo_matrix_from_sparse(&m.direction, direction) || (damping && !tribo_matrix_from_sparse(&m.damping, damping))) {
-        tribo_model_free(&m);
-        return tribo_model_no_memory(&m);
+    if (!tribo_matrix_from_sparse(&m->mass, mass) || !tribo_matrix_from_sparse(&m->stiffness, stiffness) ||
+        !tribo_matrix_from_sparse(&m->direction, direction) || (damping && !tribo_matrix_from_sparse(&m->damping, damping))) {
+        tribo_model_free(m);
+        return tribo_model_no_memory(m);
     }
-    return tribo_model_build(&m, sys);
+    return tribo_model_build(m, sys);
+}
+
+int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
+                               const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode, char *message,
+                               size_t size)
+{
+    struct model m = {.nmode = nmode, .message = message, .size = size};
+    return create_sparse(sys, mass, damping, stiffness, direction, &m);
+}
+
+int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
+                         const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size)
+{
+    struct model m = {.nmode = nmode, .statics = static_contacts != 0, .message = message, .size = size};
+    if (nmode == 0) {
+        return tribo_model_fail(&m, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
+    }
+    return create_sparse(sys, mass, NULL, stiffness, direction, &m);
 }

@@ -93,11 +93,11 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         return;
     }
     memcpy(to, force, sys->ndof * sizeof *to);
-    if (sys->factor.factor) {
-        tribo_half_solve(&sys->factor, to, 1);
-        tribo_half_solve_back(&sys->factor, to, 1);
+    const int diagonal = !sys->factor.factor && !sys->factor.sparse;
+    if (!diagonal) {
+        tribo_cholesky_solve(&sys->factor, 1, to);
     }
-    for (size_t i = 0; !sys->factor.factor && i < sys->ndof; i++) {
+    for (size_t i = 0; diagonal && i < sys->ndof; i++) {
         to[i] *= 1.0 / tribo_matrix_get(&sys->mass, i, i);
     }
 }

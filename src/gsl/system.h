@@ -28,6 +28,13 @@ struct table {
     double *pattern; /* [ndof] accelerations, or NULL */
 };
 
+/* What a reduced system does not have of the whole structure's motion. Modes left out have omega^2 + shift of `above` or more;
+ * of the work that steady forces at the contacts do on the elastic structure they take up to the part `missing`. */
+struct truncation {
+    double above, shift, missing;
+    int statics; /* the displacements by steady forces are among the reduced motions nevertheless */
+};
+
 struct tribo_system {
     size_t ndof, ncontact;
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
@@ -54,6 +61,7 @@ struct tribo_system {
     /* Forces on the given degrees of freedom become accelerations by the modes, or by the mass matrix. */
     size_t given;
     double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
+    struct truncation truncation;
 
     gsl_odeiv2_system odeiv2;
     size_t evaluations, jacobians;

@@ -70,7 +70,7 @@ static void run(tribo_system *sys, const char *method, double most)
     put_one(tribo_driver_advance(drv, &t, 3.0, y));
     put(3, sums);
     put(n, y);
-    for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_EVENTS; which++) {
+    for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_FREEDOM; which++) {
         size_t count = 0;
         put_one(tribo_driver_count(drv, which, &count));
         put_size(count);
@@ -142,6 +142,15 @@ static void linear(tribo_system *sys, int reduced)
     tribo_system_destroy(sys);
 }
 
+static void truncation(tribo_system *sys)
+{
+    double error = -1.0;
+    sizes(sys);
+    put_one(tribo_system_get_truncation(sys, 0.25, &error));
+    put_one(error);
+    tribo_system_destroy(sys);
+}
+
 static gsl_spmatrix *sparse(const double *a, size_t rows)
 {
     gsl_spmatrix *s = gsl_spmatrix_alloc(rows, DOF);
@@ -153,6 +162,35 @@ static gsl_spmatrix *sparse(const double *a, size_t rows)
         }
     }
     return s;
+}
+
+/* What the period of a forced oscillator holds. */
+static void periodic(void)
+{
+    const double period = 8.975979010256552, c[] = {1.0, 0.5};
+    double y[3] = {0.0}, re[2], im[2], a, b;
+    tribo_system *sys = NULL;
+    tribo_driver *drv = NULL;
+    put_one(tribo_system_oscillator(&sys, 0.3, 1.0, 0.7));
+    tribo_driver_create(&drv, sys, "exact", 0.1, 0.0, 0.0);
+    put_one(tribo_driver_get_multipliers(drv, re, im));
+    put_one(tribo_driver_find_periodic(drv, 0.5, period, y));
+    put(3, y);
+    tribo_driver_get_multipliers(drv, re, im);
+    put(2, re);
+    put(2, im);
+    put_one(tribo_driver_period_extremes(drv, c, &a, &b));
+    put_one(a);
+    put_one(b);
+    put_one(tribo_driver_period_harmonic(drv, c, 3, &a, &b));
+    put_one(a);
+    put_one(b);
+    put_one(tribo_driver_period_dissipation(drv, &a));
+    put_one(a);
+    put_one(tribo_driver_period_stick(drv, &a));
+    put_one(a);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
 }
 
 void systems_play(void)
@@ -182,8 +220,13 @@ void systems_play(void)
     linear(sys, 0);
     put_one(tribo_system_linear_sparse(&sys, m, NULL, k, j, 2, NULL, 0));
     linear(sys, 1);
+    put_one(tribo_system_reduced(&sys, m, k, j, 2, 0, NULL, 0));
+    linear(sys, 1);
+    put_one(tribo_system_reduced(&sys, m, k, j, 1, 1, NULL, 0));
+    truncation(sys);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(c);
     gsl_spmatrix_free(k);
     gsl_spmatrix_free(j);
+    periodic();
 }

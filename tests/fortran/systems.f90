@@ -53,6 +53,7 @@ program systems
   call record(systems_play)
   call methods()
   call all_systems()
+  call periodic()
   call end_of_tape()
   call sections()
   call require(alive() == 0, 'everything is destroyed')
@@ -106,7 +107,23 @@ contains
     call sys%linear(m, k, j, nmode=2, stat=stat)
     call compare('linear, sparse', stat)
     call linear(sys, .true.)
+    call sys%reduced(m, k, j, 2, .false., stat)
+    call compare('reduced', stat)
+    call linear(sys, .true.)
+    call sys%reduced(m, k, j, 1, stat=stat)
+    call compare('reduced, statics', stat)
+    call truncation(sys)
   end subroutine all_systems
+
+  subroutine truncation(sys)
+    type(tribo_system), intent(in) :: sys
+    real(dp) :: error
+    integer :: stat
+    call sizes(sys)
+    call sys%get_truncation(0.25_dp, error, stat)
+    call compare('get_truncation', stat)
+    call compare('get_truncation', error)
+  end subroutine truncation
 
   subroutine sizes(sys)
     type(tribo_system), intent(in) :: sys
@@ -247,7 +264,7 @@ contains
     call compare('advance', stat)
     call compare('what an observer no longer sees', sees%sums)
     call compare('advance: y', y)
-    do which = TRIBO_COUNT_STEPS, TRIBO_COUNT_EVENTS
+    do which = TRIBO_COUNT_STEPS, TRIBO_COUNT_FREEDOM
       count = 0
       call drv%count(which, count, stat)
       call compare('count', stat)
@@ -262,6 +279,44 @@ contains
       call compare('real', value)
     end do
   end subroutine run
+
+  !> What the period of a forced oscillator holds.
+  subroutine periodic()
+    type(tribo_system) :: sys
+    type(tribo_driver) :: drv
+    real(dp), parameter :: period = 8.975979010256552_dp, c(2) = [1.0_dp, 0.5_dp]
+    real(dp) :: y(3), re(2), im(2), a, b, contact(1)
+    integer :: stat
+
+    y = 0
+    call sys%oscillator(0.3_dp, 1.0_dp, 0.7_dp, stat)
+    call compare('oscillator', stat)
+    call drv%create(sys, 'exact', 0.1_dp, 0.0_dp, 0.0_dp)
+    call drv%get_multipliers(re, im, stat)
+    call compare('get_multipliers', stat)
+    call drv%find_periodic(0.5_dp, period, y, stat)
+    call compare('find_periodic', stat)
+    call compare('find_periodic: y', y)
+    call drv%get_multipliers(re, im)
+    call compare('get_multipliers: re', re)
+    call compare('get_multipliers: im', im)
+    call drv%period_extremes(c, a, b, stat)
+    call compare('period_extremes', stat)
+    call compare('period_extremes: least', a)
+    call compare('period_extremes: most', b)
+    call drv%period_harmonic(c, 3, a, b, stat)
+    call compare('period_harmonic', stat)
+    call compare('period_harmonic: cosine', a)
+    call compare('period_harmonic: sine', b)
+    call drv%period_harmonic(c, -1, a, b, stat)
+    call require(stat == TRIBO_ERR_NEGATIVE, 'a negative harmonic')
+    call drv%period_dissipation(contact, stat)
+    call compare('period_dissipation', stat)
+    call compare('period_dissipation: energy', contact)
+    call drv%period_stick(contact, stat)
+    call compare('period_stick', stat)
+    call compare('period_stick: share', contact)
+  end subroutine periodic
 
   !> Arrays as sections against whole arrays, and outputs each by itself.
   subroutine sections()

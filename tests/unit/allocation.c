@@ -21,6 +21,7 @@ static void work(tribo_context *c, const struct problem *p)
     tribo_balance_tangent(c, p->v, p->a, feq, f, square[0], square[1]);
     tribo_tangent_product(c, p->v, p->a, f);
     tribo_step_force(c, 0.1, p->v, f);
+    tribo_step_force_mean(c, 0.1, p->a, p->v, f);
     tribo_solve_box(c, p->a, p->v, p->v, f);
     tribo_accept(c, p->v, feq);
     tribo_get_slip(c, mode);
@@ -51,6 +52,25 @@ TEST(hot_paths)
         }
     }
     require(memory_calls() == before, "%zu allocations", memory_calls() - before);
+    tribo_destroy(c);
+}
+
+TEST(planar)
+{
+    struct random g = random_of(_i);
+    struct recipe recipe = recipe_regular(&g, USUAL);
+    struct problem p = problem_create(&g, &recipe);
+    tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
+    assert_ok(tribo_set_planar(c, 1, first));
+    const size_t before = memory_calls();
+    for (int k = 0; k < 5; k++) {
+        work(c, &p);
+        for (size_t i = 0; i < p.n; i++) {
+            p.v[i] *= -0.7;
+        }
+    }
+    require(memory_calls() == before, "%zu allocations", memory_calls() - before);
+    require(count_of(c, TRIBO_COUNT_SOLVES) > 0, "nothing was solved");
     tribo_destroy(c);
 }
 
@@ -159,13 +179,39 @@ static int set_dense_diagonal(tribo_context *c)
     return tribo_set_operator_dense(c, r);
 }
 
+static int set_planar(tribo_context *c)
+{
+    return tribo_set_planar(c, 1, first);
+}
+
+/* An operator and a clone of a context with planar contacts. */
+static int copy_planar(tribo_context *c)
+{
+    tribo_context *copy, *other = NULL;
+    if (tribo_clone(c, &copy)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    int status = tribo_set_planar(copy, 1, first);
+    status = status ? status : set_dense(copy);
+    status = status ? status : tribo_clone(copy, &other);
+    if (status) {
+        tribo_set_message(c, status, tribo_message(copy));
+    }
+    tribo_destroy(other);
+    tribo_destroy(copy);
+    return status;
+}
+
 static const struct {
     const char *name;
     int (*call)(tribo_context *c);
     int has_message;
 } calls[] = {
-    {"create", create, 0}, {"clone", clone, 1},   {"diagonal", set_diagonal, 1}, {"dense", set_dense, 1},
-    {"csr", set_csr, 1},   {"mass", set_mass, 1}, {"callback", set_callback, 1}, {"diagonal as dense", set_dense_diagonal, 1},
+    {"create", create, 0},         {"clone", clone, 1},
+    {"diagonal", set_diagonal, 1}, {"dense", set_dense, 1},
+    {"csr", set_csr, 1},           {"mass", set_mass, 1},
+    {"callback", set_callback, 1}, {"diagonal as dense", set_dense_diagonal, 1},
+    {"planar", set_planar, 1},     {"planar copy", copy_planar, 1},
 };
 
 /* A context with islands {0, 1} and {2}. */
@@ -255,5 +301,5 @@ TEST(refusals)
     require(memory_live() == none, "%ld blocks leak", memory_live() - none);
 }
 
-TEST_MAIN("allocation", {hot_paths, 24}, {hot_paths_of_a_sparse_group, 2}, {failures, COUNT(calls)},
+TEST_MAIN("allocation", {hot_paths, 24}, {planar, 4}, {hot_paths_of_a_sparse_group, 2}, {failures, COUNT(calls)},
           {failures_of_a_sparse_group, 2}, {refusals, 1})

@@ -119,8 +119,8 @@ TEST(motion)
     const struct {
         int law;
         double speed, carried;
-    } cases[] = {{TRIBO_COULOMB, 1e-9, 1.0},      {TRIBO_KARNOPP, 1.01, 1.0}, {TRIBO_QUINN, 1.0, 1.0},
-                 {TRIBO_QUINN_REVERSAL, 3.0, 1.0}, {TRIBO_SMOOTH, 0.5, tanh(0.5)}, {TRIBO_SMOOTH, 7.0, tanh(7.0)},
+    } cases[] = {{TRIBO_COULOMB, 1e-9, 1.0},         {TRIBO_KARNOPP, 1.01, 1.0},         {TRIBO_QUINN, 1.0, 1.0},
+                 {TRIBO_QUINN_REVERSAL, 3.0, 1.0},   {TRIBO_SMOOTH, 0.5, tanh(0.5)},     {TRIBO_SMOOTH, 7.0, tanh(7.0)},
                  {TRIBO_VELOCITY_LIMITED, 0.5, 0.5}, {TRIBO_VELOCITY_LIMITED, 2.0, 1.0}, {TRIBO_VELOCITY_LIMITED, 0.0, 0.0}};
     for (size_t k = 0; k < COUNT(cases); k++) {
         const double epsilon = 0.1, v[2] = {0.6 * cases[k].speed * epsilon, -0.8 * cases[k].speed * epsilon};
@@ -258,5 +258,5 @@ TEST(ellipse)
     tribo_destroy(c);
 }
 
-TEST_MAIN("planar", {arguments, 1}, {large_groups, 1}, {undone, 1}, {rest, 4}, {motion, 1}, {lens, 1}, {line, 4}, {flat, 2}, {open, 1},
-          {immovable, 1}, {ellipse, 1})
+TEST_MAIN("planar", {arguments, 1}, {large_groups, 1}, {undone, 1}, {rest, 4}, {motion, 1}, {lens, 1}, {line, 4}, {flat, 2},
+          {open, 1}, {immovable, 1}, {ellipse, 1})

@@ -71,7 +71,8 @@ static void project(int wide, const long double *c, const long double *z, long d
 {
     const long double length = norm(wide, c), w[2] = {z[0] + c[0], wide == 2 ? z[1] + c[1] : 0.0L};
     const long double from = norm(wide, z), beyond = norm(wide, w);
-    const long double height = sqrtl(fmaxl((1.0L - 0.5L * length) * (1.0L + 0.5L * length), 0.0L)), per = length > 0.0L ? height / length : 0.0L;
+    const long double height = sqrtl(fmaxl((1.0L - 0.5L * length) * (1.0L + 0.5L * length), 0.0L)),
+                      per = length > 0.0L ? height / length : 0.0L;
     const long double x = wide == 2 ? c[0] : 0.0L, t = wide == 2 ? c[1] : 0.0L;
     const long double candidates[5][2] = {{z[0], z[1]},
                                           {z[0] / from, z[1] / from},
@@ -101,12 +102,13 @@ static long double stiffness(const struct scene *s, size_t i)
     if (s->wide[i] == 1) {
         return a;
     }
-    const long double d = (long double)b[1] * b[1] * s->p.r[(i + 1) * n + i + 1], m = (long double)b[0] * b[1] * s->p.r[i * n + i + 1];
+    const long double d = (long double)b[1] * b[1] * s->p.r[(i + 1) * n + i + 1],
+                      m = (long double)b[0] * b[1] * s->p.r[i * n + i + 1];
     return 0.5L * (a + d) + hypotl(0.5L * (a - d), m);
 }
 
-/* Where one step of the projection takes the contact at i, in parts of limits, from forces f; *noise: what rounding of f's sums may
- * make of it. A contact that slides: where it is. */
+/* Where one step of the projection takes the contact at i, in parts of limits, from forces f; *noise: what rounding of f's sums
+ * may make of it. A contact that slides: where it is. */
 static void fixed_point(const struct scene *s, size_t i, int relaxes, const double *f, long double *y, double *noise)
 {
     const struct problem *p = &s->p;
@@ -210,8 +212,8 @@ static void check_solution(const struct scene *s, int relaxes, const double *f, 
     *ended += (size_t)done;
 }
 
-/* Of every rank, discs, ellipses, lines, lenses and intervals; _i: decades of masses, arms and limits, so that masses differ by up to
- * 1e8. */
+/* Of every rank, discs, ellipses, lines, lenses and intervals; _i: decades of masses, arms and limits, so that masses differ by
+ * up to 1e8. */
 TEST(random_problems)
 {
     struct random g = random_of(_i);

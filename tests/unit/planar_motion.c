@@ -1,8 +1,9 @@
-/* Planar contacts in motion: the order of what is integrated with them, closed forms, and what a pair of scalar contacts would do. */
+/* Planar contacts in motion: the order of what is integrated with them, closed forms, and what a pair of scalar contacts would
+ * do. */
 #include "support.h"
 
-/* x'' + kx x = p sin 0.7 t + f, y'' + ky y = 1.2 cos(0.7 t + 0.4) + f, with one planar contact of limit 1; or, if turning, with a load
- * of size 1 that turns at that. */
+/* x'' + kx x = p sin 0.7 t + f, y'' + ky y = 1.2 cos(0.7 t + 0.4) + f, with one planar contact of limit 1; or, if turning, with
+ * a load of size 1 that turns at that. */
 struct oscillator {
     tribo_context *c;
     double kx, ky, p, turning;
@@ -197,7 +198,8 @@ TEST(circle)
     tribo_destroy(o.c);
 }
 
-/* A block kicked sideways on an incline with mu = tan(slope): v (1 + cos phi) stays, phi from straight down, so that half of the speed
+/* A block kicked sideways on an incline with mu = tan(slope): v (1 + cos phi) stays, phi from straight down, so that half of
+ * the speed
  * is left in the end. Returns speed and sine of phi. */
 static void slide_down(int planar, double *speed, double *across)
 {

@@ -20,3 +20,38 @@ gsl_spmatrix *beam_matrix(const char *name)
     gsl_spmatrix_free(lower);
     return whole;
 }
+
+/* Rows of dofs.txt, counted from 1. */
+tribo_system *beam_with_contacts(double limit)
+{
+    gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"), *direction = gsl_spmatrix_alloc(3, BEAM_DOFS);
+    const size_t rows[] = {117, 189, 261};
+    tribo_system *sys = NULL;
+    for (size_t i = 0; i < 3; i++) {
+        gsl_spmatrix_set(direction, i, rows[i] - 1, 1.0);
+    }
+    assert_ok(tribo_system_linear_sparse(&sys, mass, NULL, stiffness, direction, BEAM_MODES, NULL, 0));
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+    assert_ok(tribo_system_set_damping_ratio(sys, 0.002));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
+    return sys;
+}
+
+void beam_add_load(tribo_system *sys, double omega)
+{
+    double load[BEAM_DOFS] = {0};
+    const size_t tip = 264;
+    load[tip - 1] = 0.1;
+    assert_ok(tribo_system_add_load(sys, omega, NULL, load));
+}
+
+tribo_system *beam_with_damper(double limit)
+{
+    double omega[BEAM_MODES];
+    tribo_system *sys = beam_with_contacts(limit);
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    beam_add_load(sys, omega[0]);
+    return sys;
+}

@@ -69,6 +69,33 @@ static int make_reduced(tribo_system **sys, tribo_driver **drv)
     return make_linear(sys, model, 0, 3);
 }
 
+/* A chain long enough for sparse factors, with static responses; its copy. */
+static int make_sparse(tribo_system **sys, tribo_driver **drv)
+{
+    enum { MASSES = 210 };
+    gsl_spmatrix *m = gsl_spmatrix_alloc(MASSES, MASSES), *k = gsl_spmatrix_alloc(MASSES, MASSES),
+                 *j = gsl_spmatrix_alloc(2, MASSES);
+    tribo_system *from = NULL;
+    (void)drv;
+    for (size_t i = 0; i < MASSES; i++) {
+        gsl_spmatrix_set(m, i, i, 4.0);
+        gsl_spmatrix_set(k, i, i, 2.0);
+        for (size_t to = i ? i - 1 : 1; to <= i + 1 && to < MASSES; to += 2) {
+            gsl_spmatrix_set(m, i, to, 1.0);
+            gsl_spmatrix_set(k, i, to, -1.0);
+        }
+    }
+    gsl_spmatrix_set(j, 0, 50, 1.0);
+    gsl_spmatrix_set(j, 1, 120, 1.0);
+    int status = tribo_system_reduced(&from, m, k, j, 3, 1, NULL, 0);
+    status = status ? status : tribo_system_clone(from, sys);
+    tribo_system_destroy(from);
+    gsl_spmatrix_free(m);
+    gsl_spmatrix_free(k);
+    gsl_spmatrix_free(j);
+    return status;
+}
+
 static int make_driver(tribo_system **sys, tribo_driver **drv)
 {
     const int status = tribo_system_oscillator(sys, 1.0, 1.5, 0.5);
@@ -140,13 +167,39 @@ static int make_graded(tribo_system **sys, tribo_driver **drv)
     return tribo_system_linear(sys, 3, 1, mass, NULL, stiffness, direction, 2, NULL, 0);
 }
 
+/* A periodic motion, one of a family since a contact never slips, and what its period holds. */
+static int find_periodic(tribo_system **sys, tribo_driver **drv, const char *method)
+{
+    const double limits[CONTACTS] = {1e3, 0.1, 0.1}, c[DIMENSION] = {1.0};
+    double y[DIMENSION] = {0}, contact[CONTACTS], a, b;
+    int status = make_linear(sys, model, 1, 0);
+    status = status ? status : tribo_set_limit(tribo_system_context(*sys), limits);
+    status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
+    status = status ? status : tribo_driver_create(drv, *sys, method, 1.0, 1e-13, 0.0);
+    status = status ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI, y);
+    status = status ? status : tribo_driver_period_extremes(*drv, c, &a, &b);
+    return status ? status : tribo_driver_period_stick(*drv, contact);
+}
+
+static int make_periodic(tribo_system **sys, tribo_driver **drv)
+{
+    return find_periodic(sys, drv, "exact");
+}
+
+static int make_periodic_event(tribo_system **sys, tribo_driver **drv)
+{
+    return find_periodic(sys, drv, "event");
+}
+
 static const struct {
     const char *name;
     int (*make)(tribo_system **sys, tribo_driver **drv);
-} makers[] = {{"chain", make_chain},        {"belt", make_belt},       {"oscillator", make_oscillator}, {"full", make_full},
-              {"diagonal", make_diagonal},  {"reduced", make_reduced}, {"driver", make_driver},         {"loaded", make_loaded},
-              {"exact", make_exact},        {"coupled", make_coupled}, {"graded", make_graded},         {"copy", make_copy},
-              {"full copy", make_full_copy}};
+} makers[] = {{"chain", make_chain},         {"belt", make_belt},         {"oscillator", make_oscillator},
+              {"full", make_full},           {"diagonal", make_diagonal}, {"reduced", make_reduced},
+              {"driver", make_driver},       {"loaded", make_loaded},     {"exact", make_exact},
+              {"coupled", make_coupled},     {"graded", make_graded},     {"copy", make_copy},
+              {"full copy", make_full_copy}, {"periodic", make_periodic}, {"periodic event", make_periodic_event},
+              {"sparse", make_sparse}};
 
 /* Fails one allocation after the other, until there are no more. */
 TEST(failures)

@@ -13,7 +13,6 @@
 
 #include "../../common/real.h"
 
-
 enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
 
 /* Distances of so much rounding are none. */
@@ -193,9 +192,9 @@ enum { VECTORS = 19 }; /* of doubles, press being two of them */
 /* Makes vectors of store [VECTORS s]. */
 static void lay_out(struct disc_qp *p, double *store, size_t s)
 {
-    double **const vector[] = {&p->pull,   &p->shift,    &p->y,      &p->gradient, &p->noise, &p->gain,  &p->to,      &p->outward,
-                               &p->curvature, &p->step,  &p->spare,  &p->best,     &p->from,  &p->aim,   &p->slide,   &p->factor.q,
-                               &p->factor.row, &p->press};
+    double **const vector[] = {&p->pull, &p->shift,   &p->y,         &p->gradient, &p->noise,      &p->gain,
+                               &p->to,   &p->outward, &p->curvature, &p->step,     &p->spare,      &p->best,
+                               &p->from, &p->aim,     &p->slide,     &p->factor.q, &p->factor.row, &p->press};
     for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
         *vector[k] = store + k * s;
     }

@@ -14,19 +14,19 @@
 
 /* What a contact's place leaves y to go: its direction, or a direction in the plane. */
 struct freedom {
-    size_t at;        /* first direction of the contact */
+    size_t at;         /* first direction of the contact */
     double tangent[2]; /* the second is 0 for an interval */
-    double curvature; /* of the rim, times what presses against it */
+    double curvature;  /* of the rim, times what presses against it */
 };
 
 struct disc_qp {
     /* the problem */
-    size_t size;         /* directions */
-    unsigned char *wide; /* [size] how many directions the contact that begins with this one has: 1, 2, or 0 if none does */
-    double *s;           /* [size][size] */
+    size_t size;          /* directions */
+    unsigned char *wide;  /* [size] how many directions the contact that begins with this one has: 1, 2, or 0 if none does */
+    double *s;            /* [size][size] */
     double *pull, *shift; /* [size] shift: c of the lenses */
     /* what is found; in: where to begin */
-    double *y; /* [size] */
+    double *y;       /* [size] */
     double residual; /* how far y is from the fixed point, at most, in parts of limits */
     /* at y */
     double *gradient, *noise; /* [size] s y + pull, and what of it may be rounding */
@@ -63,8 +63,8 @@ void tribo_disc_gains(struct disc_qp *p);
 /* gradient and noise at y. */
 void tribo_disc_gradients(struct disc_qp *p);
 
-/* Where y - gain gradient is nearest to the set: to, outward, curvature and place. Returns the farthest that y is from there, in parts
- * of what may be rounding. */
+/* Where y - gain gradient is nearest to the set: to, outward, curvature and place. Returns the farthest that y is from there,
+ * in parts of what may be rounding. */
 double tribo_disc_places(struct disc_qp *p);
 
 /* Newton's matrix of the freedoms that the places leave. */

@@ -33,6 +33,9 @@ static double offset(const struct disc_qp *p, size_t i, size_t k, int d)
     return p->y[i + k] + (d ? p->shift[i + k] : 0.0);
 }
 
+/* What rounding may take for none. */
+#define NO_ROOM 1e-20
+
 /* Without cancellation where y is near the rim in one direction only: 1 - |x|^2 = (1 - |x|)(1 + |x|). */
 static double room_of(const struct disc_qp *p, size_t i, int d)
 {
@@ -41,7 +44,7 @@ static double room_of(const struct disc_qp *p, size_t i, int d)
         x[k] = offset(p, i, k, d);
     }
     const double length = tribo_length(p->wide[i], x);
-    return 0.5 * (1.0 - length) * (1.0 + length);
+    return greater(0.5 * (1.0 - length) * (1.0 + length), NO_ROOM);
 }
 
 /* Average of room times press. */
@@ -110,7 +113,7 @@ static double press_step(const struct disc_qp *p, size_t i, int d, double aim)
     for (size_t k = 0; k < p->wide[i]; k++) {
         turn += offset(p, i, k, d) * p->step[i + k];
     }
-    return aim / room - press + press / room * turn;
+    return aim / room - press + product(press / room, turn);
 }
 
 static double longest_step(const struct disc_qp *p, double aim)
@@ -130,8 +133,8 @@ static double longest_step(const struct disc_qp *p, double aim)
     return NEARLY * length;
 }
 
-/* y and press go by length along their steps. A press that is far from what its room asks for would let y cross the disc again and
- * again where nothing else holds it. */
+/* y and press go by length along their steps. A press that is far from what its room asks for would let y cross the disc again
+ * and again where nothing else holds it. */
 static void advance(struct disc_qp *p, double length, double aim)
 {
     for (size_t i = 0; i < p->size; i += p->wide[i]) {

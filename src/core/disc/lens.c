@@ -36,7 +36,8 @@ struct corner tribo_lens_corner(const double *c, const double *z)
 {
     const double length = tribo_length(2, c), along[2] = {c[0] / length, c[1] / length}, half = 0.5 * length;
     const double across = along[0] * z[1] - along[1] * z[0];
-    return (struct corner){{along[0], along[1]}, half, sqrt(greater((1.0 - half) * (1.0 + half), 0.0)), across < 0.0 ? -1.0 : 1.0};
+    return (struct corner){
+        {along[0], along[1]}, half, sqrt(greater((1.0 - half) * (1.0 + half), 0.0)), across < 0.0 ? -1.0 : 1.0};
 }
 
 static int project_interval(double c, double z, double *y)

@@ -1,6 +1,7 @@
 /* Newton's method on the projection equations y = P(y - gain gradient), P being the projection onto the lenses. The projection
  * tells the place of each contact, and its derivative there what is left to move: all of it inside; along the rim on a rim, as
- * if on a spring, since what presses outwards turns with it; nothing at a corner. Along what is left the equations are symmetric. */
+ * if on a spring, since what presses outwards turns with it; nothing at a corner. Along what is left the equations are
+ * symmetric. */
 #include "disc_qp.h"
 
 #include <float.h>
@@ -11,6 +12,9 @@
 
 /* Of a set of redundant contacts this counts as balanced, in parts of limits: the rounding of whoever computed what pulls. */
 #define DISAGREEMENT 5e-13
+
+/* Diagonal entries of Newton's matrix that are less than this part of the largest: null vectors have squares all the same. */
+#define NEXT_TO_NOTHING 1e-200
 
 /* No two points of a set are so far apart, in parts of limits. */
 #define BEYOND_ALL 4.0
@@ -44,16 +48,14 @@ void tribo_disc_gradients(struct disc_qp *p)
     }
 }
 
-/* As much of y - gain gradient as has squares: only its direction matters beyond. */
+/* z = y - gain gradient, or as far in its direction as has squares. */
 static void find_target(const struct disc_qp *p, size_t i, double *z)
 {
-    enum { ROOM = 500 };
+    const double most = 1e150, length = tribo_length(p->wide[i], p->gradient + i);
+    const int far = product(p->gain[i], length) > most;
     for (size_t k = 0; k < p->wide[i]; k++) {
-        z[k] = p->y[i + k] - product(p->gain[i], p->gradient[i + k]);
-    }
-    const double length = tribo_length(p->wide[i], z), most = ldexp(1.0, ROOM);
-    for (size_t k = 0; length > most && k < p->wide[i]; k++) {
-        z[k] *= most / length;
+        const double g = p->gradient[i + k];
+        z[k] = p->y[i + k] - (far ? g / length * most : p->gain[i] * g);
     }
 }
 
@@ -117,7 +119,7 @@ static double along(const struct freedom *e, const double *x)
 void tribo_disc_factorize(struct disc_qp *p, size_t size)
 {
     struct box_qp *f = &p->factor;
-    double *scale = f->q;
+    double *scale = f->q, largest = 0.0;
     p->group = (struct group){.size = size};
     f->group = &p->group;
     f->sets = &p->sets;
@@ -125,6 +127,10 @@ void tribo_disc_factorize(struct disc_qp *p, size_t size)
     f->scale = scale;
     f->count = size;
     for (size_t k = 0; k < size; k++) {
+        largest = greater(largest, p->matrix[k * size + k]);
+    }
+    for (size_t k = 0; k < size; k++) {
+        p->matrix[k * size + k] = greater(p->matrix[k * size + k], NEXT_TO_NOTHING * largest);
         scale[k] = tribo_scale(p->matrix[k * size + k]);
         f->near[k] = k;
         f->at[k] = FREE;
@@ -134,14 +140,29 @@ void tribo_disc_factorize(struct disc_qp *p, size_t size)
     p->redundant = tribo_null_basis(f);
 }
 
+/* What a factor with pivots next to nothing makes of numbers of this size are numbers. */
+#define ROOM 200
+
 void tribo_disc_backsolve(struct disc_qp *p)
 {
+    double most = 0.0;
+    int e;
+    for (size_t k = 0; k < p->group.size; k++) {
+        most = greater(most, fabs(p->step[k]));
+    }
+    frexp(most, &e);
+    for (size_t k = 0; k < p->group.size; k++) {
+        p->step[k] = ldexp(p->step[k], -e - ROOM);
+    }
     tribo_null_project(&p->factor, p->redundant, p->step);
     tribo_dense_solve(&p->factor, p->step);
     for (size_t d = 0; d < p->sets.dependents; d++) {
         p->step[p->factor.order[p->sets.rank + d]] = 0.0;
     }
     tribo_null_project(&p->factor, p->redundant, p->step);
+    for (size_t k = 0; k < p->group.size; k++) {
+        p->step[k] = product(product(p->step[k], ldexp(1.0, ROOM)), ldexp(1.0, e));
+    }
 }
 
 void tribo_disc_linearize(struct disc_qp *p)
@@ -197,7 +218,7 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
         distance = greater(distance, product(p->gain[p->freedom[k].at], fabs(pull[k])));
     }
     for (size_t k = 0; k < p->freedoms; k++) {
-        pull[k] = distance > DISAGREEMENT ? BEYOND_ALL / most * pull[k] : 0.0;
+        pull[k] = distance > DISAGREEMENT ? BEYOND_ALL * (pull[k] / most) : 0.0;
     }
     spread(p, pull, move);
 }

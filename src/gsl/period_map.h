@@ -1,0 +1,52 @@
+/* Where the motion leads in a period, and the derivative of that. Where all that drives it is odd (load and bases half a period
+ * later are minus what they are), minus the state half a period later serves as well: such a map done twice is a period. */
+#ifndef TRIBO_PERIOD_MAP_H
+#define TRIBO_PERIOD_MAP_H
+
+#include "energy_norm.h"
+#include "variation.h"
+
+/* Begins with y, [n] as all of this, x in coordinates of the energy norm. */
+struct point {
+    double *y, *x;
+    double *end, *image; /* the state after the span; and the image of x: that, or minus that */
+    double *derivative;  /* [n][n] of image by x */
+    double residual;     /* |image - x| */
+    double size;         /* the largest state on the way */
+};
+
+struct period_map {
+    tribo_driver *drv;
+    tribo_system *sys;
+    struct events *events;
+    size_t n; /* 2 ndof */
+    struct energy_norm norm;
+    size_t revision; /* of the system whose norm it is */
+    struct company company;
+    struct variation variation;
+    double *y, *x;          /* [n + 1] a state; [n] one in coordinates of the norm */
+    double *unit, *work;    /* [n][n] perturbed states to begin with; workspace */
+    double t, period, span; /* span: of an integration */
+    int odd;                /* span is half a period */
+    double size, least;     /* the largest state of this integration so far; below that motions are rounding */
+    int moved;              /* there has been an integration */
+    size_t halves;          /* half periods integrated */
+};
+
+/* 1, or 0 if out of memory; tribo_period_map_free takes what failed too. */
+int tribo_period_map_create(struct period_map *m, tribo_driver *drv);
+void tribo_period_map_free(struct period_map *m);
+
+/* These return a status, its message on the driver. The first makes ready for the system as it is; the second one follows the
+ * motion from p->x, and finds the rest of p; with the third one *residual is that of the whole period. */
+int tribo_period_map_prepare(struct period_map *m, double t, double period);
+int tribo_period_map_follow(struct period_map *m, struct point *p);
+int tribo_period_map_complete(struct period_map *m, const struct point *p, double *residual);
+
+/* Follows the motion from y through a period, with company. */
+int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company);
+
+/* From here on by whole periods, or, if what drives the system is odd, by halves. */
+void tribo_period_map_choose(struct period_map *m, int odd);
+
+#endif

@@ -1,0 +1,100 @@
+/* Periodic motions: what callers see of them. */
+#include "shooting.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A load goes round a whole number of times in a period, to this part of a turn. */
+#define WHOLE 1e-9
+
+static int unsupported(tribo_driver *drv)
+{
+    return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact or event",
+                             drv->method->name);
+}
+
+static int check_period(tribo_driver *drv, double t, double period)
+{
+    if (!isfinite(period)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "period = %g is not finite", period);
+    }
+    if (period <= 0.0) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_POSITIVE, "period = %g is not positive", period);
+    }
+    return t + 0.5 * period > t && t + period > t + 0.5 * period && isfinite(t + period)
+               ? TRIBO_OK
+               : tribo_driver_fail(drv, TRIBO_ERR_STEP, "period = %g is lost beside t = %.17g", period, t);
+}
+
+static int check_loads(tribo_driver *drv, double period)
+{
+    static const char *const kind[] = {[DRIVES_LOAD] = "load", [DRIVES_BASE] = "base motion", [DRIVES_LIMIT] = "limit"};
+    const tribo_system *sys = drv->sys;
+    size_t of_kind[] = {0, 0, 0};
+    if (sys->tables || sys->limits.knots) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "loads and limits that follow a table are not periodic");
+    }
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *w = &sys->harmonic[k];
+        const double turns = w->omega / (2.0 * acos(-1.0)) * period;
+        if (w->count > 0 && !(fabs(turns - round(turns)) <= WHOLE)) {
+            return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
+                                     "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
+                                     of_kind[w->drives], w->omega, period, turns);
+        }
+        of_kind[w->drives]++;
+    }
+    return TRIBO_OK;
+}
+
+/* Derivatives of motions know no jump of forces where a contact breaks away, and none that follow the speed. */
+static int check_static(tribo_driver *drv)
+{
+    double *ratio = drv->sys->feq;
+    tribo_get_static(drv->sys->contacts, ratio, NULL);
+    for (size_t i = 0; i < drv->sys->ncontact; i++) {
+        if (ratio[i] > 1.0) {
+            return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                     "periodic motions are found without static limits, and ratio[%zu] = %g", i, ratio[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int check_state(tribo_driver *drv, double t, const double *y)
+{
+    const int status = y ? tribo_system_check_state(drv->sys, t, y) : TRIBO_ERR_NULL;
+    return status ? tribo_driver_fail(drv, status, "%s", y ? tribo_message(drv->sys->contacts) : "y is NULL") : TRIBO_OK;
+}
+
+int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = drv->method->open ? check_state(drv, t, y) : unsupported(drv);
+    status = status ? status : check_period(drv, t, period);
+    status = status ? status : check_loads(drv, period);
+    status = status ? status : check_static(drv);
+    if (status) {
+        return status;
+    }
+    drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
+    return drv->shooting ? tribo_shooting_find(drv->shooting, t, period, y)
+                         : tribo_driver_fail(drv, TRIBO_ERR_MEMORY,
+                                             "out of memory for periodic motions of %zu degrees of freedom", drv->sys->ndof);
+}
+
+int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im)
+{
+    if (!drv || !re || !im) {
+        return TRIBO_ERR_NULL;
+    }
+    const struct shooting *s = drv->shooting;
+    if (!s || !s->found) {
+        return TRIBO_ERR_STATE;
+    }
+    memcpy(re, s->re, s->map.n * sizeof *re);
+    memcpy(im, s->im, s->map.n * sizeof *im);
+    return TRIBO_OK;
+}

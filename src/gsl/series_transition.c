@@ -1,0 +1,107 @@
+#include "series_transition.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A series of exponentials over a step of method event ends long before. */
+#define MOST_TERMS 400
+
+void tribo_series_transition_free(struct series_transition *x)
+{
+    free(x->project);
+    free(x->holds);
+    memset(x, 0, sizeof *x);
+}
+
+static int reserve(struct series_transition *x, const tribo_system *sys, size_t columns)
+{
+    const size_t n = sys->ndof;
+    x->holds = malloc(sys->ncontact + 1);
+    x->project = malloc((3 * n * n + 3 * n * columns + 1) * sizeof *x->project);
+    if (!x->holds || !x->project) {
+        tribo_series_transition_free(x);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", columns);
+    }
+    x->stiff = x->project + n * n;
+    x->damp = x->stiff + n * n;
+    x->q = x->damp + n * n;
+    x->u = x->q + n * columns;
+    x->next = x->u + n * columns;
+    x->columns = columns;
+    return TRIBO_OK;
+}
+
+/* to [ndof][ndof] = factor P a, a [ndof][ndof] transposed in `columns`, or no rows: the identity. */
+static int project(struct stick_slip *m, const tribo_system *sys, const struct matrix *a, double factor, double *to)
+{
+    const size_t n = sys->ndof;
+    double *columns = a ? tribo_matrix_transpose_to_dense(a) : calloc(n * n + 1, sizeof *columns);
+    int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu columns", n);
+    for (size_t j = 0; !status && j < n; j++) {
+        columns[j * n + j] += a ? 0.0 : 1.0;
+        status = tribo_stick_slip_project(m, sys, m->still, columns + j * n);
+        for (size_t i = 0; i < n; i++) {
+            to[i * n + j] = factor * columns[j * n + i];
+        }
+    }
+    free(columns);
+    return status;
+}
+
+/* The matrices for the contacts that hold. */
+static int update(struct series_transition *x, struct stick_slip *m, const tribo_system *sys)
+{
+    if (x->known && x->revision == sys->revision && memcmp(x->holds, m->holds, sys->ncontact) == 0) {
+        return TRIBO_OK;
+    }
+    memcpy(x->holds, m->holds, sys->ncontact);
+    x->revision = sys->revision;
+    int status = project(m, sys, NULL, 1.0, x->project);
+    status = status ? status : project(m, sys, &sys->stiffness, -1.0, x->stiff);
+    if (!status && sys->damping.rows) {
+        status = project(m, sys, &sys->damping, -1.0, x->damp);
+    }
+    x->known = !status;
+    return status;
+}
+
+/* The next terms, x^(k+1)/(k+1)!, from those before. */
+static void differentiate(struct series_transition *x, const tribo_system *sys, double part)
+{
+    const size_t n = sys->ndof, c = x->columns;
+    memset(x->next, 0, n * c * sizeof *x->next);
+    tribo_multiply_add(n, n, c, part, x->stiff, x->q, x->next);
+    if (sys->damping.rows) {
+        tribo_multiply_add(n, n, c, part, x->damp, x->u, x->next);
+    }
+    for (size_t i = 0; i < n * c; i++) {
+        x->q[i] = part * x->u[i];
+    }
+    memcpy(x->u, x->next, n * c * sizeof *x->u);
+}
+
+int tribo_series_transition(struct series_transition *x, struct stick_slip *m, const tribo_system *sys, double tau,
+                            size_t columns, double *v)
+{
+    const size_t n = sys->ndof, half = n * columns;
+    int status = x->project ? TRIBO_OK : reserve(x, sys, columns);
+    status = status ? status : update(x, m, sys);
+    if (status) {
+        return status;
+    }
+    memcpy(x->q, v, half * sizeof *v);
+    memset(x->u, 0, half * sizeof *v);
+    tribo_multiply_add(n, n, columns, 1.0, x->project, v + half, x->u);
+    memcpy(v + half, x->u, half * sizeof *v);
+    for (size_t k = 1, small = 0; small < 2 && k < MOST_TERMS; k++) {
+        differentiate(x, sys, tau / (double)k);
+        tribo_add(v, 1.0, x->q, half);
+        tribo_add(v + half, 1.0, x->u, half);
+        small = tribo_largest(x->q, half) <= DBL_EPSILON * tribo_largest(v, half) &&
+                        tribo_largest(x->u, half) <= DBL_EPSILON * tribo_largest(v + half, half)
+                    ? small + 1
+                    : 0;
+    }
+    return TRIBO_OK;
+}

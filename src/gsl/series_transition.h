@@ -1,0 +1,25 @@
+/* The derivative of a step of method "event" by the state that it begins with. */
+#ifndef TRIBO_SERIES_TRANSITION_H
+#define TRIBO_SERIES_TRANSITION_H
+
+#include "stick_slip.h"
+
+/* Accelerations of perturbed states, -P AK q - P AC q', where P takes out what would move contacts that hold. */
+struct series_transition {
+    size_t columns;
+    unsigned char *holds; /* [ncontact] the contacts that P is for */
+    int known;            /* P is known */
+    size_t revision;      /* of the system */
+    double *project;      /* [ndof][ndof] P, */
+    double *stiff, *damp; /* -P AK and -P AC */
+    double *q, *u, *next; /* [ndof][columns] terms of the series */
+};
+
+void tribo_series_transition_free(struct series_transition *x);
+
+/* Moves perturbations v [2 ndof][columns] of the state by tau, contacts that hold in m being held. columns are the same in every
+ * call. Returns a status, its message on the system's context. */
+int tribo_series_transition(struct series_transition *x, struct stick_slip *m, const tribo_system *sys, double tau,
+                            size_t columns, double *v);
+
+#endif

@@ -1,0 +1,30 @@
+/* A linear combination of the state in a phase, in closed form: Re(sum c_p e^{lambda_p s}) + sum a_j s^j, 0 <= s <= tau. */
+#ifndef TRIBO_SIGNAL_H
+#define TRIBO_SIGNAL_H
+
+#include <stddef.h>
+
+struct signal {
+    size_t terms, degree;
+    size_t room[2];            /* for terms, and for degrees */
+    double *cr, *ci, *lr, *li; /* [terms] */
+    double *a;                 /* [degree + 1] */
+    double tau;
+};
+
+/* Room for so many terms, none yet, and powers, all zero. 1, or 0 if out of memory. */
+int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree);
+void tribo_signal_free(struct signal *s);
+
+void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double li);
+
+/* to[3] = the value and its first two derivatives. */
+void tribo_signal_at(const struct signal *s, double at, double *to);
+
+/* Lowers *least and raises *most to what it has there. slope is workspace, freed by the caller. 1, or 0 if out of memory. */
+int tribo_signal_extremes(const struct signal *s, struct signal *slope, double *least, double *most);
+
+/* *re + i *im += the integral of it times e^{-i omega s}. */
+void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im);
+
+#endif

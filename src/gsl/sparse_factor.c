@@ -1,0 +1,272 @@
+#include "sparse_factor.h"
+#include "../common/real.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "tribo/tribo.h"
+
+#if defined(TRIBO_CHOLMOD)
+
+#include <cholmod.h>
+
+struct sparse_factor {
+    cholmod_common common;
+    cholmod_factor *l;
+    cholmod_dense *solution, *work[2]; /* kept from solve to solve */
+    double *column;                    /* [n] workspace */
+};
+
+int tribo_sparse_available(void)
+{
+    return 1;
+}
+
+static int status_of(const cholmod_common *common)
+{
+    return common->status == CHOLMOD_OUT_OF_MEMORY || common->status == CHOLMOD_TOO_LARGE ? TRIBO_ERR_MEMORY
+           : common->status == CHOLMOD_NOT_POSDEF                                         ? TRIBO_ERR_INDEFINITE
+                                                                                          : TRIBO_OK;
+}
+
+/* The matrix as CHOLMOD sees it: its rows are columns there, which is the same for a symmetric one. */
+static cholmod_sparse view_of(const struct matrix *a)
+{
+    return (cholmod_sparse){.nrow = a->rows,
+                            .ncol = a->cols,
+                            .nzmax = a->first[a->rows],
+                            .p = a->first,
+                            .i = a->col,
+                            .x = a->val,
+                            .stype = 1,
+                            .itype = CHOLMOD_LONG,
+                            .xtype = CHOLMOD_REAL,
+                            .dtype = CHOLMOD_DOUBLE,
+                            .sorted = 1,
+                            .packed = 1};
+}
+
+static void start(cholmod_common *common, int method)
+{
+    cholmod_l_start(common);
+    common->print = 0;
+    common->supernodal = method;
+    common->final_ll = method == CHOLMOD_SUPERNODAL;
+    common->nmethods = 1;
+    common->method[0].ordering = CHOLMOD_AMD;
+    common->postorder = 1;
+    common->quick_return_if_not_posdef = 1;
+}
+
+/* NULL with common->status if out of memory; a factor that stops at row l->minor if a pivot says so. */
+static cholmod_factor *factorize(const struct matrix *a, cholmod_common *common)
+{
+    cholmod_sparse view = view_of(a);
+    cholmod_factor *l = cholmod_l_analyze(&view, common);
+    if (l) {
+        cholmod_l_factorize(&view, l, common);
+    }
+    return l;
+}
+
+static size_t given_row(const cholmod_factor *l, size_t row)
+{
+    return l && row < l->n ? (size_t)((const SuiteSparse_long *)l->Perm)[row] : 0;
+}
+
+static int solve(struct sparse_factor *f, int what, size_t count, double *x)
+{
+    const size_t n = f->l->n;
+    cholmod_dense b = {
+        .nrow = n, .ncol = count, .nzmax = n * count, .d = n, .x = x, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
+    if (!cholmod_l_solve2(what, f->l, &b, NULL, &f->solution, NULL, &f->work[0], &f->work[1], &f->common)) {
+        return 0;
+    }
+    memcpy(x, f->solution->x, n * count * sizeof *x);
+    return 1;
+}
+
+/* Makes the room that single solves take: after this they cannot fail. */
+static int prepare(struct sparse_factor *f)
+{
+    f->column = f->column ? f->column : calloc(f->l->n + 1, sizeof *f->column);
+    return f->column && solve(f, CHOLMOD_A, 1, f->column);
+}
+
+int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where)
+{
+    struct sparse_factor *f = calloc(1, sizeof *f);
+    if (!f) {
+        return TRIBO_ERR_MEMORY;
+    }
+    start(&f->common, CHOLMOD_SUPERNODAL);
+    f->l = factorize(a, &f->common);
+    int status = status_of(&f->common);
+    status = status || (f->l && prepare(f)) ? status : TRIBO_ERR_MEMORY;
+    if (status) {
+        *where = f->l ? given_row(f->l, f->l->minor) : 0;
+        tribo_sparse_factor_free(f);
+        return status;
+    }
+    *factor = f;
+    return TRIBO_OK;
+}
+
+int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from)
+{
+    *factor = NULL;
+    if (!from) {
+        return 1;
+    }
+    struct sparse_factor *f = calloc(1, sizeof *f);
+    if (f) {
+        start(&f->common, CHOLMOD_SUPERNODAL);
+        f->l = cholmod_l_copy_factor(from->l, &f->common);
+    }
+    if (!f || !f->l || !prepare(f)) {
+        tribo_sparse_factor_free(f);
+        return 0;
+    }
+    *factor = f;
+    return 1;
+}
+
+void tribo_sparse_factor_free(struct sparse_factor *f)
+{
+    if (f) {
+        cholmod_l_free_factor(&f->l, &f->common);
+        cholmod_l_free_dense(&f->solution, &f->common);
+        cholmod_l_free_dense(&f->work[0], &f->common);
+        cholmod_l_free_dense(&f->work[1], &f->common);
+        cholmod_l_finish(&f->common);
+        free(f->column);
+        free(f);
+    }
+}
+
+int tribo_sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
+{
+    const int done = solve(f, CHOLMOD_A, count, x);
+    return (count == 1 || prepare(f)) && done;
+}
+
+/* One column after the other of x [n][cols]: first one part of the factor, then the other. */
+static void solve_columns(struct sparse_factor *f, int first, int second, double *x, size_t cols)
+{
+    for (size_t j = 0; j < cols; j++) {
+        for (size_t i = 0; i < f->l->n; i++) {
+            f->column[i] = x[i * cols + j];
+        }
+        solve(f, first, 1, f->column);
+        solve(f, second, 1, f->column);
+        for (size_t i = 0; i < f->l->n; i++) {
+            x[i * cols + j] = f->column[i];
+        }
+    }
+}
+
+void tribo_sparse_factor_half_solve(struct sparse_factor *f, double *x, size_t cols)
+{
+    solve_columns(f, CHOLMOD_P, CHOLMOD_L, x, cols);
+}
+
+void tribo_sparse_factor_half_solve_back(struct sparse_factor *f, double *x, size_t cols)
+{
+    solve_columns(f, CHOLMOD_Lt, CHOLMOD_Pt, x, cols);
+}
+
+/* Columns of L begin with D. sum [n] is workspace. */
+static struct inertia look_at(const cholmod_factor *l, const double *size, double *sum)
+{
+    const SuiteSparse_long *first = l->p, *row = l->i, *count = l->nz;
+    const double *x = l->x;
+    struct inertia found = {0, 0.0};
+    memset(sum, 0, l->n * sizeof *sum);
+    for (size_t k = 0; k < l->n; k++) {
+        const double d = x[first[k]];
+        found.negative += d < 0.0;
+        sum[k] += fabs(d);
+        for (SuiteSparse_long e = first[k] + 1; e < first[k] + count[k]; e++) {
+            sum[row[e]] += x[e] * x[e] * fabs(d);
+        }
+    }
+    for (size_t k = 0; k < l->n; k++) {
+        found.growth = greater(found.growth, sum[k] / fabs(size[given_row(l, k)]));
+    }
+    return found;
+}
+
+int tribo_sparse_inertia(const struct matrix *a, const double *size, struct inertia *found)
+{
+    cholmod_common common;
+    start(&common, CHOLMOD_SIMPLICIAL);
+    cholmod_factor *l = factorize(a, &common);
+    double *sum = malloc((a->rows + 1) * sizeof *sum);
+    int status = l ? status_of(&common) : TRIBO_ERR_MEMORY;
+    status = status || sum ? status : TRIBO_ERR_MEMORY;
+    if (!status) {
+        *found = look_at(l, size, sum);
+    }
+    free(sum);
+    cholmod_l_free_factor(&l, &common);
+    cholmod_l_finish(&common);
+    return status;
+}
+
+#else
+
+int tribo_sparse_available(void)
+{
+    return 0;
+}
+
+int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where)
+{
+    (void)factor;
+    (void)a;
+    (void)where;
+    return TRIBO_ERR_UNSUPPORTED;
+}
+
+int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from)
+{
+    *factor = NULL;
+    return !from;
+}
+
+void tribo_sparse_factor_free(struct sparse_factor *factor)
+{
+    (void)factor;
+}
+
+int tribo_sparse_factor_solve(struct sparse_factor *factor, size_t count, double *x)
+{
+    (void)factor;
+    (void)count;
+    (void)x;
+    return 0;
+}
+
+void tribo_sparse_factor_half_solve(struct sparse_factor *factor, double *x, size_t cols)
+{
+    (void)factor;
+    (void)x;
+    (void)cols;
+}
+
+void tribo_sparse_factor_half_solve_back(struct sparse_factor *factor, double *x, size_t cols)
+{
+    (void)factor;
+    (void)x;
+    (void)cols;
+}
+
+int tribo_sparse_inertia(const struct matrix *a, const double *size, struct inertia *found)
+{
+    (void)a;
+    (void)size;
+    (void)found;
+    return TRIBO_ERR_UNSUPPORTED;
+}
+
+#endif

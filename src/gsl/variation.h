@@ -1,0 +1,32 @@
+/* The derivative of the motion by the state that it began with, along events: perturbations of the state in columns.
+ *
+ * In a phase they move as the structure does without loads and without what slides, contacts at rest being held: a perturbed
+ * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for
+ * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once,
+ * each makes the jump that its force does. Where one breaks away accelerations are continuous, since the problem that decides
+ * about them has one solution: S = I. */
+#ifndef TRIBO_VARIATION_H
+#define TRIBO_VARIATION_H
+
+#include "events.h"
+
+struct variation {
+    struct company company;
+    struct events *events;
+    tribo_system *sys;
+    size_t columns;
+    double *v;            /* [2 ndof][columns] perturbations; the caller sets them before the motion begins */
+    double *rows;         /* [ncontact][columns] workspace */
+    double *slope;        /* [ncontact] v' where the phase ends, */
+    double *acceleration; /* [ndof] and q'' */
+    signed char *before;  /* [ncontact] slip in the phase that ends */
+};
+
+/* 1, or 0 if out of memory; tribo_variation_free takes what failed too. */
+int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns);
+void tribo_variation_free(struct variation *x);
+
+/* row [columns] = J_i times rows of v, those of displacements (ndof rows) or of velocities. */
+void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row);
+
+#endif

@@ -1,0 +1,490 @@
+/* Periodic motions against closed forms: Den Hartog's oscillator (1931) and what follows from it. */
+#include "run.h"
+
+#include <string.h>
+
+#define MOST_DOFS 4
+#define MOST_STATES (2 * MOST_DOFS + 1)
+
+static const char *const methods[] = {"exact", "event"};
+
+/* A structure of so many degrees of freedom, and a driver that looks for its motion of the load's period. */
+struct search {
+    tribo_system *sys;
+    tribo_driver *drv;
+    size_t ndof;
+    double omega, period;
+};
+
+static struct search search_create(const char *method, size_t ndof, size_t contacts, const double *mass, const double *damping,
+                                   const double *stiffness, const double *direction, double omega, const double *cosine)
+{
+    struct search s = {.ndof = ndof, .omega = omega, .period = 2.0 * PI / omega};
+    assert_ok(tribo_system_linear(&s.sys, ndof, contacts, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(s.sys, omega, cosine, NULL));
+    s.drv = driver_create(s.sys, method, 0.1, 1e-14);
+    return s;
+}
+
+/* x'' + damping x' + x = force cos(omega t) + f, |f| <= limit. */
+static struct search oscillator_search(const char *method, double damping, double limit, double force, double omega)
+{
+    const double one = 1.0;
+    struct search s = search_create(method, 1, 1, &one, &damping, &one, &one, omega, &force);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), limit));
+    return s;
+}
+
+static void search_free(struct search *s)
+{
+    tribo_driver_destroy(s->drv);
+    tribo_system_destroy(s->sys);
+}
+
+static void find(const struct search *s, double t, double *y)
+{
+    const int status = tribo_driver_find_periodic(s->drv, t, s->period, y);
+    require(!status, "%s: %s", tribo_strerror(status), tribo_driver_message(s->drv));
+}
+
+/* The largest displacement of a degree of freedom; the motion is odd, so that the least is minus that. */
+static double amplitude(const struct search *s, size_t dof)
+{
+    double c[2 * MOST_DOFS] = {0}, least, most;
+    c[dof] = 1.0;
+    const int status = tribo_driver_period_extremes(s->drv, c, &least, &most);
+    require(!status, "%s", tribo_driver_message(s->drv));
+    assert_close(least, -most, 1e-9);
+    return most;
+}
+
+static double dissipated(const struct search *s, double *y)
+{
+    double t = 0.0;
+    driver_advance(s->drv, &t, s->period, y);
+    return y[2 * s->ndof];
+}
+
+/* ------------------------------------------------------------------------------------------------------ one oscillator */
+
+static const struct {
+    double beta, r, x0, stops;
+} hartog[] = {{0.6, 0.3, 1.5356018093, 0.531513}, {0.7, 0.3, 1.8856998504, 0.722071}, {0.8, 0.4, 2.5017878810, 0.817406}};
+
+/* Amplitude; 4 N x0 a period are dissipated, which is what the load does, pi F times the sine of the motion. */
+TEST(den_hartog)
+{
+    const double one[] = {1.0, 0.0}, n = hartog[_i / 2].r;
+    struct search s = oscillator_search(methods[_i % 2], 0.0, n, 1.0, hartog[_i / 2].beta);
+    double y[3] = {0}, energy, share, cosine, sine;
+    find(&s, 0.0, y);
+    assert_exact(y[2], 0.0);
+    const double x0 = amplitude(&s, 0);
+    assert_close(x0, hartog[_i / 2].x0, 1e-9);
+    assert_ok(tribo_driver_period_dissipation(s.drv, &energy));
+    assert_close(energy, 4.0 * n * x0, 1e-9);
+    assert_close(dissipated(&s, y), energy, 1e-9);
+    assert_ok(tribo_driver_period_stick(s.drv, &share));
+    assert_exact(share, 0.0);
+    assert_ok(tribo_driver_period_harmonic(s.drv, one, 1, &cosine, &sine));
+    assert_close(PI * sine, energy, 1e-9);
+    assert_ok(tribo_driver_period_harmonic(s.drv, one, 0, &cosine, &sine));
+    assert_close(cosine, 0.0, 1e-9);
+    search_free(&s);
+}
+
+/* Below a limit there are no stops, and above it there are. */
+TEST(stops)
+{
+    for (int above = 0; above < 2; above++) {
+        struct search s =
+            oscillator_search(methods[_i % 2], 0.0, hartog[_i / 2].stops + (above ? 2e-6 : -2e-6), 1.0, hartog[_i / 2].beta);
+        double y[3] = {0}, share;
+        find(&s, 0.0, y);
+        assert_ok(tribo_driver_period_stick(s.drv, &share));
+        require(above ? share > 0.0 : share == 0.0, "%g of the period at rest", share);
+        search_free(&s);
+    }
+}
+
+TEST(multipliers)
+{
+    struct search s = oscillator_search(methods[_i], 0.0, 0.3, 1.0, 0.7);
+    double y[3] = {0}, re[2], im[2];
+    find(&s, 0.0, y);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    assert_close(re[0], -0.4533657390, 1e-8);
+    assert_close(re[1], -0.4533657390, 1e-8);
+    assert_close(im[0], 0.2331451411, 1e-8);
+    assert_close(im[1], -0.2331451411, 1e-8);
+    search_free(&s);
+}
+
+/* beta = 1/(2n): the amplitude does not depend on the limit, and motions form a family. A guess in it is kept. */
+TEST(family)
+{
+    const double beta = 1.0 / (2.0 * (1 + _i / 2));
+    struct search s = oscillator_search(methods[_i % 2], 0.0, 0.05, 1.0, beta);
+    double y[3] = {0}, re[2], im[2];
+    find(&s, 0.0, y);
+    assert_close(amplitude(&s, 0), 1.0 / (1.0 - beta * beta), 1e-9);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    assert_close(re[0], 1.0, 1e-8);
+    require(driver_count(s.drv, TRIBO_COUNT_FREEDOM) == 1, "%zu free directions", driver_count(s.drv, TRIBO_COUNT_FREEDOM));
+    search_free(&s);
+}
+
+TEST(viscous_damping)
+{
+    struct search s = oscillator_search(methods[_i], 0.1, 1.0, 1.5, 0.9);
+    double y[3] = {0};
+    find(&s, 0.0, y);
+    assert_close(amplitude(&s, 0), 2.420236350574, 1e-11);
+    search_free(&s);
+}
+
+/* At a later time: the same motion. */
+TEST(later)
+{
+    struct search s = oscillator_search(methods[_i], 0.1, 1.0, 1.5, 0.9);
+    double y[3] = {0}, z[3] = {0}, t = 0.0;
+    find(&s, 0.0, y);
+    driver_advance(s.drv, &t, 2.5, y);
+    find(&s, 2.5 + 100.0 * s.period, z);
+    assert_all_close(z, y, 2, 1e-9);
+    search_free(&s);
+}
+
+/* A multiple of the period has the same motion; its multipliers are powers. */
+TEST(multiple)
+{
+    struct search s = oscillator_search(methods[_i], 0.0, 0.3, 1.0, 0.7);
+    double y[3] = {0}, z[3] = {0}, re[2], im[2], re2[2], im2[2];
+    find(&s, 0.0, y);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    s.period *= 2.0;
+    find(&s, 0.0, z);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re2, im2));
+    assert_all_close(z, y, 2, 1e-9);
+    assert_close(re2[0], re[0] * re[0] - im[0] * im[0], 1e-8);
+    assert_close(im2[0], fabs(2.0 * re[0] * im[0]), 1e-8);
+    search_free(&s);
+}
+
+/* Limit above the load: at rest for good, where the guess is; zeros stay zeros. */
+TEST(stuck)
+{
+    struct search s = oscillator_search(methods[_i], 0.1, 2.0, 1.0, 0.7);
+    double y[3] = {0}, z[3] = {0.4, 0.0, 3.0}, re[2], im[2], share, least, most;
+    const double velocity[] = {0.0, 1.0};
+    find(&s, 0.0, y);
+    assert_all_exact(y, ((double[]){0.0, 0.0, 0.0}), 3);
+    find(&s, 0.0, z);
+    assert_all_close(z, ((double[]){0.4, 0.0, 0.0}), 3, 1e-12);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    assert_close(re[0], 1.0, 1e-12);
+    assert_close(re[1], 0.0, 1e-12);
+    assert_close(im[0], 0.0, 1e-12);
+    require(driver_count(s.drv, TRIBO_COUNT_FREEDOM) == 1, "%zu free directions", driver_count(s.drv, TRIBO_COUNT_FREEDOM));
+    assert_ok(tribo_driver_period_stick(s.drv, &share));
+    assert_close(share, 1.0, 1e-14);
+    assert_ok(tribo_driver_period_extremes(s.drv, velocity, &least, &most));
+    assert_close(most - least, 0.0, 1e-14);
+    search_free(&s);
+}
+
+/* Limit 0: the linear response. */
+TEST(open)
+{
+    const double damping = 0.2, omega = 1.3, re = 1.0 - omega * omega, im = damping * omega, c[] = {1.0, 0.0};
+    struct search s = oscillator_search(methods[_i], damping, 0.0, 1.5, omega);
+    double y[3] = {0.1, 0.2, 0.0}, cosine, sine;
+    find(&s, 0.0, y);
+    assert_close(amplitude(&s, 0), 1.5 / hypot(re, im), 1e-12);
+    assert_ok(tribo_driver_period_harmonic(s.drv, c, 1, &cosine, &sine));
+    assert_close(cosine, 1.5 * re / (re * re + im * im), 1e-12);
+    assert_close(sine, 1.5 * im / (re * re + im * im), 1e-12);
+    assert_ok(tribo_driver_period_harmonic(s.drv, c, 3, &cosine, &sine));
+    assert_close(hypot(cosine, sine), 0.0, 1e-12);
+    require(driver_count(s.drv, TRIBO_COUNT_PERIODS) <= 3, "%zu periods", driver_count(s.drv, TRIBO_COUNT_PERIODS));
+    search_free(&s);
+}
+
+/* A constant load moves the middle, and takes the symmetry away. */
+TEST(constant_load)
+{
+    const double one = 1.0, c[] = {1.0, 0.0};
+    struct search s = oscillator_search(methods[_i], 0.1, 0.5, 2.0, 0.9);
+    double y[3] = {0}, z[3], cosine, sine;
+    find(&s, 0.0, y);
+    memcpy(z, y, sizeof z);
+    assert_ok(tribo_system_add_load(s.sys, 0.0, &one, NULL));
+    find(&s, 0.0, z);
+    assert_close(z[0], y[0] + 1.0, 1e-9);
+    assert_close(z[1], y[1], 1e-9);
+    assert_ok(tribo_driver_period_harmonic(s.drv, c, 0, &cosine, &sine));
+    assert_close(cosine, 1.0, 1e-9);
+    search_free(&s);
+}
+
+/* A body on a belt that moves to and fro, held by a spring: relative to the belt it is one that is shaken. */
+TEST(belt)
+{
+    const double one = 1.0, zero = 0.0, omega = 0.7, speed = 0.8, c[] = {1.0, 0.0};
+    struct search s = search_create(methods[_i], 1, 1, &one, NULL, &one, &one, omega, &zero);
+    struct search shaken = oscillator_search(methods[_i], 0.0, 0.1, speed * (1.0 / omega - omega), omega);
+    double y[3] = {0}, z[3] = {0}, energy[2], least, most;
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.1));
+    assert_ok(tribo_system_add_base_motion(s.sys, omega, NULL, &speed));
+    find(&s, 0.0, y);
+    find(&shaken, 0.0, z);
+    /* x = belt + w, belt = -speed/omega cos(omega t); w'' + w = -(belt'' + belt) + f */
+    assert_close(y[0], z[0] - speed / omega, 1e-9);
+    assert_close(y[1], z[1], 1e-9);
+    assert_ok(tribo_driver_period_dissipation(s.drv, &energy[0]));
+    assert_ok(tribo_driver_period_dissipation(shaken.drv, &energy[1]));
+    assert_close(energy[0], energy[1], 1e-9);
+    assert_close(dissipated(&s, y), energy[0], 1e-9);
+    assert_ok(tribo_driver_period_extremes(s.drv, c, &least, &most));
+    require(most > 0.0, "nothing moves");
+    search_free(&s);
+    search_free(&shaken);
+}
+
+/* Limits that follow harmonics: even ones keep the symmetry of the motion, others do not; with lift-off, and on a belt that moves. The
+ * motion comes back, as marching has it, and contacts dissipate what the state's energy says. */
+TEST(swinging_limits)
+{
+    static const struct {
+        double limit, cosine, sine, turns, belt;
+    } scene[] = {{0.6, 0.0, 1.0, 1.0, 0.0}, {0.5, 0.3, 0.0, 2.0, 0.0}, {0.5, 0.2, -0.6, 2.0, 0.7}, {0.3, 0.0, 0.3, 1.0, 0.7}};
+    const double limit = scene[_i / 2].limit, omega = 0.7, one[] = {1.0, 0.0};
+    struct search s = oscillator_search(methods[_i % 2], 0.1, limit, 1.0, omega);
+    double y[3] = {0}, z[3] = {0}, t = 0.0, energy, least, most;
+    assert_ok(tribo_system_add_limit(s.sys, scene[_i / 2].turns * omega, &scene[_i / 2].cosine, &scene[_i / 2].sine));
+    assert_ok(tribo_system_add_base_motion(s.sys, omega, NULL, &scene[_i / 2].belt));
+    find(&s, 0.0, y);
+    driver_advance(s.drv, &t, 60.0 * s.period, z);
+    assert_close(z[0], y[0], 1e-9);
+    assert_close(z[1], y[1], 1e-9);
+    find(&s, 0.0, y);
+    assert_ok(tribo_driver_period_dissipation(s.drv, &energy));
+    assert_ok(tribo_driver_period_extremes(s.drv, one, &least, &most));
+    ck_assert_int_eq(fabs(least + most) < 1e-9, scene[_i / 2].turns == 2.0);
+    assert_close(dissipated(&s, y), energy, 1e-9);
+    search_free(&s);
+}
+
+/* A free body between two bounds of friction: x'' = cos(t) + f. */
+TEST(rigid_body)
+{
+    const double one = 1.0, zero = 0.0;
+    struct search s = search_create(methods[_i], 1, 1, &one, NULL, &zero, &one, 1.0, &one);
+    double y[3] = {0}, re[2], im[2];
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.2));
+    find(&s, 0.0, y);
+    /* Den Hartog with k -> 0: V = -1, U = pi/2 */
+    assert_close(amplitude(&s, 0), sqrt(1.0 - 0.04 * PI * PI / 4.0), 1e-9);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    assert_close(re[0], 1.0, 1e-8);
+    require(driver_count(s.drv, TRIBO_COUNT_FREEDOM) == 1, "%zu free directions", driver_count(s.drv, TRIBO_COUNT_FREEDOM));
+    search_free(&s);
+}
+
+/* ------------------------------------------------------------------------------------------------------ structures */
+
+/* An undamped chain of four, one contact: amplitude sqrt(H^2 - N^2 U^2) of the contact. */
+TEST(undamped_structure)
+{
+    const double mass[16] = {1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1.5, 0, 0, 0, 0, 1}, omega = 1.4, n = 0.05;
+    const double stiffness[16] = {2, -1, 0, 0, -1, 4, -3, 0, 0, -3, 5, -2, 0, 0, -2, 2.5};
+    const double direction[4] = {0, 0, 1, 0}, load[4] = {1, 0, 0, 0.5};
+    struct search s = search_create(methods[_i], 4, 1, mass, NULL, stiffness, direction, omega, load);
+    double y[9] = {0}, h = 0.0, u = 0.0, frequency[4], shape[4], part[4];
+    tribo_system *modal;
+    assert_ok(tribo_system_linear(&modal, 4, 1, mass, NULL, stiffness, direction, 4, NULL, 0));
+    assert_ok(tribo_system_get_frequencies(modal, frequency));
+    for (size_t k = 0; k < 4; k++) {
+        memset(part, 0, sizeof part);
+        part[k] = 1.0;
+        assert_ok(tribo_system_expand(modal, part, shape));
+        const double w = frequency[k], force = shape[0] * load[0] + shape[3] * load[3];
+        h += shape[2] * force / (w * w - omega * omega);
+        u += shape[2] * shape[2] * tan(PI * w / (2.0 * omega)) / (w * omega);
+    }
+    tribo_system_destroy(modal);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), n));
+    find(&s, 0.0, y);
+    assert_close(amplitude(&s, 2), sqrt(h * h - n * n * u * u), 1e-9);
+    search_free(&s);
+}
+
+/* Two oscillators that know nothing of each other, and reverse at the same instant; and contacts that share one body. */
+TEST(tied)
+{
+    const double unit[4] = {1, 0, 0, 1}, load[2] = {1, 1}, one = 1.0, shared[2] = {1, 1}, limits[] = {0.1, 0.2};
+    struct search two = search_create(methods[_i], 2, 2, unit, NULL, unit, unit, 0.7, load);
+    struct search both = search_create(methods[_i], 1, 2, &one, NULL, &one, shared, 0.7, load);
+    double y[5] = {0}, z[3] = {0}, re[4], im[4];
+    assert_ok(tribo_set_limit_all(tribo_system_context(two.sys), 0.3));
+    assert_ok(tribo_set_limit(tribo_system_context(both.sys), limits));
+    find(&two, 0.0, y);
+    find(&both, 0.0, z);
+    assert_close(amplitude(&two, 0), hartog[1].x0, 1e-9);
+    assert_close(amplitude(&two, 1), hartog[1].x0, 1e-9);
+    assert_close(amplitude(&both, 0), hartog[1].x0, 1e-9);
+    assert_ok(tribo_driver_get_multipliers(two.drv, re, im));
+    for (size_t k = 0; k < 4; k++) {
+        assert_close(re[k], -0.4533657390, 1e-8);
+        assert_close(fabs(im[k]), 0.2331451411, 1e-8);
+    }
+    assert_ok(tribo_driver_get_multipliers(both.drv, re, im));
+    assert_close(re[0], -0.4533657390, 1e-8);
+    search_free(&two);
+    search_free(&both);
+}
+
+/* Two bodies that a contact joins, which holds for good, and another one that slides; with more contacts in the same place. */
+TEST(redundant)
+{
+    const double mass[4] = {1, 0, 0, 1}, stiffness[4] = {2, -1, -1, 2}, damping[4] = {0.1, 0, 0, 0.1}, load[2] = {1, 0};
+    const double direction[8] = {1, -1, 1, -1, 1, -1, 0, 1}, limits[] = {5, 5, 5, 0.3}, one[2] = {1, -1};
+    struct search s = search_create(methods[_i], 2, 4, mass, damping, stiffness, direction, 0.9, load);
+    const double body = 2.0, spring = 2.0, dashpot = 0.2, force = 1.0;
+    struct search whole = search_create(methods[_i], 1, 1, &body, &dashpot, &spring, &body, 0.9, &force);
+    double y[5] = {0}, z[3] = {0}, share[4], least, most;
+    const double joined[4] = {one[0], one[1], 0, 0};
+    assert_ok(tribo_set_limit(tribo_system_context(s.sys), limits));
+    assert_ok(tribo_set_limit_all(tribo_system_context(whole.sys), 0.15));
+    find(&s, 0.0, y);
+    find(&whole, 0.0, z);
+    assert_close(amplitude(&s, 1), amplitude(&whole, 0), 1e-9);
+    assert_ok(tribo_driver_period_extremes(s.drv, joined, &least, &most));
+    assert_close(most - least, 0.0, 1e-12);
+    assert_ok(tribo_driver_period_stick(s.drv, share));
+    assert_close(share[0], 1.0, 1e-12);
+    require(driver_count(s.drv, TRIBO_COUNT_FREEDOM) == 1, "%zu free directions", driver_count(s.drv, TRIBO_COUNT_FREEDOM));
+    search_free(&s);
+    search_free(&whole);
+}
+
+/* No contacts at all, nor any load: linear, and at rest. */
+TEST(no_contacts)
+{
+    const double mass[4] = {1, 0, 0, 2}, stiffness[4] = {3, -1, -1, 2}, damping[4] = {0.3, -0.1, -0.1, 0.1}, load[2] = {1, -0.5};
+    struct search s = search_create(methods[_i], 2, 0, mass, damping, stiffness, NULL, 1.1, load);
+    double y[5] = {1, 2, 3, 4, 5}, t = 0.0, z[5];
+    find(&s, 0.0, y);
+    memcpy(z, y, sizeof z);
+    driver_advance(s.drv, &t, s.period, z);
+    assert_all_close(z, y, 4, 1e-12);
+    assert_ok(tribo_system_clear_loads(s.sys));
+    find(&s, 0.0, y);
+    assert_all_close(y, ((double[5]){0}), 4, 1e-14);
+    search_free(&s);
+}
+
+/* ------------------------------------------------------------------------------------------------------ what fails */
+
+/* Resonance without damping: nothing comes back, nothing is touched, and the driver goes on as a new one does. */
+TEST(resonance)
+{
+    struct search s = oscillator_search(methods[_i], 0.0, 0.0, 1.0, 1.0);
+    double y[3] = {0.5, 0.25, 0.125}, z[3] = {0}, fresh[3] = {0}, t = 0.0, re[2], im[2];
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_NO_CONVERGENCE);
+    assert_says(tribo_driver_message(s.drv), "misses its beginning by");
+    assert_all_exact(y, ((double[]){0.5, 0.25, 0.125}), 3);
+    assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_STATE);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.3));
+    driver_advance(s.drv, &t, 20.0, z);
+    run(s.sys, methods[_i], 0.1, 1e-14, 20.0, fresh);
+    assert_all_exact(z, fresh, 3);
+    search_free(&s);
+}
+
+static int seen_by(double t, const double *y, int event, void *data)
+{
+    (void)t;
+    (void)y;
+    (void)event;
+    ++*(int *)data;
+    return 0;
+}
+
+/* A search leaves the driver as if there had been none. */
+TEST(nothing_left)
+{
+    struct search s = oscillator_search(methods[_i], 0.1, 0.5, 1.0, 0.8);
+    double y[3] = {0}, z[3] = {0.3, -0.1, 0.0}, fresh[3] = {0.3, -0.1, 0.0}, t = 0.0;
+    int calls = 0;
+    assert_ok(tribo_driver_set_observer(s.drv, seen_by, &calls));
+    find(&s, 0.0, y);
+    require(calls == 0, "%d calls", calls);
+    driver_advance(s.drv, &t, s.period, y);
+    require(calls > 0, "no calls");
+    assert_ok(tribo_driver_set_observer(s.drv, NULL, NULL));
+    find(&s, 0.0, y);
+    t = 0.0;
+    driver_advance(s.drv, &t, 20.0, z);
+    run(s.sys, methods[_i], 0.1, 1e-14, 20.0, fresh);
+    assert_all_exact(z, fresh, 3);
+    /* a velocity that would be rounding of the motion found */
+    double slow[3] = {0.0, -2e-14, 0.0}, alone[3] = {0.0, -2e-14, 0.0};
+    const size_t events = driver_count(s.drv, TRIBO_COUNT_EVENTS);
+    t = 0.0;
+    driver_advance(s.drv, &t, 0.1, slow);
+    tribo_driver *other = driver_create(s.sys, methods[_i], 0.1, 1e-14);
+    t = 0.0;
+    driver_advance(other, &t, 0.1, alone);
+    assert_all_exact(slow, alone, 3);
+    require(driver_count(s.drv, TRIBO_COUNT_EVENTS) - events == driver_count(other, TRIBO_COUNT_EVENTS), "other events");
+    tribo_driver_destroy(other);
+    search_free(&s);
+}
+
+TEST(errors)
+{
+    const double one = 1.0;
+    struct search s = oscillator_search(methods[_i], 0.1, 0.5, 1.0, 0.8);
+    double y[3] = {0}, bad[3] = {NAN, 0.0, 0.0}, re[2], im[2], c[2] = {1.0, INFINITY}, a, b;
+    assert_status(tribo_driver_find_periodic(NULL, 0.0, s.period, y), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_find_periodic(s.drv, NAN, s.period, y), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, INFINITY, y), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, bad), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, 0.0, y), TRIBO_ERR_NOT_POSITIVE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, -1.0, y), TRIBO_ERR_NOT_POSITIVE);
+    assert_status(tribo_driver_find_periodic(s.drv, 1e300, s.period, y), TRIBO_ERR_STEP);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1.1 * s.period, y), TRIBO_ERR_RANGE);
+    assert_says(tribo_driver_message(s.drv), "load[0], omega = 0.8");
+    assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_STATE);
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_NOT_FINITE);
+    c[1] = 0.0;
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_STATE);
+    find(&s, 0.0, y);
+    assert_status(tribo_driver_get_multipliers(s.drv, NULL, im), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_extremes(s.drv, NULL, &a, &b), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_harmonic(s.drv, c, 1, NULL, &b), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_stick(s.drv, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_dissipation(NULL, &a), TRIBO_ERR_NULL);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.6));
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_STATE);
+    assert_says(tribo_driver_message(s.drv), "has changed");
+    assert_ok(tribo_system_set_limit_table(s.sys, 1, &one, &one));
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
+    search_free(&s);
+}
+
+TEST(other_methods)
+{
+    static const char *const others[] = {"rk4/fixed", "central/fixed", "moreau/fixed", "rkf45", "auto"};
+    struct search s = oscillator_search(others[_i], 0.1, 0.5, 1.0, 0.8);
+    double y[3] = {0};
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "exact or event");
+    search_free(&s);
+}
+
+TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
+          {stuck, 2}, {open, 2}, {constant_load, 2}, {swinging_limits, 8}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
+          {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2}, {other_methods, 5})

@@ -1,0 +1,204 @@
+/* Reduced structures: how soon their motion with contacts at rest is that of the whole, with static responses and without; what
+ * tribo_system_get_truncation says of it; and static responses in structures that are free, or have repeated contacts. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_complex_math.h>
+
+#include "beam.h"
+#include "run.h"
+
+/* The beam of examples/damper: contacts at z of three nodes, a load at a fourth one. */
+enum { HELD = 3, ROWS = 4 };
+static const double damping = 0.002, force = 0.1;
+
+static size_t beam_row(const double *at, int direction)
+{
+    FILE *file = fopen(TRIBO_BEAM "/dofs.txt", "r");
+    char line[200];
+    size_t row, node, found = BEAM_DOFS;
+    int way;
+    double x[3];
+    require(file, "cannot open %s/dofs.txt", TRIBO_BEAM);
+    while (fgets(line, sizeof line, file)) {
+        if (sscanf(line, "%zu %zu %d %lf %lf %lf", &row, &node, &way, &x[0], &x[1], &x[2]) == 6 && way == direction &&
+            memcmp(x, at, sizeof x) == 0) {
+            found = row - 1;
+        }
+    }
+    fclose(file);
+    require(found < BEAM_DOFS, "no row at %g, %g, %g", at[0], at[1], at[2]);
+    return found;
+}
+
+static gsl_spmatrix *beam_directions(size_t rows)
+{
+    const double at[ROWS][3] = {{200.0, 0.0, 5.0}, {300.0, 0.0, 5.0}, {400.0, 0.0, 5.0}, {400.0, 20.0, 5.0}};
+    gsl_spmatrix *j = gsl_spmatrix_alloc(rows, BEAM_DOFS);
+    for (size_t i = 0; i < rows; i++) {
+        gsl_spmatrix_set(j, i, beam_row(at[i], 3), 1.0);
+    }
+    return j;
+}
+
+/* The beam's lowest modes, and static responses for so many rows: contacts, then the load. */
+static tribo_system *beam_reduced(size_t nmode, size_t rows, int statics)
+{
+    gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"), *direction = beam_directions(rows);
+    char text[200] = "";
+    tribo_system *sys = NULL;
+    const int status = tribo_system_reduced(&sys, mass, stiffness, direction, nmode, statics, text, sizeof text);
+    require(status == TRIBO_OK, "%s", text);
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+    return sys;
+}
+
+/* What unit amplitudes of the reduced motions do at the places. shape [ROWS][n] */
+static void read_shapes(const tribo_system *sys, double *shape)
+{
+    const size_t n = tribo_system_ndof(sys);
+    double *unit = calloc(n, sizeof *unit), *full = malloc(BEAM_DOFS * sizeof *full);
+    gsl_spmatrix *places = beam_directions(ROWS);
+    for (size_t k = 0; k < n; k++) {
+        unit[k] = 1.0;
+        assert_ok(tribo_system_expand(sys, unit, full));
+        unit[k] = 0.0;
+        for (size_t i = 0; i < ROWS; i++) {
+            shape[i * n + k] = full[places->p[i]];
+        }
+    }
+    gsl_spmatrix_free(places);
+    free(unit);
+    free(full);
+}
+
+/* Amplitude where the load acts with all contacts stuck: of [H J'; J 0] [q; f] = [load; 0], H being diagonal. */
+static double stuck_amplitude(tribo_system *sys, double drive)
+{
+    const size_t n = tribo_system_ndof(sys);
+    double *omega = malloc(n * sizeof *omega), *shape = malloc(ROWS * n * sizeof *shape);
+    gsl_complex receptance[ROWS][ROWS];
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    read_shapes(sys, shape);
+    for (size_t i = 0; i < ROWS; i++) {
+        for (size_t j = 0; j < ROWS; j++) {
+            receptance[i][j] = GSL_COMPLEX_ZERO;
+            for (size_t k = 0; k < n; k++) {
+                const gsl_complex h = gsl_complex_rect(omega[k] * omega[k] - drive * drive, 2.0 * damping * omega[k] * drive);
+                const gsl_complex part = gsl_complex_rect(shape[i * n + k] * shape[j * n + k], 0.0);
+                receptance[i][j] = gsl_complex_add(receptance[i][j], gsl_complex_div(part, h));
+            }
+        }
+    }
+    free(omega);
+    free(shape);
+    /* eliminates the contacts one by one */
+    for (size_t p = 0; p < HELD; p++) {
+        for (size_t i = p + 1; i < ROWS; i++) {
+            const gsl_complex factor = gsl_complex_div(receptance[i][p], receptance[p][p]);
+            for (size_t j = p; j < ROWS; j++) {
+                receptance[i][j] = gsl_complex_sub(receptance[i][j], gsl_complex_mul(factor, receptance[p][j]));
+            }
+        }
+    }
+    return force * gsl_complex_abs(receptance[HELD][HELD]);
+}
+
+/* Without static responses 12 modes are 10% off, and 48 modes still 1e-3; with them, of contacts and load, one is as good as
+ * all. */
+TEST(beam_stuck)
+{
+    const struct {
+        size_t modes;
+        double alone;
+    } cases[] = {{6, 1.995e-4}, {12, 2.224e-4}, {24, 2.393e-4}, {48, 2.470e-4}};
+    const double drive = 2.0 * PI * 26.6925899;
+    tribo_system *whole = beam_reduced(BEAM_DOFS, HELD, 0), *alone = beam_reduced(cases[_i].modes, HELD, 0),
+                 *beside = beam_reduced(cases[_i].modes, ROWS, 1);
+    const double all = stuck_amplitude(whole, drive);
+    assert_close(all, 2.47231e-4, 5e-10);
+    assert_close(stuck_amplitude(alone, drive), cases[_i].alone, 0.6e-7);
+    assert_close(stuck_amplitude(beside, drive) / all, 1.0, 1e-6);
+    ck_assert_uint_eq(tribo_system_ndof(alone), cases[_i].modes);
+    ck_assert_uint_eq(tribo_system_ndof(beside), cases[_i].modes + ROWS);
+    tribo_system_destroy(whole);
+    tribo_system_destroy(alone);
+    tribo_system_destroy(beside);
+}
+
+/* Sum of shape_i^2/(omega^2 - drive^2), for every place. */
+static void receptances(const tribo_system *sys, double drive, double *sum)
+{
+    const size_t n = tribo_system_ndof(sys);
+    double *omega = malloc(n * sizeof *omega), *shape = malloc(ROWS * n * sizeof *shape);
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    read_shapes(sys, shape);
+    for (size_t i = 0; i < ROWS; i++) {
+        sum[i] = 0.0;
+        for (size_t k = 0; k < n; k++) {
+            sum[i] += pow(shape[i * n + k], 2.0) / (omega[k] * omega[k] - drive * drive);
+        }
+    }
+    free(omega);
+    free(shape);
+}
+
+/* What a force at a contact makes there lacks no more than the bound says, and the bound is not idle. Rounding of the stiffness
+ * is 1e-16 (1.5e6 Hz/27 Hz)^2 of the softest motion. */
+TEST(truncation_bounds)
+{
+    const double drives[] = {0.0, 200.0, 2000.0, 6000.0};
+    const size_t modes = 12;
+    const double drive = drives[_i / 2];
+    const int statics = _i % 2;
+    double error, all[ROWS], steady[ROWS], some[ROWS], most = 0.0;
+    tribo_system *whole = beam_reduced(BEAM_DOFS, ROWS, 0), *sys = beam_reduced(modes, ROWS, statics);
+    receptances(whole, drive, all);
+    receptances(whole, 0.0, steady);
+    receptances(sys, drive, some);
+    assert_ok(tribo_system_get_truncation(sys, drive, &error));
+    for (size_t i = 0; i < ROWS; i++) {
+        const double lack = (all[i] - some[i]) / steady[i];
+        require(lack <= error + 1e-8 && lack >= -1e-8, "place %zu lacks %g, more than %g", i, lack, error);
+        most = fmax(most, lack);
+    }
+    require(statics || most > 1e-3 * error, "%g is far from %g", error, most);
+    require(!statics || error < pow(drive / 14000.0, 4.0) + 1e-10, "%g with static responses", error);
+    assert_ok(tribo_system_get_truncation(sys, 1e6, &error));
+    require(isinf(error), "%g above all modes", error);
+    tribo_system_destroy(whole);
+    tribo_system_destroy(sys);
+}
+
+TEST(truncation_errors)
+{
+    double error;
+    tribo_system *sys = beam_reduced(3, HELD, 1), *chain;
+    stain(&error, sizeof error);
+    assert_ok(tribo_system_chain(&chain, 4, 0.1, 0.1, 1.0));
+    assert_status(tribo_system_get_truncation(NULL, 1.0, &error), TRIBO_ERR_NULL);
+    assert_status(tribo_system_get_truncation(sys, 1.0, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_system_get_truncation(sys, HUGE_VAL, &error), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_message(tribo_system_context(sys)), "omega = inf is not finite");
+    assert_status(tribo_system_get_truncation(chain, 1.0, &error), TRIBO_ERR_UNSUPPORTED);
+    ck_assert(stained(&error, sizeof error));
+    tribo_system_destroy(sys);
+    tribo_system_destroy(chain);
+}
+
+/* A copy knows it, too. */
+TEST(copies_keep_truncation)
+{
+    double error, want;
+    tribo_system *sys = beam_reduced(6, HELD, 0), *copy;
+    assert_ok(tribo_system_clone(sys, &copy));
+    assert_ok(tribo_system_get_truncation(sys, 100.0, &want));
+    assert_ok(tribo_system_get_truncation(copy, 100.0, &error));
+    assert_exact(error, want);
+    tribo_system_destroy(sys);
+    tribo_system_destroy(copy);
+}
+
+TEST_MAIN("reduced", {beam_stuck, 4}, {truncation_bounds, 8}, {truncation_errors, 1}, {copies_keep_truncation, 1})
