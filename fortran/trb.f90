@@ -37,6 +37,9 @@
 !>   TRBGLW(IH, LAW, IERR)                                                             LAW
 !>   TRBLIM(IH, N, FMUN, IERR)                       FMUN(N) limits mu*N >= 0
 !>   TRBNLD(IH, N, FMU, FN, IERR)                    FMU(N) >= 0, FN(N) normal loads   the limits FMU*max(FN, 0)
+!>   TRBSTA(IH, N, RATIO, VSTR, IERR)                RATIO(N) >= 1 static limit to limit; VSTR(N) > 0: falls with the speed, or
+!>                                                   VSTR(1) = 0: drops at once, VSTR(2) and on are not read
+!>   TRBGST(IH, N, RATIO, VSTR, IERR)                                                  RATIO(N), VSTR(N), 0 if it drops at once
 !>   TRBPLN(IH, NPL, IFIRST, IERR)                   contacts IFIRST(NPL) and the next of each are the two directions of one
 !>                                                   planar contact; NPL 0: none are
 !>   TRBLM1(IH, FMUN, IERR)                          FMUN one for all
@@ -418,6 +421,37 @@ subroutine trbnld(ih, n, fmu, fn, ierr)
   if (ierr == TRIBO_OK) ierr = c_set_normal_load(ctx, fmu, fn)
 end subroutine trbnld
 
+subroutine trbsta(ih, n, ratio, vstr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: ratio(*), vstr(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+  logical :: drops
+
+  call find(ih, ctx, ierr, n)
+  if (ierr /= TRIBO_OK) return
+  drops = n < 1
+  if (.not. drops) drops = abs(vstr(1)) <= 0
+  if (drops) then
+    ierr = c_set_static(ctx, ratio)
+  else
+    ierr = c_set_static(ctx, ratio, vstr)
+  end if
+end subroutine trbsta
+
+subroutine trbgst(ih, n, ratio, vstr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(inout) :: ratio(*), vstr(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_get_static(ctx, ratio, vstr)
+end subroutine trbgst
 subroutine trbpln(ih, npl, ifirst, ierr)
   use tribo_fixed
   implicit none

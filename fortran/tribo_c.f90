@@ -262,6 +262,22 @@ module tribo_c
       integer(c_int) :: answer
     end function c_set_normal_load
 
+    function c_set_static(ctx, ratio, velocity) result(answer) bind(c,name='tribo_set_static')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in), optional :: ratio(*)
+      real(c_double), intent(in), optional :: velocity(*)
+      integer(c_int) :: answer
+    end function c_set_static
+
+    function c_get_static(ctx, ratio, velocity) result(answer) bind(c,name='tribo_get_static')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(inout), optional :: ratio(*)
+      real(c_double), intent(inout), optional :: velocity(*)
+      integer(c_int) :: answer
+    end function c_get_static
+
     function c_set_epsilon(ctx, epsilon) result(answer) bind(c,name='tribo_set_epsilon')
       import
       type(c_ptr), value :: ctx

@@ -1,4 +1,5 @@
 /* Life of planar contacts: clusters are made whenever operator or contacts change. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -299,6 +300,11 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     struct plane plane;
     int status = check_first(ctx, count, first, owner);
     free(owner);
+    if (!status && count) {
+        char who[64];
+        snprintf(who, sizeof who, "planar contact %zu knows no", first[0]);
+        status = tribo_refuse_static(ctx, who);
+    }
     status = status ? status : tribo_planar_prepare(ctx, count, first, ctx->op, &ctx->memory, &planar, &plane);
     if (!status) {
         tribo_write_modes(ctx);

@@ -91,12 +91,16 @@ void tribo_refresh_limits(tribo_context *ctx)
 {
     const int follows = epsilon_follows(ctx);
     ctx->follow.largest = 0.0;
+    ctx->follow.contacts =
+        (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows};
+    if (ctx->set.breaking) {
+        tribo_refresh_static(ctx);
+    }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
         ctx->follow.largest = greater(ctx->follow.largest, ctx->follow.chunk[k].largest);
         ctx->follow.chunk[k].band = band_of(&ctx->follow.chunk[k], follows);
     }
-    ctx->follow.contacts = (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows};
-    if (ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
+    if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);
     }
     ctx->last.linearized = 0;
@@ -121,6 +125,10 @@ int tribo_set_law(tribo_context *ctx, int law)
     const struct law *l = tribo_law(law);
     if (!l) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
+    }
+    const int status = tribo_check_breaking(ctx, l, ctx->set.breaking, ctx->set.ratio);
+    if (status) {
+        return status;
     }
     ctx->set.law = l;
     ctx->last.linearized = 0;

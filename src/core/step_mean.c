@@ -145,6 +145,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     }
     int status = tribo_check_step(ctx, dt, vfree, f);
     status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
+    status = status ? status : tribo_refuse_static(ctx, "tribo_step_force_mean knows no");
     if (status) {
         return status;
     }

@@ -6,12 +6,20 @@
 /* What every contact's law says at the last balance, which was at v. */
 static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
 {
-    ctx->set.law->tangent(&ctx->follow.contacts, ctx->n, v, ctx->last.feq, ctx->last.tangent);
+    tribo_law_tangents(ctx, &ctx->follow.contacts, 0, ctx->n, v, ctx->last.feq, ctx->last.tangent);
     tribo_copy(ctx->last.v, v, ctx->n);
     if (ctx->planar) {
         tribo_planar_linearize(ctx, v, a);
     }
     ctx->last.linearized = 1;
+}
+
+/* How kappa = slope v follows v. */
+static double relaxation_rate(const tribo_context *ctx, size_t i)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const double slope = tribo_slope_of(c, i);
+    return ctx->set.breaking ? slope + product(c->rate[i] * ctx->last.v[i], tribo_limit_rate(ctx, i, ctx->last.v[i])) : slope;
 }
 
 /* How the force of contact i, at place k, follows its own velocity where it is not balanced. */
@@ -21,10 +29,10 @@ static double own_rate(const tribo_context *ctx, const struct box_qp *p, size_t 
         return ctx->last.tangent[i].dv;
     }
     /* the bound of a relaxing law moves with v while it is not at the other limit */
-    const double slope = tribo_slope_of(&ctx->follow.contacts, i), kappa = slope * ctx->last.v[i];
-    const int moves =
-        ctx->set.law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->set.limit[i];
-    return moves ? -slope : 0.0;
+    const double kappa = tribo_slope_of(&ctx->follow.contacts, i) * ctx->last.v[i], limit = ctx->follow.contacts.limit[i];
+    const int side = p->at[k] == AT_UPPER ? 1 : -1, shifted = ctx->set.law->relaxes && side * kappa >= 0.0;
+    const int moves = shifted && 0.5 * fabs(kappa) < limit, across = shifted && !moves;
+    return (across ? -side : side) * tribo_limit_rate(ctx, i, ctx->last.v[i]) - (moves ? relaxation_rate(ctx, i) : 0.0);
 }
 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */
@@ -68,7 +76,7 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
         df[k] = p->at[k] == FREE ? 0.0 : clamp(product(own_rate(ctx, p, k, i), dv[k]), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
         if (!partition && ctx->set.law->relaxes) {
-            rhs[k] += r * clamp(product(tribo_slope_of(&ctx->follow.contacts, i), dv[k]), -most, most);
+            rhs[k] += r * clamp(product(relaxation_rate(ctx, i), dv[k]), -most, most);
         }
     }
     follow_free(p, vectors, rhs, df);
@@ -95,7 +103,7 @@ static double alone_product(const tribo_context *ctx, size_t i, double dv, doubl
     const struct tangent *d = &ctx->last.tangent[i];
     const double r = ctx->op->diagonal[i];
     const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
-    const int follows = balanced && ctx->set.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
+    const int follows = balanced && ctx->follow.contacts.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
     return product(d->dv, dv) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
 }
 

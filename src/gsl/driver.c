@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "breakaway.h"
 #include "shooting.h"
 #include "../common/real.h"
 #include "../common/simd.h"
@@ -378,7 +379,7 @@ static int choose(const tribo_driver *drv)
     const tribo_system *sys = drv->sys;
     const struct choice *c = drv->own;
     const int refused = c->refused && c->revision == tribo_system_revision(sys);
-    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !refused ? EXACT : EVENT;
+    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !refused ? EXACT : EVENT;
 }
 
 /* Makes sure that there is the driver. The message of a failure is on the system's context. */

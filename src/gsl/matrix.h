@@ -31,6 +31,9 @@ void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);
 
 void tribo_matrix_free(struct matrix *a);
 
+/* y += |A| |x|, entry by entry. */
+void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
+
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
 

@@ -28,6 +28,8 @@ TRIBO_API int tribo_set_limit(tribo_context *ctx, const double *limit);
 TRIBO_API int tribo_set_limit_all(tribo_context *ctx, double limit);
 TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);
 TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *load);
+TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
+TRIBO_API int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity);
 TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
 TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
 TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);

@@ -78,9 +78,9 @@ C
       SUBROUTINE PLAY
       INTEGER N, LDR
       PARAMETER (N = 4, LDR = 7)
-      INTEGER IH, IH2, IERR, IFORM, ISET, LAW, NLAW, IPAR(3)
+      INTEGER IH, IH2, IERR, IFORM, ISET, LAW, NLAW, IPAR(3), K
       INTEGER IWORK(40)
-      DOUBLE PRECISION W(200), R(LDR,LDR)
+      DOUBLE PRECISION W(200), R(LDR,LDR), RATIO(N), ZERO(1)
       CHARACTER*40 TEXT
       EXTERNAL MINV
 C     Where things begin in W and IWORK
@@ -145,6 +145,18 @@ C     Where things begin in W and IWORK
       CALL CMPI('TRBSTP', IERR)
       CALL SETTIN(IH)
       CALL FORCES(IH, W(LLO), W(LUP))
+      DO 35 K = 1, N
+         RATIO(K) = 1D0 + 32D0*W(LE-1+K)
+   35 CONTINUE
+      ZERO(1) = 0D0
+      CALL TRBSTA(IH, N, RATIO, ZERO, IERR)
+      CALL CMPI('TRBSTA', IERR)
+      CALL SETTIN(IH)
+      CALL FORCES(IH, W(LLO), W(LUP))
+      CALL TRBSTA(IH, N, RATIO, W(LE), IERR)
+      CALL CMPI('TRBSTA', IERR)
+      CALL SETTIN(IH)
+      CALL FORCES(IH, W(LLO), W(LUP))
       CALL TRBEP1(IH, 0.03125D0, IERR)
       CALL CMPI('TRBEP1', IERR)
       CALL TRBLM1(IH, 0.75D0, IERR)
@@ -182,7 +194,7 @@ C     masses. IPAR counts the calls; at call IPAR(2) it fails.
 C
       SUBROUTINE SETTIN(IH)
       INTEGER IH, N, LAW, ICPL, ISHR, IERR
-      DOUBLE PRECISION X(6)
+      DOUBLE PRECISION X(6), VSTR(4)
       CALL TRBNUM(IH, N, IERR)
       CALL CMPI('TRBNUM', IERR)
       CALL CMPI('TRBNUM', N)
@@ -200,6 +212,10 @@ C
       CALL TRBGLM(IH, N, X(2), IERR)
       CALL CMPI('TRBGLM', IERR)
       CALL CMPR('TRBGLM', N, X(2))
+      CALL TRBGST(IH, N, X(2), VSTR, IERR)
+      CALL CMPI('TRBGST', IERR)
+      CALL CMPR('TRBGST', N, X(2))
+      CALL CMPR('TRBGST', N, VSTR)
       CALL TRBGEP(IH, N, X(2), IERR)
       CALL CMPI('TRBGEP', IERR)
       CALL CMPR('TRBGEP', N, X(2))
@@ -431,6 +447,10 @@ C     Every routine that takes a handle, with one that is none.
          CALL WANTED('TRBGCP', IH, IERR, 1, SAYS)
          CALL TRBSHR(IH, 0, IERR)
          CALL WANTED('TRBSHR', IH, IERR, 1, SAYS)
+         CALL TRBSTA(IH, N, X, X, IERR)
+         CALL WANTED('TRBSTA', IH, IERR, 1, SAYS)
+         CALL TRBGST(IH, N, Y, Z, IERR)
+         CALL WANTED('TRBGST', IH, IERR, 1, SAYS)
          CALL TRBGSH(IH, J, IERR)
          CALL WANTED('TRBGSH', IH, IERR, 1, SAYS)
          CALL TRBFRC(IH, N, X, X, Y, IERR)
@@ -518,6 +538,10 @@ C     A number of contacts that is not that of the handle
          CALL WANTED('TRBLIM', IH, IERR, 6, SAYS)
          CALL TRBGLM(IH, NM, Y, IERR)
          CALL WANTED('TRBGLM', IH, IERR, 6, SAYS)
+         CALL TRBSTA(IH, NM, X, X, IERR)
+         CALL WANTED('TRBSTA', IH, IERR, 6, SAYS)
+         CALL TRBGST(IH, NM, Y, Z, IERR)
+         CALL WANTED('TRBGST', IH, IERR, 6, SAYS)
          CALL TRBEPS(IH, NM, X, IERR)
          CALL WANTED('TRBEPS', IH, IERR, 6, SAYS)
          CALL TRBGEP(IH, NM, Y, IERR)
@@ -571,6 +595,8 @@ C     Values
      1            'first(2) takes contact 2, which first(1) has taken')
       CALL TRBNLD(IH, N, NEG, X, IERR)
       CALL WANTED('TRBNLD', IH, IERR, 3, 'mu(3) = -1 is negative')
+      CALL TRBSTA(IH, N, NEG, X, IERR)
+      CALL WANTED('TRBSTA', IH, IERR, 5, 'ratio(3) = -1 is below 1')
       CALL TRBLM1(IH, -2D0, IERR)
       CALL WANTED('TRBLM1', IH, IERR, 3, 'limit = -2 is negative')
       CALL TRBMSG(IH, SAYS, IERR)

@@ -136,6 +136,14 @@ contains
     call compare('set_epsilon, step', stat)
     call settings(c)
     call forces(c)
+    call c%set_static(1 + 32*scene_epsilon, stat=stat)
+    call compare('set_static', stat)
+    call settings(c)
+    call forces(c)
+    call c%set_static(1 + 32*scene_epsilon, scene_epsilon, stat)
+    call compare('set_static, with velocity', stat)
+    call settings(c)
+    call forces(c)
     call c%set_epsilon(0.03125_dp, stat=stat)
     call compare('set_epsilon, scalar', stat)
     call c%set_limit(0.75_dp, stat)
@@ -201,7 +209,7 @@ contains
   subroutine settings(c)
     type(tribo_context), intent(in) :: c
     integer :: stat, i
-    real(dp) :: x(n)
+    real(dp) :: x(n), velocity(n)
 
     call c%get_ncontact(i, stat)
     call compare('get_ncontact', stat)
@@ -218,6 +226,10 @@ contains
     call c%get_limit(x, stat)
     call compare('get_limit', stat)
     call compare('get_limit', x)
+    call c%get_static(x, velocity, stat)
+    call compare('get_static', stat)
+    call compare('get_static', x)
+    call compare('get_static', velocity)
     call c%get_epsilon(x, stat)
     call compare('get_epsilon', stat)
     call compare('get_epsilon', x)
@@ -297,7 +309,7 @@ contains
         call compare('step_force', stat)
         call compare('step_force: f', f)
         call queries(c)
-        f = wiped
+        ! on an error, with static limits, f stays that of step_force
         call c%step_force_mean(0.125_dp, a, v, f, stat)
         call compare('step_force_mean', stat)
         call compare('step_force_mean: f', f)

@@ -51,8 +51,23 @@ static size_t check_direction(tribo_context *c, const struct problem *p, const s
     return smooth;
 }
 
+/* 0: no static limits; 1: such that drop at once, if the law knows stick; 2: such that fall with speed. */
+static void set_static(struct random *g, tribo_context *c, size_t n, int breaking)
+{
+    double ratio[LARGEST], velocity[LARGEST];
+    int law;
+    for (size_t i = 0; i < n; i++) {
+        ratio[i] = uniform(g, 1.0, 2.0);
+        velocity[i] = uniform(g, 0.5, 2.0);
+    }
+    assert_ok(tribo_get_law(c, &law));
+    if (breaking == 2 || (breaking == 1 && law != TRIBO_VELOCITY_LIMITED && law != TRIBO_SMOOTH)) {
+        assert_ok(tribo_set_static(c, ratio, breaking == 2 ? velocity : NULL));
+    }
+}
+
 /* Problems in which epsilon, limits and R are of the order of 1. Odd contacts have the reversal memory set. */
-static tribo_context *create(struct random *g, int law, int coupling, struct problem *p)
+static tribo_context *create(struct random *g, int law, int coupling, int breaking, struct problem *p)
 {
     struct recipe recipe = recipe_regular(g, 12);
     recipe.resting = law == TRIBO_COULOMB ? 0.5 : 0.0; /* at rest and saturated, the other laws have a kink */
@@ -63,18 +78,19 @@ static tribo_context *create(struct random *g, int law, int coupling, struct pro
         v[i] = i % 2 ? 9.0 : 0.0;
     }
     assert_ok(tribo_accept(c, v, none));
+    set_static(g, c, p->n, breaking);
     return c;
 }
 
 TEST(tangents)
 {
     struct random g = random_of(_i);
-    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2;
+    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2, breaking = _i / tribo_law_count() / 2 % 3;
     size_t smooth = 0, all = 0;
     for (int k = 0; k < 10; k++) {
         struct problem p;
         struct tangent t;
-        tribo_context *c = create(&g, law, coupling, &p);
+        tribo_context *c = create(&g, law, coupling, breaking, &p);
         assert_ok(tribo_balance_tangent(c, p.v, p.a, NULL, t.f, t.dv, t.da));
         for (int way = 0; way < 4; way++) {
             double dv[LARGEST], da[LARGEST];
@@ -106,7 +122,7 @@ TEST(optional_outputs)
     struct problem p;
     struct tangent all, one;
     double feq[LARGEST], feq_alone[LARGEST];
-    tribo_context *c = create(&g, TRIBO_QUINN_REVERSAL, _i % 2, &p);
+    tribo_context *c = create(&g, TRIBO_QUINN_REVERSAL, _i % 2, 0, &p);
     answer_apart(c, &p, feq, all.f, all.dv, all.da);
     answer_apart(c, &p, NULL, NULL, one.dv, NULL);
     answer_apart(c, &p, NULL, NULL, NULL, one.da);
@@ -200,6 +216,7 @@ TEST(product_of_tangents)
     const size_t n = p.n;
     double *dv = malloc(n * n * sizeof *dv), *da = malloc(n * n * sizeof *da), x[LARGEST], y[LARGEST], df[LARGEST];
     tribo_context *c = problem_context(&p, law, coupling);
+    set_static(&g, c, p.n, _i / tribo_law_count() / 2 % 3);
     assert_status(tribo_tangent_product(c, p.v, p.a, df), TRIBO_ERR_STATE);
     const int status = tribo_balance_tangent(c, p.v, p.a, NULL, NULL, dv, da);
     if (status != TRIBO_ERR_INCONSISTENT) {
@@ -229,5 +246,5 @@ TEST(product_of_tangents)
     free(da);
 }
 
-TEST_MAIN("tangents", {tangents, 24}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2}, {tangents_of_open_contacts, 1},
-          {product_of_tangents, 120})
+TEST_MAIN("tangents", {tangents, 72}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2}, {tangents_of_open_contacts, 1},
+          {product_of_tangents, 144})

@@ -22,6 +22,7 @@ struct contacts {
     const double *width, *rate;
     const unsigned char *moving; /* reversal memory */
     int follows;
+    int scales; /* epsilon goes with the caller's limit, also where it is in width (static limits) */
 };
 
 /* follows is a constant. */
@@ -43,7 +44,7 @@ static inline double tribo_rate(double epsilon)
 
 static inline struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
 {
-    return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i, c->moving + i, c->follows};
+    return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i, c->moving + i, c->follows, c->scales};
 }
 
 /* epsilon and slope of contact i, where follows is no constant: factors are chosen, not products, which might overflow where they
@@ -114,7 +115,7 @@ static inline double sliding(double v, double limit)
     {                                                                                                                            \
         for (size_t i = 0; i < n; i++) {                                                                                         \
             d[i] = name##_tangent(v[i], feq[i], c->limit[i], tribo_epsilon_of(c, i), tribo_slope_of(c, i), c->moving[i],         \
-                                  c->follows);                                                                                   \
+                                  c->scales);                                                                                    \
         }                                                                                                                        \
     }
 
