@@ -328,6 +328,15 @@ TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const d
  * Returns TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another balance or setting since. */
 TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 
+/* The same for a change of limits, for hosts whose normal loads follow the motion: df = df_dlimit dlimit, with all that the other
+ * contacts make of it; where epsilon follows the limit (tribo_set_epsilon_step), that takes part. One-sided at a kink, also where
+ * the limits of the two directions of a planar contact are equal and change differently. Directions with limit 0 are open and
+ * stay so: their dlimit counts as 0.
+ * dlimit  [n] in
+ * df      [n] out
+ * Returns what tribo_tangent_product returns. */
+TRIBO_API int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df);
+
 /* Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step,
  * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
  * dt     in       step, > 0

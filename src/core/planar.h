@@ -44,7 +44,7 @@ struct plane {
     size_t *near;                     /* [largest] places of the directions in the problem */
     double *y;                        /* [n] what was found, in parts of limits */
     double *v, *a;                    /* [n] of the last tribo_balance_tangent */
-    double *unit, *zero, *df, *other; /* [n] workspace; the first two are zero between calls */
+    double *unit, *df, *other;        /* [n] workspace; the first is zero between calls */
     size_t solved;                    /* clusters, in the last call */
 };
 
