@@ -52,8 +52,8 @@ static void slide_product(const tribo_context *ctx, size_t i, const struct chang
     const double along = s.n[0] * dx[0] + s.n[1] * dx[1];
     for (size_t k = 0; k < 2; k++) {
         const double turn = s.length > 0.0 ? carried * quotient(dx[k] - s.n[k] * along, s.length) : 0.0;
-        const double grow = slope * (quotient(s.length > 0.0 ? s.n[k] * along : dx[k], s.epsilon) -
-                                     product(product(s.speed, u.epsilon), s.n[k]));
+        const double grow =
+            slope * (quotient(s.length > 0.0 ? s.n[k] * along : dx[k], s.epsilon) - product(product(s.speed, u.epsilon), s.n[k]));
         const double own = product(carried * s.n[k], tribo_limit_change(ctx, d, i + k));
         df[i + k] = s.open ? 0.0 : product(ctx->set.limit[i + k], turn + grow) + own;
     }
@@ -113,9 +113,9 @@ static double press_change(const tribo_context *ctx, const struct cluster *g, si
     const struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
     const size_t n = p->size, first = p->wide[e] ? e : e - 1, i = member[near[e]];
-    double sum = tribo_limit_growth(ctx, d, i) * p->gradient[e];
+    double sum = product(tribo_limit_growth(ctx, d, i), p->gradient[e]);
     for (size_t j = first; j < first + p->wide[first]; j++) {
-        sum += p->s[e * n + j] * p->shift[j] * tribo_limit_growth(ctx, d, member[near[j]]);
+        sum += product(p->s[e * n + j] * p->shift[j], tribo_limit_growth(ctx, d, member[near[j]]));
     }
     return sum;
 }

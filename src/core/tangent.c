@@ -28,7 +28,7 @@ static double own_change(const tribo_context *ctx, const struct box_qp *p, size_
     if (!moves) {
         return side * dlimit;
     }
-    return meet ? -side * dlimit : (side - turned) * dlimit - product(slope, dv);
+    return meet ? -side * dlimit : product(side - turned, dlimit) - product(slope, dv);
 }
 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */

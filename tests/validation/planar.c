@@ -46,7 +46,8 @@ TEST(orders)
     const struct {
         const char *name;
         double order, error[2];
-    } cases[] = {{"rk4/fixed", 2.9, {1.3e-7, 1.3e-7}}, {"central/fixed", 1.95, {1.2e-5, 1.8e-5}}, {"moreau/fixed", 1.95, {1e-5, 3e-6}}};
+    } cases[] = {
+        {"rk4/fixed", 2.9, {1.3e-7, 1.3e-7}}, {"central/fixed", 1.95, {1.2e-5, 1.8e-5}}, {"moreau/fixed", 1.95, {1e-5, 3e-6}}};
     const int motion = _i % 2, method = _i / 2;
     const double coarse = error_of(motion, cases[method].name, 1e-2), fine = error_of(motion, cases[method].name, 1e-3);
     require(log10(coarse / fine) > cases[method].order, "%s: order %.2f", cases[method].name, log10(coarse / fine));

@@ -21,8 +21,8 @@ TEST(orders)
         error[k] = reference_error(r, methods[_i / REFERENCES], dt[k], 0.0, NULL);
     }
     const double order = order_of(dt, error, COUNT(dt));
-    require(order >= 1.7, "%s, %s: order %.2f, errors %.2g to %.2g", r->name, methods[_i / REFERENCES], order,
-            error[0], error[COUNT(dt) - 1]);
+    require(order >= 1.7, "%s, %s: order %.2f, errors %.2g to %.2g", r->name, methods[_i / REFERENCES], order, error[0],
+            error[COUNT(dt) - 1]);
 }
 
 /* Errors seen with other codes, to two digits; the first lines are settings for errors of 1e-4. */
