@@ -70,6 +70,7 @@
 !>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
 !>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
 !>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of the last TRBBTN
+!>   TRBLPR(IH, N, DLIM, DF, IERR)                   DLIM(N): change of the limits     DF(N): that of the forces of the last TRBBTN
 !>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
 !>   TRBSTM(IH, N, DT, V, VFREE, F, IERR)            DT, V(N) at its start, VFREE(N)       F(N): the same to second order
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
@@ -716,6 +717,19 @@ subroutine trbtpr(ih, n, dv, da, df, ierr)
   call find(ih, ctx, ierr, n)
   if (ierr == TRIBO_OK) ierr = c_tangent_product(ctx, dv, da, df)
 end subroutine trbtpr
+
+subroutine trblpr(ih, n, dlim, df, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: dlim(*)
+  real(dp), intent(inout) :: df(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_limit_product(ctx, dlim, df)
+end subroutine trblpr
 
 subroutine trbstf(ih, n, dt, vfree, f, ierr)
   use tribo_fixed

@@ -71,7 +71,7 @@ module tribo_contexts
     procedure :: set_coupling, get_coupling
     procedure :: set_sharing, get_sharing
     procedure :: force, force_tangent
-    procedure :: balance, balance_tangent, tangent_product
+    procedure :: balance, balance_tangent, tangent_product, limit_product
     procedure :: step_force, step_force_mean
     procedure :: solve_box
     procedure :: accept
@@ -780,6 +780,23 @@ contains
     if (w%status == TRIBO_OK) w%status = c_tangent_product(w%ctx, dv, da, df)
     call finish(w, stat, errmsg)
   end subroutine tangent_product
+
+  !> The same for a change of limits, for hosts whose normal loads follow the motion: df = df_dlimit dlimit. Contacts with limit 0
+  !> are open and stay so.
+  subroutine limit_product(this, dlimit, df, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in), contiguous :: dlimit(:)
+    real(dp), intent(inout) :: df(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    call expect_size(w, 'dlimit', dlimit, w%n)
+    call expect_size(w, 'df', df, w%n)
+    if (w%status == TRIBO_OK) w%status = c_limit_product(w%ctx, dlimit, df)
+    call finish(w, stat, errmsg)
+  end subroutine limit_product
 
   !> Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step dt,
   !> that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end(i) = 0 or f(i) =

@@ -443,6 +443,14 @@ module tribo_c
       integer(c_int) :: answer
     end function c_tangent_product
 
+    function c_limit_product(ctx, dlimit, df) result(answer) bind(c,name='tribo_limit_product')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in), optional :: dlimit(*)
+      real(c_double), intent(inout), optional :: df(*)
+      integer(c_int) :: answer
+    end function c_limit_product
+
     function c_step_force(ctx, dt, vfree, f) result(answer) bind(c,name='tribo_step_force')
       import
       type(c_ptr), value :: ctx

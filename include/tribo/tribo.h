@@ -358,6 +358,15 @@ TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const d
  * Returns TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another balance or setting since. */
 TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 
+/* The same for a change of limits, for hosts whose normal loads follow the motion: df = df_dlimit dlimit, with all that the other
+ * contacts make of it; where epsilon follows the limit (tribo_set_epsilon_step), that takes part. One-sided at a kink, also where
+ * the limits of the two directions of a planar contact are equal and change differently. Directions with limit 0 are open and
+ * stay so: their dlimit counts as 0.
+ * dlimit  [n] in
+ * df      [n] out
+ * Returns what tribo_tangent_product returns, and TRIBO_ERR_UNSUPPORTED with static limits (tribo_set_static). */
+TRIBO_API int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df);
+
 /* Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step,
  * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
  * With static limits (tribo_set_static) a contact sticks if it can: v_end is found with |f| <= ratio*limit; contacts that slide
@@ -374,9 +383,8 @@ TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfre
  *                    w/|limit w| with w = v + v_end, unless they turn back by more than a right angle
  *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until
  *                    then and the other way after: f is the mean of that, and tribo_get_slip tells the direction of the end
- * All others are as there. It costs up to two solutions.
- * v  [n] in  relative velocity at the start of the step
- * Returns TRIBO_ERR_UNSUPPORTED for static limits (tribo_set_static). */
+ * All others are as there, and so are all of them with static limits (tribo_set_static). It costs up to two solutions.
+ * v  [n] in  relative velocity at the start of the step */
 TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
 
 /* The box-constrained problem behind it all, min 1/2 f'Rf + a'f with lower <= f <= upper, for laws of the caller's own. Neither

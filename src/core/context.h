@@ -300,10 +300,32 @@ int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const doub
 void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a);
 struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g);
 
+/* What changes about all contacts, [n] each, or NULL for nothing. */
+struct change {
+    const double *v, *a, *limit;
+};
+
+static inline double tribo_entry(const double *x, size_t i)
+{
+    return x ? x[i] : 0.0;
+}
+
+/* An open contact stays open. */
+static inline double tribo_limit_change(const tribo_context *ctx, const struct change *d, size_t i)
+{
+    return ctx->set.limit[i] > 0.0 ? tribo_entry(d->limit, i) : 0.0;
+}
+
+/* The same in parts of the limit. */
+static inline double tribo_limit_growth(const tribo_context *ctx, const struct change *d, size_t i)
+{
+    return ctx->set.limit[i] > 0.0 ? quotient(tribo_entry(d->limit, i), ctx->set.limit[i]) : 0.0;
+}
+
 /* planar_tangent.c: the derivatives of a cluster's forces at the last tribo_balance_tangent. */
 void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a);
 void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da);
-void tribo_planar_product(tribo_context *ctx, const double *dv, const double *da, double *df);
+void tribo_planar_product(tribo_context *ctx, const struct change *d, double *df);
 
 /* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */
 void tribo_begin_call(tribo_context *ctx);

@@ -36,14 +36,14 @@ void tribo_planar_release(struct planar *planar)
 
 int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t n)
 {
-    enum { VECTORS = 7 };
+    enum { VECTORS = 6 };
     *plane = (struct plane){0};
     if (!planar) {
         return 1;
     }
     plane->near = malloc((planar->largest + 1) * sizeof *plane->near);
     plane->y = calloc(VECTORS * (n + 1), sizeof *plane->y);
-    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->zero, &plane->df, &plane->other};
+    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->df, &plane->other};
     for (size_t k = 1; plane->y && k < VECTORS; k++) {
         *vector[k] = plane->y + k * (n + 1);
     }

@@ -1,4 +1,4 @@
-/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law at the end of the step, the mean of the
+/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law over the step, the mean of the
  * loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for
  * any dt. */
 #include <math.h>
@@ -278,7 +278,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_relative(s, sys, s->u, s->end);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
     take_limits(m, sys);
-    const int status = tribo_step_force(m->contacts, h, s->end, s->f);
+    const int status = tribo_step_force_mean(m->contacts, h, s->v, s->end, s->f);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }

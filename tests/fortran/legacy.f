@@ -327,6 +327,9 @@ C        On failure C's outputs were f_eq and derivatives
          CALL TRBTPR(IH, N, ZERO, A, X(1,3), IERR)
          CALL CMPI('TRBTPR', IERR)
          CALL CMPR('TRBTPR', 3*N, X)
+         CALL TRBLPR(IH, N, A, X(1,1), IERR)
+         CALL CMPI('TRBLPR', IERR)
+         CALL CMPR('TRBLPR', N, X)
          CALL TRBTPR(IH, N, FEQ, A, DF(2), IERR)
          CALL TRBSTF(IH, N, 0.125D0, V, F, IERR)
          CALL CMPI('TRBSTF', IERR)
@@ -463,6 +466,8 @@ C     Every routine that takes a handle, with one that is none.
          CALL WANTED('TRBBTN', IH, IERR, 1, SAYS)
          CALL TRBTPR(IH, N, X, X, Y, IERR)
          CALL WANTED('TRBTPR', IH, IERR, 1, SAYS)
+         CALL TRBLPR(IH, N, X, Y, IERR)
+         CALL WANTED('TRBLPR', IH, IERR, 1, SAYS)
          CALL TRBSTF(IH, N, 1D0, X, Y, IERR)
          CALL WANTED('TRBSTF', IH, IERR, 1, SAYS)
          CALL TRBBOX(IH, N, X, X, X, Y, IERR)
@@ -566,6 +571,8 @@ C     A number of contacts that is not that of the handle
          CALL WANTED('TRBBTN', IH, IERR, 6, SAYS)
          CALL TRBTPR(IH, NM, X, X, Y, IERR)
          CALL WANTED('TRBTPR', IH, IERR, 6, SAYS)
+         CALL TRBLPR(IH, NM, X, Y, IERR)
+         CALL WANTED('TRBLPR', IH, IERR, 6, SAYS)
          CALL TRBSTF(IH, NM, 1D0, X, Y, IERR)
          CALL WANTED('TRBSTF', IH, IERR, 6, SAYS)
          CALL TRBBOX(IH, NM, X, X, X, Y, IERR)
@@ -680,6 +687,9 @@ C     Values
       CALL WANTED('TRBOPC', IH, IERR, 6, 'NDOF = -1 is less than 0')
       CALL TRBTPR(IH, N, X, X, Y, IERR)
       CALL WANTED('TRBTPR', IH, IERR, 8,
+     1    'no tribo_balance_tangent since the last balance or change')
+      CALL TRBLPR(IH, N, X, Y, IERR)
+      CALL WANTED('TRBLPR', IH, IERR, 8,
      1    'no tribo_balance_tangent since the last balance or change')
       CALL TRBSLP(IH, N, MODE, IERR)
       CALL WANTED('TRBSLP', IH, IERR, 8,

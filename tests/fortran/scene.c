@@ -139,6 +139,8 @@ static void forces(tribo_context *c)
         put_one(tribo_tangent_product(c, feq, NULL, x[1]));
         put_one(tribo_tangent_product(c, NULL, a, x[2]));
         put(3 * N, x[0]);
+        put_one(tribo_limit_product(c, a, x[0]));
+        put(N, x[0]);
         put_one(tribo_step_force(c, 0.125, v, f));
         put(N, f);
         queries(c);

@@ -441,10 +441,11 @@ TEST(not_in_the_plane)
     assert_status(tribo_set_planar(c, 1, &first), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_message(c), "planar contact 0 knows no static limits, and ratio[1] = 2");
     assert_ok(tribo_set_planar(c, 0, NULL));
-    assert_status(tribo_step_force_mean(c, 0.1, TWO(0.0, 0.0), TWO(0.0, 0.15), f), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_message(c), "tribo_step_force_mean knows no static limits, and ratio[1] = 2");
-    assert_ok(tribo_step_force(c, 0.1, TWO(0.0, 0.15), f));
+    assert_ok(tribo_step_force_mean(c, 0.1, TWO(0.0, 0.0), TWO(0.0, 0.15), f));
     assert_all_close(f, TWO(0.0, -1.5), 2, 1e-15);
+    assert_ok(tribo_balance_tangent(c, TWO(0.0, 0.0), TWO(0.0, 0.15), NULL, f, NULL, NULL));
+    assert_status(tribo_limit_product(c, TWO(1.0, 1.0), ratio), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_message(c), "tribo_limit_product knows no static limits, and ratio[1] = 2");
     assert_ok(tribo_set_static(c, NULL, NULL));
     assert_ok(tribo_step_force_mean(c, 0.1, TWO(0.0, 0.0), TWO(0.0, 0.15), f));
     assert_ok(tribo_set_planar(c, 1, &first));

@@ -377,4 +377,56 @@ TEST(tangents)
     require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
 }
 
-TEST_MAIN("planar_coupled", {random_problems, 5}, {steps, 5}, {turned, 3}, {tangents, 3})
+/* Forces with limits that have gone by part of dlimit. */
+static void forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f)
+{
+    double limit[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        limit[i] = p->limit[i] + part * dlimit[i];
+    }
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_balance(c, p->v, p->a, NULL, f));
+}
+
+/* Discs stay discs, ellipses change their shape; lines stay lines. */
+static void change_limits(struct random *g, const struct scene *s, double *dlimit)
+{
+    for (size_t i = 0; i < s->p.n; i++) {
+        const int disc = i > 0 && s->wide[i] == 0 && s->p.limit[i] == s->p.limit[i - 1];
+        dlimit[i] = disc ? dlimit[i - 1] : s->p.limit[i] > 0.0 ? uniform(g, -1.0, 1.0) : 0.0;
+    }
+}
+
+/* Every law, and epsilon that is given or follows the limits. */
+TEST(limits)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), follows = _i / tribo_law_count();
+    size_t smooth = 0, all = 0;
+    for (int k = 0; k < 40; k++) {
+        const struct recipe recipe = recipe_regular(&g, 10);
+        const struct scene s = scene_create(&g, &recipe);
+        double dlimit[LARGEST], df[LARGEST], f[LARGEST], before[LARGEST], after[LARGEST];
+        tribo_context *c = scene_context(&s, law);
+        change_limits(&g, &s, dlimit);
+        if (follows) {
+            assert_ok(tribo_set_epsilon_step(c, 1.0, 2.0));
+        }
+        assert_ok(tribo_balance_tangent(c, s.p.v, s.p.a, NULL, f, NULL, NULL));
+        assert_ok(tribo_limit_product(c, dlimit, df));
+        forces_of_limits(c, &s.p, -STEP, dlimit, before);
+        forces_of_limits(c, &s.p, STEP, dlimit, after);
+        for (size_t i = 0; i < s.p.n; i++) {
+            const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP, size = 1.0 + fabs(df[i]);
+            if (fabs(forward - backward) < 1e-4 * size) {
+                assert_close(df[i], 0.5 * (forward + backward), 2e-5 * size);
+                smooth++;
+            }
+        }
+        all += s.p.n;
+        tribo_destroy(c);
+    }
+    require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
+}
+
+TEST_MAIN("planar_coupled", {random_problems, 5}, {steps, 5}, {turned, 3}, {tangents, 3}, {limits, 12})

@@ -246,5 +246,86 @@ TEST(product_of_tangents)
     free(da);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ limits */
+
+/* Forces with limits that have gone by part of dlimit. */
+static void forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f)
+{
+    double limit[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        limit[i] = p->limit[i] + part * dlimit[i];
+    }
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_balance(c, p->v, p->a, NULL, f));
+}
+
+/* How many forces have no kink within the step; these are compared. */
+static size_t check_limits(tribo_context *c, const struct problem *p, const double *dlimit)
+{
+    double f[LARGEST], df[LARGEST], before[LARGEST], after[LARGEST];
+    size_t smooth = 0;
+    assert_ok(tribo_balance_tangent(c, p->v, p->a, NULL, f, NULL, NULL));
+    assert_ok(tribo_limit_product(c, dlimit, df));
+    forces_of_limits(c, p, -STEP, dlimit, before);
+    forces_of_limits(c, p, STEP, dlimit, after);
+    for (size_t i = 0; i < p->n; i++) {
+        const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP, size = 1.0 + fabs(df[i]);
+        if (fabs(forward - backward) < 2e-4 * size) {
+            assert_close(df[i], 0.5 * (forward + backward), 2e-6 * size);
+            smooth++;
+        }
+    }
+    return smooth;
+}
+
+/* Every law and coupling; epsilon that is given, and that follows the limits. */
+TEST(limits)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2, follows = _i / tribo_law_count() / 2;
+    size_t smooth = 0, all = 0;
+    for (int k = 0; k < 20; k++) {
+        struct problem p;
+        double dlimit[LARGEST];
+        tribo_context *c = create(&g, law, coupling, &p);
+        for (size_t i = 0; i < p.n; i++) {
+            dlimit[i] = p.limit[i] > 0.0 ? uniform(&g, -1.0, 1.0) : 0.0;
+        }
+        if (follows) {
+            assert_ok(tribo_set_epsilon_step(c, 1.0, 2.0));
+        }
+        smooth += check_limits(c, &p, dlimit);
+        all += p.n;
+        tribo_destroy(c);
+    }
+    ck_assert_uint_gt(smooth, all * 95 / 100);
+}
+
+/* Two masses pull at one rope: what one contact, which slides, carries more, the other, which holds, carries less. An open contact
+ * stays open; and the product tells what it has not been asked for. */
+TEST(limits_of_neighbours)
+{
+    const double r[] = {1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0}, limit[] = {0.3, 2.0, 0.0}, v[] = {1.0, 0.0, 0.0};
+    const double a[] = {1.0, 1.0, 1.0}, one[] = {1.0, 0.0, 7.0};
+    double df[3];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 3));
+    assert_ok(tribo_set_epsilon_all(c, 0.1));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_status(tribo_limit_product(c, one, df), TRIBO_ERR_STATE);
+    assert_ok(tribo_balance_tangent(c, v, a, NULL, NULL, NULL, NULL));
+    assert_ok(tribo_limit_product(c, one, df));
+    assert_all_close(df, THREE(-1.0, 1.0, 0.0), 3, 1e-15);
+    assert_status(tribo_limit_product(c, THREE(0.0, NAN, 0.0), df), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_message(c), "dlimit[1] = nan");
+    assert_status(tribo_limit_product(c, NULL, df), TRIBO_ERR_NULL);
+    assert_status(tribo_limit_product(c, one, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_limit_product(NULL, one, df), TRIBO_ERR_NULL);
+    assert_ok(tribo_set_limit(c, limit));
+    assert_status(tribo_limit_product(c, one, df), TRIBO_ERR_STATE);
+    tribo_destroy(c);
+}
+
 TEST_MAIN("tangents", {tangents, 72}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2}, {tangents_of_open_contacts, 1},
-          {product_of_tangents, 144})
+          {product_of_tangents, 144}, {limits, 24}, {limits_of_neighbours, 1})

@@ -59,6 +59,12 @@ static inline double tribo_slope_of(const struct contacts *c, size_t i)
     return c->rate[i] * (!c->follows ? c->bound[i] : c->bound[i] > 0.0 ? 1.0 : 0.0);
 }
 
+/* How the slope follows the limit. */
+static inline double tribo_slope_rate_of(const struct contacts *c, size_t i)
+{
+    return c->follows ? 0.0 : c->rate[i];
+}
+
 struct tangent {
     double dv, dfeq, dlimit;
 };
