@@ -259,8 +259,8 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
  * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
  * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_DUPLICATE (a direction of two contacts),
- * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling, and not beside static limits, tribo_set_static), TRIBO_ERR_MEMORY; on
- * error all stays as it was. */
+ * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling, and not beside static limits, tribo_set_static),
+ * TRIBO_ERR_MEMORY; on error all stays as it was. */
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 
 /* The operator R of z'' = R f + a. On error the old one stays. That of the context of a tribo_system is the system's, and cannot

@@ -28,7 +28,7 @@ struct event {
     double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
     double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
     size_t terms;                    /* so many rows of them are not zero */
-    double *slide;                   /* [order + 1][ncontact] limits by which contacts slide: these, unless they fall with the speed; */
+    double *slide;                   /* [order + 1][ncontact] limits to slide: these, unless they fall with the speed; */
     size_t slide_terms;              /* so many rows */
     double *fall, *part;             /* [order + 1][ncontact] room for such that fall, and exp(-|v|/velocity) */
     double *d;                       /* [order + 1] dissipated energy */

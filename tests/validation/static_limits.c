@@ -1,5 +1,5 @@
-/* Static limits, and such that fall with the speed, that follow harmonics, with lift-off: closed forms, an integration of its own,
- * and methods against each other. */
+/* Static limits, and such that fall with the speed, that follow harmonics, with lift-off: closed forms, an integration of its
+ * own, and methods against each other. */
 #include <string.h>
 
 #include "coulomb.h"
