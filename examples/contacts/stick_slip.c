@@ -1,5 +1,5 @@
-/* A block on a belt, held by a spring: static friction is above kinetic, so that it sticks, breaks away and sticks again for ever,
- * as brakes, bows and faults do.
+/* A block on a belt, held by a spring: static friction is above kinetic, so that it sticks, breaks away and sticks again for
+ * ever, as brakes, bows and faults do.
  *
  *     contact_stick_slip FOLDER
  *

@@ -1,5 +1,5 @@
-/* How the forces of a cluster follow velocities, accelerations and limits: the contacts near stick stay in their places, and Newton's
- * equations along what these leave them say how they stay balanced. */
+/* How the forces of a cluster follow velocities, accelerations and limits: the contacts near stick stay in their places, and
+ * Newton's equations along what these leave them say how they stay balanced. */
 #include "context.h"
 
 void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a)

@@ -1,6 +1,6 @@
-/* How the forces of coupled contacts follow velocities, accelerations and limits. With the sets of contacts that the last balance found
- * this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or f_eq, stay
- * balanced, the others as their law or their bound tells. */
+/* How the forces of coupled contacts follow velocities, accelerations and limits. With the sets of contacts that the last
+ * balance found this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or
+ * f_eq, stay balanced, the others as their law or their bound tells. */
 #include "context.h"
 
 /* What every contact's law says at the last balance, which was at v. */

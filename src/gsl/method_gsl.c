@@ -287,7 +287,8 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     return status;
 }
 
-#define ADAPTIVE(id) const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id, NULL};
+#define ADAPTIVE(id)                                                                                                             \
+    const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id, NULL};
 ADAPTIVE(rk2)
 ADAPTIVE(rk4)
 ADAPTIVE(rkf45)

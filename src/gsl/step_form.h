@@ -1,5 +1,5 @@
-/* What the two methods in step form share: Coulomb's law over a step (tribo_step_force_mean). No epsilon, contacts at rest stay at
- * rest exactly, and the energy that friction dissipates is that of the discrete motion, -h f'(v + v_end)/2 a step. */
+/* What the two methods in step form share: Coulomb's law over a step (tribo_step_force_mean). No epsilon, contacts at rest
+ * stay at rest exactly, and the energy that friction dissipates is that of the discrete motion, -h f'(v + v_end)/2 a step. */
 #ifndef TRIBO_STEP_FORM_H
 #define TRIBO_STEP_FORM_H
 

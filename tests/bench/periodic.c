@@ -1,5 +1,5 @@
-/* What a steady motion costs: tribo_driver_find_periodic beside what people do, marching to rest and harmonic balance, on the beam
- * of the examples at several frequencies and limits. bench_periodic --help tells the options. */
+/* What a steady motion costs: tribo_driver_find_periodic beside what people do, marching to rest and harmonic balance, on the
+ * beam of the examples at several frequencies and limits. bench_periodic --help tells the options. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -469,6 +469,6 @@ TEST(far_limits)
     tribo_destroy(c);
 }
 
-TEST_MAIN("breakaway", {not_in_the_plane, 2}, {one_block, 4}, {ties, 2}, {just_at_the_limit, 40}, {decided_again, 2}, {many_contacts, 100},
-          {falling_limit, 6}, {dropping_limit, 6}, {falling_limit_in_steps, 1}, {undone, 40}, {clones, 20},
+TEST_MAIN("breakaway", {not_in_the_plane, 2}, {one_block, 4}, {ties, 2}, {just_at_the_limit, 40}, {decided_again, 2},
+          {many_contacts, 100}, {falling_limit, 6}, {dropping_limit, 6}, {falling_limit_in_steps, 1}, {undone, 40}, {clones, 20},
           {rate_of_relaxation, 2}, {tangents_of_the_law, 24}, {refusals, 1}, {far_limits, 2})

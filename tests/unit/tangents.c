@@ -287,7 +287,7 @@ TEST(limits)
     for (int k = 0; k < 20; k++) {
         struct problem p;
         double dlimit[LARGEST];
-        tribo_context *c = create(&g, law, coupling, &p);
+        tribo_context *c = create(&g, law, coupling, 0, &p);
         for (size_t i = 0; i < p.n; i++) {
             dlimit[i] = p.limit[i] > 0.0 ? uniform(&g, -1.0, 1.0) : 0.0;
         }
@@ -301,8 +301,8 @@ TEST(limits)
     ck_assert_uint_gt(smooth, all * 95 / 100);
 }
 
-/* Two masses pull at one rope: what one contact, which slides, carries more, the other, which holds, carries less. An open contact
- * stays open; and the product tells what it has not been asked for. */
+/* Two masses pull at one rope: what one contact, which slides, carries more, the other, which holds, carries less. An open
+ * contact stays open; and the product tells what it has not been asked for. */
 TEST(limits_of_neighbours)
 {
     const double r[] = {1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0}, limit[] = {0.3, 2.0, 0.0}, v[] = {1.0, 0.0, 0.0};
