@@ -146,21 +146,6 @@ void tribo_refresh_static(tribo_context *ctx)
     }
 }
 
-/* Where a ratio is above 1, or n. */
-static int check(const tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
-{
-    int status = tribo_check_finite(ctx, "ratio", ratio, ctx->n);
-    status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
-    *above = ctx->n;
-    for (size_t i = 0; !status && i < ctx->n; i++) {
-        if (ratio[i] < 1.0) {
-            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g is below 1", i, ratio[i]);
-        }
-        *above = *above == ctx->n && ratio[i] > 1.0 ? i : *above;
-    }
-    return status;
-}
-
 int tribo_refuse_static(const tribo_context *ctx, const char *who)
 {
     for (size_t i = 0; ctx->set.breaking && i < ctx->n; i++) {
@@ -179,50 +164,6 @@ int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int br
                               "ratio[%zu] = %g needs a velocity by which the limit falls: law %s has no stick", i, ratio[i],
                               law->name);
         }
-    }
-    return TRIBO_OK;
-}
-
-int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    size_t above = ctx->n;
-    int status = ratio ? check(ctx, ratio, velocity, &above) : TRIBO_OK;
-    const int breaking = above == ctx->n ? NEVER : velocity ? FALLS : DROPS;
-    status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
-    if (status) {
-        return status;
-    }
-    if (breaking && ctx->planar) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                          "ratio[%zu] = %g: there are no static limits beside planar contacts, and contact %zu is one", above,
-                          ratio[above], ctx->planar->first[0]);
-    }
-    tribo_write_modes(ctx);
-    ctx->set.breaking = breaking;
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->set.ratio[i] = breaking ? ratio[i] : 1.0;
-        ctx->set.stribeck[i] = breaking == FALLS ? velocity[i] : 0.0;
-    }
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        tribo_take_limits(tribo_chunk_size(ctx, i), ctx->set.limit + i, ctx->follow.now + i, &ctx->follow.chunk[k]);
-    }
-    tribo_refresh_limits(ctx);
-    return TRIBO_OK;
-}
-
-int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    for (size_t i = 0; ratio && i < ctx->n; i++) {
-        ratio[i] = ctx->set.breaking ? ctx->set.ratio[i] : 1.0;
-    }
-    for (size_t i = 0; velocity && i < ctx->n; i++) {
-        velocity[i] = ctx->set.breaking == FALLS ? ctx->set.stribeck[i] : 0.0;
     }
     return TRIBO_OK;
 }

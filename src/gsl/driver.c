@@ -1,3 +1,4 @@
+#include "driver.h"
 /* Integration in time: a method by name, and what is around it. */
 #include <float.h>
 #include <math.h>
@@ -7,7 +8,6 @@
 #include <string.h>
 
 #include "breakaway.h"
-#include "shooting.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -147,7 +147,9 @@ void tribo_driver_destroy(tribo_driver *drv)
     if (!drv) {
         return;
     }
-    tribo_shooting_free(drv->shooting);
+    if (drv->shooting) {
+        drv->free_shooting(drv->shooting);
+    }
     drv->method->destroy(drv);
     free(drv->state);
     free(drv);
@@ -233,7 +235,7 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
         *value = drv->newton;
         return TRIBO_OK;
     case TRIBO_COUNT_FREEDOM:
-        *value = drv->shooting ? drv->shooting->freedom : 0;
+        *value = drv->freedom;
         return TRIBO_OK;
     default:
         return TRIBO_ERR_RANGE;

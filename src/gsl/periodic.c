@@ -80,6 +80,7 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
         return status;
     }
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
+    drv->free_shooting = tribo_shooting_free;
     return drv->shooting ? tribo_shooting_find(drv->shooting, t, period, y)
                          : tribo_driver_fail(drv, TRIBO_ERR_MEMORY,
                                              "out of memory for periodic motions of %zu degrees of freedom", drv->sys->ndof);
