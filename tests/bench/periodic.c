@@ -125,8 +125,38 @@ static void run_shooting(void *data)
     tribo_driver_destroy(drv);
 }
 
-/* Marching: setting is the number of steps a period. It ends as soon as it is as near as aimed at to what only we know, which is
- * earlier than a user could end it. */
+/* The amplitude of the period that begins with y. */
+static double marched_amplitude(const struct study *s, tribo_driver *drv, double period, size_t samples, const double *y)
+{
+    double copy[STATE];
+    memcpy(copy, y, sizeof copy);
+    return amplitude_from(s, drv, period, samples, copy);
+}
+
+/* Marches until the motion is as near as aimed at to what only we know, which is earlier than a user could end it. Returns the
+ * error: HUGE_VAL where steps are too long to be stable. */
+static double march(struct pass *p, tribo_driver *drv, size_t point, double period, double *y)
+{
+    const struct study *s = p->study;
+    double error = HUGE_VAL;
+    for (size_t cycle = 0; cycle < MOST_CYCLES && !(error <= p->aim); cycle++, p->work++) {
+        struct steady found = s->reference[point];
+        double t = 0.0;
+        y[2 * MODES] = 0.0;
+        if (tribo_driver_advance(drv, &t, period, y)) {
+            return HUGE_VAL;
+        }
+        found.power = y[2 * MODES] / period;
+        error = error_of(s, point, &found);
+        if (error <= p->aim) {
+            found.amplitude = marched_amplitude(s, drv, period, (size_t)p->setting, y);
+            error = error_of(s, point, &found);
+        }
+    }
+    return error;
+}
+
+/* Marching: setting is the number of steps a period. */
 static void run_marching(void *data)
 {
     struct pass *p = data;
@@ -139,23 +169,8 @@ static void run_marching(void *data)
         set_point(s, i);
         need(tribo_set_epsilon_step(tribo_system_context(s->sys), dt, 1.0), NULL);
         tribo_driver *drv = open_driver(p, dt, 0.0);
-        double error = HUGE_VAL;
-        for (size_t cycle = 0; cycle < MOST_CYCLES && !(error <= p->aim); cycle++, p->work++) {
-            struct steady found = s->reference[i];
-            double t = 0.0;
-            y[2 * MODES] = 0.0;
-            need(tribo_driver_advance(drv, &t, period, y), tribo_driver_message(drv));
-            found.power = y[2 * MODES] / period;
-            error = error_of(s, i, &found);
-            if (error <= p->aim) {
-                double copy[STATE];
-                memcpy(copy, y, sizeof y);
-                found.amplitude = amplitude_from(s, drv, period, (size_t)p->setting, copy);
-                error = error_of(s, i, &found);
-            }
-        }
+        p->error = fmax(p->error, march(p, drv, i, period, y));
         tribo_driver_destroy(drv);
-        p->error = fmax(p->error, error);
     }
 }
 
