@@ -261,7 +261,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_set_limits(sys, t + 0.5 * h);
     tribo_get_limit(sys->contacts, m->limit);
     tribo_set_limit(m->contacts, m->limit);
-    const int status = tribo_step_force_mean(m->contacts, h, s->v, s->end, s->f);
+    const int status = tribo_step_form_force(s, m->contacts, h);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }
