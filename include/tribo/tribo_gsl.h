@@ -171,7 +171,8 @@ typedef struct tribo_driver tribo_driver;
  *               "event": high-order steps between events, with the tolerances; any system
  *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt
  *               that is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule
- *               (Moreau and Jean), as tribo_step_force_mean gives it. Second order, but central with damping first order
+ *               (Moreau and Jean). Second order, with planar contacts as tribo_step_force_mean; but for scalar contacts
+ *               that reverse without sticking, and central with damping: there first order
  *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
  *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at

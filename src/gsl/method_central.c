@@ -63,7 +63,7 @@ static int kick(tribo_driver *drv, double from, double t, double to, const doubl
     tribo_step_form_find_base(s, sys, to);
     tribo_step_form_relative(s, sys, u, s->end);
     tribo_step_form_set_limits(sys, t);
-    const int status = tribo_step_force_mean(sys->contacts, time, s->v, s->end, s->f);
+    const int status = tribo_step_form_force(s, sys->contacts, time);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }

@@ -278,7 +278,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_relative(s, sys, s->u, s->end);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
     take_limits(m, sys);
-    const int status = tribo_step_force_mean(m->contacts, h, s->v, s->end, s->f);
+    const int status = tribo_step_form_force(s, m->contacts, h);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }

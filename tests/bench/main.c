@@ -215,8 +215,6 @@ static const struct {
     {"oscillator-7a", "sundials", "arkode-5", "coulomb", 1e-6, 7.2e-7},
     {"oscillator-7a", "siconos", "moreau-jean", "coulomb", 0.1, 1.7e-4},
     {"oscillator-7b", "tribo", "rk4/fixed", "quinn-reversal", 0.01, 3.8e-5},
-    {"oscillator-7b", "tribo", "central/fixed", "coulomb", 0.01, 6.8e-5},
-    {"oscillator-7b", "tribo", "moreau/fixed", "coulomb", 0.01, 1.9e-4},
     {"oscillator-7b", "tribo", "exact", "coulomb", 1.0, 1e-12},
     {"belt", "plain", "rk4", "quinn", 0.01, 1.5e-5},
     {"belt", "plain", "moreau", "coulomb", 0.01, 2.6e-5},
