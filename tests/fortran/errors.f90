@@ -1,31 +1,4 @@
 !> Every error that a procedure of module tribo can answer: status, text, outputs left alone, context as it was.
-module errors_mass
-  use tribo
-  implicit none
-
-  !> A mass matrix that fails: at the given call it answers so, or accelerates what it should not by so much.
-  type, extends(tribo_mass) :: broken_mass
-    integer :: calls = 0, at = 0, answer = 0
-    real(dp) :: more = 0
-  contains
-    procedure :: apply
-  end type broken_mass
-
-contains
-
-  integer function apply(this, force, acceleration)
-    class(broken_mass), intent(inout) :: this
-    real(dp), intent(in) :: force(:)
-    real(dp), intent(inout) :: acceleration(:)
-    this%calls = this%calls + 1
-    acceleration = force
-    apply = 0
-    if (this%calls /= this%at) return
-    acceleration(1) = acceleration(1) + this%more
-    apply = this%answer
-  end function apply
-end module errors_mass
-
 program errors
   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
   use check, only: blank, blank_integer, expect_error, report, require, untouched
