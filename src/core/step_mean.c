@@ -116,7 +116,7 @@ TRIBO_SIMD static int any_slip_ends(size_t n, const double *restrict v, const do
 {
     int64_t any = 0; /* as wide as what is compared */
     for (size_t i = 0; i < n; i++) {
-        any |= (v[i] != 0.0) & (f[i] != sliding(v[i], limit[i])) ? -1 : 0;
+        any |= ((v[i] != 0.0) & (f[i] != sliding(v[i], limit[i]))) ? -1 : 0;
     }
     return any != 0;
 }
