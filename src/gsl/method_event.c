@@ -337,7 +337,7 @@ static double parts_of_velocity(const struct event *e, size_t i, double h)
  * limit that only follows a table has its zeros at knots, where steps end. */
 static int limit_tells(const struct stick_slip *m, size_t i, int varies)
 {
-    const int keeps = m->slip[i] == 0 && !m->holds[i] && !tribo_stick_slip_follows(m, i);
+    const int keeps = m->slip[i] == 0 && !m->holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
     return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
 }
 
