@@ -202,11 +202,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
         double *column = m->response + j * n;
         solve(m, n, column);
         for (size_t i = 0; i < c; i++) {
-            double sum = 0.0;
-            for (size_t k = sys->direction.first[i]; k < sys->direction.first[i + 1]; k++) {
-                sum += sys->direction.val[k] * column[sys->direction.col[k]];
-            }
-            r[i * c + j] = sum;
+            r[i * c + j] = tribo_matrix_row_dot(&sys->direction, i, column);
         }
     }
     status = set_operator(m, sys, r, h);

@@ -304,11 +304,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
 /* J_i q, less what harmonics of the base have moved it by. */
 static double offset(const tribo_system *sys, size_t i, const double *q)
 {
-    const struct matrix *j = &sys->direction;
-    double sum = 0.0;
-    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-        sum += j->val[e] * q[j->col[e]];
-    }
+    double sum = tribo_matrix_row_dot(&sys->direction, i, q);
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
         for (size_t e = 0; w->drives == DRIVES_BASE && w->omega != 0.0 && e < w->count; e++) {

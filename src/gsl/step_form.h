@@ -27,8 +27,8 @@ void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys
 /* v = the velocity that a step begins with, at t. */
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u);
 
-/* f over a step of h, from v and end. In the plane along the mean velocity; scalar contacts stop where they reverse, since
- * beside a light body the time at which that is comes out too roughly. */
+/* f over a step of h, from v and end. Where contacts are planar, the mean over the step; else that which stops contacts where
+ * they reverse: with the mean, light bodies between heavy ones come out worse. */
 int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h);
 
 /* The power that f dissipates at the mean of two velocities. */

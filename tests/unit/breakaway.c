@@ -199,16 +199,23 @@ TEST(many_contacts)
     }
 }
 
+/* One contact, with R = limit. */
+static tribo_context *single(int law, double limit, double epsilon)
+{
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 1));
+    assert_ok(tribo_set_law(c, law));
+    assert_ok(tribo_set_limit_all(c, limit));
+    assert_ok(tribo_set_epsilon_all(c, epsilon));
+    assert_ok(tribo_set_operator_diagonal(c, &limit));
+    return c;
+}
+
 /* N(|v|) stands in the place of the limit in every law. */
 TEST(falling_limit)
 {
     const double limit = 2.0, ratio = 1.75, scale = 0.3, epsilon = 0.1;
-    tribo_context *c;
-    assert_ok(tribo_create(&c, 1));
-    assert_ok(tribo_set_law(c, _i));
-    assert_ok(tribo_set_limit_all(c, limit));
-    assert_ok(tribo_set_epsilon_all(c, epsilon));
-    assert_ok(tribo_set_operator_diagonal(c, &limit));
+    tribo_context *c = single(_i, limit, epsilon);
     assert_ok(tribo_set_static(c, &ratio, &scale));
     for (int k = -40; k <= 40; k++) {
         const double v = 0.01 * k, n = limit * (1.0 + (ratio - 1.0) * exp(-fabs(v) / scale));
@@ -232,12 +239,7 @@ TEST(falling_limit)
 TEST(dropping_limit)
 {
     const double limit = 2.0, ratio = 1.5, epsilon = 0.1;
-    tribo_context *c;
-    assert_ok(tribo_create(&c, 1));
-    assert_ok(tribo_set_law(c, _i));
-    assert_ok(tribo_set_limit_all(c, limit));
-    assert_ok(tribo_set_epsilon_all(c, epsilon));
-    assert_ok(tribo_set_operator_diagonal(c, &limit));
+    tribo_context *c = single(_i, limit, epsilon);
     const int refused = _i == TRIBO_VELOCITY_LIMITED || _i == TRIBO_SMOOTH;
     assert_status(tribo_set_static(c, &ratio, NULL), refused ? TRIBO_ERR_UNSUPPORTED : TRIBO_OK);
     for (int k = -20; !refused && k <= 20; k++) {

@@ -311,25 +311,15 @@ TEST(turned)
 
 #define STEP 1e-7
 
-static void forces_at(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
-{
-    double v[LARGEST], a[LARGEST];
-    for (size_t i = 0; i < p->n; i++) {
-        v[i] = p->v[i] + step * dv[i];
-        a[i] = p->a[i] + step * da[i];
-    }
-    assert_ok(tribo_balance(c, v, a, NULL, f));
-}
-
 /* Differences along (dv, da) where there is no kink; returns how many could be compared. */
 static size_t check_direction(tribo_context *c, const struct problem *p, const double *by_v, const double *by_a, const double *dv,
                               const double *da)
 {
     double f[LARGEST], before[LARGEST], after[LARGEST];
     size_t smooth = 0;
-    forces_at(c, p, 0.0, dv, da, f);
-    forces_at(c, p, -STEP, dv, da, before);
-    forces_at(c, p, STEP, dv, da, after);
+    problem_forces(c, p, 0.0, dv, da, f);
+    problem_forces(c, p, -STEP, dv, da, before);
+    problem_forces(c, p, STEP, dv, da, after);
     for (size_t i = 0; i < p->n; i++) {
         const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP;
         double want = 0.0, size = 1.0;

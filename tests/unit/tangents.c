@@ -13,26 +13,15 @@ struct tangent {
     double f[LARGEST], dv[LARGEST * LARGEST], da[LARGEST * LARGEST];
 };
 
-/* Forces and derivatives of f along (v, a) + STEP (dv, da). */
-static void forces_at(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
-{
-    double v[LARGEST], a[LARGEST];
-    for (size_t i = 0; i < p->n; i++) {
-        v[i] = p->v[i] + step * dv[i];
-        a[i] = p->a[i] + step * da[i];
-    }
-    assert_ok(tribo_balance(c, v, a, NULL, f));
-}
-
 /* How many of the components have no kink and no jump within the step; these are compared. */
 static size_t check_direction(tribo_context *c, const struct problem *p, const struct tangent *t, const double *dv,
                               const double *da)
 {
     double f[LARGEST], before[LARGEST], after[LARGEST];
     size_t smooth = 0;
-    forces_at(c, p, 0.0, dv, da, f);
-    forces_at(c, p, -STEP, dv, da, before);
-    forces_at(c, p, STEP, dv, da, after);
+    problem_forces(c, p, 0.0, dv, da, f);
+    problem_forces(c, p, -STEP, dv, da, before);
+    problem_forces(c, p, STEP, dv, da, after);
     assert_all_close(t->f, f, p->n, 1e-14);
     for (size_t i = 0; i < p->n; i++) {
         const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP;

@@ -98,6 +98,18 @@ static inline double sliding(double v, double limit)
     return copysign(limit, -v);
 }
 
+/* How these forces change: of a contact that slides, and of one that carries clamp(feq, -limit, limit). */
+static inline struct tangent sliding_tangent(double v)
+{
+    return (struct tangent){0.0, 0.0, -sign(v)};
+}
+
+static inline struct tangent held_tangent(double feq, double limit)
+{
+    const int held = fabs(feq) < limit;
+    return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
+}
+
 /* Defines <name>_force_all and <name>_tangent_all from the law's functions of one contact, <name>_force and <name>_tangent. */
 #define TRIBO_LAW_LOOP(name, follows)                                                                                            \
     for (size_t i = 0; i < n; i++) {                                                                                             \
