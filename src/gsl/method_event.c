@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "events.h"
+#include "planar_series.h"
 #include "series_transition.h"
 #include "../common/real.h"
 #include "../common/simd.h"
@@ -36,6 +37,7 @@ struct event {
     double *limit_size, *limit_bend; /* [ncontact] the same of limits */
     double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
+    struct planar_series planar;
     struct series_transition perturbed;
 };
 
@@ -78,7 +80,7 @@ static void expand_limits(struct event *e)
     const size_t c = sys->ncontact;
     const int falls = e->events.stick_slip.breakaway.falls;
     e->slide = falls ? e->fall : e->limit;
-    e->slide_terms = falls ? e->order + 1 : e->terms;
+    e->slide_terms = falls || e->events.stick_slip.plane ? e->order + 1 : e->terms;
     tribo_system_limits(sys, e->limit, e->limit + c);
     for (size_t k = 2; k < e->slide_terms; k++) {
         memset(e->limit + k * c, 0, c * sizeof *e->limit);
@@ -147,6 +149,10 @@ static int expand_forces(struct event *e, size_t k)
     }
     if (given) {
         given_forces(e, k);
+        const int unclear = m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->given) : TRIBO_OK;
+        if (unclear) {
+            return unclear;
+        }
         tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
     }
     memset(e->base, 0, c * sizeof *e->base);
@@ -155,11 +161,15 @@ static int expand_forces(struct event *e, size_t k)
         e->a[i] = -e->base[i];
     }
     tribo_matrix_multiply_add(&sys->direction, 1.0, acc, e->a);
-    const int status = tribo_stick_slip_balance(&e->events.stick_slip, e->a, e->held);
+    int status = tribo_stick_slip_balance(&e->events.stick_slip, e->a, e->held);
     if (status) {
         return tribo_system_fail(sys, status, "%s", tribo_message(e->events.stick_slip.hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
+    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->base, acc, e->held) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
     for (size_t i = 0; i < c; i++) {
         if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
             watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
@@ -183,6 +193,7 @@ static void expand_energy(struct event *e)
                 power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
             }
         }
+        power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
         e->d[k + 1] = power / (double)(k + 1);
     }
 }
@@ -197,8 +208,10 @@ static int expand(struct event *e, double t, const double *y)
     e->d[0] = y[2 * n];
     expand_harmonics(e, t);
     expand_limits(e);
-    for (size_t k = 0; k <= e->order; k++) {
-        const int status = expand_forces(e, k);
+    struct stick_slip *m = &e->events.stick_slip;
+    int status = m->plane ? tribo_planar_series_begin(&e->planar, e->order, m, sys, e->a, e->given) : TRIBO_OK;
+    for (size_t k = 0; !status && k <= e->order; k++) {
+        status = expand_forces(e, k);
         if (status) {
             return status;
         }
@@ -207,6 +220,9 @@ static int expand(struct event *e, double t, const double *y)
             e->q[(k + 1) * n + i] = part * e->u[k * n + i];
             e->u[(k + 1) * n + i] = part * e->acceleration[i];
         }
+    }
+    if (status) {
+        return status;
     }
     sys->evaluations += e->order + 1;
     expand_energy(e);
@@ -341,6 +357,32 @@ static int limit_tells(const struct stick_slip *m, size_t i, int varies)
     return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
 }
 
+/* A step is at most so long that the speed of no planar contact falls to less than this part of what it began with. Where the
+ * speed is small the direction turns fast, and a stop is come to in ever shorter steps. */
+#define SLOWER 1e-2
+
+static void set_planar_guards(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const double limit = greater(p->limit[0], p->limit[1]);
+        struct guard g = {.contact = p->at, .output = e->watch + p->at};
+        if (m->slip[p->at] == TRIBO_IN_PLANE) {
+            g.slides = SLOWS;
+            g.side = 1.0;
+            g.offset = -SLOWER * SLOWER * e->watch[p->at];
+            tribo_events_guard(&e->events, g);
+        } else if (e->size[p->at] >= 0.5 * limit) {
+            g.slides = HOLDS;
+            g.side = -1.0;
+            g.offset = 0.5 * limit;
+            g.allowance = greater(m->allowance[p->at], m->allowance[p->at + 1]);
+            tribo_events_guard(&e->events, g);
+        }
+    }
+}
+
 static void set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -349,9 +391,15 @@ static void set_guards(struct event *e)
     tribo_events_clear_guards(&e->events);
     find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
     find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
+    if (m->plane) {
+        set_planar_guards(e);
+    }
     for (size_t i = 0; i < m->contacts; i++) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct guard g = {.output = e->watch + i};
+        if (m->plane && m->plane->in_plane[i]) {
+            continue;
+        }
         if (m->slip[i] == 1 || m->slip[i] == -1) {
             tribo_events_guard_slip(&e->events, i, g);
         } else if (tribo_stick_slip_may_part(m, i)) {
@@ -377,6 +425,7 @@ static void destroy(tribo_driver *drv)
         tribo_events_free(&e->events);
         free(e->q);
         free(e->cosine);
+        tribo_planar_series_free(&e->planar);
         tribo_series_transition_free(&e->perturbed);
         free(e);
     }
@@ -472,6 +521,20 @@ static void state(void *motion, double tau, const double *from, double *to)
     }
 }
 
+/* The same where contacts slide in the plane, whose series may end sooner than their last terms tell: shorter where the velocities
+ * and forces of contacts do not belong to each other any more. Sets what is watched. */
+static double planar_length(struct event *e, double most)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const double error = wanted(e->drv, tribo_largest(e->u, e->sys->ndof));
+    double h = lesser(step_length(e), most);
+    while (!(tribo_planar_series_defect(&e->planar, m, h) <= error) && h > 0.0) {
+        h *= 0.8;
+    }
+    tribo_planar_series_watch(&e->planar, m, e->watch);
+    return h;
+}
+
 static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
@@ -479,7 +542,7 @@ static int begin(void *motion, double t, const double *y, double *reach)
     if (status) {
         return status;
     }
-    const double length = step_length(e);
+    const double length = e->events.stick_slip.plane ? planar_length(e, *reach) : step_length(e);
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
