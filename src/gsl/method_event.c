@@ -20,9 +20,9 @@ struct event {
     tribo_driver *drv;
     tribo_system *sys;
     struct events events;
-    size_t order;
-    double tolerance; /* relative */
-    double fastest;   /* bound on the frequencies of the motion, but for what falling friction makes grow */
+    size_t order, most_order; /* that of a phase, and what there is room for */
+    double tolerance;         /* relative */
+    double fastest;           /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
     double tau, length;              /* where go() was; that of the step, and what bounds hold for */
     double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
@@ -206,10 +206,11 @@ static int expand(struct event *e, double t, const double *y)
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[2 * n];
+    struct stick_slip *m = &e->events.stick_slip;
+    int status = m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->a, e->given) : TRIBO_OK;
+    e->order = m->plane ? e->planar.order : e->most_order;
     expand_harmonics(e, t);
     expand_limits(e);
-    struct stick_slip *m = &e->events.stick_slip;
-    int status = m->plane ? tribo_planar_series_begin(&e->planar, e->order, m, sys, e->a, e->given) : TRIBO_OK;
     for (size_t k = 0; !status && k <= e->order; k++) {
         status = expand_forces(e, k);
         if (status) {
@@ -451,7 +452,7 @@ static int create(tribo_driver *drv)
     }
     /* the more digits are wanted, the more terms pay */
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
-    e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
+    e->order = e->most_order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
     double *work = malloc((terms * (2 * n + 4 * c + 1) + n + 8 * c + 1) * sizeof *work);
     if (!work) {
@@ -493,14 +494,14 @@ static int prepare(struct event *e)
     if (e->cosine && e->revision == sys->revision) {
         return TRIBO_OK;
     }
-    const size_t room = (e->order + 2) * sys->harmonics + 1;
+    const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", sys->harmonics);
     }
     e->cosine = more;
     e->sine = more + room;
-    e->terms = sys->limit_harmonics ? e->order + 1 : sys->limits.knots ? 2 : 1;
+    e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limits.knots ? 2 : 1;
     e->fastest = tribo_system_fastest(sys);
     e->revision = sys->revision;
     return TRIBO_OK;

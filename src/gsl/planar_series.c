@@ -4,6 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Coefficients may become as large as ten to this. Where the speed is small time is short, and its powers are large. */
+#define MOST_DIGITS 240.0
+
+/* So many terms there are always. */
+#define LEAST_ORDER 4.0
+
 void tribo_planar_series_free(struct planar_series *s)
 {
     free(s->line);
@@ -18,9 +24,8 @@ static int slides(const struct stick_slip *m, const struct planar_contact *p)
     return m->slip[p->at] == TRIBO_IN_PLANE;
 }
 
-static int reserve(struct planar_series *s, size_t order, size_t contacts)
+static int reserve(struct planar_series *s, size_t terms, size_t contacts)
 {
-    const size_t terms = order + 1;
     if (s->line && s->room >= contacts) {
         return 1;
     }
@@ -35,7 +40,6 @@ static int reserve(struct planar_series *s, size_t order, size_t contacts)
         l->ut = l->un + terms;
         l->speed = l->ut + terms;
     }
-    s->order = order;
     s->room = contacts;
     return s->line && s->work;
 }
@@ -95,17 +99,36 @@ static int answer(struct planar_series *s, size_t q, struct stick_slip *m, const
     return TRIBO_OK;
 }
 
-int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys, double *a,
-                              double *f)
+/* As many terms as numbers have room for, order at most: time counts in parts of that in which friction would stop a contact. */
+static size_t find_order(size_t order, const struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    double least = (double)order;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        double size[2];
+        for (size_t d = 0; d < 2; d++) {
+            const double v = tribo_stick_slip_velocity(m, sys, p->at + d, y), slow = p->limit[d] * m->diagonal[p->at + d];
+            size[d] = fabs(v) / slow;
+        }
+        if (slides(m, p) && p->begins == SLIDES_ON) {
+            least = lesser(least, MOST_DIGITS / greater(-log10(greater(size[0], size[1])), 1.0));
+        }
+    }
+    return (size_t)greater(least, LEAST_ORDER);
+}
+
+int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys,
+                              const double *y, double *a, double *f)
 {
     const struct planar_slip *plane = m->plane;
     size_t begins = 0;
     for (size_t k = 0; k < plane->count; k++) {
         begins += slides(m, &plane->contact[k]) && plane->contact[k].begins != SLIDES_ON;
     }
-    if ((plane->count && !reserve(s, order, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
+    if ((plane->count && !reserve(s, order + 1, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu planar contacts", plane->count);
     }
+    s->order = find_order(order, m, sys, y);
     s->begins = 0;
     for (size_t k = 0; k < plane->count; k++) {
         const struct planar_contact *p = &plane->contact[k];

@@ -31,10 +31,10 @@ struct planar_series {
 
 void tribo_planar_series_free(struct planar_series *s);
 
-/* Makes room, and S for contacts that begin to slide. a, f [ncontact] workspace. Returns a status, its message on the system's
- * context, and so below. */
-int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys, double *a,
-                              double *f);
+/* Sets the order for a phase that begins with y, order at most; makes room, and S for contacts that begin to slide. a, f
+ * [ncontact] workspace. Returns a status, its message on the system's context, and so below. */
+int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys,
+                              const double *y, double *a, double *f);
 
 /* Takes the k-th coefficients v [ncontact] of velocities, and sets those of the forces f [ncontact] of contacts that slide, but
  * for the t-parts of such that begin to. */
