@@ -257,7 +257,8 @@ static double step_length(const struct event *e)
             const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
             const double force = e->tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
             const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
-            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : u;
+            const double speed = m->plane ? lesser(u, m->plane->error[i]) : u;
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : speed;
             term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
             term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
@@ -292,7 +293,9 @@ static struct sample read_guard(const void *motion, const struct guard *g)
     const struct event *e = motion;
     const size_t c = e->sys->ncontact;
     struct sample x = {g->offset, 0.0, 0.0};
-    if (g->side != 0.0) {
+    if (e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact]) {
+        add_polynomial(&x, g->side, 2 * e->order + 1, e->planar.room, g->output, e->tau);
+    } else if (g->side != 0.0) {
         add_polynomial(&x, g->side, e->order + 1, c, g->output, e->tau);
     }
     if (g->limit != 0.0) {
@@ -365,20 +368,18 @@ static int limit_tells(const struct stick_slip *m, size_t i, int varies)
 static void set_planar_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
+    tribo_planar_series_squares(&e->planar, m, e->watch, e->length);
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        const double limit = greater(p->limit[0], p->limit[1]);
-        struct guard g = {.contact = p->at, .output = e->watch + p->at};
-        if (m->slip[p->at] == TRIBO_IN_PLANE) {
-            g.slides = SLOWS;
-            g.side = 1.0;
-            g.offset = -SLOWER * SLOWER * e->watch[p->at];
-            tribo_events_guard(&e->events, g);
-        } else if (e->size[p->at] >= 0.5 * limit) {
-            g.slides = HOLDS;
-            g.side = -1.0;
-            g.offset = 0.5 * limit;
-            g.allowance = greater(m->allowance[p->at], m->allowance[p->at + 1]);
+        const struct planar_line *line = &e->planar.line[k];
+        const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
+        const double *square = e->planar.square + k, limit = greater(p->limit[0], p->limit[1]);
+        struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
+        g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
+        g.allowance = moves ? 0.0 : greater(m->allowance[p->at], m->allowance[p->at + 1]);
+        e->size[p->at] = line->size;
+        e->bend[p->at] = line->bend;
+        if (moves || line->size >= 0.5 * limit) {
             tribo_events_guard(&e->events, g);
         }
     }
@@ -523,16 +524,18 @@ static void state(void *motion, double tau, const double *from, double *to)
 }
 
 /* The same where contacts slide in the plane, whose series may end sooner than their last terms tell: shorter where the velocities
- * and forces of contacts do not belong to each other any more. Sets what is watched. */
+ * and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
+#define LONGEST 3.0
+
 static double planar_length(struct event *e, double most)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const double error = wanted(e->drv, tribo_largest(e->u, e->sys->ndof));
-    double h = lesser(step_length(e), most);
-    while (!(tribo_planar_series_defect(&e->planar, m, h) <= error) && h > 0.0) {
+    tribo_planar_series_errors(&e->planar, m, m->plane->error);
+    double h = lesser(step_length(e), fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most);
+    while (!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) && h > 0.0) {
         h *= 0.8;
     }
-    tribo_planar_series_watch(&e->planar, m, e->watch);
     return h;
 }
 

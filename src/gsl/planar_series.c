@@ -4,8 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Coefficients may become as large as ten to this. Where the speed is small time is short, and its powers are large. */
-#define MOST_DIGITS 240.0
+/* Coefficients may become as large as ten to this, and those of squares as that squared. Where the speed is small time is short,
+ * and its powers are large. */
+#define MOST_DIGITS 130.0
+
+/* Velocities are found to this part of a contact's own, however small that is beside the tolerance: where it is, their direction
+ * is what counts. */
+#define PART 1e-4
 
 /* So many terms there are always. */
 #define LEAST_ORDER 4.0
@@ -31,7 +36,8 @@ static int reserve(struct planar_series *s, size_t terms, size_t contacts)
     }
     tribo_planar_series_free(s);
     s->line = malloc(contacts * sizeof *s->line);
-    s->work = malloc(5 * terms * contacts * sizeof *s->work);
+    s->work = malloc(7 * terms * contacts * sizeof *s->work);
+    s->square = s->work ? s->work + 5 * terms * contacts : NULL;
     for (size_t k = 0; s->line && s->work && k < contacts; k++) {
         struct planar_line *l = &s->line[k];
         l->xn = s->work + 5 * terms * k;
@@ -278,23 +284,44 @@ double tribo_planar_series_power(const struct planar_series *s, const struct sti
 
 /* -------------------------------------------------------------------------------------------------------------- guards */
 
-void tribo_planar_series_watch(const struct planar_series *s, const struct stick_slip *m, double *watch)
+/* The parts of force/limit, from forces f [order + 1][ncontact], in the place of x. */
+static void take_forces(struct planar_line *l, const struct planar_contact *p, size_t order, size_t stride, const double *f)
 {
-    const size_t stride = m->contacts;
+    for (size_t k = 0; k <= order; k++) {
+        l->xn[k] = f[k * stride + p->at] / p->limit[0];
+        l->xt[k] = f[k * stride + p->at + 1] / p->limit[1];
+    }
+}
+
+/* The k-th coefficient of x x, x having `terms` coefficients. */
+static double square_of(const double *x, size_t terms, size_t k)
+{
+    return product_of(x, x, k, k < terms ? 0 : k - terms + 1, k < terms ? k + 1 : terms);
+}
+
+void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h)
+{
+    const size_t stride = s->room;
+    memset(s->square, 0, (2 * s->order + 1) * stride * sizeof *s->square);
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &s->line[c];
-        double *w = watch + p->at;
-        const size_t last = slides(m, p) ? s->order - (size_t)p->begins : s->order;
-        const double scale = slides(m, p) ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
-        for (size_t k = 0; !slides(m, p) && k <= last; k++) {
-            l->xn[k] = w[k * stride] / p->limit[0];
-            l->xt[k] = w[k * stride + 1] / p->limit[1];
+        const int moves = slides(m, p);
+        const size_t terms = s->order + 1 - (moves ? (size_t)p->begins : 0);
+        const double scale = moves ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
+        if (!moves) {
+            take_forces(l, p, s->order, m->contacts, f);
         }
-        for (size_t k = 0; k <= s->order; k++) {
-            const double square = product_of(l->xn, l->xn, k, 0, k + 1) + product_of(l->xt, l->xt, k, 0, k + 1);
-            w[k * stride] = k <= last ? scale * square : 0.0;
+        double power = 1.0;
+        l->size = l->bend = 0.0;
+        for (size_t k = 0; k < 2 * terms - 1; k++) {
+            const double w = scale * (square_of(l->xn, terms, k) + square_of(l->xt, terms, k)), x = (double)k;
+            s->square[k * stride + c] = w;
+            l->size += fabs(w) * power;
+            l->bend += k < 6 ? 0.0 : x * (x - 1.0) * (x - 2.0) * (x - 3.0) * (x - 4.0) * (x - 5.0) * fabs(w) * power;
+            power *= h;
         }
+        l->bend /= h * h * h * h * h * h;
     }
 }
 
@@ -307,7 +334,20 @@ static double value(const double *x, size_t last, double h)
     return sum;
 }
 
-double tribo_planar_series_defect(const struct planar_series *s, const struct stick_slip *m, double h)
+void tribo_planar_series_errors(const struct planar_series *s, const struct stick_slip *m, double *error)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        error[i] = HUGE_VAL;
+    }
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        if (slides(m, p) && p->begins == SLIDES_ON) {
+            error[p->at] = error[p->at + 1] = PART * s->line[c].xn[0] / greater(p->limit[0], p->limit[1]);
+        }
+    }
+}
+
+double tribo_planar_series_defect(const struct planar_series *s, const struct stick_slip *m, double h, double error)
 {
     double most = 0.0;
     for (size_t c = 0; c < m->plane->count; c++) {
@@ -318,7 +358,8 @@ double tribo_planar_series_defect(const struct planar_series *s, const struct st
             const double xn = value(l->xn, last, h), xt = value(l->xt, last, h), size = hypot(xn, xt);
             const double off = hypot(value(l->un, s->order, h) - xn / size, value(l->ut, s->order, h) - xt / size);
             const double most_r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
-            most = greater(most, off * most_r * h / (double)(s->order + 1));
+            const double defect = off * most_r * h / (double)(s->order + 1);
+            most = greater(most, defect / lesser(error, m->plane->error[p->at]));
         }
     }
     return most;

@@ -17,12 +17,14 @@
 struct planar_line {
     double n[2], t[2];
     double *xn, *xt, *un, *ut, *speed; /* [order + 1] coefficients; speed: of |x| */
+    double size, bend;                 /* bounds of the square, and of its sixth derivative */
 };
 
 struct planar_series {
     size_t order, room;       /* so many contacts there is room for, */
     struct planar_line *line; /* [room] */
     double *work;
+    double *square;           /* [2 order + 1][room] coefficients */
     size_t begins, begin_room; /* contacts that begin to slide, */
     size_t *begin, *pivot;     /* [begins] which; and room for */
     double *s, *lu, *tau;      /* [begins][begins] S, S + D, [begins] */
@@ -49,12 +51,15 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
 /* The k-th coefficient of the power that contacts take. */
 double tribo_planar_series_power(const struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k);
 
-/* What is watched [order + 1][ncontact], instead of velocities and forces of planar contacts, at their first directions: |x|^2,
- * but for tau^2s, or half the larger limit times |force/limit|^2. */
-void tribo_planar_series_watch(const struct planar_series *s, const struct stick_slip *m, double *watch);
+/* For guards over [0, h]: squares of |x|, but for tau^2s, or half the larger limit times |force/limit|^2 of contacts at rest, whose
+ * forces are f [order + 1][ncontact]. All terms count: those of x, or force, end where their squares' are not small yet. */
+void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h);
 
-/* By how much, at h, the velocities of contacts may be off, as the series of forces differ from what those of velocities ask for.
- */
-double tribo_planar_series_defect(const struct planar_series *s, const struct stick_slip *m, double h);
+/* The errors that velocities of contacts may have, [ncontact], besides that of the driver's tolerance. */
+void tribo_planar_series_errors(const struct planar_series *s, const struct stick_slip *m, double *error);
+
+/* By how much, at h, the velocities of contacts may be off, as the series of forces differ from what those of velocities ask for:
+ * in parts of error, and of m->plane->error. */
+double tribo_planar_series_defect(const struct planar_series *s, const struct stick_slip *m, double h, double error);
 
 #endif

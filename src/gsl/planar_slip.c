@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* A contact is at rest whose velocity is this part of the tolerance. */
-#define NOTHING 1e-2
+#define NOTHING 0.1
 
 /* Velocities this far below those seen are rounding. */
 #define ROUNDING 1e-14
@@ -72,8 +72,9 @@ static int create(struct stick_slip *m, const tribo_system *sys)
     if (p && !p->contact) {
         p->contact = malloc((c / 2) * sizeof *p->contact);
         p->in_plane = malloc(c);
-        p->rate = malloc(2 * c * sizeof *p->rate);
+        p->rate = malloc(3 * c * sizeof *p->rate);
         p->ahead = p->rate + c;
+        p->error = p->rate + 2 * c;
     }
     if (p) {
         tribo_destroy(p->disc);

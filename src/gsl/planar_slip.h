@@ -27,6 +27,7 @@ struct planar_slip {
     struct planar_contact *contact; /* [count] those with two limits */
     size_t stopped;                 /* a contact that the last decision found to stick; ncontact if there is none */
     unsigned char *in_plane;        /* [ncontact] directions of theirs */
+    double *error;                  /* [ncontact] errors that velocities may have in a step */
     double *rate, *ahead;           /* [ncontact] workspace: of forces that slide; accelerations of a moment later */
 };
 
