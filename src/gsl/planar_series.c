@@ -6,7 +6,7 @@
 
 /* Coefficients may become as large as ten to this, and those of squares as that squared. Where the speed is small time is short,
  * and its powers are large. */
-#define MOST_DIGITS 130.0
+#define MOST_DIGITS 100.0
 
 /* Velocities are found to this part of a contact's own, however small that is beside the tolerance: where it is, their direction
  * is what counts. */
