@@ -1,6 +1,7 @@
 /* Method "event": Coulomb's law itself on any system. While the modes of the contacts last, the motion is smooth, and its Taylor
  * series at the start of a step follows from the equations of motion, one product with the structure's matrices and one solve for
- * the held contacts an order; velocities and forces of the contacts come out as polynomials too.
+ * the held contacts an order; velocities and forces of the contacts come out as polynomials too. Of planar contacts that slide
+ * the force turns with the velocity: its series goes along (planar_series.h).
  *
  * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can
  * have, what the series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials

@@ -24,7 +24,7 @@ struct planar_series {
     size_t order, room;       /* so many contacts there is room for, */
     struct planar_line *line; /* [room] */
     double *work;
-    double *square;           /* [2 order + 1][room] coefficients */
+    double *square;            /* [2 order + 1][room] coefficients */
     size_t begins, begin_room; /* contacts that begin to slide, */
     size_t *begin, *pivot;     /* [begins] which; and room for */
     double *s, *lu, *tau;      /* [begins][begins] S, S + D, [begins] */
