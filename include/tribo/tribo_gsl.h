@@ -175,6 +175,9 @@ typedef struct tribo_driver tribo_driver;
  *               that reverse without sticking, and central with damping: there first order
  *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
+ *               Planar contacts: event, and not exact. They must have limits that do not change, and those at rest must not be
+ *               redundant (TRIBO_ERR_UNSUPPORTED, where that happens). Where one creeps, much slower than friction would stop it,
+ *               event follows its direction in steps of that short time
  *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at
  *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
  *               more than rounding. All methods with steps are of first order then.
@@ -233,8 +236,8 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * dimensions.
  * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
- * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits, tribo_set_static),
- * TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits, tribo_set_static;
+ * planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary

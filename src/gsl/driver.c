@@ -85,17 +85,14 @@ static int check_parameters(const tribo_system *sys, const struct method *method
     return TRIBO_OK;
 }
 
-/* Methods that follow each contact from stick to slip know scalar ones only; and contacts may become planar at any time. */
+/* Motions in closed form are those of scalar contacts only; and contacts may become planar at any time. */
 static int check_planar(const tribo_system *sys, const struct method *m)
 {
-    const int scalar_only = m == &tribo_method_event || m == &tribo_method_exact || m == &automatic;
-    size_t planar = 0;
-    tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
-    return !planar || !scalar_only
-               ? TRIBO_OK
-               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                   "method %s knows no planar contacts, and there are %zu contacts of that kind", m->name,
-                                   planar);
+    const size_t planar = m == &tribo_method_exact ? tribo_system_planar(sys) : 0;
+    return planar ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                      "method %s knows no planar contacts, and there are %zu contacts of that kind: take event",
+                                      m->name, planar)
+                  : TRIBO_OK;
 }
 
 static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
@@ -381,7 +378,8 @@ static int choose(const tribo_driver *drv)
     const tribo_system *sys = drv->sys;
     const struct choice *c = drv->own;
     const int refused = c->refused && c->revision == tribo_system_revision(sys);
-    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !refused ? EXACT : EVENT;
+    const int closed = !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !tribo_system_planar(sys);
+    return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
 }
 
 /* Makes sure that there is the driver. The message of a failure is on the system's context. */

@@ -29,6 +29,8 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
     if (!e->next || !e->search.guard) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contacts", sys->ncontact);
     }
+    e->stick_slip.abstol = drv->abstol;
+    e->stick_slip.reltol = drv->reltol;
     drv->excess = drv->backslip = 0.0;
     return TRIBO_OK;
 }
@@ -47,17 +49,22 @@ void tribo_events_clear_guards(struct events *e)
     e->search.guards = 0;
 }
 
+void tribo_events_guard(struct events *e, struct guard guard)
+{
+    guard.lowest = 0.0;
+    e->search.guard[e->search.guards++] = guard;
+}
+
 static void append(struct events *e, size_t i, struct guard guard)
 {
     guard.contact = i;
-    guard.lowest = 0.0;
-    e->search.guard[e->search.guards++] = guard;
+    tribo_events_guard(e, guard);
 }
 
 void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard)
 {
     const struct stick_slip *m = &e->stick_slip;
-    guard.slides = 1;
+    guard.slides = SLIDES;
     guard.allowance = m->doubt * m->noise[i];
     guard.side = m->slip[i];
     append(e, i, guard);
@@ -73,14 +80,14 @@ static void append_both(struct events *e, size_t i, struct guard guard)
 
 void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard)
 {
-    guard.slides = 0;
+    guard.slides = HOLDS;
     guard.allowance = e->stick_slip.allowance[i];
     append_both(e, i, guard);
 }
 
 void tribo_events_guard_part(struct events *e, size_t i, struct guard guard)
 {
-    guard.slides = 1;
+    guard.slides = SLIDES;
     guard.allowance = e->stick_slip.parting[i];
     append_both(e, i, guard);
 }
@@ -92,7 +99,7 @@ void tribo_events_guard_limit(struct events *e, size_t i, struct guard guard)
     const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
     guard.limit *= times;
     guard.offset = times * guard.offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
-    guard.slides = 0;
+    guard.slides = HOLDS;
     guard.side = 0.0;
     guard.allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
     append(e, i, guard);
@@ -124,7 +131,7 @@ static void suspect(struct events *e, size_t contact)
 }
 
 /* Counts an event against the credit that has gathered since the last one. */
-static int count_event(struct events *e, tribo_driver *drv, const struct guard *event, double t, double fastest)
+static int count_event(struct events *e, tribo_driver *drv, size_t contact, double t, double fastest)
 {
     const double most = most_credit(e);
     struct stick_slip *m = &e->stick_slip;
@@ -136,7 +143,7 @@ static int count_event(struct events *e, tribo_driver *drv, const struct guard *
         e->suspects = 0;
         m->doubt = 1.0;
     }
-    suspect(e, event->contact);
+    suspect(e, contact);
     e->credit -= 1.0;
     if (e->credit < 0.0) {
         e->credit = most;
@@ -151,10 +158,10 @@ static void learn(struct events *e, tribo_driver *drv)
     struct stick_slip *m = &e->stick_slip;
     for (size_t k = 0; k < e->search.guards; k++) {
         const struct guard *g = &e->search.guard[k];
-        if (g->slides) {
+        if (g->slides == SLIDES) {
             m->seen[g->contact] = g->size;
             drv->backslip = greater(drv->backslip, g->lowest);
-        } else {
+        } else if (g->slides == HOLDS) {
             drv->excess = greater(drv->excess, g->lowest + m->excess[g->contact]);
         }
     }
@@ -236,10 +243,11 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     drv->steps++;
     learn(e, drv);
+    event = event && event->slides != SLOWS ? event : NULL;
     sys->evaluations += e->shows_between ? e->search.looks : 0;
     if (event) {
-        status = count_event(e, drv, event, *t, fastest);
-        if (event->slides) {
+        status = count_event(e, drv, event->contact, *t, fastest);
+        if (event->slides == SLIDES) {
             e->stick_slip.slip[event->contact] = 0;
         } else {
             e->stick_slip.reached = event->contact;
@@ -249,9 +257,14 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (!status && event && e->company) {
         e->company->decided(e->company);
     }
+    const struct planar_slip *plane = e->stick_slip.plane;
+    const int stops = plane && plane->stopped < e->stick_slip.contacts;
+    if (!status && stops) {
+        status = count_event(e, drv, plane->stopped, *t, fastest);
+    }
     if (!status) {
         const int shown_now = event || (*t >= t1 && sys->low == 0.0) || !e->shows_between;
-        status = shown_now ? tribo_driver_accept(drv, *t, y, event != NULL) : tribo_driver_keep(drv, *t, y);
+        status = shown_now ? tribo_driver_accept(drv, *t, y, event || stops) : tribo_driver_keep(drv, *t, y);
     }
     return status;
 }

@@ -56,6 +56,7 @@ int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int 
  * force is side * value. Or one of its limit, which is offset + limit * value: whether the contact lifts off, or touches down, or
  * has its limit fall to the force that it keeps. */
 void tribo_events_clear_guards(struct events *e);
+void tribo_events_guard(struct events *e, struct guard guard); /* of any kind, all set */
 void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard);
 void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard);
 void tribo_events_guard_part(struct events *e, size_t i, struct guard guard);

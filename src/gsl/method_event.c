@@ -1,6 +1,7 @@
 /* Method "event": Coulomb's law itself on any system. While the modes of the contacts last, the motion is smooth, and its Taylor
  * series at the start of a step follows from the equations of motion, one product with the structure's matrices and one solve for
- * the held contacts an order; velocities and forces of the contacts come out as polynomials too.
+ * the held contacts an order; velocities and forces of the contacts come out as polynomials too. Of planar contacts that slide
+ * the force turns with the velocity: its series goes along (planar_series.h).
  *
  * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can
  * have, what the series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials
@@ -11,6 +12,7 @@
 #include <string.h>
 
 #include "events.h"
+#include "planar_series.h"
 #include "series_transition.h"
 #include "../common/real.h"
 #include "../common/simd.h"
@@ -19,9 +21,9 @@ struct event {
     tribo_driver *drv;
     tribo_system *sys;
     struct events events;
-    size_t order;
-    double tolerance; /* relative */
-    double fastest;   /* bound on the frequencies of the motion, but for what falling friction makes grow */
+    size_t order, most_order; /* that of a phase, and what there is room for */
+    double tolerance;         /* relative */
+    double fastest;           /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
     double tau, length;              /* where go() was; that of the step, and what bounds hold for */
     double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
@@ -36,6 +38,7 @@ struct event {
     double *limit_size, *limit_bend; /* [ncontact] the same of limits */
     double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
+    struct planar_series planar;
     struct series_transition perturbed;
 };
 
@@ -78,7 +81,7 @@ static void expand_limits(struct event *e)
     const size_t c = sys->ncontact;
     const int falls = e->events.stick_slip.breakaway.falls;
     e->slide = falls ? e->fall : e->limit;
-    e->slide_terms = falls ? e->order + 1 : e->terms;
+    e->slide_terms = falls || e->events.stick_slip.plane ? e->order + 1 : e->terms;
     tribo_system_limits(sys, e->limit, e->limit + c);
     for (size_t k = 2; k < e->slide_terms; k++) {
         memset(e->limit + k * c, 0, c * sizeof *e->limit);
@@ -147,6 +150,10 @@ static int expand_forces(struct event *e, size_t k)
     }
     if (given) {
         given_forces(e, k);
+        const int unclear = m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->given) : TRIBO_OK;
+        if (unclear) {
+            return unclear;
+        }
         tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
     }
     memset(e->base, 0, c * sizeof *e->base);
@@ -155,11 +162,15 @@ static int expand_forces(struct event *e, size_t k)
         e->a[i] = -e->base[i];
     }
     tribo_matrix_multiply_add(&sys->direction, 1.0, acc, e->a);
-    const int status = tribo_stick_slip_balance(&e->events.stick_slip, e->a, e->held);
+    int status = tribo_stick_slip_balance(&e->events.stick_slip, e->a, e->held);
     if (status) {
         return tribo_system_fail(sys, status, "%s", tribo_message(e->events.stick_slip.hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
+    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->base, acc, e->held) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
     for (size_t i = 0; i < c; i++) {
         if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
             watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
@@ -183,6 +194,7 @@ static void expand_energy(struct event *e)
                 power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
             }
         }
+        power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
         e->d[k + 1] = power / (double)(k + 1);
     }
 }
@@ -195,10 +207,13 @@ static int expand(struct event *e, double t, const double *y)
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[2 * n];
+    struct stick_slip *m = &e->events.stick_slip;
+    int status = m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->a, e->given) : TRIBO_OK;
+    e->order = m->plane ? e->planar.order : e->most_order;
     expand_harmonics(e, t);
     expand_limits(e);
-    for (size_t k = 0; k <= e->order; k++) {
-        const int status = expand_forces(e, k);
+    for (size_t k = 0; !status && k <= e->order; k++) {
+        status = expand_forces(e, k);
         if (status) {
             return status;
         }
@@ -207,6 +222,9 @@ static int expand(struct event *e, double t, const double *y)
             e->q[(k + 1) * n + i] = part * e->u[k * n + i];
             e->u[(k + 1) * n + i] = part * e->acceleration[i];
         }
+    }
+    if (status) {
+        return status;
     }
     sys->evaluations += e->order + 1;
     expand_energy(e);
@@ -240,7 +258,8 @@ static double step_length(const struct event *e)
             const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
             const double force = e->tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
             const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
-            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : u;
+            const double speed = m->plane ? lesser(u, m->plane->error[i]) : u;
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : speed;
             term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
             term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
@@ -275,7 +294,9 @@ static struct sample read_guard(const void *motion, const struct guard *g)
     const struct event *e = motion;
     const size_t c = e->sys->ncontact;
     struct sample x = {g->offset, 0.0, 0.0};
-    if (g->side != 0.0) {
+    if (e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact]) {
+        add_polynomial(&x, g->side, 2 * e->order + 1, e->planar.room, g->output, e->tau);
+    } else if (g->side != 0.0) {
         add_polynomial(&x, g->side, e->order + 1, c, g->output, e->tau);
     }
     if (g->limit != 0.0) {
@@ -341,6 +362,30 @@ static int limit_tells(const struct stick_slip *m, size_t i, int varies)
     return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
 }
 
+/* A step is at most so long that the speed of no planar contact falls to less than this part of what it began with. Where the
+ * speed is small the direction turns fast, and a stop is come to in ever shorter steps. */
+#define SLOWER 1e-2
+
+static void set_planar_guards(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    tribo_planar_series_squares(&e->planar, m, e->watch, e->length);
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const struct planar_line *line = &e->planar.line[k];
+        const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
+        const double *square = e->planar.square + k, limit = greater(p->limit[0], p->limit[1]);
+        struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
+        g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
+        g.allowance = moves ? 0.0 : greater(m->allowance[p->at], m->allowance[p->at + 1]);
+        e->size[p->at] = line->size;
+        e->bend[p->at] = line->bend;
+        if (moves || line->size >= 0.5 * limit) {
+            tribo_events_guard(&e->events, g);
+        }
+    }
+}
+
 static void set_guards(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -349,9 +394,15 @@ static void set_guards(struct event *e)
     tribo_events_clear_guards(&e->events);
     find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
     find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
+    if (m->plane) {
+        set_planar_guards(e);
+    }
     for (size_t i = 0; i < m->contacts; i++) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct guard g = {.output = e->watch + i};
+        if (m->plane && m->plane->in_plane[i]) {
+            continue;
+        }
         if (m->slip[i] == 1 || m->slip[i] == -1) {
             tribo_events_guard_slip(&e->events, i, g);
         } else if (tribo_stick_slip_may_part(m, i)) {
@@ -377,6 +428,7 @@ static void destroy(tribo_driver *drv)
         tribo_events_free(&e->events);
         free(e->q);
         free(e->cosine);
+        tribo_planar_series_free(&e->planar);
         tribo_series_transition_free(&e->perturbed);
         free(e);
     }
@@ -402,7 +454,7 @@ static int create(tribo_driver *drv)
     }
     /* the more digits are wanted, the more terms pay */
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
-    e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
+    e->order = e->most_order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
     double *work = malloc((terms * (2 * n + 4 * c + 1) + n + 8 * c + 1) * sizeof *work);
     if (!work) {
@@ -444,14 +496,14 @@ static int prepare(struct event *e)
     if (e->cosine && e->revision == sys->revision) {
         return TRIBO_OK;
     }
-    const size_t room = (e->order + 2) * sys->harmonics + 1;
+    const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", sys->harmonics);
     }
     e->cosine = more;
     e->sine = more + room;
-    e->terms = sys->limit_harmonics ? e->order + 1 : sys->limits.knots ? 2 : 1;
+    e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limits.knots ? 2 : 1;
     e->fastest = tribo_system_fastest(sys);
     e->revision = sys->revision;
     return TRIBO_OK;
@@ -472,6 +524,22 @@ static void state(void *motion, double tau, const double *from, double *to)
     }
 }
 
+/* The same where contacts slide in the plane, whose series may end sooner than their last terms tell: shorter where the velocities
+ * and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
+#define LONGEST 3.0
+
+static double planar_length(struct event *e, double most)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const double error = wanted(e->drv, tribo_largest(e->u, e->sys->ndof));
+    tribo_planar_series_errors(&e->planar, m, m->plane->error);
+    double h = lesser(step_length(e), fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most);
+    while (!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) && h > 0.0) {
+        h *= 0.8;
+    }
+    return h;
+}
+
 static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
@@ -479,7 +547,7 @@ static int begin(void *motion, double t, const double *y, double *reach)
     if (status) {
         return status;
     }
-    const double length = step_length(e);
+    const double length = e->events.stick_slip.plane ? planar_length(e, *reach) : step_length(e);
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;

@@ -61,6 +61,15 @@ static int check_static(tribo_driver *drv)
     return TRIBO_OK;
 }
 
+/* Nor do they know that sliding forces turn. */
+static int check_planar(tribo_driver *drv)
+{
+    const size_t planar = tribo_system_planar(drv->sys);
+    return planar ? tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                      "periodic motions are found of scalar contacts, and %zu are planar", planar)
+                  : TRIBO_OK;
+}
+
 static int check_state(tribo_driver *drv, double t, const double *y)
 {
     const int status = y ? tribo_system_check_state(drv->sys, t, y) : TRIBO_ERR_NULL;
@@ -76,6 +85,7 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
     status = status ? status : check_static(drv);
+    status = status ? status : check_planar(drv);
     if (status) {
         return status;
     }

@@ -68,6 +68,9 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->loose = m->slip + 3 * c;
     m->holds = (unsigned char *)m->slip + 4 * c;
     m->rested = (unsigned char *)m->slip + 5 * c;
+    /* these two know directions only */
+    tribo_set_planar(m->box, 0, NULL);
+    tribo_set_planar(m->hold, 0, NULL);
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
@@ -90,6 +93,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
     tribo_destroy(m->box);
     tribo_destroy(m->hold);
     tribo_breakaway_free(&m->breakaway);
+    tribo_planar_slip_free(m->plane);
     free(m->limit);
     free(m->slip);
     free(m->at);
@@ -125,7 +129,7 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
 
 /* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are
  * the sum of. */
-static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     if (m->sized) {
         return;
@@ -214,7 +218,7 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
 
 /* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
  * But where bases part, a contact that rests by itself goes with them. */
-static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
+int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;
     for (size_t found = 1; !status && found;) {
@@ -268,7 +272,7 @@ static int find_forces(struct stick_slip *m, tribo_system *sys)
 }
 
 /* to = J acceleration - order-th derivative of b. */
-static void contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
+void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     memset(to, 0, sys->ncontact * sizeof *to);
     tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
@@ -311,8 +315,8 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     if (close == 0) {
         return 0;
     }
-    find_gains(m, sys, y);
-    contact_accelerations(sys, m->acceleration, 1, m->v);
+    tribo_stick_slip_find_gains(m, sys, y);
+    tribo_stick_slip_contact_accelerations(sys, m->acceleration, 1, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double room = m->stick[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / ALLOWED;
@@ -349,7 +353,7 @@ static void find_static(struct stick_slip *m, const tribo_system *sys, const dou
 static void find_falling(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     find_static(m, sys, y);
-    contact_accelerations(sys, m->acceleration, 1, m->v);
+    tribo_stick_slip_contact_accelerations(sys, m->acceleration, 1, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
         m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
@@ -370,7 +374,7 @@ static void set_bounds_ahead(struct stick_slip *m)
 }
 
 /* rate = the rate of q'' while the forces of contacts at rest are what they are. */
-static void find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
+void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->rate, 0, sys->ndof * sizeof *m->rate);
     tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->rate);
@@ -383,12 +387,12 @@ static void find_rate(struct stick_slip *m, const tribo_system *sys, const doubl
 /* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
-    find_gains(m, sys, y);
+    tribo_stick_slip_find_gains(m, sys, y);
     if (m->breakaway.falls) {
         find_falling(m, sys, y);
     }
-    find_rate(m, sys, y);
-    contact_accelerations(sys, m->rate, 2, m->v);
+    tribo_stick_slip_find_rate(m, sys, y);
+    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->a[i] + m->horizon * m->v[i];
     }
@@ -424,7 +428,7 @@ static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
     }
     memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
-    contact_accelerations(sys, m->rate, 1, m->v);
+    tribo_stick_slip_contact_accelerations(sys, m->rate, 1, m->v);
     status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
@@ -465,7 +469,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
         m->f[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
-    contact_accelerations(sys, acceleration, 1, m->v);
+    tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->v);
     const int status = tribo_stick_slip_balance(m, m->v, m->f);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
@@ -473,15 +477,23 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, const double *y)
 {
     tribo_system_set_time(sys, t);
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     memset(m->tied, 0, sys->ncontact);
     find_noise(m, sys, y);
+}
+
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    if (m->plane) {
+        return tribo_planar_slip_decide(m, sys, t, y);
+    }
+    tribo_stick_slip_begin_decision(m, sys, t, y);
     update_limits(m, sys, y);
-    int status = find_resting(m, sys, y);
+    int status = tribo_stick_slip_find_resting(m, sys, y);
     find_static(m, sys, y);
     if (!status) {
         tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
@@ -502,7 +514,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     }
     m->reached = m->contacts;
     if (m->breakaway.some && !status) {
-        find_gains(m, sys, y);
+        tribo_stick_slip_find_gains(m, sys, y);
     }
     for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
         m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
@@ -535,5 +547,6 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     }
     const double most = tribo_system_fastest(sys) + m->breakaway.steepest;
     m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);
-    return tribo_stick_slip_decide(m, sys, t, y);
+    const int status = tribo_planar_slip_start(m, sys, continues);
+    return status ? status : tribo_stick_slip_decide(m, sys, t, y);
 }

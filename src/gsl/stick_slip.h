@@ -10,6 +10,7 @@
 #include "driver.h"
 #include "breakaway.h"
 #include "first_zero.h"
+#include "planar_slip.h"
 
 struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
@@ -21,7 +22,7 @@ struct stick_slip {
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
-    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open */
+    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open, TRIBO_IN_PLANE */
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
@@ -31,6 +32,8 @@ struct stick_slip {
     double *stick, *stick_rate; /* [ncontact] by which those at rest hold: these, unless there are static limits */
     double *swing;              /* [ncontact] by how much harmonics change the limit at most */
     struct breakaway breakaway; /* of static limits */
+    struct planar_slip *plane;  /* of planar contacts; NULL if there are none */
+    double abstol, reltol;      /* of the driver */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *acceleration;       /* [ndof] and q'' */
     double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
@@ -62,6 +65,16 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
 /* Decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out of their
  * velocities in y. Sets slip, holds, force, acceleration and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
+
+/* What a decision is made of. It begins at time t, with base and noise there. Then whoever has no velocity, or none in the
+ * direction of its slip any more, is at rest; a status. What accelerations of contacts may be rounding, and how far forces may
+ * go; the rate of q'' while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
+ * derivative of b. */
+void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, const double *y);
+int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
+void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
+void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
+void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 
 /* Finds out which of the contacts at rest hold, as they are marked; a status. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);

@@ -40,6 +40,13 @@ size_t tribo_system_revision(const tribo_system *sys)
     return sys->revision + tribo_revision(sys->contacts) - sys->ours;
 }
 
+size_t tribo_system_planar(const tribo_system *sys)
+{
+    size_t planar = 0;
+    tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
+    return planar;
+}
+
 size_t tribo_system_ndof(const tribo_system *sys)
 {
     return sys ? sys->ndof : 0;

@@ -80,6 +80,9 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
 /* Counts all changes that a caller can make: of loads, tables and damping, and of the context's settings. */
 size_t tribo_system_revision(const tribo_system *sys);
 
+/* How many planar contacts there are. */
+size_t tribo_system_planar(const tribo_system *sys);
+
 /* ---- loads.c */
 
 void tribo_loads_free(tribo_system *sys);
