@@ -97,10 +97,18 @@ static int check_planar(const tribo_system *sys, const struct method *m)
                                    planar);
 }
 
+static int check_mass(const tribo_system *sys, const struct method *m)
+{
+    char who[40];
+    snprintf(who, sizeof who, "method %s", m->name);
+    return m == &tribo_method_exact || m == &automatic ? TRIBO_OK : tribo_system_check_mass(sys, who);
+}
+
 static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
 {
     int status = check_parameters(sys, m, dt, abstol, reltol);
     status = status ? status : check_planar(sys, m);
+    status = status ? status : check_mass(sys, m);
     if (status) {
         return status;
     }
@@ -378,7 +386,8 @@ static int choose(const tribo_driver *drv)
     const tribo_system *sys = drv->sys;
     const struct choice *c = drv->own;
     const int refused = c->refused && c->revision == tribo_system_revision(sys);
-    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !refused ? EXACT : EVENT;
+    const int able = sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !refused;
+    return able || sys->massless.count ? EXACT : EVENT;
 }
 
 /* Makes sure that there is the driver. The message of a failure is on the system's context. */
@@ -407,6 +416,12 @@ static void destroy_choice(tribo_driver *drv)
     }
 }
 
+/* Whether exact has refused what event may do. */
+static int leaves_to_event(const tribo_driver *drv, int status)
+{
+    return status == TRIBO_ERR_UNSUPPORTED && drv->sys->massless.count == 0;
+}
+
 /* The advance by one of the two, which sees for itself whether it continues. */
 static int delegate(tribo_driver *drv, int which, double *t, double t1, double *y)
 {
@@ -425,7 +440,7 @@ static int delegate(tribo_driver *drv, int which, double *t, double t1, double *
     drv->events += inner->events - events;
     drv->excess = greater(drv->excess, inner->excess);
     drv->backslip = greater(drv->backslip, inner->backslip);
-    const int kept = tribo_driver_keep(drv, *t, y), refused = which == EXACT && status == TRIBO_ERR_UNSUPPORTED;
+    const int kept = tribo_driver_keep(drv, *t, y), refused = which == EXACT && leaves_to_event(drv, status);
     if (status && !refused) {
         tribo_driver_fail(drv, status, "%s", inner->message);
     }
@@ -438,7 +453,7 @@ static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, in
     (void)continues;
     if (choose(drv) == EXACT) {
         const int status = delegate(drv, EXACT, t, t1, y);
-        if (status != TRIBO_ERR_UNSUPPORTED) {
+        if (!leaves_to_event(drv, status)) {
             return status;
         }
         c->refused = 1;

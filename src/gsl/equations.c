@@ -42,6 +42,10 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 {
     tribo_system *sys = params;
     sys->evaluations++;
+    sys->status = tribo_system_check_mass(sys, "an integrator");
+    if (sys->status) {
+        return GSL_EBADFUNC;
+    }
     tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
     sys->status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
     if (sys->status) {
@@ -79,7 +83,8 @@ static int contacts_at(tribo_system *sys, double t, const double *y)
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    const int status = tribo_system_check_state(sys, t, y);
+    int status = tribo_system_check_mass(sys, "this call");
+    status = status ? status : tribo_system_check_state(sys, t, y);
     if (!status) {
         tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
     }
@@ -164,7 +169,8 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->truncation = sys->truncation;
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
            tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->mass, &sys->mass) &&
-           tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);
+           tribo_cholesky_copy(&to->factor, &sys->factor) &&
+           tribo_massless_copy(&to->massless, &sys->massless, sys->ndof, sys->ncontact) && tribo_loads_copy(to, sys);
 }
 
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
@@ -209,6 +215,7 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_matrix_free(&sys->viscous);
     tribo_matrix_free(&sys->mass);
     tribo_cholesky_free(&sys->factor);
+    tribo_massless_free(&sys->massless);
     free(sys->modes);
     free(sys->omega);
     free(sys->v);

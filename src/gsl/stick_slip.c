@@ -42,13 +42,14 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit,    &m->limit_rate, &m->force,   &m->allowance, &m->base,  &m->noise,
-                                   &m->diagonal, &m->seen,       &m->parting, &m->excess,    &m->v,     &m->a,
-                                   &m->gain,     &m->lo,         &m->hi,      &m->f,         &m->still, &m->swing};
+    double **const by_contact[] = {&m->limit,    &m->limit_rate,  &m->force,   &m->allowance, &m->base,  &m->noise,
+                                   &m->diagonal, &m->seen,        &m->parting, &m->excess,    &m->v,     &m->a,
+                                   &m->gain,     &m->lo,          &m->hi,      &m->f,         &m->still, &m->swing,
+                                   &m->spring,   &m->spring_rate, &m->slack};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(6, c);
+    m->slip = calloc(8, c);
     m->at = malloc(c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
@@ -67,6 +68,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->loose = m->slip + 3 * c;
     m->holds = (unsigned char *)m->slip + 4 * c;
     m->rested = (unsigned char *)m->slip + 5 * c;
+    m->slid = m->slip + 6 * c;
+    m->turning = m->slip + 7 * c;
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
@@ -131,7 +134,7 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
 
 /* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are
  * the sum of. */
-static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+void tribo_stick_slip_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     if (m->sized) {
         return;
@@ -148,6 +151,7 @@ static void find_gains(struct stick_slip *m, const tribo_system *sys, const doub
         add_sizes(&sys->damping, y + sys->ndof, m->size);
     }
     add_sizes(&sys->response, m->force, m->size);
+    add_sizes(&sys->massless.follow, m->size, m->size);
     memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
     add_amplitudes(sys, DRIVES_BASE, 1, m->gain);
     add_sizes(&sys->direction, m->size, m->gain);
@@ -164,9 +168,20 @@ static void find_gains(struct stick_slip *m, const tribo_system *sys, const doub
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 {
     for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        f[i] = m->holds[i] ? -a[i] / m->diagonal[i] : 0.0;
+        f[i] = !m->loose[i] ? -a[i] / m->diagonal[i] : 0.0;
     }
     return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
+}
+
+static int is_elastic(const tribo_system *sys, size_t i)
+{
+    return tribo_massless_touches(&sys->massless, i);
+}
+
+/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
+static int searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    return m->slip[i] == 0 && !is_elastic(sys, i);
 }
 
 /* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
@@ -196,14 +211,14 @@ static int find_holds(struct stick_slip *m, const tribo_system *sys)
         changes += now != m->before[i];
         m->before[i] = now;
         m->at[rest] = i;
-        rest += m->slip[i] == 0 && m->diagonal[i] > 0.0;
+        rest += m->slip[i] == 0 && m->diagonal[i] > 0.0 && !is_elastic(sys, i);
     }
     if (changes == 0 && !m->fresh) {
         return TRIBO_OK;
     }
     m->fresh = 0;
     for (size_t i = 0; i < c; i++) {
-        m->holds[i] = m->slip[i] == 0 && m->diagonal[i] > 0.0;
+        m->holds[i] = m->slip[i] == 0 && (m->diagonal[i] > 0.0 || is_elastic(sys, i));
     }
     m->dependents = 0;
     if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
@@ -211,8 +226,8 @@ static int find_holds(struct stick_slip *m, const tribo_system *sys)
     }
     for (size_t i = 0; i < c; i++) {
         m->dependents += m->slip[i] == 0 && !m->holds[i];
-        m->loose[i] = !m->holds[i];
-        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+        m->loose[i] = !m->holds[i] || is_elastic(sys, i);
+        m->lo[i] = m->loose[i] ? 0.0 : 1.0;
     }
     return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
 }
@@ -223,11 +238,11 @@ static int moves(struct stick_slip *m, const tribo_system *sys, const double *ba
     const struct matrix *j = &sys->direction;
     for (size_t i = 0; i < m->contacts; i++) {
         double sum = -base[i], size = fabs(base[i]);
-        for (size_t k = m->holds[i] ? j->first[i] : j->first[i + 1]; k < j->first[i + 1]; k++) {
+        for (size_t k = m->loose[i] ? j->first[i + 1] : j->first[i]; k < j->first[i + 1]; k++) {
             sum += j->val[k] * x[j->col[k]];
             size += fabs(j->val[k] * x[j->col[k]]);
         }
-        if (m->holds[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
+        if (!m->loose[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
             return 1;
         }
     }
@@ -365,6 +380,9 @@ static int find_forces(struct stick_slip *m, tribo_system *sys)
         const double limit = m->slip[i] == 2 ? 0.0 : m->limit[i];
         m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
         m->hi[i] = m->slip[i] == 1 ? -limit : limit;
+        if (is_elastic(sys, i)) {
+            m->lo[i] = m->hi[i] = m->spring[i];
+        }
     }
     const int status = solve(m, sys, m->a, m->force);
     memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
@@ -372,8 +390,7 @@ static int find_forces(struct stick_slip *m, tribo_system *sys)
     return status;
 }
 
-/* to = J acceleration - order-th derivative of b. */
-static void contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
+void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     memset(to, 0, sys->ncontact * sizeof *to);
     tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
@@ -405,17 +422,17 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     *ties = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->tied[i] = 0;
-        close += m->slip[i] == 0 && fabs(m->force[i]) >= (1.0 - CLOSE) * m->limit[i];
+        close += searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->limit[i];
     }
     if (close == 0) {
         return 0;
     }
-    find_gains(m, sys, y);
-    contact_accelerations(sys, m->acceleration, 1, m->v);
+    tribo_stick_slip_gains(m, sys, y);
+    tribo_stick_slip_contact_accelerations(sys, m->acceleration, 1, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double room = m->limit[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->limit[i] : m->allowance[i] / ALLOWED;
-        if (m->slip[i] == 0 && room <= within) {
+        if (searches(m, sys, i) && room <= within) {
             const signed char direction = direction_of(m, i, m->force[i]);
             m->tied[i] = 1;
             changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
@@ -432,10 +449,14 @@ static double limit_ahead(const struct stick_slip *m, size_t i)
     return m->slip[i] == 2 ? 0.0 : greater(m->limit[i] + m->horizon * m->limit_rate[i], 0.0);
 }
 
-static void set_bounds_ahead(struct stick_slip *m)
+static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; i < m->contacts; i++) {
         const double limit = limit_ahead(m, i), now = m->limit[i], wider = WIDER * now;
+        if (is_elastic(sys, i)) {
+            m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
+            continue;
+        }
         if (m->slip[i] != 0) {
             m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
             continue;
@@ -459,13 +480,13 @@ static void find_rate(struct stick_slip *m, const tribo_system *sys, const doubl
 /* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
-    find_gains(m, sys, y);
+    tribo_stick_slip_gains(m, sys, y);
     find_rate(m, sys, y);
-    contact_accelerations(sys, m->rate, 2, m->v);
+    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->a[i] + m->horizon * m->v[i];
     }
-    set_bounds_ahead(m);
+    set_bounds_ahead(m, sys);
     const int status = solve(m, sys, m->v, m->f);
     if (status) {
         return status;
@@ -475,7 +496,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (m->slip[i] == 0 && room >= 0.0) {
+        if (searches(m, sys, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int leaves = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             *changes += (size_t)leaves;
@@ -492,11 +513,11 @@ static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
     int status = find_holds(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->v[i] = m->holds[i] ? 0.0 : m->force[i];
+        m->v[i] = m->loose[i] ? m->force[i] : 0.0;
     }
     memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
-    contact_accelerations(sys, m->rate, 1, m->v);
+    tribo_stick_slip_contact_accelerations(sys, m->rate, 1, m->v);
     status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
@@ -523,8 +544,8 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
         return status;
     }
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->limit[i], m->limit[i]) : m->force[i];
-        m->excess[i] = m->holds[i] ? fabs(m->f[i] - m->force[i]) : 0.0;
+        m->force[i] = m->loose[i] ? m->force[i] : clamp(m->f[i], -m->limit[i], m->limit[i]);
+        m->excess[i] = !m->loose[i] ? fabs(m->f[i] - m->force[i]) : 0.0;
     }
     memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
@@ -535,10 +556,10 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
 {
     tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->f[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
+        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
-    contact_accelerations(sys, acceleration, 1, m->v);
+    tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->v);
     const int status = tribo_stick_slip_balance(m, m->v, m->f);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
@@ -552,10 +573,13 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     memset(m->tied, 0, sys->ncontact);
+    tribo_elastic_release(sys, y);
     find_noise(m, sys, y);
     update_limits(m, sys, y);
+    tribo_elastic_place(m, sys, y);
     int status = find_resting(m, sys, y);
     if (!status) {
+        tribo_elastic_hold(m, sys, y);
         tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
         m->sized = 0;
         memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
@@ -573,6 +597,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         }
     }
     m->reached = m->contacts;
+    if (!status) {
+        tribo_elastic_turn(m, sys, y);
+    }
     return status ? status : find_holds(m, sys);
 }
 
@@ -585,6 +612,9 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+    }
+    if (!continues) {
+        tribo_elastic_start(m, sys, y);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->swing[i] = tribo_system_swing(sys, i);

@@ -16,6 +16,17 @@ int tribo_system_fail(const tribo_system *sys, int status, const char *format, .
     return tribo_set_message(sys->contacts, status, text);
 }
 
+int tribo_system_check_mass(const tribo_system *sys, const char *who)
+{
+    size_t d = 0;
+    while (sys->massless.count && !sys->massless.is[d]) {
+        d++;
+    }
+    return sys->massless.count ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                                   "%s needs mass, and degree of freedom %zu has none: take method exact", who, d)
+                               : TRIBO_OK;
+}
+
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 {
     if (!isfinite(t)) {
@@ -98,13 +109,25 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         tribo_cholesky_solve(&sys->factor, 1, to);
     }
     for (size_t i = 0; diagonal && i < sys->ndof; i++) {
-        to[i] *= 1.0 / tribo_matrix_get(&sys->mass, i, i);
+        const double mass = tribo_matrix_get(&sys->mass, i, i);
+        to[i] *= mass > 0.0 ? 1.0 / mass : 0.0;
     }
+}
+
+/* A bound on what the springs of elastic contacts, while they hold, add to omega^2. */
+static double fastest_spring(const tribo_system *sys)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        sum += tribo_massless_touches(&sys->massless, i) ? 2.0 * tribo_system_delassus(sys, i, i) / sys->massless.compliance[i]
+                                                         : 0.0;
+    }
+    return sum;
 }
 
 double tribo_system_fastest(const tribo_system *sys)
 {
-    double most = greater(sqrt(tribo_matrix_row_sum(&sys->stiffness)), tribo_matrix_row_sum(&sys->damping));
+    double most = greater(sqrt(tribo_matrix_row_sum(&sys->stiffness) + fastest_spring(sys)), tribo_matrix_row_sum(&sys->damping));
     for (size_t s = 0; s < sys->harmonics; s++) {
         most = greater(most, fabs(sys->harmonic[s].omega));
     }
