@@ -106,7 +106,7 @@ static int chooses_steps(const char *method)
 
 static tribo_driver *start(const char *method, tribo_system *sys)
 {
-    tribo_driver *drv = driver_create(sys, method, 0.02, 1e-6);
+    tribo_driver *drv = driver_create(sys, method, 0.02, 1e-8);
     ck_assert_int_eq(tribo_method_count(), METHODS);
     return drv;
 }
@@ -141,7 +141,7 @@ TEST(like_a_new_driver)
         driver_advance(other, &t[1], END, y[1]);
         /* what the context remembers decides about last bits, and these now and then about an adaptive step: as far apart
          * as two runs at this tolerance may be */
-        const double tolerance = chooses_steps(method) ? 3e-6 : 1e-11;
+        const double tolerance = chooses_steps(method) ? 1e-6 : 1e-11;
         const char *off = differences(changes[k].name, y[0], y[1], dimension, tolerance);
         require(!off, "%s: %s", method, off);
         tribo_driver_destroy(drv);
