@@ -49,7 +49,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(8, c);
+    m->slip = calloc(7, c);
     m->at = malloc(c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
@@ -69,7 +69,6 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->holds = (unsigned char *)m->slip + 4 * c;
     m->rested = (unsigned char *)m->slip + 5 * c;
     m->slid = m->slip + 6 * c;
-    m->turning = m->slip + 7 * c;
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
@@ -134,7 +133,7 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
 
 /* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are
  * the sum of. */
-void tribo_stick_slip_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     if (m->sized) {
         return;
@@ -151,7 +150,6 @@ void tribo_stick_slip_gains(struct stick_slip *m, const tribo_system *sys, const
         add_sizes(&sys->damping, y + sys->ndof, m->size);
     }
     add_sizes(&sys->response, m->force, m->size);
-    add_sizes(&sys->massless.follow, m->size, m->size);
     memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
     add_amplitudes(sys, DRIVES_BASE, 1, m->gain);
     add_sizes(&sys->direction, m->size, m->gain);
@@ -390,7 +388,8 @@ static int find_forces(struct stick_slip *m, tribo_system *sys)
     return status;
 }
 
-void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
+/* to = J acceleration - order-th derivative of b. */
+static void contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     memset(to, 0, sys->ncontact * sizeof *to);
     tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
@@ -427,8 +426,8 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     if (close == 0) {
         return 0;
     }
-    tribo_stick_slip_gains(m, sys, y);
-    tribo_stick_slip_contact_accelerations(sys, m->acceleration, 1, m->v);
+    find_gains(m, sys, y);
+    contact_accelerations(sys, m->acceleration, 1, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double room = m->limit[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->limit[i] : m->allowance[i] / ALLOWED;
@@ -480,9 +479,9 @@ static void find_rate(struct stick_slip *m, const tribo_system *sys, const doubl
 /* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
-    tribo_stick_slip_gains(m, sys, y);
+    find_gains(m, sys, y);
     find_rate(m, sys, y);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
+    contact_accelerations(sys, m->rate, 2, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->a[i] + m->horizon * m->v[i];
     }
@@ -517,7 +516,7 @@ static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
     }
     memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 1, m->v);
+    contact_accelerations(sys, m->rate, 1, m->v);
     status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
@@ -559,7 +558,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
         m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
-    tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->v);
+    contact_accelerations(sys, acceleration, 1, m->v);
     const int status = tribo_stick_slip_balance(m, m->v, m->f);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
@@ -598,7 +597,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     }
     m->reached = m->contacts;
     if (!status) {
-        tribo_elastic_turn(m, sys, y);
+        tribo_elastic_finish(m, sys);
     }
     return status ? status : find_holds(m, sys);
 }

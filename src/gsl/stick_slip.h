@@ -44,11 +44,10 @@ struct stick_slip {
     signed char *before;        /* [ncontact] what find_holds saw last */
     int fresh;                  /* it saw nothing yet */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
-    signed char *slid;                    /* [ncontact] slip as decided last, */
-    signed char *turning; /* [ncontact] and where an elastic one would slide that has its limit, but no velocity yet */
-    double *still;        /* [ncontact] zeros */
-    size_t *at;           /* [ncontact] workspace of find_holds, */
-    unsigned char *last;  /* [ncontact] and this */
+    signed char *slid;                    /* [ncontact] slip as decided last */
+    double *still;                        /* [ncontact] zeros */
+    size_t *at;                           /* [ncontact] workspace of find_holds, */
+    unsigned char *last;                  /* [ncontact] and this */
 };
 
 /* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
@@ -63,18 +62,14 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
  * velocities in y. Sets slip, holds, force, acceleration and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* stick_slip.c: what accelerations of contacts may be rounding, in gain; and to = J acceleration - order-th derivative of b. */
-void tribo_stick_slip_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
-void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
-
 /* stick_slip_elastic.c, for the decision: elastic contacts, whose forces the state knows. In this order: velocities that they
- * would slide with; forces, slip, and places without mass; velocities of those that hold; those that turn, by accelerations. The
+ * would slide with; forces, slip, and places without mass; velocities of those that hold; what the next decision remembers. The
  * start takes what is beyond limits out of y, and dissipates it. */
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_release(const tribo_system *sys, double *y);
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y);
-void tribo_elastic_turn(struct stick_slip *m, const tribo_system *sys, const double *y);
+void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
 /* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);

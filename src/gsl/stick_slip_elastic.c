@@ -3,7 +3,7 @@
  *
  *     inside the limit: it holds, and f' = -v/compliance
  *     at the limit: it slides if v goes against the force, and holds if v takes the force back inside
- *     at the limit, without velocity: the same by v'
+ *     at the limit, without velocity: it holds; if v comes to go against the force, that leaves the limit, which is an event
  */
 #include "stick_slip.h"
 #include "../common/real.h"
@@ -82,7 +82,6 @@ static void place(struct stick_slip *m, size_t i, double v)
     const int stopped = before == 0 && (m->slid[i] == 1 || m->slid[i] == -1);
     const int slides = before == 1 || before == -1;
     const double limit = m->limit[i];
-    m->turning[i] = 0;
     if (before == 2) {
         m->spring[i] = 0.0;
         return;
@@ -97,7 +96,6 @@ static void place(struct stick_slip *m, size_t i, double v)
     const int still = stopped || fabs(v) <= m->doubt * m->noise[i];
     m->spring[i] = -against * limit;
     m->slip[i] = (signed char)(!still && against * v > 0.0 ? against : 0);
-    m->turning[i] = (signed char)(still ? against : 0);
 }
 
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
@@ -128,21 +126,10 @@ void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y
     tribo_matrix_multiply_add(&w->give, 1.0, m->spring_rate, y + sys->ndof);
 }
 
-void tribo_elastic_turn(struct stick_slip *m, const tribo_system *sys, const double *y)
+void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys)
 {
-    if (sys->massless.count == 0) {
-        return;
-    }
-    tribo_stick_slip_gains(m, sys, y);
-    memcpy(m->rate, m->acceleration, sys->ndof * sizeof *m->rate);
-    tribo_massless_follow(&sys->massless, m->rate);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 1, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (tribo_massless_touches(&sys->massless, i)) {
-            const signed char against = m->turning[i];
-            m->slip[i] = m->slip[i] == 0 && against * m->v[i] > m->gain[i] ? against : m->slip[i];
-            m->allowance[i] = m->slack[i];
-        }
+    for (size_t i = 0; sys->massless.count && i < sys->ncontact; i++) {
+        m->allowance[i] = tribo_massless_touches(&sys->massless, i) ? m->slack[i] : m->allowance[i];
         m->slid[i] = m->slip[i];
     }
 }
