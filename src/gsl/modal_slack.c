@@ -1,4 +1,4 @@
-/* Displacements without mass: while nothing holds them they follow the others, K_ww w = -K_wq q, and modes are of what is left. */
+/* Displacements without mass: while nothing holds them they follow the others, K_ww w = -K_wq q; modes are of what is left. */
 #include "modal_parts.h"
 
 #include <stdlib.h>
