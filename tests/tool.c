@@ -15,7 +15,7 @@
 #else
 #define BOUND_MEMORY 1
 #endif
-enum { MOST_SECONDS = 60, MOST_MEGABYTES = 256, MOST_WORDS = 64 };
+enum { MOST_SECONDS = 60, MOST_MEGABYTES = 4096, MOST_WORDS = 64 };
 
 void read_text(const char *path, char *text)
 {
@@ -36,7 +36,8 @@ void write_text(const char *path, const char *text)
     write_bytes(path, text, strlen(text));
 }
 
-/* In the child: a hang, or greed for memory, ends it by a signal or an error. */
+/* In the child: a hang, or greed for memory, ends it by a signal or an error. The bound is wide because OpenBLAS, where it is the
+ * machine's BLAS, reserves 128 MB a thread, and tries for ever when it does not get them. */
 static void become(char *const *argument)
 {
     const struct rlimit seconds = {MOST_SECONDS, MOST_SECONDS},

@@ -1,5 +1,5 @@
-/* A mass on an isotropic spring, driven round in circles on a rough plane. One planar contact lets it run in a circle, whose radius
- * and lag are known; two scalar ones in its place (a friction pyramid) do not. Your own loop, rk4, with tribo_balance.
+/* A mass on an isotropic spring, driven round in circles on a rough plane. One planar contact lets it run in a circle, whose
+ * radius and lag are known; two scalar ones in its place (a friction pyramid) do not. Your own loop, rk4, with tribo_balance.
  *
  *     contact_whirl FOLDER
  *
@@ -64,8 +64,8 @@ static struct whirl create(int planar, double dt)
     return w;
 }
 
-/* Runs until the motion is steady, and a period more. Returns the radius at the end; lag is how far the motion is behind the force,
- * swing how much the radius changes over the period. */
+/* Runs until the motion is steady, and a period more. Returns the radius at the end; lag is how far the motion is behind the
+ * force, swing how much the radius changes over the period. */
 static double run(struct whirl *w, double dt, FILE *table, double *lag, double *swing)
 {
     const double turn = 2.0 * acos(-1.0), period = turn / omega;

@@ -186,18 +186,16 @@ const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
 {
     ask_sample(c, x, 0);
     find_sample(c, w, place_of(c, x), ALL);
-    for (int i = 0; i < ROUNDS && !interrupted(); i++) {
+    for (int i = 0; i < ROUNDS && !found(c, place_of(c, x)) && !interrupted(); i++) {
         const size_t k = place_of(c, x);
-        if (found(c, k)) {
-            return &c->sample[k];
-        }
         if (k > 0 && found(c, k - 1)) {
             split(c, w, k - 1);
         } else if (k + 1 < c->count && found(c, k + 1)) {
             split(c, w, k);
         }
     }
-    return NULL;
+    const size_t k = place_of(c, x);
+    return found(c, k) ? &c->sample[k] : NULL;
 }
 
 /* --------------------------------------------------------------------------------------------------------------- largest */
@@ -228,22 +226,45 @@ static double top_of(const struct sample *s)
     return s[0].x + 0.5 * (a * right - b * left) / (a - b);
 }
 
-void find_largest(struct curve *c, struct worker *w)
+/* Whether sample k is not below its neighbours. */
+static int is_top(const struct curve *c, size_t k)
+{
+    const struct sample *s = &c->sample[k];
+    return k > 0 && k + 1 < c->count && found(c, k - 1) && found(c, k) && found(c, k + 1) &&
+           s->motion.amplitude >= s[-1].motion.amplitude && s->motion.amplitude >= s[1].motion.amplitude;
+}
+
+/* From a top among the samples to that of the curve. */
+static void climb(struct curve *c, struct worker *w, double x)
 {
     for (int i = 0; i < CLIMBS && !interrupted(); i++) {
-        const size_t k = place_of_largest(c);
-        if (k == 0 || k + 1 >= c->count || !found(c, k - 1) || !found(c, k + 1)) {
+        const size_t k = place_of(c, x);
+        const double top = top_of(&c->sample[k]), whole = c->sample[c->count - 1].x - c->sample[0].x;
+        const double reached = c->sample[k].motion.amplitude;
+        if (!(is_top(c, k) && fabs(top - x) > 1e-8 * whole)) {
             return;
         }
-        const struct sample *s = &c->sample[k];
-        const double top = top_of(s), whole = c->sample[c->count - 1].x - c->sample[0].x;
-        if (!(fabs(top - s->x) > 1e-8 * whole)) {
-            return;
-        }
-        const size_t at = top < s->x ? k : k + 1;
-        insert_sample(c, at, top, 0);
-        find_sample(c, w, at, ALL);
+        ask_sample(c, top, 0);
+        find_sample(c, w, place_of(c, top), ALL);
+        const struct motion *there = &c->sample[place_of(c, top)].motion;
+        x = there->found && there->amplitude > reached ? top : x;
     }
+}
+
+void find_largest(struct curve *c, struct worker *w, double tolerance)
+{
+    const struct sample *largest = largest_of(c);
+    double *x = need_memory(c->count, sizeof *x);
+    size_t tops = 0;
+    for (size_t k = 0; k < c->count; k++) {
+        if (is_top(c, k) && c->sample[k].motion.amplitude * (1.0 + tolerance) >= largest->motion.amplitude) {
+            x[tops++] = c->sample[k].x;
+        }
+    }
+    for (size_t i = 0; i < tops; i++) {
+        climb(c, w, x[i]);
+    }
+    free(x);
 }
 
 int looked_for(const struct sample *s)

@@ -36,8 +36,8 @@ const struct sample *reach_sample(struct curve *c, struct worker *w, double x);
 /* The sample with the largest amplitude; NULL if none was found. */
 const struct sample *largest_of(const struct curve *c);
 
-/* Finds the largest amplitude to rounding, by more samples about it. */
-void find_largest(struct curve *c, struct worker *w);
+/* Finds the largest amplitude to rounding: more samples about every top that may be it, samples being off by the tolerance. */
+void find_largest(struct curve *c, struct worker *w, double tolerance);
 
 /* Whether it was found, or not: after an interruption there are others. */
 int looked_for(const struct sample *s);

@@ -7,7 +7,8 @@
 
 #define TURN 6.283185307179586476925 /* radians */
 
-/* A structure reduced to its lowest modes, with friction contacts. Made once, then only read: who computes takes a copy of sys. */
+/* A structure reduced to its lowest modes, with friction contacts. Made once, then only read: who computes takes a copy of
+ * sys. */
 struct damper {
     tribo_system *sys; /* without a load */
     size_t ndof, modes, contacts;

@@ -43,8 +43,8 @@ void set_point(struct worker *w, double limit, double hz)
 
 /* ------------------------------------------------------------------------------------------------------------ measuring */
 
-/* What the period of the motion just found holds, in closed form. The load is F sin(omega t), so that its mean power is that of its
- * velocity's part in phase; what friction does not take of it damping does. */
+/* What the period of the motion just found holds, in closed form. The load is F sin(omega t), so that its mean power is that
+ * of its velocity's part in phase; what friction does not take of it damping does. */
 static int measure(struct worker *w, struct motion *m)
 {
     const struct damper *d = w->d;

@@ -8,14 +8,13 @@
 #include "study.h"
 #include "team.h"
 
-static const double BEND = 0.02, COARSE = 0.2; /* curves are followed to that; while the best limit is looked for */
-static const double LEAST_PART = 1e-4;         /* the best limit is found to that */
+static const double BEND = 0.02;       /* curves are followed to that; with more, narrow peaks are missed */
+static const double LEAST_PART = 5e-4; /* the best limit is found to that */
 
 /* Curves over the band, one for each limit. */
 struct family {
     const struct study *study;
     struct curve *curve;
-    double tolerance;
 };
 
 /* The frequencies that are asked for, and those at which the structure resonates, free or stuck. */
@@ -41,14 +40,14 @@ static void run_curve(void *data, size_t k)
     const struct family *f = data;
     struct curve *c = &f->curve[k];
     struct worker w = create_worker(f->study->damper, f->study->options->march);
-    find_curve(c, &w, f->tolerance);
-    find_largest(c, &w);
+    find_curve(c, &w, BEND);
+    find_largest(c, &w, BEND);
     free_worker(&w);
 }
 
-static struct family run_family(const struct study *s, const double *limit, size_t count, double tolerance)
+static struct family run_family(const struct study *s, const double *limit, size_t count)
 {
-    struct family f = {s, need_memory(count, sizeof *f.curve), tolerance};
+    struct family f = {s, need_memory(count, sizeof *f.curve)};
     for (size_t k = 0; k < count; k++) {
         f.curve[k] = create_curve(0, limit[k], 2 * s->damper->modes + 1);
         ask_band(s, &f.curve[k]);
@@ -70,7 +69,7 @@ static void free_family(struct family *f, size_t count)
 static void largest_amplitudes(void *data, const double *limit, double *value, size_t count)
 {
     const struct study *s = data;
-    struct family f = run_family(s, limit, count, COARSE);
+    struct family f = run_family(s, limit, count);
     for (size_t k = 0; k < count; k++) {
         const struct sample *top = largest_of(&f.curve[k]);
         value[k] = top ? top->motion.amplitude : HUGE_VAL;
@@ -80,7 +79,7 @@ static void largest_amplitudes(void *data, const double *limit, double *value, s
 
 static void report_best(struct study *s, double limit)
 {
-    struct family f = run_family(s, &limit, 1, BEND);
+    struct family f = run_family(s, &limit, 1);
     const struct sample *top = largest_of(&f.curve[0]);
     end_telling();
     if (top && !interrupted()) {
@@ -149,7 +148,7 @@ void study_band(struct study *s)
         limit[k] = limit_of(limits, k);
     }
     check_extremes(s, s->options->drive.from);
-    struct family f = run_family(s, limit, count, BEND);
+    struct family f = run_family(s, limit, count);
     end_telling();
     write_family(s, &f, count);
     write_linear(s->tables, s->damper, &s->options->drive);

@@ -35,8 +35,8 @@ PetscErrorCode DestroyTiles(Chain *chain);
 /* For TS: from the state at t to its rates, u' = v, v' = a + n f, d' = -f v, with f from Quinn's law. */
 PetscErrorCode FindRates(Chain *chain, PetscReal t, Vec state, Vec rates);
 
-/* Central differences: velocities live half a step before places. Takes them over the time h, and the places on by dt. The force is
- * the one that leaves the blocks in Coulomb's law at the end of h. */
+/* Central differences: velocities live half a step before places. Takes them over the time h, and the places on by dt. The
+ * force is the one that leaves the blocks in Coulomb's law at the end of h. */
 PetscErrorCode Kick(Chain *chain, PetscReal t, PetscReal h, PetscReal dt, Vec state);
 
 #endif

@@ -16,9 +16,9 @@ typedef struct {
     char where[512];         /* their numbers, for messages */
 } Share;
 
-/* Takes operator, the condensed one of all contacts (dense, distributed, the same on any number of ranks), apart into islands, gives
- * each island to the rank that has fewest contacts, and makes there a context with their part of it. like: a vector over all
- * contacts. Collective. */
+/* Takes operator, the condensed one of all contacts (dense, distributed, the same on any number of ranks), apart into islands,
+ * gives each island to the rank that has fewest contacts, and makes there a context with their part of it. like: a vector over
+ * all contacts. Collective. */
 PetscErrorCode CreateShare(Mat operator, Vec like, Share *share);
 PetscErrorCode DestroyShare(Share *share);
 

@@ -25,9 +25,9 @@ typedef struct {
 PetscErrorCode CreateStudy(Study *study, const Options *options);
 PetscErrorCode DestroyStudy(Study *study);
 
-/* The point at one frequency, with the limits of the file times scale: amplitude of the loaded row and energy that friction takes in
- * a period, both NaN where status, TRIBO_ERR_NO_CONVERGENCE, says that no steady motion was found. The same bits whichever rank does
- * it, and whatever it did before. */
+/* The point at one frequency, with the limits of the file times scale: amplitude of the loaded row and energy that friction
+ * takes in a period, both NaN where status, TRIBO_ERR_NO_CONVERGENCE, says that no steady motion was found. The same bits
+ * whichever rank does it, and whatever it did before. */
 PetscErrorCode ComputePoint(const Study *study, double omega, double scale, double *amplitude, double *energy, int *status);
 
 #endif

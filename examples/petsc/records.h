@@ -1,5 +1,5 @@
-/* A text file of lines of one length, each of which has its place whoever writes it, and when: in order on any number of ranks, and
- * what a run that was ended has left behind is told from what is missing. */
+/* A text file of lines of one length, each of which has its place whoever writes it, and when: in order on any number of
+ * ranks, and what a run that was ended has left behind is told from what is missing. */
 #ifndef EXAMPLES_PETSC_RECORDS_H
 #define EXAMPLES_PETSC_RECORDS_H
 

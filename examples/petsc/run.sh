@@ -14,11 +14,11 @@ here=$PWD/examples/petsc build=build/release results=$PWD/build/results/petsc
 echo "== Building in $build"
 [ -f $build/CMakeCache.txt ] || parts='-DTRIBO_BUILD_TESTS=OFF -DTRIBO_FORTRAN=OFF'
 cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_GSL=ON -DTRIBO_BUILD_EXAMPLES=ON ${parts-}
-cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target petsc_chain petsc_structure petsc_study petsc_single friction_damper
+cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target petsc_chain petsc_structure petsc_study petsc_single tribo_damper
 
 rm -rf "$results"
 mkdir -p "$results"
-for program in petsc_chain petsc_structure petsc_study petsc_single friction_damper; do
+for program in petsc_chain petsc_structure petsc_study petsc_single tribo-damper; do
     ln -s "$PWD/$build/examples/$program" "$results"
 done
 status=0

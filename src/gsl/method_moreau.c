@@ -1,4 +1,4 @@
-/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law at the end of the step, the mean of the
+/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law over the step, the mean of the
  * loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for
  * any dt. */
 #include <math.h>
@@ -7,6 +7,7 @@
 
 #include <gsl/gsl_linalg.h>
 
+#include "breakaway.h"
 #include "hidden.h"
 #include "step_form.h"
 
@@ -17,9 +18,11 @@ struct moreau {
     size_t below, above;
     double *band;
     unsigned int *pivot;
-    double *response; /* [ncontact][ndof] */
-    double *limit;    /* [ncontact] */
-    double *load;     /* [ndof] at the end of the step before */
+    double *response;         /* [ncontact][ndof] */
+    double *limit;            /* [ncontact] */
+    double *ratio, *velocity; /* [ncontact] of static limits */
+    size_t statics;           /* revision of the system's contacts that these came from; 0: contacts have not got them */
+    double *load;             /* [ndof] at the end of the step before */
     tribo_context *contacts;
     size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
 };
@@ -44,12 +47,14 @@ static int create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (m) {
-        m->limit = calloc(c + n + 1, sizeof *m->limit);
+        m->limit = calloc(3 * c + n + 1, sizeof *m->limit);
     }
     if (!m || !m->limit || !tribo_step_form_create(&m->common, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
-    m->load = m->limit + c;
+    m->ratio = m->limit + c;
+    m->velocity = m->limit + 2 * c;
+    m->load = m->limit + 3 * c;
     return TRIBO_OK;
 }
 
@@ -170,6 +175,7 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = tribo_revision(sys->contacts);
+    m->statics = 0;
     const int status =
         planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
     m->contacts = status ? NULL : m->contacts;
@@ -196,11 +202,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
         double *column = m->response + j * n;
         solve(m, n, column);
         for (size_t i = 0; i < c; i++) {
-            double sum = 0.0;
-            for (size_t k = sys->direction.first[i]; k < sys->direction.first[i + 1]; k++) {
-                sum += sys->direction.val[k] * column[sys->direction.col[k]];
-            }
-            r[i * c + j] = sum;
+            r[i * c + j] = tribo_matrix_row_dot(&sys->direction, i, column);
         }
     }
     status = set_operator(m, sys, r, h);
@@ -218,6 +220,18 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_set_time(sys, t);
     memset(m->load, 0, sys->ndof * sizeof *m->load);
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
+}
+
+static void take_limits(struct moreau *m, const tribo_system *sys)
+{
+    const size_t revision = tribo_revision(sys->contacts);
+    tribo_get_limit(sys->contacts, m->limit);
+    tribo_set_limit(m->contacts, m->limit);
+    if (m->statics != revision) {
+        tribo_get_static(sys->contacts, m->ratio, m->velocity);
+        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
+        m->statics = revision;
+    }
 }
 
 static int moreau_step(tribo_driver *drv, double t, double next, double *y)
@@ -259,9 +273,8 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_find_base(s, sys, next);
     tribo_step_form_relative(s, sys, s->u, s->end);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
-    tribo_get_limit(sys->contacts, m->limit);
-    tribo_set_limit(m->contacts, m->limit);
-    const int status = tribo_step_force(m->contacts, h, s->end, s->f);
+    take_limits(m, sys);
+    const int status = tribo_step_form_force(s, m->contacts, h);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }

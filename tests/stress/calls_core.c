@@ -2,9 +2,9 @@
  * the status is the one that its arguments ask for, outputs are untouched on error and settings as they were, forces are finite
  * and within their limits, and solve the problem that was asked.
  *
- * As a program of its own: test_stress_calls_core [-n <strings>] [-s <seed>] [<file>...] runs the strings in the files, and so many
- * random ones. With libFuzzer, in the root of the tree: clang -g -O1 -fsanitize=fuzzer,address,undefined -DTRIBO_FUZZER -Iinclude
- * tests/stress/calls_{core,settings,forces}.c $(find src/common src/core -name '*.c') -lm
+ * As a program of its own: test_stress_calls_core [-n <strings>] [-s <seed>] [<file>...] runs the strings in the files, and so
+ * many random ones. With libFuzzer, in the root of the tree: clang -g -O1 -fsanitize=fuzzer,address,undefined -DTRIBO_FUZZER
+ * -Iinclude tests/stress/calls_{core,settings,forces}.c $(find src/common src/core -name '*.c') -lm
  *   ./a.out /tmp/new tests/stress/corpus
  * New strings go to the first folder. */
 #include <float.h>
