@@ -88,27 +88,51 @@ static int check_parameters(const tribo_system *sys, const struct method *method
 /* Methods that follow each contact from stick to slip know scalar ones only; and contacts may become planar at any time. */
 static int check_planar(const tribo_system *sys, const struct method *m)
 {
-    const int scalar_only = m == &tribo_method_event || m == &tribo_method_exact || m == &automatic;
+    const int scalar_only = m == &tribo_method_event || m == &tribo_method_exact || m == &automatic || sys->massless.count;
     size_t planar = 0;
     tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
     return !planar || !scalar_only
                ? TRIBO_OK
                : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                   "method %s knows no planar contacts, and there are %zu contacts of that kind", m->name,
-                                   planar);
+                                   "method %s knows no planar contacts%s, and there are %zu contacts of that kind", m->name,
+                                   sys->massless.count ? " where degrees of freedom have no mass" : "", planar);
 }
 
+/* What has no mass follows statically in methods that know the stiffness, and not only what it accelerates. */
 static int check_mass(const tribo_system *sys, const struct method *m)
 {
+    const int able = m == &tribo_method_exact || m == &tribo_method_event || m == &tribo_method_moreau_fixed || m == &automatic;
     char who[40];
     snprintf(who, sizeof who, "method %s", m->name);
-    return m == &tribo_method_exact || m == &automatic ? TRIBO_OK : tribo_system_check_mass(sys, who);
+    return able ? TRIBO_OK : tribo_system_check_mass(sys, who);
+}
+
+/* Elastic contacts hold up to the limit by which they slide; and static limits may be set at any time. */
+static int check_static(const tribo_system *sys)
+{
+    double *ratio = sys->feq;
+    size_t i = 0;
+    tribo_get_static(sys->contacts, ratio, NULL);
+    while (i < sys->ncontact && !(tribo_massless_touches(&sys->massless, i) && ratio[i] > 1.0)) {
+        i++;
+    }
+    return i == sys->ncontact
+               ? TRIBO_OK
+               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
+}
+
+/* What the contacts are, which may change at any time. */
+static int check_contacts(const tribo_system *sys, const struct method *m)
+{
+    const int status = check_planar(sys, m);
+    return status || sys->massless.count == 0 ? status : check_static(sys);
 }
 
 static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
 {
     int status = check_parameters(sys, m, dt, abstol, reltol);
-    status = status ? status : check_planar(sys, m);
+    status = status ? status : check_contacts(sys, m);
     status = status ? status : check_mass(sys, m);
     if (status) {
         return status;
@@ -342,7 +366,7 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     if (t1 < *t) {
         return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
     }
-    const int unfit = check_planar(drv->sys, drv->method);
+    const int unfit = check_contacts(drv->sys, drv->method);
     return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 
@@ -389,8 +413,7 @@ static int choose(const tribo_driver *drv)
     const tribo_system *sys = drv->sys;
     const struct choice *c = drv->own;
     const int refused = c->refused && c->revision == tribo_system_revision(sys);
-    const int able = sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !refused;
-    return able || sys->massless.count ? EXACT : EVENT;
+    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !refused ? EXACT : EVENT;
 }
 
 /* Makes sure that there is the driver. The message of a failure is on the system's context. */
@@ -419,12 +442,6 @@ static void destroy_choice(tribo_driver *drv)
     }
 }
 
-/* Whether exact has refused what event may do. */
-static int leaves_to_event(const tribo_driver *drv, int status)
-{
-    return status == TRIBO_ERR_UNSUPPORTED && drv->sys->massless.count == 0;
-}
-
 /* The advance by one of the two, which sees for itself whether it continues. */
 static int delegate(tribo_driver *drv, int which, double *t, double t1, double *y)
 {
@@ -443,7 +460,7 @@ static int delegate(tribo_driver *drv, int which, double *t, double t1, double *
     drv->events += inner->events - events;
     drv->excess = greater(drv->excess, inner->excess);
     drv->backslip = greater(drv->backslip, inner->backslip);
-    const int kept = tribo_driver_keep(drv, *t, y), refused = which == EXACT && leaves_to_event(drv, status);
+    const int kept = tribo_driver_keep(drv, *t, y), refused = which == EXACT && status == TRIBO_ERR_UNSUPPORTED;
     if (status && !refused) {
         tribo_driver_fail(drv, status, "%s", inner->message);
     }
@@ -456,7 +473,7 @@ static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, in
     (void)continues;
     if (choose(drv) == EXACT) {
         const int status = delegate(drv, EXACT, t, t1, y);
-        if (!leaves_to_event(drv, status)) {
+        if (status != TRIBO_ERR_UNSUPPORTED) {
             return status;
         }
         c->refused = 1;

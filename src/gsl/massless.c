@@ -28,6 +28,7 @@ int tribo_massless_copy(struct massless *to, const struct massless *from, size_t
         to->compliance = tribo_copy_of(from->compliance, ncontact, sizeof *to->compliance, &done);
         done = done && tribo_matrix_copy(&to->follow, &from->follow) && tribo_matrix_copy(&to->give, &from->give);
         to->count = from->count;
+        to->stiffest = from->stiffest;
     }
     return done;
 }
@@ -318,6 +319,33 @@ static void exchange(struct matrix *a, struct matrix *b)
     *b = c;
 }
 
+/* The largest row sum of what accelerates by places: those of w, and forces of elastic contacts, as large as they can be beside
+ * q = 1. 0 if out of memory. */
+static int find_stiffest(tribo_system *s)
+{
+    const size_t n = s->ndof, c = s->ncontact;
+    struct massless *w = &s->massless;
+    double *q = calloc(3 * n + c + 1, sizeof *q);
+    if (!q) {
+        return 0;
+    }
+    double *places = q + n, *rate = q + 2 * n, *force = q + 3 * n;
+    for (size_t d = 0; d < n; d++) {
+        places[d] = q[d] = w->is[d] ? 0.0 : 1.0;
+    }
+    tribo_matrix_add_sizes(&w->follow, q, places);
+    tribo_matrix_add_sizes(&s->direction, places, force);
+    for (size_t i = 0; i < c; i++) {
+        force[i] = tribo_massless_touches(w, i) ? force[i] / w->compliance[i] : 0.0;
+    }
+    tribo_matrix_add_sizes(&w->give, force, places);
+    tribo_matrix_add_sizes(&s->stiffness, places, rate);
+    tribo_matrix_add_sizes(&s->response, force, rate);
+    w->stiffest = tribo_largest(rate, n);
+    free(q);
+    return 1;
+}
+
 /* A system that accelerates w by nothing; then it is told all of mass, stiffness and direction, and how w follows. */
 static int build(struct model *m, struct massless *w, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)
 {
@@ -327,13 +355,14 @@ static int build(struct model *m, struct massless *w, int (*build_massive)(struc
     exchange(&m->mass, &mass);
     exchange(&m->stiffness, &stiffness);
     exchange(&m->direction, &direction);
-    const int status = done ? build_massive(m, sys) : tribo_model_no_memory(m);
+    int status = done ? build_massive(m, sys) : tribo_model_no_memory(m);
     if (!status) {
         exchange(&(*sys)->mass, &mass);
         exchange(&(*sys)->elastic, &stiffness);
         exchange(&(*sys)->direction, &direction);
         (*sys)->massless = *w;
         *w = (struct massless){0};
+        status = find_stiffest(*sys) ? TRIBO_OK : tribo_model_no_memory(m);
     }
     tribo_matrix_free(&mass);
     tribo_matrix_free(&stiffness);

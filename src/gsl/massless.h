@@ -13,6 +13,7 @@ struct massless {
     unsigned char *is;          /* [ndof] */
     struct matrix follow, give; /* [ndof][ndof] and [ndof][ncontact], of which only rows of w have entries */
     double *compliance;         /* [ncontact] 0: a rigid contact */
+    double stiffest;            /* omega^2 is no larger, whichever contacts hold */
 };
 
 /* 1, or 0 if out of memory. tribo_massless_free takes what failed too. */

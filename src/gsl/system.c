@@ -114,20 +114,10 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
     }
 }
 
-/* A bound on what the springs of elastic contacts, while they hold, add to omega^2. */
-static double fastest_spring(const tribo_system *sys)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        sum += tribo_massless_touches(&sys->massless, i) ? 2.0 * tribo_system_delassus(sys, i, i) / sys->massless.compliance[i]
-                                                         : 0.0;
-    }
-    return sum;
-}
-
 double tribo_system_fastest(const tribo_system *sys)
 {
-    double most = greater(sqrt(tribo_matrix_row_sum(&sys->stiffness) + fastest_spring(sys)), tribo_matrix_row_sum(&sys->damping));
+    const double stiffest = sys->massless.count ? sys->massless.stiffest : tribo_matrix_row_sum(&sys->stiffness);
+    double most = greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping));
     for (size_t s = 0; s < sys->harmonics; s++) {
         most = greater(most, fabs(sys->harmonic[s].omega));
     }
