@@ -67,3 +67,24 @@ void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *w
     }
     tribo_elastic_give(sys, force, y);
 }
+
+void tribo_elastic_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work)
+{
+    const size_t n = sys->ndof;
+    double *x = work, *force = work + 2 * n;
+    memset(force, 0, sys->ncontact * sizeof *force);
+    for (size_t j = 0; j < columns; j++) {
+        for (size_t d = 0; d < n; d++) {
+            x[d] = v[d * columns + j];
+        }
+        tribo_elastic_forces(sys, x, work + n, force, NULL);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            force[i] = slip[i] == 0 ? force[i] : 0.0;
+        }
+        tribo_elastic_give(sys, force, x);
+        for (size_t d = 0; d < n; d++) {
+            v[d * columns + j] = x[d];
+            v[(n + d) * columns + j] = sys->massless.is[d] ? 0.0 : v[(n + d) * columns + j];
+        }
+    }
+}

@@ -20,4 +20,8 @@ void tribo_elastic_move(const tribo_system *sys, const signed char *slip, const 
  * them, and dissipate limit times way. All that has no mass then stands where it belongs. */
 void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *work, double *force, double *y);
 
+/* Perturbations v [2 ndof][columns] of a state in which contacts do that: forces of those that slide stay what they are. What has
+ * no mass has no velocity of its own, and its rows of these become 0. work [2 ndof + ncontact]. */
+void tribo_elastic_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work);
+
 #endif

@@ -476,8 +476,12 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
 {
     tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
+    if (sys->massless.count) {
+        tribo_elastic_find(m, sys, y);
+    }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
+        const double rests = tribo_massless_touches(&sys->massless, i) ? m->spring[i] : m->force[i];
+        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? rests : -m->slip[i] * m->limit[i];
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
     contact_accelerations(sys, acceleration, 1, m->v);

@@ -65,9 +65,11 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
  * velocities in y. Sets slip, holds, force, acceleration and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* stick_slip_elastic.c, for the decision: elastic contacts, whose forces the state knows. In this order: velocities that they
- * would slide with; forces, slip, and places without mass; velocities of those that hold; what the next decision remembers. The
- * start takes what is beyond limits out of y, and dissipates it. */
+/* stick_slip_elastic.c: elastic contacts, whose forces the state knows. The first finds these, and what of them may be rounding:
+ * spring, slack. For the decision, in this order: velocities that they would slide with; forces, slip, and places without mass;
+ * velocities of those that hold; what the next decision remembers. The start takes what is beyond limits out of y, and dissipates
+ * it. */
+void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_release(const tribo_system *sys, double *y);
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);

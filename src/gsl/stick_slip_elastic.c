@@ -14,8 +14,7 @@
 #define FORCE_NOISE 2e-14
 #define ALLOWED 8.0
 
-/* spring and slack of all elastic contacts in the places q. */
-static void find_springs(struct stick_slip *m, const tribo_system *sys, const double *q)
+void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *q)
 {
     tribo_elastic_forces(sys, q, m->rate, m->spring, m->slack);
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -71,7 +70,7 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     if (sys->massless.count == 0) {
         return;
     }
-    find_springs(m, sys, y);
+    tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (tribo_massless_touches(&sys->massless, i)) {
             place(m, i, tribo_matrix_row_dot(&sys->direction, i, y + sys->ndof) - m->base[i]);

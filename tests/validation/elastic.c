@@ -418,7 +418,7 @@ TEST(refused_methods)
 TEST(refused_calls)
 {
     const double on[2] = {0.0, 1.0}, time[2] = {0.0, 1.0}, limit[2] = {0.5, 0.6}, zero[5] = {0.0};
-    double f[1] = {7.0}, dydt[5], dfdy[25], y[5] = {0.0}, t = 0.0;
+    double f[1] = {7.0}, dydt[5], dfdy[25];
     tribo_system *s = element(0.5, 1);
     const char *message = tribo_message(tribo_system_context(s));
     assert_status(tribo_system_add_load(s, 1.0, NULL, on), TRIBO_ERR_UNSUPPORTED);
@@ -435,10 +435,6 @@ TEST(refused_calls)
     const gsl_odeiv2_system *ode = tribo_system_odeiv2(s);
     ck_assert_int_eq(ode->function(0.0, zero, dydt, ode->params), GSL_EBADFUNC);
     ck_assert_int_eq(ode->jacobian(0.0, zero, dfdy, dydt, ode->params), GSL_EBADFUNC);
-    tribo_driver *d = exact(s);
-    assert_status(tribo_driver_find_periodic(d, t, 2.0 * acos(-1.0) / 1.1, y), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(d), "degree of freedom 1 has none");
-    tribo_driver_destroy(d);
     tribo_system_destroy(s);
 }
 
