@@ -67,8 +67,8 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * Methods "exact" and "event" (and "auto", by them) take such systems, and "moreau/fixed", where a slider that turns within a
  * step costs accuracy of the second order, as all does there. What else needs mass says so, TRIBO_ERR_UNSUPPORTED: other methods,
  * loads on what has none, limits of elastic contacts that change with time, or static ones (tribo_set_static), planar contacts,
- * tribo_system_contacts, tribo_system_accept, the GSL system's functions, and tribo_driver_find_periodic by any but "exact", where
- * what has no mass adds multipliers of 0.
+ * tribo_system_contacts where elastic contacts touch mass themselves, tribo_system_accept, the GSL system's functions, and
+ * tribo_driver_find_periodic by any but "exact", where what has no mass adds multipliers of 0.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
  * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
@@ -166,7 +166,7 @@ TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);
 
 /* What the contacts do in a state.
  * y    [dimension] in
- * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance */
+ * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance; of elastic contacts both forces are what the state says */
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
 
 /* tribo_accept for the state (t, y): to be called after each accepted step by integrators other than tribo_driver. */

@@ -269,6 +269,27 @@ TEST(periodic_structure)
     tribo_system_destroy(s);
 }
 
+/* A contact that touches mass itself, too: what it does is told by no law. */
+TEST(contacts_of_state)
+{
+    static const double y[2 * DOFS + 1] = {0.3, -0.2, 0.1, 0.2, 0.0, -0.1, 0.5, 0.4, 0.0, 0.5, 0.0, 0.2};
+    double v[SLIDERS + 1], feq[SLIDERS + 1], f[SLIDERS + 1] = {7.0};
+    tribo_system *s = structure(), *e = element(0.5, 2);
+    set_limits(s, rigid_limit);
+    assert_status(tribo_system_contacts(s, 0.0, y, v, feq, f), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_message(tribo_system_context(s)), "contact 1 is elastic and touches mass, too");
+    assert_exact(f[0], 7.0);
+    /* springs of 0.5, limits 0.25, places 0.3 and, beyond the limit, -0.9 away from the mass */
+    assert_ok(tribo_system_contacts(e, 0.0, (const double[]){0.4, 0.7, -0.5, 1.0, 0.0, 2.0, 0.0}, v, feq, f));
+    assert_close(f[0], 0.5 * 0.3, 1e-15);
+    assert_exact(f[1], -0.25);
+    assert_exact(feq[1], -0.25);
+    assert_exact(v[0], 0.0);
+    assert_exact(v[1], 2.0);
+    tribo_system_destroy(s);
+    tribo_system_destroy(e);
+}
+
 TEST(periodic_refused)
 {
     tribo_system *s = element(0.5, 1);
@@ -307,4 +328,4 @@ TEST(static_limits)
 
 TEST_MAIN("elastic_methods", {event_is_exact, 2}, {table, 1}, {moreau_order, 2}, {moreau_loop, 1}, {moreau_steady_state, 2},
           {beyond_limit, 3}, {rest_at_limit, 3}, {periodic_element, 2}, {periodic_held, 2}, {periodic_structure, 4},
-          {periodic_refused, 1}, {static_limits, 4})
+          {contacts_of_state, 1}, {periodic_refused, 1}, {static_limits, 4})
