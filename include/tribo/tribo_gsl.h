@@ -64,11 +64,11 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * series with a slider (Jenkins, Masing): with a row [k -k; -k k] of stiffness between a mass and w, and a contact on w, it holds
  * with the stiffness k, and slides at its limit. Its force follows from the state; one that starts beyond the limit goes back to
  * it at once, and dissipates limit times the way of the slider. No two contacts may share compliance J_w K_ww^-1 J_w'.
- * Methods "exact" and "event" (and "auto", by them) take such systems, and "moreau/fixed", where a slider that turns within a
- * step costs accuracy of the second order, as all does there. What else needs mass says so, TRIBO_ERR_UNSUPPORTED: other methods,
- * loads on what has none, limits of elastic contacts that change with time, or static ones (tribo_set_static), planar contacts,
- * tribo_system_contacts where elastic contacts touch mass themselves, tribo_system_accept, the GSL system's functions, and
- * tribo_driver_find_periodic by any but "exact", where what has no mass adds multipliers of 0.
+ * Methods "exact" and "event" (and "auto", by them) take such systems, and "moreau/fixed", to second order. What else needs mass
+ * says so, TRIBO_ERR_UNSUPPORTED: other methods, loads on what has none, limits of elastic contacts that change with time, or
+ * static ones (tribo_set_static), planar contacts, tribo_system_contacts where elastic contacts touch mass themselves,
+ * tribo_system_accept, the GSL system's functions, and tribo_driver_find_periodic by any but "exact", where what has no mass adds
+ * multipliers of 0.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
  * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,

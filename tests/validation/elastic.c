@@ -384,6 +384,8 @@ TEST(refused_structures)
     const double held[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0},
                  loose[9] = {1.0, 0.0, 0.0, 0.0, 0.3, -0.3, 0.0, -0.3, 0.3};
     const double joined[9] = {1.0, 0.0, 0.0, 0.0, 1.0, -0.5, 0.0, -0.5, 1.0}, direction[6] = {0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
+    const double none[9] = {1.0, 0.0, 0.0, 0.0, 1.0}, doubled[6] = {0.0, 1.0, 0.0, 0.0, 1.0, 0.0};
+    const double chained[9] = {2.0, -1.0, 0.0, -1.0, 1.5, -0.5, 0.0, -0.5, 0.5};
     char text[200] = "";
     assert_ok(create(mass, NULL, held, direction, text));
     assert_status(create(mass, damping, held, direction, text), TRIBO_ERR_UNSUPPORTED);
@@ -391,6 +393,13 @@ TEST(refused_structures)
     assert_status(create(mass, NULL, loose, direction, text), TRIBO_ERR_INDEFINITE);
     assert_says(text, "the stiffness does not hold it");
     assert_status(create(mass, NULL, joined, direction, text), TRIBO_ERR_UNSUPPORTED);
+    assert_says(text, "contacts 0 and 1 share degrees of freedom without mass");
+    /* a spring of nothing; two contacts on one slider; a spring between two sliders, which mass does not hold */
+    assert_status(create(mass, NULL, none, direction, text), TRIBO_ERR_INDEFINITE);
+    assert_says(text, "degree of freedom 2 has none, and the stiffness does not hold it: pivot 0");
+    assert_status(create(mass, NULL, held, doubled, text), TRIBO_ERR_UNSUPPORTED);
+    assert_says(text, "contacts 0 and 1 share degrees of freedom without mass");
+    assert_status(create(mass, NULL, chained, direction, text), TRIBO_ERR_UNSUPPORTED);
     assert_says(text, "contacts 0 and 1 share degrees of freedom without mass");
 }
 

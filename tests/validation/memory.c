@@ -238,8 +238,7 @@ static const struct {
               {"driver", make_driver},       {"loaded", make_loaded},     {"exact", make_exact},
               {"coupled", make_coupled},     {"graded", make_graded},     {"copy", make_copy},
               {"full copy", make_full_copy}, {"periodic", make_periodic}, {"periodic event", make_periodic_event},
-              {"sparse", make_sparse},
-              {"massless", make_massless},   {"massless coupled", make_massless_coupled}};
+              {"sparse", make_sparse},       {"massless", make_massless}, {"massless coupled", make_massless_coupled}};
 
 /* Fails one allocation after the other, until there are no more. */
 TEST(failures)
