@@ -67,8 +67,7 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * Methods "exact" and "event" (and "auto", by them) take such systems, and "moreau/fixed", to second order. What else needs mass
  * says so, TRIBO_ERR_UNSUPPORTED: other methods, loads on what has none, limits of elastic contacts that change with time, or
  * static ones (tribo_set_static), planar contacts, tribo_system_contacts where elastic contacts touch mass themselves,
- * tribo_system_accept, the GSL system's functions, and tribo_driver_find_periodic by any but "exact", where what has no mass adds
- * multipliers of 0.
+ * tribo_system_accept, and the GSL system's functions. Multipliers of periodic motions have 0 for velocities of what has no mass.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
  * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,

@@ -73,10 +73,6 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
         return TRIBO_ERR_NULL;
     }
     int status = drv->method->open ? check_state(drv, t, y) : unsupported(drv);
-    if (!status && drv->method != &tribo_method_exact &&
-        tribo_system_check_mass(drv->sys, "a search for periodic motions by series")) {
-        status = tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_message(drv->sys->contacts));
-    }
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
     status = status ? status : check_static(drv);
