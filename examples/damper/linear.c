@@ -37,7 +37,7 @@ struct scale free_scale(const struct damper *d, double omega)
     return s;
 }
 
-/* Orthonormal motions of the modes that move no rigid contact, as the last columns of *basis [modes][modes]; returns their number. */
+/* Orthonormal motions of the modes that move no rigid contact, as the last columns of *basis [modes][modes]; returns how many. */
 static size_t held_motions(const struct damper *d, gsl_matrix **basis)
 {
     const size_t n = d->modes, m = d->contacts, least = n < m ? n : m;

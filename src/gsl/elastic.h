@@ -6,8 +6,8 @@
 
 #include "system.h"
 
-/* force [ncontact] of the elastic contacts in places q [ndof], and size [ncontact] of the terms that these come from, or NULL. The
- * others' stay as they are. work [ndof]. */
+/* force [ncontact] of the elastic contacts in places q [ndof], and size [ncontact] of the terms that these come from, or NULL.
+ * Those of the others stay as they are. work [ndof]. */
 void tribo_elastic_forces(const tribo_system *sys, const double *q, double *work, double *force, double *size);
 
 /* w = follow q + give f, in x [ndof]; of f [ncontact] only those of elastic contacts count. */

@@ -39,8 +39,8 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv);
 void tribo_period_map_free(struct period_map *m);
 
 /* These return a status, its message on the driver. The first makes ready for the system as it is; the second one follows the
- * motion from p->x, and finds the rest of p; with the third one *residual is that of the whole period, and p->y has the velocities
- * of what has no mass, too. */
+ * motion from p->x, and finds the rest of p; with the third one *residual is that of the whole period, and p->y has
+ * velocities of what has no mass, too. */
 int tribo_period_map_prepare(struct period_map *m, double t, double period);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual);

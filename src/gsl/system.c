@@ -22,9 +22,10 @@ int tribo_system_check_mass(const tribo_system *sys, const char *who)
     while (sys->massless.count && !sys->massless.is[d]) {
         d++;
     }
-    return sys->massless.count ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                                   "%s needs mass, and degree of freedom %zu has none: take method exact", who, d)
-                               : TRIBO_OK;
+    return sys->massless.count
+               ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "%s needs mass, and degree of freedom %zu has none: take exact, event or moreau/fixed", who, d)
+               : TRIBO_OK;
 }
 
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y)

@@ -140,7 +140,7 @@ TEST(moreau_steady_state)
     }
 }
 
-/* A slider that starts beyond its limit goes back to it, and dissipates limit times the way; one whose limit becomes less, too. */
+/* A slider that starts beyond its limit goes back to it, and dissipates limit times the way; so does one whose limit falls. */
 TEST(beyond_limit)
 {
     static const char *const method[] = {"exact", "event", "moreau/fixed"};
@@ -240,8 +240,8 @@ TEST(periodic_held)
     tribo_system_destroy(s);
 }
 
-/* What many periods lead to, with moving bases and a rigid contact or without, is found in some steps, from any guess; of a family
- * it is the nearest one, and stays. */
+/* What many periods lead to, with moving bases and a rigid contact or without, is found in some steps, from any guess; of a
+ * family it is the nearest one, and stays. */
 TEST(periodic_structure)
 {
     const double period = 2.0 * acos(-1.0) / 0.3;
