@@ -256,10 +256,11 @@ static int find_compliance(const struct model *m, struct massless *w, struct sta
         for (size_t k = 0; k < i; k++) {
             const double shared = way_of(w, s, j, k);
             if (fabs(shared) > ROUNDING * sqrt(w->compliance[i] * w->compliance[k])) {
-                return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                        "contacts %zu and %zu share degrees of freedom without mass: the force of one moves the "
-                                        "other by %g; give these mass",
-                                        k, i, shared);
+                return tribo_model_fail(
+                    m, TRIBO_ERR_UNSUPPORTED,
+                    "contact %zu and contact %zu share degrees of freedom without mass: the force of one moves the "
+                    "other by %g; give these mass",
+                    k, i, shared);
             }
         }
     }

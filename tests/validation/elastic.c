@@ -393,14 +393,14 @@ TEST(refused_structures)
     assert_status(create(mass, NULL, loose, direction, text), TRIBO_ERR_INDEFINITE);
     assert_says(text, "the stiffness does not hold it");
     assert_status(create(mass, NULL, joined, direction, text), TRIBO_ERR_UNSUPPORTED);
-    assert_says(text, "contacts 0 and 1 share degrees of freedom without mass");
+    assert_says(text, "contact 0 and contact 1 share degrees of freedom without mass");
     /* a spring of nothing; two contacts on one slider; a spring between two sliders, which mass does not hold */
     assert_status(create(mass, NULL, none, direction, text), TRIBO_ERR_INDEFINITE);
     assert_says(text, "degree of freedom 2 has none, and the stiffness does not hold it: pivot 0");
     assert_status(create(mass, NULL, held, doubled, text), TRIBO_ERR_UNSUPPORTED);
-    assert_says(text, "contacts 0 and 1 share degrees of freedom without mass");
+    assert_says(text, "contact 0 and contact 1 share degrees of freedom without mass");
     assert_status(create(mass, NULL, chained, direction, text), TRIBO_ERR_UNSUPPORTED);
-    assert_says(text, "contacts 0 and 1 share degrees of freedom without mass");
+    assert_says(text, "contact 0 and contact 1 share degrees of freedom without mass");
 }
 
 TEST(refused_methods)
