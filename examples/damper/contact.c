@@ -37,7 +37,7 @@ struct place read_place(const char *origin, const char *text)
 
 /* What a contact's words may be. Each value is kept as it was given, NaN if it was not. */
 struct words {
-    double limit, mu, load;
+    double limit, mu, load, stiffness;
 };
 
 static double *find_word(struct words *w, const char *name, size_t length)
@@ -45,7 +45,7 @@ static double *find_word(struct words *w, const char *name, size_t length)
     const struct {
         const char *name;
         double *value;
-    } known[] = {{"limit", &w->limit}, {"mu", &w->mu}, {"load", &w->load}};
+    } known[] = {{"limit", &w->limit}, {"mu", &w->mu}, {"load", &w->load}, {"stiffness", &w->stiffness}};
     for (size_t k = 0; k < sizeof known / sizeof *known; k++) {
         if (strlen(known[k].name) == length && strncmp(name, known[k].name, length) == 0) {
             return known[k].value;
@@ -64,17 +64,15 @@ static void read_word(const char *origin, char *word, struct contact *c, struct 
     } else if (strncmp(word, "to=", 3) == 0) {
         read_coordinates(origin, word + 3, '\0', c->to.at);
         c->between = 1;
-    } else if (strncmp(word, "stiffness=", 10) == 0) {
-        die("%s: \"%s\": a contact that sticks is rigid here", origin, word);
     } else {
-        die("%s: \"%s\" is none of to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE", origin, word);
+        die("%s: \"%s\" is none of to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER", origin, word);
     }
 }
 
 struct contact read_contact(const char *origin, const char *text)
 {
     struct contact c = {.mu = 1.0};
-    struct words w = {(double)NAN, (double)NAN, (double)NAN};
+    struct words w = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
     char *copy = new_text("%s", text), *place = copy + strspn(copy, PARTED), *word = place + strcspn(place, PARTED);
     if (*word) {
         *word++ = '\0';
@@ -95,6 +93,7 @@ struct contact read_contact(const char *origin, const char *text)
         die("%s: load= needs mu=, too", origin);
     }
     c.mu = isnan(w.mu) ? 1.0 : w.mu;
+    c.stiffness = isnan(w.stiffness) ? 0.0 : w.stiffness;
     c.limit = isnan(w.load) ? w.limit : w.mu * w.load;
     c.to.direction = c.at.direction;
     c.to.origin = origin;

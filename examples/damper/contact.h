@@ -18,12 +18,13 @@ struct contact {
     int between;  /* 0: to the ground, and there is no to */
     double limit; /* NaN: it varies, and is mu times what it varies with */
     double mu;
+    double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
 };
 
 /* "X,Y,Z,DIR" */
 struct place read_place(const char *origin, const char *text);
 
-/* "X,Y,Z,DIR" and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE behind it, parted by colons or blanks. */
+/* "X,Y,Z,DIR" and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind it, parted by colons or blanks. */
 struct contact read_contact(const char *origin, const char *text);
 
 /* One contact a line, from the file into contact [MAX_CONTACTS], of which count are there already; returns how many then are. */

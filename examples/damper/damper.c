@@ -59,9 +59,9 @@ static void allocate(struct damper *d)
     d->omega = need_memory(d->modes, sizeof *d->omega);
     d->load_shape = need_memory(d->modes, sizeof *d->load_shape);
     d->contact_shape = need_memory(d->contacts * d->modes, sizeof *d->contact_shape);
-    d->load = need_memory(d->ndof, sizeof *d->load);
     d->limit = need_memory(d->contacts, sizeof *d->limit);
     d->mu = need_memory(d->contacts, sizeof *d->mu);
+    d->stiffness = need_memory(d->contacts, sizeof *d->stiffness);
 }
 
 static void reduce(struct damper *d, const struct options *o, const struct structure *s, const struct rows *r)
@@ -80,6 +80,80 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
     need(tribo_set_law(contacts, o->law), tribo_message(contacts));
 }
 
+/* A spring so many times as stiff as the lowest mode that is no rigid body's leaves of its frequency what is still right. */
+static const double MOST_STIFF = 1e9;
+
+static void check_spring(const struct damper *d, size_t c, const char *origin)
+{
+    double lowest = HUGE_VAL, spring = 0.0;
+    for (size_t k = 0; k < d->modes; k++) {
+        const double shape = d->contact_shape[c * d->modes + k];
+        spring += d->stiffness[c] * shape * shape;
+        lowest = d->omega[k] > 1e-6 * d->omega[d->modes - 1] ? fmin(lowest, d->omega[k]) : lowest;
+    }
+    if (!(spring <= MOST_STIFF * lowest * lowest)) {
+        die("%s: stiffness=%g is more than %g times that of the structure there: leave it out for a rigid contact", origin,
+            d->stiffness[c], MOST_STIFF);
+    }
+}
+
+/* Modes with a spring from contact c to the slider in row w. */
+static void add_slider(const struct damper *d, size_t c, size_t w, double *stiffness)
+{
+    const double *shape = d->contact_shape + c * d->modes, k = d->stiffness[c];
+    for (size_t i = 0; i < d->modes; i++) {
+        for (size_t j = 0; j < d->modes; j++) {
+            stiffness[i * d->motions + j] += k * shape[i] * shape[j];
+        }
+        stiffness[i * d->motions + w] = stiffness[w * d->motions + i] = -k * shape[i];
+    }
+    stiffness[w * d->motions + w] = k;
+}
+
+/* The system of modes and sliders takes the place of that of modes. */
+static void add_sliders(struct damper *d, const struct options *o)
+{
+    const size_t n = d->motions;
+    double *mass = need_memory(3 * n * n, sizeof *mass), *damping = mass + n * n, *stiffness = mass + 2 * n * n;
+    double *direction = need_memory(d->contacts * n, sizeof *direction);
+    char message[200] = "";
+    for (size_t k = 0; k < d->modes; k++) {
+        mass[k * n + k] = 1.0;
+        damping[k * n + k] = 2.0 * d->damping * d->omega[k];
+        stiffness[k * n + k] = d->omega[k] * d->omega[k];
+    }
+    for (size_t c = 0, w = d->modes; c < d->contacts; c++) {
+        if (d->stiffness[c] > 0.0) {
+            check_spring(d, c, o->contact[c].at.origin);
+            add_slider(d, c, w, stiffness);
+            direction[c * n + w++] = 1.0;
+        } else {
+            memcpy(direction + c * n, d->contact_shape + c * d->modes, d->modes * sizeof *direction);
+        }
+    }
+    tribo_system_destroy(d->sys);
+    d->sys = NULL;
+    if (tribo_system_linear(&d->sys, n, d->contacts, mass, damping, stiffness, direction, 0, message, sizeof message)) {
+        die("modes and sliders: %s", message);
+    }
+    need(tribo_set_law(tribo_system_context(d->sys), o->law), tribo_message(tribo_system_context(d->sys)));
+    free(mass);
+    free(direction);
+}
+
+/* The amplitude of the load, on the structure, or on modes and sliders. */
+static void set_load(struct damper *d, size_t row)
+{
+    const int sliders = d->motions > d->modes;
+    d->load = need_memory(sliders ? d->motions : d->ndof, sizeof *d->load);
+    for (size_t k = 0; sliders && k < d->modes; k++) {
+        d->load[k] = d->force * d->load_shape[k];
+    }
+    if (!sliders) {
+        d->load[row] = d->force;
+    }
+}
+
 struct damper create_damper(const struct options *o, const struct structure *s)
 {
     struct damper d = {
@@ -94,11 +168,17 @@ struct damper create_damper(const struct options *o, const struct structure *s)
     allocate(&d);
     reduce(&d, o, s, &rows);
     read_shapes(&d, &rows);
-    d.load[rows.load] = d.force;
+    d.motions = d.modes;
     for (size_t c = 0; c < d.contacts; c++) {
         d.limit[c] = o->contact[c].limit;
         d.mu[c] = o->contact[c].mu;
+        d.stiffness[c] = o->contact[c].stiffness;
+        d.motions += d.stiffness[c] > 0.0;
     }
+    if (d.motions > d.modes) {
+        add_sliders(&d, o);
+    }
+    set_load(&d, rows.load);
     return d;
 }
 
@@ -111,6 +191,7 @@ void free_damper(struct damper *d)
     free(d->load);
     free(d->limit);
     free(d->mu);
+    free(d->stiffness);
 }
 
 void check_drive(const struct damper *d, double hz)

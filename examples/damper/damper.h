@@ -8,15 +8,16 @@
 #define TURN 6.283185307179586476925 /* radians */
 
 /* A structure reduced to its lowest modes, with friction contacts. Made once, then only read: who computes takes a copy of
- * sys. */
+ * sys. Behind the modes it has a slider without mass for each contact on a spring. */
 struct damper {
-    tribo_system *sys; /* without a load */
-    size_t ndof, modes, contacts;
-    double *omega;         /* [modes] natural frequencies, rad/time */
-    double *load_shape;    /* [modes] the modes where and as the load acts */
-    double *contact_shape; /* [contacts][modes] the same for the contacts */
-    double *load;          /* [ndof] the load's amplitude */
-    double *limit;         /* [contacts] NaN: mu times the limit that varies */
+    tribo_system *sys;                     /* without a load */
+    size_t ndof, modes, contacts, motions; /* motions: modes and sliders */
+    double *omega;                         /* [modes] natural frequencies, rad/time */
+    double *load_shape;                    /* [modes] the modes where and as the load acts */
+    double *contact_shape;                 /* [contacts][modes] the same for the contacts */
+    double *load;                          /* [ndof], or with sliders [motions], the load's amplitude */
+    double *stiffness;                     /* [contacts] of springs; 0: rigid */
+    double *limit;                         /* [contacts] NaN: mu times the limit that varies */
     double *mu;
     double damping, force, step;
 };

@@ -26,6 +26,8 @@ static const char *const part[] = {
     "                         limit=FORCE   its limit; without, it varies with --limits\n"
     "                         mu=NUMBER     its limit is this times what --limits says, which then are normal loads\n"
     "                         mu=NUMBER load=FORCE   its limit is the product\n"
+    "                         stiffness=NUMBER   it slides on a spring, force over length: while it sticks it gives way, and is\n"
+    "                                            not rigid; for --method exact only, and without --check\n"
     "  --contacts FILE      contacts, one a line, in the same words\n",
     "\n"
     "What may be left out:\n"
@@ -55,7 +57,8 @@ static const char *const part[] = {
     "  damper-frequencies.csv   mode, its natural frequency, that of --frequencies, relative difference\n"
     "  damper-curve.csv         one frequency: the response over the limit\n"
     "  damper-history.csv       one frequency: three periods at the limit of most power; cycle, time, displacement where the\n"
-    "                           load acts, and of each contact velocity, force, and slip (0 sticks, 1 and -1 slides, 2 open)\n"
+    "                           load acts, and of each contact velocity, force, and slip (0 sticks, 1 and -1 slides, 2 open);\n"
+    "                           of one on a spring the velocity is that of the slider\n"
     "  damper-sticking.csv      the same at three times that limit\n"
     "  damper-family.csv        a band: the response over frequency, a blank line between curves\n"
     "  damper-best.csv          a band: the curve of the best limit\n"

@@ -37,7 +37,7 @@ struct scale free_scale(const struct damper *d, double omega)
     return s;
 }
 
-/* Orthonormal motions of the modes that move no contact, as the last columns of *basis [modes][modes]; returns their number. */
+/* Orthonormal motions of the modes that move no rigid contact, as the last columns of *basis [modes][modes]; returns how many. */
 static size_t held_motions(const struct damper *d, gsl_matrix **basis)
 {
     const size_t n = d->modes, m = d->contacts, least = n < m ? n : m;
@@ -50,7 +50,7 @@ static size_t held_motions(const struct damper *d, gsl_matrix **basis)
     }
     for (size_t c = 0; c < m; c++) {
         for (size_t k = 0; k < n; k++) {
-            gsl_matrix_set(shapes, k, c, d->contact_shape[c * n + k]);
+            gsl_matrix_set(shapes, k, c, d->stiffness[c] > 0.0 ? 0.0 : d->contact_shape[c * n + k]);
         }
     }
     gsl_linalg_QRPT_decomp2(shapes, q, r, tau, p, &sign, norm); /* fails for sizes that do not fit only */
@@ -65,6 +65,32 @@ static size_t held_motions(const struct damper *d, gsl_matrix **basis)
     gsl_permutation_free(p);
     *basis = q;
     return n - rank;
+}
+
+/* The spring of contact c, which holds, in those motions: its root, as what a unit of each stretches it by. 0 if it has none. */
+static int held_spring(const struct damper *d, size_t c, const gsl_matrix *basis, double *root, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        root[i] = 0.0;
+        for (size_t k = 0; k < d->modes; k++) {
+            root[i] += sqrt(d->stiffness[c]) * d->contact_shape[c * d->modes + k] * gsl_matrix_get(basis, k, d->modes - n + i);
+        }
+    }
+    return d->stiffness[c] > 0.0;
+}
+
+static void add_held_springs(const struct damper *d, const gsl_matrix *basis, gsl_matrix_complex *h)
+{
+    const size_t n = h->size1;
+    double *root = need_memory(n, sizeof *root);
+    for (size_t c = 0; c < d->contacts; c++) {
+        const int springs = held_spring(d, c, basis, root, n);
+        for (size_t i = 0; springs && i < n * n; i++) {
+            gsl_complex *at = gsl_matrix_complex_ptr(h, i / n, i % n);
+            *at = gsl_complex_add_real(*at, root[i / n] * root[i % n]);
+        }
+    }
+    free(root);
 }
 
 /* The dynamic stiffness and the load's shape in those motions. */
@@ -100,6 +126,7 @@ double stuck_amplitude(const struct damper *d, double omega)
             die("out of memory for %zu modes", d->modes);
         }
         reduce(d, omega, basis, h, b);
+        add_held_springs(d, basis, h);
         const int failed = gsl_linalg_complex_LU_decomp(h, p, &sign) || gsl_linalg_complex_LU_solve(h, p, b, s);
         gsl_blas_zdotu(b, s, &x);
         amplitude = failed ? (double)NAN : d->force * gsl_complex_abs(x);
@@ -127,6 +154,12 @@ size_t stuck_frequencies(const struct damper *d, double *omega)
             gsl_vector_view shape = gsl_vector_subvector(&held.vector, d->modes - n, n);
             gsl_blas_dsyr(CblasLower, d->omega[m] * d->omega[m], &shape.vector, k);
         }
+        for (size_t c = 0; c < d->contacts; c++) {
+            gsl_vector_view root = gsl_vector_view_array(omega, n);
+            if (held_spring(d, c, basis, omega, n)) {
+                gsl_blas_dsyr(CblasLower, 1.0, &root.vector, k);
+            }
+        }
         gsl_vector_view values = gsl_vector_view_array(omega, n);
         need(gsl_eigen_symm(k, &values.vector, work), "modes with all contacts stuck");
         gsl_sort_vector(&values.vector);
@@ -140,12 +173,12 @@ size_t stuck_frequencies(const struct damper *d, double *omega)
     return n;
 }
 
-/* Whether all contacts have the limit that varies. */
+/* Whether all contacts are rigid, and have the limit that varies. */
 static int one_limit(const struct damper *d)
 {
     int one = 1;
     for (size_t c = 0; c < d->contacts; c++) {
-        one = one && isnan(d->limit[c]) && d->mu[c] == 1.0;
+        one = one && isnan(d->limit[c]) && d->mu[c] == 1.0 && d->stiffness[c] == 0.0;
     }
     return one;
 }

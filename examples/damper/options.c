@@ -220,10 +220,22 @@ int limits_vary(const struct options *o)
     return vary;
 }
 
+/* Sliders without mass are for "exact" only. */
+static void check_springs(const struct options *o)
+{
+    for (size_t c = 0; c < o->contacts; c++) {
+        if (o->contact[c].stiffness > 0.0 && (o->march || o->check)) {
+            die("%s: marching takes rigid contacts only: leave out stiffness=, or %s", o->contact[c].at.origin,
+                o->march ? "--method march" : "--check");
+        }
+    }
+}
+
 /* What has not been given. */
 static void complete(struct options *o)
 {
     need_structure(o);
+    check_springs(o);
     if (o->frequencies && strcmp(o->frequencies, "none") == 0) {
         o->frequencies = NULL;
     }

@@ -49,7 +49,7 @@ static struct family run_family(const struct study *s, const double *limit, size
 {
     struct family f = {s, need_memory(count, sizeof *f.curve)};
     for (size_t k = 0; k < count; k++) {
-        f.curve[k] = create_curve(0, limit[k], 2 * s->damper->modes + 1);
+        f.curve[k] = create_curve(0, limit[k], 2 * s->damper->motions + 1);
         ask_band(s, &f.curve[k]);
     }
     run_jobs(s->options->threads, count, run_curve, &f);

@@ -144,7 +144,7 @@ void study_limits(struct study *s)
 {
     const struct options *o = s->options;
     const double hz = o->drive.from > 0.0 ? o->drive.from : s->damper->omega[0] / TURN;
-    struct curve c = create_curve(1, hz, 2 * s->damper->modes + 1);
+    struct curve c = create_curve(1, hz, 2 * s->damper->motions + 1);
     struct limits_job j = {s, &c};
     check_extremes(s, hz);
     for (size_t k = 0; k < o->limits.points; k++) {

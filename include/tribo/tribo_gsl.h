@@ -46,7 +46,7 @@ TRIBO_API int tribo_system_chain(tribo_system **sys, size_t n, double limit, dou
 TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega);
 
 /* Any linear structure, from its matrices in the caller's units.
- * mass       [ndof][ndof] in  symmetric, positive definite; diagonal is fastest
+ * mass       [ndof][ndof] in  symmetric, positive definite, but see below; diagonal is fastest
  * damping    [ndof][ndof] in, or NULL for none
  * stiffness  [ndof][ndof] in  symmetric
  * direction  [ncontact][ndof] in  J: row i is how the velocities of the degrees of freedom make that of contact i
@@ -58,6 +58,16 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * Modes are found to the accuracy of the stiffness's own entries, however soft beside the stiffest, and omega of rigid-body
  * motions is 0; one of which rounding of the entries leaves less than two digits is refused (TRIBO_ERR_UNSUPPORTED). So are
  * bodies that contacts join, if the mass matrix is not diagonal and one weighs so little that R hides the other.
+ *
+ * Elastic contacts. With nmode = 0 degrees of freedom w may be massless: their rows of mass are zero, and of damping, and the
+ * stiffness holds them, K_ww definite. They follow statically, K_ww w = J_w'f - K_wq q. A contact on one is elastic, a spring in
+ * series with a slider (Jenkins, Masing): with a row [k -k; -k k] of stiffness between a mass and w, and a contact on w, it holds
+ * with the stiffness k, and slides at its limit. Its force follows from the state; one that starts beyond the limit goes back to
+ * it at once, and dissipates limit times the way of the slider. No two contacts may share compliance J_w K_ww^-1 J_w'.
+ * Methods "exact" and "event" (and "auto", by them) take such systems, and "moreau/fixed", to second order. What else needs mass
+ * says so, TRIBO_ERR_UNSUPPORTED: other methods, loads on what has none, limits of elastic contacts that change with time, or
+ * static ones (tribo_set_static), planar contacts, tribo_system_contacts where elastic contacts touch mass themselves,
+ * tribo_system_accept, and the GSL system's functions. Multipliers of periodic motions have 0 for velocities of what has no mass.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
  * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
@@ -155,7 +165,7 @@ TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);
 
 /* What the contacts do in a state.
  * y    [dimension] in
- * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance */
+ * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance; of elastic contacts both forces are what the state says */
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
 
 /* tribo_accept for the state (t, y): to be called after each accepted step by integrators other than tribo_driver. */

@@ -9,6 +9,9 @@
 /* An entry that is so much smaller than what it is the sum of is rounding. */
 #define ROUNDING (16.0 * DBL_EPSILON)
 
+/* What has no mass follows before all others: as if its root were so small beside the lightest. */
+#define MASSLESS 1e-8
+
 /* What the constraints are made from. */
 struct source {
     const struct matrix *direction, *mass;
@@ -304,11 +307,17 @@ static void fill(struct elimination *e, const struct source *s)
     const struct tie *tie = e->tie;
     const struct matrix *j = s->direction;
     const size_t t = tie->touched;
+    double lightest = DBL_MIN;
     memset(e->entry, 0, tie->rows * t * sizeof *e->entry);
     memset(e->size, 0, tie->rows * t * sizeof *e->size);
     for (size_t l = 0; l < t; l++) {
         e->slot[l] = l;
-        e->weight[l] = s->mass->rows ? 1.0 / sqrt(tribo_matrix_get(s->mass, tie->dof[l], tie->dof[l])) : 1.0;
+        const double mass = s->mass->rows ? tribo_matrix_get(s->mass, tie->dof[l], tie->dof[l]) : 1.0;
+        e->weight[l] = mass > 0.0 ? 1.0 / sqrt(mass) : 0.0;
+        lightest = greater(lightest, e->weight[l]);
+    }
+    for (size_t l = 0; l < t; l++) {
+        e->weight[l] = e->weight[l] > 0.0 ? e->weight[l] : lightest / MASSLESS;
     }
     for (size_t p = 0; p < tie->rows; p++) {
         const size_t row = s->row[tie->order[p]];

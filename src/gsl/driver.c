@@ -88,17 +88,51 @@ static int check_parameters(const tribo_system *sys, const struct method *method
 /* Motions in closed form are those of scalar contacts only; and contacts may become planar at any time. */
 static int check_planar(const tribo_system *sys, const struct method *m)
 {
-    const size_t planar = m == &tribo_method_exact ? tribo_system_planar(sys) : 0;
-    return planar ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                      "method %s knows no planar contacts, and there are %zu contacts of that kind: take event",
-                                      m->name, planar)
-                  : TRIBO_OK;
+    const int scalar_only = m == &tribo_method_exact || sys->massless.count;
+    const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
+    return !planar ? TRIBO_OK
+                   : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                       "method %s knows no planar contacts%s, and there are %zu contacts of that kind%s", m->name,
+                                       sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
+                                       sys->massless.count ? "" : ": take event");
+}
+
+/* What has no mass follows statically in methods that know the stiffness, and not only what it accelerates. */
+static int check_mass(const tribo_system *sys, const struct method *m)
+{
+    const int able = m == &tribo_method_exact || m == &tribo_method_event || m == &tribo_method_moreau_fixed || m == &automatic;
+    char who[40];
+    snprintf(who, sizeof who, "method %s", m->name);
+    return able ? TRIBO_OK : tribo_system_check_mass(sys, who);
+}
+
+/* Elastic contacts hold up to the limit by which they slide; and static limits may be set at any time. */
+static int check_static(const tribo_system *sys)
+{
+    double *ratio = sys->feq;
+    size_t i = 0;
+    tribo_get_static(sys->contacts, ratio, NULL);
+    while (i < sys->ncontact && !(tribo_massless_touches(&sys->massless, i) && ratio[i] > 1.0)) {
+        i++;
+    }
+    return i == sys->ncontact
+               ? TRIBO_OK
+               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
+}
+
+/* What the contacts are, which may change at any time. */
+static int check_contacts(const tribo_system *sys, const struct method *m)
+{
+    const int status = check_planar(sys, m);
+    return status || sys->massless.count == 0 ? status : check_static(sys);
 }
 
 static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
 {
     int status = check_parameters(sys, m, dt, abstol, reltol);
-    status = status ? status : check_planar(sys, m);
+    status = status ? status : check_contacts(sys, m);
+    status = status ? status : check_mass(sys, m);
     if (status) {
         return status;
     }
@@ -331,7 +365,7 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     if (t1 < *t) {
         return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
     }
-    const int unfit = check_planar(drv->sys, drv->method);
+    const int unfit = check_contacts(drv->sys, drv->method);
     return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 

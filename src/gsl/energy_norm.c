@@ -26,16 +26,19 @@ static int dense_stiffness(const tribo_system *sys, double *k)
     return entries != NULL;
 }
 
-/* psi = phi'M. */
+/* rate = phi'M, and psi. */
 static void weigh(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
     double *mode = e->omega; /* not set yet */
-    tribo_transpose(n, n, e->phi, e->psi);
+    tribo_transpose(n, n, e->phi, e->rate);
     for (size_t k = 0; k < n; k++) {
-        memcpy(mode, e->psi + k * n, n * sizeof *mode);
-        memset(e->psi + k * n, 0, n * sizeof *mode);
-        tribo_system_add_mass(sys, 1.0, mode, e->psi + k * n);
+        memcpy(mode, e->rate + k * n, n * sizeof *mode);
+        memset(e->rate + k * n, 0, n * sizeof *mode);
+        tribo_system_add_mass(sys, 1.0, mode, e->rate + k * n);
+        for (size_t d = 0; sys->massless.count && d < n; d++) {
+            e->psi[k * n + d] = e->rate[k * n + d] + (sys->massless.is[d] ? mode[d] : 0.0);
+        }
     }
 }
 
@@ -67,12 +70,14 @@ int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys, dou
 {
     const size_t n = sys->ndof;
     *e = (struct energy_norm){.n = n};
-    e->phi = malloc((2 * n * n + n + 1) * sizeof *e->phi);
+    const size_t matrices = sys->massless.count ? 3 : 2;
+    e->phi = malloc((matrices * n * n + n + 1) * sizeof *e->phi);
     double *work = malloc((n * n + n + 1) * sizeof *work);
     int status = TRIBO_ERR_MEMORY;
     if (e->phi && work) {
         e->psi = e->phi + n * n;
-        e->omega = e->psi + n * n;
+        e->rate = e->phi + (matrices - 1) * n * n;
+        e->omega = e->rate + n * n;
         status = find(e, sys, work, work + n * n, least);
     }
     free(work);
@@ -103,7 +108,7 @@ void tribo_energy_norm_of(const struct energy_norm *e, size_t columns, const dou
     const size_t n = e->n, half = n * columns;
     memset(x, 0, 2 * half * sizeof *x);
     tribo_multiply_add(n, n, columns, 1.0, e->psi, y, x);
-    tribo_multiply_add(n, n, columns, 1.0, e->psi, y + half, x + half);
+    tribo_multiply_add(n, n, columns, 1.0, e->rate, y + half, x + half);
     scale_rows(e, columns, 0, x);
 }
 

@@ -1,6 +1,7 @@
 /* Coordinates of a state in which its length is the root of twice its energy: amplitudes of the modes of the free structure times
  * their frequencies, and the rates of these. Two motions of a structure with Coulomb friction and no negative damping or
- * stiffness never come further apart in it, whatever they do: forces of friction against each other do no work. */
+ * stiffness never come further apart in it, whatever they do: forces of friction against each other do no work. What has no mass
+ * has elastic energy only: there velocities do not count. */
 #ifndef TRIBO_ENERGY_NORM_H
 #define TRIBO_ENERGY_NORM_H
 
@@ -9,7 +10,8 @@
 struct energy_norm {
     size_t n;
     double *phi;   /* [n][n] a mode in a column */
-    double *psi;   /* [n][n] phi'M */
+    double *psi;   /* [n][n] phi'M, what has no mass having some: inverse of phi */
+    double *rate;  /* [n][n] phi'M; the same, if all has mass */
     double *omega; /* [n] frequencies, none below a small one */
 };
 

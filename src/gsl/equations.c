@@ -1,5 +1,6 @@
 /* The equations of motion of a system, and its life. */
-#include "system.h"
+#include "elastic.h"
+#include "../common/real.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -42,6 +43,10 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 {
     tribo_system *sys = params;
     sys->evaluations++;
+    if (sys->massless.count) {
+        sys->status = tribo_system_check_mass(sys, "an integrator");
+        return GSL_EBADFUNC;
+    }
     tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
     sys->status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
     if (sys->status) {
@@ -76,9 +81,6 @@ int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double
 /* v and a of a state, after checking it. */
 static int contacts_at(tribo_system *sys, double t, const double *y)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
     const int status = tribo_system_check_state(sys, t, y);
     if (!status) {
         tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
@@ -86,11 +88,41 @@ static int contacts_at(tribo_system *sys, double t, const double *y)
     return status;
 }
 
+/* The law knows nothing of springs: where elastic contacts touch mass themselves, it would answer what they do to others. */
+static int check_apart(const tribo_system *sys)
+{
+    for (size_t i = 0; sys->massless.count && i < sys->ncontact; i++) {
+        if (tribo_massless_touches(&sys->massless, i) && tribo_system_delassus(sys, i, i) > 0.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "contact %zu is elastic and touches mass, too: what contacts do is not told of this system",
+                                     i);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* to [ncontact], or NULL: forces of elastic contacts, by the state. */
+static void put_springs(tribo_system *sys, const double *y, double *to)
+{
+    if (sys->massless.count && to) {
+        tribo_elastic_forces(sys, y, sys->acceleration, to, NULL);
+        tribo_get_limit(sys->contacts, sys->a);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            to[i] = tribo_massless_touches(&sys->massless, i) ? clamp(to[i], -sys->a[i], sys->a[i]) : to[i];
+        }
+    }
+}
+
 int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
 {
-    int status = contacts_at(sys, t, y);
+    int status = sys ? check_apart(sys) : TRIBO_ERR_NULL;
+    status = status ? status : contacts_at(sys, t, y);
     if (!status) {
         status = tribo_balance(sys->contacts, sys->v, sys->a, feq, f);
+    }
+    if (!status) {
+        put_springs(sys, y, feq);
+        put_springs(sys, y, f);
     }
     if (!status && v) {
         memcpy(v, sys->v, sys->ncontact * sizeof *v);
@@ -100,7 +132,8 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
 
 int tribo_system_accept(tribo_system *sys, double t, const double *y)
 {
-    int status = contacts_at(sys, t, y);
+    int status = sys ? tribo_system_check_mass(sys, "this call") : TRIBO_ERR_NULL;
+    status = status ? status : contacts_at(sys, t, y);
     if (!status) {
         status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL);
     }
@@ -164,7 +197,8 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->truncation = sys->truncation;
     return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
            tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->mass, &sys->mass) &&
-           tribo_cholesky_copy(&to->factor, &sys->factor) && tribo_loads_copy(to, sys);
+           tribo_cholesky_copy(&to->factor, &sys->factor) &&
+           tribo_massless_copy(&to->massless, &sys->massless, sys->ndof, sys->ncontact) && tribo_loads_copy(to, sys);
 }
 
 int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
@@ -209,6 +243,7 @@ void tribo_system_destroy(tribo_system *sys)
     tribo_matrix_free(&sys->viscous);
     tribo_matrix_free(&sys->mass);
     tribo_cholesky_free(&sys->factor);
+    tribo_massless_free(&sys->massless);
     free(sys->modes);
     free(sys->omega);
     free(sys->v);

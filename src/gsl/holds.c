@@ -8,7 +8,7 @@
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 {
     for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        f[i] = m->holds[i] ? -a[i] / m->diagonal[i] : 0.0;
+        f[i] = !m->loose[i] ? -a[i] / m->diagonal[i] : 0.0;
     }
     return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
 }
@@ -30,6 +30,12 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t re
     return done;
 }
 
+/* Whether the force of contact i at rest is to be found, and not known from the state, and holds. */
+static int may_hold(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    return m->diagonal[i] > 0.0 && !tribo_massless_touches(&sys->massless, i);
+}
+
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
@@ -39,14 +45,14 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
         changes += now != m->before[i];
         m->before[i] = now;
         m->at[rest] = i;
-        rest += m->slip[i] == 0 && m->diagonal[i] > 0.0;
+        rest += m->slip[i] == 0 && may_hold(m, sys, i);
     }
     if (changes == 0 && !m->fresh) {
         return TRIBO_OK;
     }
     m->fresh = 0;
     for (size_t i = 0; i < c; i++) {
-        m->holds[i] = m->slip[i] == 0 && m->diagonal[i] > 0.0;
+        m->holds[i] = m->slip[i] == 0 && (may_hold(m, sys, i) || tribo_massless_touches(&sys->massless, i));
     }
     m->dependents = 0;
     if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
@@ -54,8 +60,8 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
     }
     for (size_t i = 0; i < c; i++) {
         m->dependents += m->slip[i] == 0 && !m->holds[i];
-        m->loose[i] = !m->holds[i];
-        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+        m->loose[i] = !m->holds[i] || tribo_massless_touches(&sys->massless, i);
+        m->lo[i] = m->loose[i] ? 0.0 : 1.0;
     }
     return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
 }
@@ -66,11 +72,11 @@ static int moves(struct stick_slip *m, const tribo_system *sys, const double *ba
     const struct matrix *j = &sys->direction;
     for (size_t i = 0; i < m->contacts; i++) {
         double sum = -base[i], size = fabs(base[i]);
-        for (size_t k = m->holds[i] ? j->first[i] : j->first[i + 1]; k < j->first[i + 1]; k++) {
+        for (size_t k = m->loose[i] ? j->first[i + 1] : j->first[i]; k < j->first[i + 1]; k++) {
             sum += j->val[k] * x[j->col[k]];
             size += fabs(j->val[k] * x[j->col[k]]);
         }
-        if (m->holds[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
+        if (!m->loose[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
             return 1;
         }
     }

@@ -355,6 +355,25 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
     return TRIBO_OK;
 }
 
+/* What has no mass takes no load, and elastic contacts limits that are constant: else w would move by itself. */
+static int check_massless(const tribo_system *sys, enum drives drives, const char *name, const double *x)
+{
+    const struct massless *w = &sys->massless;
+    const size_t n = x && w->count ? (drives == DRIVES_LOAD ? sys->ndof : sys->ncontact) : 0;
+    for (size_t i = 0; i < n; i++) {
+        if (x[i] != 0.0 && drives == DRIVES_LOAD && w->is[i]) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
+        }
+        if (x[i] != 0.0 && drives == DRIVES_LIMIT && tribo_massless_touches(w, i)) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "%s[%zu] = %g, but contact %zu is elastic, and its limit must be constant", name, i, x[i],
+                                     i);
+        }
+    }
+    return TRIBO_OK;
+}
+
 /* Limits, and what is computed from them, are to remain numbers. */
 #define MOST_LIMIT 1e300
 
@@ -383,6 +402,8 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     }
     int status = check_amplitudes(sys, "cosine", cosine, given);
     status = status ? status : check_amplitudes(sys, "sine", sine, given);
+    status = status ? status : check_massless(sys, drives, "cosine", cosine);
+    status = status ? status : check_massless(sys, drives, "sine", sine);
     status = status || drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);
     if (status) {
         return status;
@@ -491,6 +512,7 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
     }
     int status = check_table(sys, knots, 1, time, value);
     status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
+    status = status ? status : check_massless(sys, DRIVES_LOAD, "pattern", pattern);
     if (status) {
         return status;
     }
@@ -518,7 +540,10 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     }
     struct table t = {0};
     if (knots) {
-        const int status = check_table(sys, knots, sys->ncontact, time, limit);
+        int status = check_table(sys, knots, sys->ncontact, time, limit);
+        for (size_t k = 0; !status && k < knots; k++) {
+            status = check_massless(sys, DRIVES_LIMIT, "limit", limit + k * sys->ncontact);
+        }
         if (status) {
             return status;
         }

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elastic.h"
 #include "events.h"
 #include "planar_series.h"
 #include "series_transition.h"
@@ -39,6 +40,7 @@ struct event {
     double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
     struct planar_series planar;
+    double *work, *spring; /* [ndof], [ncontact] workspace for elastic contacts */
     struct series_transition perturbed;
 };
 
@@ -103,8 +105,8 @@ static void expand_falling(struct event *e, size_t k)
     }
 }
 
-/* The k-th coefficient of f for the contacts that do not hold: those that slide follow their limit, and so do those that are just
- * at it; others keep their force. */
+/* The k-th coefficient of f for rigid contacts that do not hold: those that slide follow their limit, and so do those that are
+ * just at it; others keep their force. */
 static void given_forces(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
@@ -113,6 +115,34 @@ static void given_forces(struct event *e, size_t k)
         const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact, side = tribo_stick_slip_follows(m, i);
         e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
     }
+}
+
+/* The same of elastic contacts that hold, by the k-th coefficients of places. */
+static void spring_forces(struct event *e, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_system *sys = e->sys;
+    tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->slip[i] == 0 && tribo_massless_touches(&sys->massless, i)) {
+            e->given[i] = k == 0 ? m->force[i] : e->spring[i];
+        }
+    }
+}
+
+/* given, and whether any of it is not 0. */
+static int find_given(struct event *e, size_t k)
+{
+    const int springs = e->sys->massless.count > 0, some = k < e->slide_terms;
+    if (some) {
+        given_forces(e, k);
+    } else if (springs) {
+        memset(e->given, 0, e->sys->ncontact * sizeof *e->given);
+    }
+    if (springs) {
+        spring_forces(e, k);
+    }
+    return some || springs;
 }
 
 /* The k-th coefficients of the contacts' velocities. */
@@ -135,7 +165,6 @@ static int expand_forces(struct event *e, size_t k)
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     const double *q = e->q + k * n, *u = e->u + k * n;
-    const int given = k < e->slide_terms;
     double *acc = e->acceleration, *watch = e->watch + k * c;
     memset(acc, 0, n * sizeof *acc);
     add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
@@ -148,8 +177,8 @@ static int expand_forces(struct event *e, size_t k)
     if (m->breakaway.falls) {
         expand_falling(e, k);
     }
+    const int given = find_given(e, k);
     if (given) {
-        given_forces(e, k);
         const int unclear = m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->given) : TRIBO_OK;
         if (unclear) {
             return unclear;
@@ -177,7 +206,11 @@ static int expand_forces(struct event *e, size_t k)
         }
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
-    return tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
+    status = tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
+    if (!status && sys->massless.count) {
+        tribo_elastic_move(sys, m->slip, e->base, acc, e->spring);
+    }
+    return status;
 }
 
 /* The power of the sliding contacts: limits times velocities. */
@@ -456,7 +489,7 @@ static int create(tribo_driver *drv)
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = e->most_order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
-    double *work = malloc((terms * (2 * n + 4 * c + 1) + n + 8 * c + 1) * sizeof *work);
+    double *work = malloc((terms * (2 * n + 4 * c + 1) + 2 * n + 9 * c + 1) * sizeof *work);
     if (!work) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
@@ -478,6 +511,8 @@ static int create(tribo_driver *drv)
     e->bend = e->size + c;
     e->limit_size = e->bend + c;
     e->limit_bend = e->limit_size + c;
+    e->spring = e->limit_bend + c;
+    e->work = e->spring + c;
     e->events.search.go = go;
     e->events.search.read = read_guard;
     e->events.search.bound = bound;

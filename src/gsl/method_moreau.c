@@ -8,10 +8,15 @@
 #include <gsl/gsl_linalg.h>
 
 #include "breakaway.h"
+#include "elastic.h"
 #include "hidden.h"
 #include "step_form.h"
 
-/* For steps of length h: A = I + h/2 AC + h^2/4 AK in GSL's band format, factorized; A^-1 B; and the contacts that see it. */
+/* For steps of length h: A = I + h/2 AC + h^2/4 AK in GSL's band format, factorized; A^-1 B; and the contacts that see it.
+ *
+ * What has no mass starts each step without velocity, and what it ends it with is twice the mean; its rows of A are K. Elastic
+ * contacts have in every step the mean of their forces at both ends, of which the later is within the limit, and slides by what J
+ * moves over the step: half the later force is what the contacts find, within half the limit. */
 struct moreau {
     struct step_form common;
     double h; /* 0: nothing is prepared */
@@ -23,6 +28,9 @@ struct moreau {
     double *ratio, *velocity; /* [ncontact] of static limits */
     size_t statics;           /* revision of the system's contacts that these came from; 0: contacts have not got them */
     double *load;             /* [ndof] at the end of the step before */
+    double *spring, *rate;    /* [ncontact] forces of elastic contacts at the end of the step before; workspace */
+    double *work;             /* [ndof] */
+    signed char *loose;       /* [ncontact] slip, but 1 of elastic contacts: what they hold has no velocity of its own */
     tribo_context *contacts;
     size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
 };
@@ -34,6 +42,7 @@ static void destroy(tribo_driver *drv)
         tribo_destroy(m->contacts);
         tribo_step_form_free(&m->common);
         free(m->limit);
+        free(m->loose);
         free(m->band);
         free(m->pivot);
         free(m->response);
@@ -47,14 +56,18 @@ static int create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (m) {
-        m->limit = calloc(3 * c + n + 1, sizeof *m->limit);
+        m->limit = calloc(5 * c + 2 * n + 1, sizeof *m->limit);
+        m->loose = malloc(c + 1);
     }
-    if (!m || !m->limit || !tribo_step_form_create(&m->common, drv->sys)) {
+    if (!m || !m->limit || !m->loose || !tribo_step_form_create(&m->common, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     m->ratio = m->limit + c;
     m->velocity = m->limit + 2 * c;
-    m->load = m->limit + 3 * c;
+    m->spring = m->limit + 3 * c;
+    m->rate = m->limit + 4 * c;
+    m->load = m->limit + 5 * c;
+    m->work = m->load + n;
     return TRIBO_OK;
 }
 
@@ -76,12 +89,31 @@ static void solve(const struct moreau *m, size_t n, double *x)
     gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
 }
 
+static int has_mass(const tribo_system *sys, size_t d)
+{
+    return sys->massless.count == 0 || !sys->massless.is[d];
+}
+
+/* Adds factor a to the band, rows of what has mass or of what has none. */
+static void add_band(struct moreau *m, const tribo_system *sys, const struct matrix *a, double factor, int with_mass)
+{
+    const size_t width = 2 * m->below + m->above + 1, middle = m->below + m->above;
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1] && has_mass(sys, i) == with_mass; k++) {
+            m->band[a->col[k] * width + middle + i - a->col[k]] += factor * a->val[k];
+        }
+    }
+}
+
 static int factorize(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t n = sys->ndof;
     m->below = m->above = 0;
     widen(&sys->stiffness, &m->below, &m->above);
     widen(&sys->damping, &m->below, &m->above);
+    if (sys->massless.count) {
+        widen(&sys->elastic, &m->below, &m->above);
+    }
     const size_t width = 2 * m->below + m->above + 1, middle = m->below + m->above;
     free(m->band);
     free(m->pivot);
@@ -90,17 +122,13 @@ static int factorize(struct moreau *m, const tribo_system *sys, double h)
     if (!m->band || !m->pivot) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step");
     }
-    const struct matrix *part[] = {&sys->stiffness, &sys->damping};
-    const double factor[] = {0.25 * h * h, 0.5 * h};
     for (size_t i = 0; i < n; i++) {
-        m->band[i * width + middle] = 1.0;
+        m->band[i * width + middle] = has_mass(sys, i) ? 1.0 : 0.0;
     }
-    for (int p = 0; p < 2; p++) {
-        for (size_t i = 0; i < part[p]->rows; i++) {
-            for (size_t k = part[p]->first[i]; k < part[p]->first[i + 1]; k++) {
-                m->band[part[p]->col[k] * width + middle + i - part[p]->col[k]] += factor[p] * part[p]->val[k];
-            }
-        }
+    add_band(m, sys, &sys->stiffness, 0.25 * h * h, 1);
+    add_band(m, sys, &sys->damping, 0.5 * h, 1);
+    if (sys->massless.count) {
+        add_band(m, sys, &sys->elastic, 1.0, 0);
     }
     gsl_matrix_view a = gsl_matrix_view_array(m->band, n, width);
     gsl_vector_uint pivot = {n, 1, m->pivot, NULL, 0};
@@ -182,6 +210,19 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     return !status;
 }
 
+/* Forces of elastic contacts pull at what has no mass. */
+static void pull_massless(const tribo_system *sys, double h, double *columns)
+{
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; i < j->rows; i++) {
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            if (!has_mass(sys, j->col[k])) {
+                columns[i * j->cols + j->col[k]] = 4.0 / (h * h) * j->val[k];
+            }
+        }
+    }
+}
+
 /* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B. */
 static int prepare(struct moreau *m, const tribo_system *sys, double h)
 {
@@ -198,6 +239,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
         free(r);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
+    pull_massless(sys, h, m->response);
     for (size_t j = 0; j < c; j++) {
         double *column = m->response + j * n;
         solve(m, n, column);
@@ -226,11 +268,76 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_revision(sys->contacts);
     tribo_get_limit(sys->contacts, m->limit);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->limit[i] *= tribo_massless_touches(&sys->massless, i) ? 0.5 : 1.0;
+    }
     tribo_set_limit(m->contacts, m->limit);
     if (m->statics != revision) {
         tribo_get_static(sys->contacts, m->ratio, m->velocity);
         tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
         m->statics = revision;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- without mass */
+
+static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
+{
+    for (size_t d = 0; sys->massless.count && d < sys->ndof; d++) {
+        y[sys->ndof + d] = has_mass(sys, d) ? y[sys->ndof + d] : 0.0;
+    }
+    if (sys->massless.count && !m->common.goes_on) {
+        tribo_get_limit(sys->contacts, m->limit);
+        tribo_elastic_enter(sys, m->limit, m->work, m->spring, y);
+    }
+}
+
+/* What K makes of places q in the middle of a step. */
+static void follow_statically(struct moreau *m, const tribo_system *sys, double h, const double *q, double *du)
+{
+    if (sys->massless.count) {
+        memset(m->work, 0, sys->ndof * sizeof *m->work);
+        tribo_matrix_multiply_add(&sys->elastic, -4.0 / h, q, m->work);
+    }
+    for (size_t d = 0; sys->massless.count && d < sys->ndof; d++) {
+        du[d] = has_mass(sys, d) ? du[d] : m->work[d];
+    }
+}
+
+/* Half of what elastic contacts had before acts all the step. */
+static void keep_half(const struct moreau *m, const tribo_system *sys, double h, double *u)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (tribo_massless_touches(&sys->massless, i)) {
+            tribo_add(u, 0.5 * h * m->spring[i], m->response + i * sys->ndof, sys->ndof);
+        }
+    }
+}
+
+/* What decides about elastic contacts is all that J moves over the step. */
+static void take_both_ends(struct step_form *s, const tribo_system *sys)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        s->end[i] += tribo_massless_touches(&sys->massless, i) ? s->v[i] : 0.0;
+    }
+}
+
+static void note_slip(struct moreau *m, const tribo_system *sys)
+{
+    tribo_get_slip(m->contacts, m->common.mode);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->loose[i] = (signed char)(tribo_massless_touches(&sys->massless, i) ? 1 : m->common.mode[i]);
+    }
+}
+
+/* Forces at the end of the step; what has no mass, there. */
+static void end_elastic(struct moreau *m, const tribo_system *sys, double *y)
+{
+    double *f = m->common.f;
+    if (sys->massless.count) {
+        memcpy(m->spring, f, sys->ncontact * sizeof *f);
+        tribo_elastic_give(sys, f, y);
+        tribo_elastic_move(sys, m->common.mode, m->common.base, y + sys->ndof, m->rate);
     }
 }
 
@@ -249,6 +356,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
         }
     }
+    begin_elastic(m, sys, y);
     tribo_step_form_begin(s, sys, t, u);
     if (!s->goes_on) {
         find_load(m, sys, t);
@@ -265,13 +373,16 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -h, u, du);
     }
+    follow_statically(m, sys, h, s->u, du);
     sys->evaluations++;
     solve(m, n, du);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = u[i] + du[i];
     }
+    keep_half(m, sys, h, s->u);
     tribo_step_form_find_base(s, sys, next);
     tribo_step_form_relative(s, sys, s->u, s->end);
+    take_both_ends(s, sys);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
     take_limits(m, sys);
     const int status = tribo_step_form_force(s, m->contacts, h);
@@ -285,9 +396,10 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
         for (size_t d = 0; d < n; d++) {
             s->u[d] += h * s->f[i] * m->response[i * n + d];
         }
+        s->f[i] *= tribo_massless_touches(&sys->massless, i) ? 2.0 : 1.0;
     }
-    tribo_get_slip(m->contacts, s->mode);
-    tribo_system_snap(sys, s->mode, s->base, s->u);
+    note_slip(m, sys);
+    tribo_system_snap(sys, m->loose, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
     s->goes_on = 1;
     for (size_t i = 0; i < n; i++) {
@@ -295,6 +407,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
         u[i] = s->u[i];
     }
     y[2 * n] += h * tribo_step_form_power(sys, s->f, s->v, s->end);
+    end_elastic(m, sys, y);
     return TRIBO_OK;
 }
 

@@ -117,9 +117,10 @@ static int find_modes(struct modal_build *b)
     struct matrix z = {0};
     struct cholesky own = {0};
     struct doubt doubt = {0};
-    const int held = b->h->rest > 0;
-    int status = !held || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    b->h->modes = b->n - b->h->rest;
+    int status = !b->h->rest || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    status = status || !b->sys->massless.count ? status : tribo_modal_condense(b, &z);
+    const int held = z.rows > 0;
+    b->h->modes = held ? z.cols : b->n;
     b->h->omega2 = tribo_modal_keep(b, b->h->modes);
     b->phi = tribo_modal_scratch(b, b->h->modes * b->n);
     status = status || (b->h->omega2 && b->phi) ? status : TRIBO_ERR_MEMORY;
@@ -293,6 +294,8 @@ int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed cha
     int status = b.h ? build(&b, mode, holds) : TRIBO_ERR_MEMORY;
     tribo_modal_give_back(b.scratch);
     tribo_constraints_free(&b.ties);
+    tribo_matrix_free(&b.slack);
+    tribo_cholesky_free(&b.slack_stiffness);
     tribo_matrix_free(&b.own_stiffness);
     tribo_matrix_free(&b.own_damping);
     if (status) {

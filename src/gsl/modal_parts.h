@@ -14,11 +14,13 @@ struct modal_build {
     struct constraints ties;                  /* and what they tie together */
     const struct matrix *stiffness, *damping; /* K and C, or NULL */
     struct matrix own_stiffness, own_damping; /* where the system has only AK and AC */
-    double *phi, *psi, *k_phi, *c_phi;        /* and M phi, K phi, C phi */
-    double *yr, *yi;                          /* [given][ndof] */
-    double *y0;                               /* [ndof] velocities from belts of constant speed */
-    void *scratch;                            /* list of what is freed at the end */
-    int status;                               /* of a failure other than of memory */
+    struct matrix slack;               /* [ndof][..] displacements that are free and have no mass: they follow the others, */
+    struct cholesky slack_stiffness;   /* by this */
+    double *phi, *psi, *k_phi, *c_phi; /* and M phi, K phi, C phi */
+    double *yr, *yi;                   /* [given][ndof] */
+    double *y0;                        /* [ndof] velocities from belts of constant speed */
+    void *scratch;                     /* list of what is freed at the end */
+    int status;                        /* of a failure other than of memory */
 };
 
 /* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
@@ -36,6 +38,13 @@ double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k);
 
 /* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
+
+/* modal_slack.c: takes out of the displacements z that constraints allow (without rows: all) those without mass, and lets them
+ * follow the others. Returns a status. */
+int tribo_modal_condense(struct modal_build *b, struct matrix *z);
+
+/* Lets what has no mass and is free follow displacements y [ndof]. 0 if out of memory. */
+int tribo_modal_relax(struct modal_build *b, double *y);
 
 /* The exponents of eta. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);

@@ -11,12 +11,16 @@
 #define UNDAMPED 1e-9
 
 /* y [ndof] = velocities from the b [rest] of the contacts that hold, in which the modes have no part. */
-static void belt_velocities(const struct modal_build *b, const double *x, double *y)
+static int belt_velocities(struct modal_build *b, const double *x, double *y)
 {
     tribo_constraints_follow(&b->ties, x, y);
+    if (!tribo_modal_relax(b, y)) {
+        return 0;
+    }
     for (size_t k = 0; k < b->h->modes; k++) {
         tribo_add(y, -tribo_dot(b->psi + k * b->n, y, b->n), b->phi + k * b->n, b->n);
     }
+    return 1;
 }
 
 /* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
@@ -99,7 +103,9 @@ int tribo_modal_forcing(struct modal_build *b)
         }
         for (int part = 0; wave->drives == DRIVES_BASE && part < 2; part++) {
             base_part(b, wave, part, x);
-            belt_velocities(b, x, y[part]);
+            if (!belt_velocities(b, x, y[part])) {
+                return 0;
+            }
         }
         for (int part = 0; wave->drives == DRIVES_BASE && part < 2; part++) {
             if (wave->omega == 0.0) {

@@ -29,6 +29,9 @@ void tribo_model_free(struct model *m);
 /* The Cholesky factor of the mass matrix, or an error. */
 int tribo_model_factorize(const struct model *m, struct cholesky *c);
 
+/* massless.c: a system by build_massive, which knows only degrees of freedom with mass, and those without mass beside it. */
+int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);
+
 /* Gives the context R = Z'Z, Z [n][ncontact], which is as symmetric and semidefinite as rounding lets it be. */
 int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z, size_t n);
 

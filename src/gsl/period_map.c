@@ -1,3 +1,4 @@
+#include "elastic.h"
 #include "period_map.h"
 #include "../common/real.h"
 
@@ -94,6 +95,15 @@ static int hold_still(struct period_map *m)
     return status ? tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts)) : TRIBO_OK;
 }
 
+/* Sliders that begin beyond their limits go back to them. */
+static void enter(struct period_map *m)
+{
+    if (m->sys->massless.count) {
+        tribo_get_limit(m->sys->contacts, m->limit);
+        tribo_elastic_enter(m->sys, m->limit, m->x, m->limit + m->sys->ncontact, m->y);
+    }
+}
+
 static void set_image(const struct period_map *m, size_t count, double *x)
 {
     for (size_t i = 0; m->odd && i < count; i++) {
@@ -106,6 +116,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     const size_t n = m->n;
     tribo_energy_norm_state(&m->norm, 1, p->x, m->y);
     int status = m->moved ? hold_still(m) : TRIBO_OK;
+    enter(m);
     memcpy(p->y, m->y, n * sizeof *p->y);
     tribo_energy_norm_of(&m->norm, 1, m->y, p->x);
     memcpy(m->variation.v, m->unit, n * n * sizeof *m->unit);
@@ -125,8 +136,12 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     return TRIBO_OK;
 }
 
-int tribo_period_map_complete(struct period_map *m, const struct point *p, double *residual)
+int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual)
 {
+    for (size_t d = 0; m->sys->massless.count && d < m->sys->ndof; d++) {
+        const size_t i = m->sys->ndof + d;
+        p->y[i] = !m->sys->massless.is[d] ? p->y[i] : m->odd ? -p->end[i] : p->end[i];
+    }
     *residual = p->residual;
     if (!m->odd) {
         return TRIBO_OK;
@@ -176,13 +191,15 @@ static double size_of_load(struct period_map *m, const struct harmonic *w, const
     return square;
 }
 
-/* The same of a base that takes along what its contacts touch. */
+/* The same of a base that takes along what its contacts touch, or stretches their springs. */
 static double size_of_base(const struct period_map *m, const struct harmonic *w, const double *amplitude)
 {
     double square = 0.0;
     for (size_t k = 0; k < w->count; k++) {
         const double r = tribo_system_delassus(m->sys, w->index[k], w->index[k]);
+        const int elastic = tribo_massless_touches(&m->sys->massless, w->index[k]) && w->omega != 0.0;
         square += r > 0.0 ? amplitude[k] * amplitude[k] / r : 0.0;
+        square += elastic ? amplitude[k] * amplitude[k] / (w->omega * w->omega * m->sys->massless.compliance[w->index[k]]) : 0.0;
     }
     return square;
 }
@@ -251,11 +268,12 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
     const size_t n = 2 * drv->sys->ndof;
     *m = (struct period_map){.drv = drv, .sys = drv->sys, .n = n, .company = {phase_ends, event_decided}};
-    m->y = malloc((2 * n * n + 2 * n + 2) * sizeof *m->y);
+    m->y = malloc((2 * n * n + 2 * n + 2 * drv->sys->ncontact + 2) * sizeof *m->y);
     if (m->y) {
         m->x = m->y + n + 1;
         m->unit = m->x + n + 1;
         m->work = m->unit + n * n;
+        m->limit = m->work + n * n;
     }
     return m->y != NULL;
 }

@@ -26,6 +26,7 @@ struct period_map {
     struct variation variation;
     double *y, *x;          /* [n + 1] a state; [n] one in coordinates of the norm */
     double *unit, *work;    /* [n][n] perturbed states to begin with; workspace */
+    double *limit;          /* [2 ncontact] workspace */
     double t, period, span; /* span: of an integration */
     int odd;                /* span is half a period */
     double size, least;     /* the largest state of this integration so far; below that motions are rounding */
@@ -38,10 +39,11 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv);
 void tribo_period_map_free(struct period_map *m);
 
 /* These return a status, its message on the driver. The first makes ready for the system as it is; the second one follows the
- * motion from p->x, and finds the rest of p; with the third one *residual is that of the whole period. */
+ * motion from p->x, and finds the rest of p; with the third one *residual is that of the whole period, and p->y has
+ * velocities of what has no mass, too. */
 int tribo_period_map_prepare(struct period_map *m, double t, double period);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
-int tribo_period_map_complete(struct period_map *m, const struct point *p, double *residual);
+int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual);
 
 /* Follows the motion from y through a period, with company. */
 int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company);

@@ -1,3 +1,4 @@
+#include "elastic.h"
 #include "series_transition.h"
 
 #include <float.h>
@@ -32,6 +33,20 @@ static int reserve(struct series_transition *x, const tribo_system *sys, size_t 
     return TRIBO_OK;
 }
 
+/* x [ndof] -= accelerations by the springs of elastic contacts that hold, where place j is 1 and the others are 0. */
+static void add_springs(struct stick_slip *m, const tribo_system *sys, size_t j, double *x)
+{
+    double *unit = m->size, *force = m->a;
+    memset(unit, 0, sys->ndof * sizeof *unit);
+    memset(force, 0, sys->ncontact * sizeof *force);
+    unit[j] = 1.0;
+    tribo_elastic_forces(sys, unit, m->rate, force, NULL);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        force[i] = m->holds[i] ? force[i] : 0.0;
+    }
+    tribo_matrix_multiply_add(&sys->response, -1.0, force, x);
+}
+
 /* to [ndof][ndof] = factor P a, a [ndof][ndof] transposed in `columns`, or no rows: the identity. */
 static int project(struct stick_slip *m, const tribo_system *sys, const struct matrix *a, double factor, double *to)
 {
@@ -40,7 +55,13 @@ static int project(struct stick_slip *m, const tribo_system *sys, const struct m
     int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu columns", n);
     for (size_t j = 0; !status && j < n; j++) {
         columns[j * n + j] += a ? 0.0 : 1.0;
+        if (sys->massless.count && a == &sys->stiffness) {
+            add_springs(m, sys, j, columns + j * n);
+        }
         status = tribo_stick_slip_project(m, sys, m->still, columns + j * n);
+        if (sys->massless.count) {
+            tribo_elastic_move(sys, m->slip, m->still, columns + j * n, m->v);
+        }
         for (size_t i = 0; i < n; i++) {
             to[i * n + j] = factor * columns[j * n + i];
         }

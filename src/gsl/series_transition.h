@@ -4,7 +4,8 @@
 
 #include "stick_slip.h"
 
-/* Accelerations of perturbed states, -P AK q - P AC q', where P takes out what would move contacts that hold. */
+/* Accelerations of perturbed states, -P AK q - P AC q', where P takes out what would move contacts that hold, and lets what has
+ * no mass follow; AK has springs of elastic contacts that hold, too. */
 struct series_transition {
     size_t columns;
     unsigned char *holds; /* [ncontact] the contacts that P is for */

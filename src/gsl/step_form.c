@@ -44,7 +44,7 @@ void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys
 
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u)
 {
-    if (s->goes_on) {
+    if (s->goes_on && sys->massless.count == 0) {
         memcpy(s->v, s->end, sys->ncontact * sizeof *s->v);
     } else {
         tribo_step_form_find_base(s, sys, t);

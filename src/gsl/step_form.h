@@ -24,7 +24,7 @@ void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
 /* v = J u - base. */
 void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys, const double *u, double *v);
 
-/* v = the velocity that a step begins with, at t. */
+/* v = the velocity that a step begins with, at t. What has no mass may begin with another one than it ended with. */
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u);
 
 /* f over a step of h, from v and end. Where contacts are planar, the mean over the step; else that which stops contacts where

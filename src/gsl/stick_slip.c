@@ -42,13 +42,14 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit,    &m->limit_rate, &m->force,   &m->allowance, &m->base,  &m->noise,
-                                   &m->diagonal, &m->seen,       &m->parting, &m->excess,    &m->v,     &m->a,
-                                   &m->gain,     &m->lo,         &m->hi,      &m->f,         &m->still, &m->swing};
+    double **const by_contact[] = {&m->limit,    &m->limit_rate,  &m->force,   &m->allowance, &m->base,  &m->noise,
+                                   &m->diagonal, &m->seen,        &m->parting, &m->excess,    &m->v,     &m->a,
+                                   &m->gain,     &m->lo,          &m->hi,      &m->f,         &m->still, &m->swing,
+                                   &m->spring,   &m->spring_rate, &m->slack};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(6, c);
+    m->slip = calloc(7, c);
     m->at = malloc(c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
@@ -68,6 +69,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->loose = m->slip + 3 * c;
     m->holds = (unsigned char *)m->slip + 4 * c;
     m->rested = (unsigned char *)m->slip + 5 * c;
+    m->slid = m->slip + 6 * c;
     /* these two know directions only */
     tribo_set_planar(m->box, 0, NULL);
     tribo_set_planar(m->hold, 0, NULL);
@@ -245,6 +247,12 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 
 /* ------------------------------------------------------------------------------------------------------------- forces */
 
+/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
+static int searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    return m->slip[i] == 0 && !tribo_massless_touches(&sys->massless, i);
+}
+
 /* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
 static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
@@ -264,6 +272,9 @@ static int find_forces(struct stick_slip *m, tribo_system *sys)
         const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
         m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
         m->hi[i] = m->slip[i] == 1 ? -limit : limit;
+        if (tribo_massless_touches(&sys->massless, i)) {
+            m->lo[i] = m->hi[i] = m->spring[i];
+        }
     }
     const int status = solve(m, sys, m->a, m->force);
     memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
@@ -310,7 +321,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     *ties = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->tied[i] = 0;
-        close += m->slip[i] == 0 && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
+        close += searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
     }
     if (close == 0) {
         return 0;
@@ -320,7 +331,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double room = m->stick[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / ALLOWED;
-        if (m->slip[i] == 0 && room <= within) {
+        if (searches(m, sys, i) && room <= within) {
             const signed char direction = direction_of(m, i, m->force[i]);
             m->tied[i] = 1;
             changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
@@ -360,10 +371,14 @@ static void find_falling(struct stick_slip *m, const tribo_system *sys, const do
     }
 }
 
-static void set_bounds_ahead(struct stick_slip *m)
+static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; i < m->contacts; i++) {
         const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
+        if (tribo_massless_touches(&sys->massless, i)) {
+            m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
+            continue;
+        }
         if (m->slip[i] != 0) {
             m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
             continue;
@@ -396,7 +411,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->a[i] + m->horizon * m->v[i];
     }
-    set_bounds_ahead(m);
+    set_bounds_ahead(m, sys);
     const int status = solve(m, sys, m->v, m->f);
     if (status) {
         return status;
@@ -406,7 +421,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (m->slip[i] == 0 && room >= 0.0) {
+        if (searches(m, sys, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
             const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
@@ -424,7 +439,7 @@ static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
     int status = tribo_stick_slip_find_holds(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->v[i] = m->holds[i] ? 0.0 : m->force[i];
+        m->v[i] = m->loose[i] ? m->force[i] : 0.0;
     }
     memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
@@ -454,8 +469,8 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
         return status;
     }
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->stick[i], m->stick[i]) : m->force[i];
-        m->excess[i] = m->holds[i] ? fabs(m->f[i] - m->force[i]) : 0.0;
+        m->force[i] = m->loose[i] ? m->force[i] : clamp(m->f[i], -m->stick[i], m->stick[i]);
+        m->excess[i] = m->loose[i] ? 0.0 : fabs(m->f[i] - m->force[i]);
     }
     memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
@@ -465,8 +480,12 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
 {
     tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
+    if (sys->massless.count) {
+        tribo_elastic_find(m, sys, y);
+    }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->f[i] = m->holds[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->force[i] : -m->slip[i] * m->limit[i];
+        const double rests = tribo_massless_touches(&sys->massless, i) ? m->spring[i] : m->force[i];
+        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? rests : -m->slip[i] * m->limit[i];
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
     tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->v);
@@ -477,12 +496,13 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, const double *y)
+void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_system_set_time(sys, t);
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     memset(m->tied, 0, sys->ncontact);
+    tribo_elastic_release(sys, y);
     find_noise(m, sys, y);
 }
 
@@ -493,9 +513,11 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     }
     tribo_stick_slip_begin_decision(m, sys, t, y);
     update_limits(m, sys, y);
+    tribo_elastic_place(m, sys, y);
     int status = tribo_stick_slip_find_resting(m, sys, y);
     find_static(m, sys, y);
     if (!status) {
+        tribo_elastic_hold(m, sys, y);
         tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
         m->sized = 0;
         memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
@@ -519,6 +541,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
         m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
     }
+    if (!status) {
+        tribo_elastic_finish(m, sys);
+    }
     return status ? status : tribo_stick_slip_find_holds(m, sys);
 }
 
@@ -534,6 +559,9 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+    }
+    if (!continues) {
+        tribo_elastic_start(m, sys, y);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->swing[i] = tribo_system_swing(sys, i);

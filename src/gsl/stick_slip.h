@@ -49,9 +49,11 @@ struct stick_slip {
     signed char *tied;          /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *before;        /* [ncontact] what find_holds saw last */
     int fresh;                  /* it saw nothing yet */
-    double *still;              /* [ncontact] zeros */
-    size_t *at;                 /* [ncontact] workspace of find_holds, */
-    unsigned char *last;        /* [ncontact] and this */
+    double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
+    signed char *slid;                    /* [ncontact] slip as decided last */
+    double *still;                        /* [ncontact] zeros */
+    size_t *at;                           /* [ncontact] workspace of find_holds, */
+    unsigned char *last;                  /* [ncontact] and this */
 };
 
 /* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
@@ -70,14 +72,26 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
  * direction of its slip any more, is at rest; a status. What accelerations of contacts may be rounding, and how far forces may
  * go; the rate of q'' while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
  * derivative of b. */
-void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, const double *y);
+void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 
+/* stick_slip_elastic.c: elastic contacts, whose forces the state knows. The first finds these, and what of them may be rounding:
+ * spring, slack. For the decision, in this order: velocities that they would slide with; forces, slip, and places without mass;
+ * velocities of those that hold; what the next decision remembers. The start takes what is beyond limits out of y, and dissipates
+ * it. */
+void tribo_elastic_find(struct stick_slip *m, const tribo_system *sys, const double *y);
+void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *y);
+void tribo_elastic_release(const tribo_system *sys, double *y);
+void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y);
+void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y);
+void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
+
 /* Finds out which of the contacts at rest hold, as they are marked; a status. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
+
 /* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
 

@@ -140,14 +140,17 @@ void tribo_model_free(struct model *m)
     tribo_matrix_free(&m->direction);
 }
 
+static int build_massive(struct model *m, tribo_system **sys)
+{
+    return tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, sys) : build_solved(m, sys);
+}
+
 int tribo_model_build(struct model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
     int status = check(m);
     if (!status) {
-        status = m->nmode                             ? tribo_model_reduce(m, &s)
-                 : tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, &s)
-                                                      : build_solved(m, &s);
+        status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_massless(m, build_massive, &s);
     }
     tribo_model_free(m);
     if (status) {

@@ -16,6 +16,18 @@ int tribo_system_fail(const tribo_system *sys, int status, const char *format, .
     return tribo_set_message(sys->contacts, status, text);
 }
 
+int tribo_system_check_mass(const tribo_system *sys, const char *who)
+{
+    size_t d = 0;
+    while (sys->massless.count && !sys->massless.is[d]) {
+        d++;
+    }
+    return sys->massless.count
+               ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "%s needs mass, and degree of freedom %zu has none: take exact, event or moreau/fixed", who, d)
+               : TRIBO_OK;
+}
+
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 {
     if (!isfinite(t)) {
@@ -105,13 +117,15 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         tribo_cholesky_solve(&sys->factor, 1, to);
     }
     for (size_t i = 0; diagonal && i < sys->ndof; i++) {
-        to[i] *= 1.0 / tribo_matrix_get(&sys->mass, i, i);
+        const double mass = tribo_matrix_get(&sys->mass, i, i);
+        to[i] *= mass > 0.0 ? 1.0 / mass : 0.0;
     }
 }
 
 double tribo_system_fastest(const tribo_system *sys)
 {
-    double most = greater(sqrt(tribo_matrix_row_sum(&sys->stiffness)), tribo_matrix_row_sum(&sys->damping));
+    const double stiffest = sys->massless.count ? sys->massless.stiffest : tribo_matrix_row_sum(&sys->stiffness);
+    double most = greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping));
     for (size_t s = 0; s < sys->harmonics; s++) {
         most = greater(most, fabs(sys->harmonic[s].omega));
     }

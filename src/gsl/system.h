@@ -6,6 +6,7 @@
 #include "tribo/tribo_gsl.h"
 
 #include "linalg.h"
+#include "massless.h"
 
 /* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
@@ -56,7 +57,8 @@ struct tribo_system {
     struct matrix elastic, viscous;
 
     struct matrix mass;     /* no rows: the identity, of reduced systems */
-    struct cholesky factor; /* of it */
+    struct cholesky factor; /* of it; degrees of freedom without mass count as if it were 1, and nothing accelerates them */
+    struct massless massless;
 
     /* Forces on the given degrees of freedom become accelerations by the modes, or by the mass matrix. */
     size_t given;
@@ -161,6 +163,9 @@ int tribo_system_fail(const tribo_system *sys, int status, const char *format, .
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
+
+/* TRIBO_ERR_UNSUPPORTED, and what it says: `who` takes only systems with mass everywhere. TRIBO_OK if this is one. */
+int tribo_system_check_mass(const tribo_system *sys, const char *who);
 
 /* Checks that t and y are finite. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);

@@ -1,4 +1,5 @@
 #include "variation.h"
+#include "elastic.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -17,6 +18,9 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     struct variation *x = (struct variation *)company;
     tribo_system *sys = x->sys;
     memcpy(x->before, x->events->stick_slip.slip, sys->ncontact);
+    if (sys->massless.count) {
+        tribo_elastic_perturb(sys, x->before, x->columns, x->v, x->work);
+    }
     int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration);
     memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
     tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
@@ -24,11 +28,13 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     return status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
 }
 
-/* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there. */
+/* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there; an elastic
+ * one has the same force before and after. */
 static int stops(const struct variation *x, size_t i)
 {
     const signed char before = x->before[i], now = x->events->stick_slip.slip[i];
-    return (before == 1 || before == -1) && now != before && now != 2 && before * x->slope[i] < 0.0;
+    const int slid = (before == 1 || before == -1) && !tribo_massless_touches(&x->sys->massless, i);
+    return slid && now != before && now != 2 && before * x->slope[i] < 0.0;
 }
 
 /* u += jump of accelerations, dt earlier: v_i' dt = row. */
@@ -75,7 +81,7 @@ static void event_decided(struct company *company)
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
     *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
-    x->v = malloc(((2 * sys->ndof + sys->ncontact) * columns + sys->ncontact + sys->ndof + 1) * sizeof *x->v);
+    x->v = malloc(((2 * sys->ndof + sys->ncontact) * columns + 2 * sys->ncontact + 3 * sys->ndof + 1) * sizeof *x->v);
     x->before = malloc(sys->ncontact + 1);
     if (!x->v || !x->before) {
         return 0;
@@ -83,6 +89,7 @@ int tribo_variation_create(struct variation *x, struct events *e, tribo_system *
     x->rows = x->v + 2 * sys->ndof * columns;
     x->slope = x->rows + sys->ncontact * columns;
     x->acceleration = x->slope + sys->ncontact;
+    x->work = x->acceleration + sys->ndof;
     return 1;
 }
 

@@ -4,7 +4,8 @@
  * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for
  * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once,
  * each makes the jump that its force does. Where one breaks away accelerations are continuous, since the problem that decides
- * about them has one solution: S = I. */
+ * about them has one solution: S = I. Forces of elastic contacts are continuous, too; but once one slides, its force stays, and
+ * what has no mass moves by the rest. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
@@ -19,6 +20,7 @@ struct variation {
     double *rows;         /* [ncontact][columns] workspace */
     double *slope;        /* [ncontact] v' where the phase ends, */
     double *acceleration; /* [ndof] and q'' */
+    double *work;         /* [2 ndof + ncontact] */
     signed char *before;  /* [ncontact] slip in the phase that ends */
 };
 

@@ -319,7 +319,8 @@ TEST(options)
         {"--step", "0 -1 1.1 nan 1/4"},
         {"--law", "quin quinnn 4"},
         {"--contact",
-         "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x 2,0,0,xy 2,0,0,x:stiffness=5 "
+         "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x 2,0,0,xy 2,0,0,x:stiffness=0 "
+         "2,0,0,x:stiffness=nan "
          "2,0,0,x:limit=-1 2,0,0,x:limit= 2,0,0,x:limit 2,0,0,x:load=1 2,0,0,x:mu=1:limit=1 2,0,0,x:mu=0 2,0,0,x:mu=1:load=0 "
          "2,0,0,x:to=2,0,0 2,0,0,x:to=9,0,0 2,0,0,x:to=1,0 2,0,0,x:to=1,0,0,x 2,0,0,x:limit=1:foo"},
         {"--method", "shoot Exact -1"},
@@ -382,7 +383,7 @@ TEST(files_of_words)
                     {"7,0,0,x\n", "c.txt:1: "},
                     {"# none\n", "c.txt: "},
                     {"2,0,0,yz\n", "c.txt:1: "},
-                    {"2,0,0,x stiffness=3\n", "c.txt:1: "}};
+                    {"2,0,0,x stiffness=-3\n", "c.txt:1: "}};
     write_chain();
     for (size_t k = 0; k < COUNT(files); k++) {
         write_text("o.txt", files[k].text);

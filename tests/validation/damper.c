@@ -30,6 +30,60 @@ TEST(beam)
 }
 END_TEST
 
+/* x'' + 0.1 x' + x + f = cos 1.1 t, f of a slider of limit 0.5 on a spring of 1. */
+TEST(spring)
+{
+    static const char structure[] = "--mass spring.mtx --stiffness spring.mtx --dofs spring.txt --load 1,0,0,x --damping 0.05 "
+                                    "--drive 0.17507043740108488 --contact 1,0,0,x:stiffness=";
+    char options[400];
+    write_text("spring.mtx", "%%MatrixMarket matrix coordinate real symmetric\n1 1 1\n1 1 1.0\n");
+    write_text("spring.txt", "1 1 1 1 0 0\n");
+    snprintf(options, sizeof options, "%s1 --limits 0.25:1:3", structure);
+    const struct outcome o = assert_runs(options);
+    require(strstr(o.out, "           0.5       3.3866 ") != NULL, "%s", o.out);
+    assert_close(value_of("damper.free"), 1.0 / hypot(1.0 - 1.21, 0.11), 1e-9);
+    assert_close(value_of("damper.stuck"), 1.0 / hypot(2.0 - 1.21, 0.11), 1e-9);
+    assert_close(value_of("damper.stuck.analytic"), 1.0 / hypot(2.0 - 1.21, 0.11), 1e-12);
+    /* at the limit of most power it has its loop: 4 N (X - N/k) a period */
+    const double limit = value_of("damper.best.limit");
+    const double loop = 4.0 * limit * (value_of("damper.best.amplitude") - limit) * 0.17507043740108488;
+    assert_close(value_of("damper.best.power"), loop, 1e-8);
+    assert_exact(value_of("damper.gaps"), 0.0);
+    snprintf(options, sizeof options, "%s0", structure);
+    assert_refused(options, options, "stiffness=0: must be above 0");
+    snprintf(options, sizeof options, "%s1e300", structure);
+    assert_refused(options, options, "more than 1e+09 times that of the structure");
+    snprintf(options, sizeof options, "%s1 --check 1", structure);
+    assert_refused(options, options, "leave out stiffness=, or --check");
+    snprintf(options, sizeof options, "%s1 --method march", structure);
+    assert_refused(options, options, "leave out stiffness=, or --method march");
+}
+END_TEST
+
+/* The stiffer the springs, the more they are like none; a rigid contact among them. */
+TEST(stiff_springs)
+{
+    static const char own[] = "--mass " BEAM "/M.mtx --stiffness " BEAM "/K.mtx --dofs " BEAM "/dofs.txt --load 400,20,5,z "
+                              "--force 0.1 --contact 200,0,5,z --limits 0.005:0.1:4 --contact ";
+    double limit[3], power[3], stuck[3];
+    for (int k = 0; k < 3; k++) {
+        static const char *const words[] = {"", ":stiffness=1e4", ":stiffness=1e6"};
+        char options[800];
+        snprintf(options, sizeof options, "%s300,0,5,z%s --contact 400,0,5,z%s", own, words[k], words[k]);
+        const struct outcome o = assert_runs(options);
+        require(!says(o.out, "not found"), "%s", o.out);
+        limit[k] = value_of("damper.best.limit");
+        power[k] = value_of("damper.best.power");
+        stuck[k] = value_of("damper.stuck");
+        assert_close(stuck[k], value_of("damper.stuck.analytic"), 1e-13);
+    }
+    assert_close(limit[2], limit[0], 1e-6 * limit[0]);
+    assert_close(power[2], power[0], 1e-7 * power[0]);
+    /* what they give way is 1/stiffness */
+    assert_close((stuck[1] - stuck[0]) / (stuck[2] - stuck[0]), 100.0, 2.0);
+}
+END_TEST
+
 static char *read_all(const char *folder, const char *name, size_t *length)
 {
     enum { MOST = 1 << 22 };
@@ -114,4 +168,4 @@ TEST(interrupted)
 }
 END_TEST
 
-TEST_MAIN("damper", {beam, 1}, {threads, 1}, {interrupted, 1})
+TEST_MAIN("damper", {beam, 1}, {spring, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})

@@ -158,6 +158,56 @@ static int make_coupled(tribo_system **sys, tribo_driver **drv)
     return advance_exact(sys, drv, 1);
 }
 
+/* Two sliders of which one is beyond its limit, on masses that are coupled or not, and one degree of freedom that only follows; a
+ * copy of that. */
+static int advance_massless(tribo_system **sys, tribo_driver **drv, double coupled, const char *method)
+{
+    enum { N = 5 };
+    double mass[N * N] = {2.0, coupled}, stiffness[N * N] = {0.0}, direction[3 * N] = {0.0}, y[2 * N + 1] = {0.0}, t = 0.0;
+    const double limit[] = {1.0, 1.0, 1.0}, load[N] = {1.0}, base[] = {0.1, 0.2, 0.0};
+    tribo_system *from = NULL;
+    mass[N] = coupled;
+    mass[N + 1] = 1.0;
+    for (size_t i = 2; i < N; i++) {
+        stiffness[0] += 1.0;
+        stiffness[i] = stiffness[i * N] = -1.0;
+        stiffness[i * N + i] = 2.0;
+        direction[(i - 2) * N + i] = 1.0;
+    }
+    direction[2 * N + N - 1] = 0.0;
+    direction[2 * N + 1] = 1.0;
+    y[2] = 3.0;
+    int status = tribo_system_linear(&from, N, 3, mass, NULL, stiffness, direction, 0, NULL, 0);
+    status = status ? status : tribo_system_clone(from, sys);
+    tribo_system_destroy(from);
+    status = status ? status : tribo_set_limit(tribo_system_context(*sys), limit);
+    status = status ? status : tribo_system_add_load(*sys, 1.0, load, NULL);
+    status = status ? status : tribo_system_add_base_motion(*sys, 1.0, base, NULL);
+    status = status ? status : tribo_driver_create(drv, *sys, method, 0.1, 1e-9, 0.0);
+    status = status ? status : tribo_driver_advance(*drv, &t, 0.1, y);
+    return status || strcmp(method, "exact") != 0 ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI, y);
+}
+
+static int make_massless(tribo_system **sys, tribo_driver **drv)
+{
+    return advance_massless(sys, drv, 0.0, "exact");
+}
+
+static int make_massless_coupled(tribo_system **sys, tribo_driver **drv)
+{
+    return advance_massless(sys, drv, 0.5, "exact");
+}
+
+static int make_massless_event(tribo_system **sys, tribo_driver **drv)
+{
+    return advance_massless(sys, drv, 0.5, "event");
+}
+
+static int make_massless_moreau(tribo_system **sys, tribo_driver **drv)
+{
+    return advance_massless(sys, drv, 0.5, "moreau/fixed");
+}
+
 /* Modes of which some are far below the others, and so are found a second time. */
 static int make_graded(tribo_system **sys, tribo_driver **drv)
 {
@@ -194,12 +244,26 @@ static int make_periodic_event(tribo_system **sys, tribo_driver **drv)
 static const struct {
     const char *name;
     int (*make)(tribo_system **sys, tribo_driver **drv);
-} makers[] = {{"chain", make_chain},         {"belt", make_belt},         {"oscillator", make_oscillator},
-              {"full", make_full},           {"diagonal", make_diagonal}, {"reduced", make_reduced},
-              {"driver", make_driver},       {"loaded", make_loaded},     {"exact", make_exact},
-              {"coupled", make_coupled},     {"graded", make_graded},     {"copy", make_copy},
-              {"full copy", make_full_copy}, {"periodic", make_periodic}, {"periodic event", make_periodic_event},
-              {"sparse", make_sparse}};
+} makers[] = {{"chain", make_chain},
+              {"belt", make_belt},
+              {"oscillator", make_oscillator},
+              {"full", make_full},
+              {"diagonal", make_diagonal},
+              {"reduced", make_reduced},
+              {"driver", make_driver},
+              {"loaded", make_loaded},
+              {"exact", make_exact},
+              {"coupled", make_coupled},
+              {"graded", make_graded},
+              {"copy", make_copy},
+              {"full copy", make_full_copy},
+              {"periodic", make_periodic},
+              {"periodic event", make_periodic_event},
+              {"sparse", make_sparse},
+              {"massless", make_massless},
+              {"massless coupled", make_massless_coupled},
+              {"massless event", make_massless_event},
+              {"massless moreau", make_massless_moreau}};
 
 /* Fails one allocation after the other, until there are no more. */
 TEST(failures)

@@ -1,0 +1,387 @@
+/* Structures with degrees of freedom without mass, from the matrices of the caller. */
+#include "massless.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model.h"
+
+/* A pivot that is not more than this part of the diagonal entry is rounding; and so is compliance that contacts share. */
+#define ROUNDING (64.0 * DBL_EPSILON)
+
+void tribo_massless_free(struct massless *m)
+{
+    tribo_matrix_free(&m->follow);
+    tribo_matrix_free(&m->give);
+    free(m->is);
+    free(m->compliance);
+    memset(m, 0, sizeof *m);
+}
+
+int tribo_massless_copy(struct massless *to, const struct massless *from, size_t ndof, size_t ncontact)
+{
+    int done = 1;
+    if (from->count) {
+        to->is = tribo_copy_of(from->is, ndof, 1, &done);
+        to->compliance = tribo_copy_of(from->compliance, ncontact, sizeof *to->compliance, &done);
+        done = done && tribo_matrix_copy(&to->follow, &from->follow) && tribo_matrix_copy(&to->give, &from->give);
+        to->count = from->count;
+        to->stiffest = from->stiffest;
+    }
+    return done;
+}
+
+void tribo_massless_follow(const struct massless *m, double *x)
+{
+    for (size_t d = 0; d < m->follow.rows; d++) {
+        x[d] = m->is[d] ? 0.0 : x[d];
+    }
+    if (m->count) {
+        tribo_matrix_multiply_add(&m->follow, 1.0, x, x);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------ which they are */
+
+static int row_is_empty(const struct matrix *a, size_t i)
+{
+    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        if (a->val[k] != 0.0) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+static int find_massless(const struct model *m, struct massless *w)
+{
+    w->is = calloc(m->ndof, 1);
+    w->compliance = calloc(m->ncontact + 1, sizeof *w->compliance);
+    for (size_t d = 0; w->is && d < m->ndof; d++) {
+        w->is[d] = (unsigned char)row_is_empty(&m->mass, d);
+        w->count += w->is[d];
+    }
+    return w->is && w->compliance;
+}
+
+static int check_damping(const struct model *m, const struct massless *w)
+{
+    for (size_t i = 0; i < m->damping.rows; i++) {
+        for (size_t k = m->damping.first[i]; k < m->damping.first[i + 1]; k++) {
+            const size_t j = m->damping.col[k];
+            if (m->damping.val[k] != 0.0 && (w->is[i] || w->is[j])) {
+                return tribo_model_fail(
+                    m, TRIBO_ERR_UNSUPPORTED,
+                    "damping[%zu][%zu] = %g, but degree of freedom %zu has no mass: there only stiffness acts", i, j,
+                    m->damping.val[k], w->is[i] ? i : j);
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------- how they give way */
+
+/* Solutions of K_ww x = b, column by column, and where w stand among the degrees of freedom. */
+struct statics {
+    struct cholesky factor;
+    size_t n, *dof, *place; /* [n]; [ndof] */
+    double *x;              /* [n] */
+};
+
+static void free_statics(struct statics *s)
+{
+    tribo_cholesky_free(&s->factor);
+    free(s->dof);
+    free(s->place);
+    free(s->x);
+}
+
+static int no_hold(const struct model *m, size_t dof, double pivot)
+{
+    return tribo_model_fail(m, TRIBO_ERR_INDEFINITE,
+                            "mass is not positive definite: degree of freedom %zu has none, and the stiffness does not hold it: "
+                            "pivot %g",
+                            dof, pivot);
+}
+
+/* Factors of K_ww, of which no pivot is rounding. */
+static int factorize(const struct model *m, struct statics *s, const struct matrix *kww)
+{
+    size_t where;
+    double pivot;
+    const int status = tribo_cholesky_create(&s->factor, kww, &where, &pivot);
+    if (status == TRIBO_ERR_INDEFINITE) {
+        return no_hold(m, s->dof[where], pivot);
+    }
+    for (size_t k = 0; !status && s->factor.root && k < s->n; k++) {
+        const size_t at = s->factor.order ? s->factor.order[k] : k;
+        const double found = s->factor.root[k] * s->factor.root[k];
+        if (s->factor.order && found <= ROUNDING * tribo_matrix_get(kww, at, at)) {
+            return no_hold(m, s->dof[at], found);
+        }
+    }
+    return status == TRIBO_ERR_SIZE ? tribo_model_too_large(m) : status ? tribo_model_no_memory(m) : TRIBO_OK;
+}
+
+/* Room for the entries of a matrix, row i and column j. */
+struct triplets {
+    size_t count, *i, *j;
+    double *v;
+};
+
+static int create_triplets(struct triplets *t, size_t room)
+{
+    *t = (struct triplets){0, malloc((room + 1) * sizeof *t->i), malloc((room + 1) * sizeof *t->j),
+                           malloc((room + 1) * sizeof *t->v)};
+    return t->i && t->j && t->v;
+}
+
+static void free_triplets(struct triplets *t)
+{
+    free(t->i);
+    free(t->j);
+    free(t->v);
+}
+
+static void put(struct triplets *t, size_t i, size_t j, double v)
+{
+    if (v != 0.0) {
+        t->i[t->count] = i;
+        t->j[t->count] = j;
+        t->v[t->count++] = v;
+    }
+}
+
+static int begin_statics(const struct model *m, const struct massless *w, struct statics *s)
+{
+    const struct matrix *k = &m->stiffness;
+    struct triplets t = {0};
+    struct matrix kww = {0};
+    s->dof = malloc((w->count + 1) * sizeof *s->dof);
+    s->place = malloc(m->ndof * sizeof *s->place);
+    s->x = malloc((w->count + 1) * sizeof *s->x);
+    int done = s->dof && s->place && s->x && create_triplets(&t, k->first[k->rows]);
+    for (size_t d = 0; done && d < m->ndof; d++) {
+        s->place[d] = s->n;
+        if (w->is[d]) {
+            s->dof[s->n++] = d;
+        }
+    }
+    for (size_t a = 0; done && a < s->n; a++) {
+        for (size_t e = k->first[s->dof[a]]; e < k->first[s->dof[a] + 1]; e++) {
+            if (w->is[k->col[e]]) {
+                put(&t, a, s->place[k->col[e]], k->val[e]);
+            }
+        }
+    }
+    done = done && tribo_matrix_from_triplets(&kww, s->n, s->n, t.count, t.i, t.j, t.v);
+    const int status = done ? factorize(m, s, &kww) : tribo_model_no_memory(m);
+    tribo_matrix_free(&kww);
+    free_triplets(&t);
+    return status;
+}
+
+/* x = K_ww^-1 times the entries in w of row i of a. 0 if it has none. */
+static int solve_row(const struct massless *w, struct statics *s, const struct matrix *a, size_t i)
+{
+    int any = 0;
+    memset(s->x, 0, s->n * sizeof *s->x);
+    for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+        if (w->is[a->col[e]]) {
+            s->x[s->place[a->col[e]]] = a->val[e];
+            any |= a->val[e] != 0.0;
+        }
+    }
+    if (any) {
+        tribo_cholesky_solve(&s->factor, 1, s->x);
+    }
+    return any;
+}
+
+/* Rows of a that touch w, of massive degrees of freedom or of contacts. */
+static size_t touching(const struct massless *w, const struct matrix *a, int massive_only)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < a->rows; i++) {
+        int any = 0;
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            any |= w->is[a->col[e]];
+        }
+        count += any && !(massive_only && w->is[i]);
+    }
+    return count;
+}
+
+/* to [ndof][rows of a] = factor K_ww^-1 (columns of a')_w. 0 if out of memory. */
+static int respond(const struct model *m, const struct massless *w, struct statics *s, const struct matrix *a, double factor,
+                   struct matrix *to)
+{
+    const int of_stiffness = a == &m->stiffness;
+    struct triplets t;
+    int done = create_triplets(&t, touching(w, a, of_stiffness) * s->n);
+    for (size_t i = 0; done && i < a->rows; i++) {
+        if (!(of_stiffness && w->is[i]) && solve_row(w, s, a, i)) {
+            for (size_t k = 0; k < s->n; k++) {
+                put(&t, s->dof[k], i, factor * s->x[k]);
+            }
+        }
+    }
+    done = done && tribo_matrix_from_triplets(to, m->ndof, a->rows, t.count, t.i, t.j, t.v);
+    free_triplets(&t);
+    return done;
+}
+
+/* By how much contact i gives way to the forces that x is the response to. */
+static double way_of(const struct massless *w, const struct statics *s, const struct matrix *j, size_t i)
+{
+    double way = 0.0;
+    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        way += w->is[j->col[e]] ? j->val[e] * s->x[s->place[j->col[e]]] : 0.0;
+    }
+    return way;
+}
+
+/* Compliance of contacts, each of which gives way by its own force only. */
+static int find_compliance(const struct model *m, struct massless *w, struct statics *s)
+{
+    const struct matrix *j = &m->direction;
+    for (size_t i = 0; i < m->ncontact; i++) {
+        if (!solve_row(w, s, j, i)) {
+            continue;
+        }
+        w->compliance[i] = way_of(w, s, j, i);
+        for (size_t k = 0; k < i; k++) {
+            const double shared = way_of(w, s, j, k);
+            if (fabs(shared) > ROUNDING * sqrt(w->compliance[i] * w->compliance[k])) {
+                return tribo_model_fail(
+                    m, TRIBO_ERR_UNSUPPORTED,
+                    "contact %zu and contact %zu share degrees of freedom without mass: the force of one moves the "
+                    "other by %g; give these mass",
+                    k, i, shared);
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int find_statics(const struct model *m, struct massless *w)
+{
+    struct statics s = {.n = 0};
+    int status = begin_statics(m, w, &s);
+    status = status ? status : find_compliance(m, w, &s);
+    if (!status && (!respond(m, w, &s, &m->stiffness, -1.0, &w->follow) || !respond(m, w, &s, &m->direction, 1.0, &w->give))) {
+        status = tribo_model_no_memory(m);
+    }
+    free_statics(&s);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------- the system of the others */
+
+/* to = a without rows, or columns, of w. */
+static int without(const struct massless *w, const struct matrix *a, int rows, struct matrix *to)
+{
+    struct triplets t;
+    int done = create_triplets(&t, a->first[a->rows]);
+    for (size_t i = 0; done && i < a->rows; i++) {
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            if (!w->is[rows ? i : a->col[e]]) {
+                put(&t, i, a->col[e], a->val[e]);
+            }
+        }
+    }
+    done = done && tribo_matrix_from_triplets(to, a->rows, a->cols, t.count, t.i, t.j, t.v);
+    free_triplets(&t);
+    return done;
+}
+
+/* to = mass with ones for w. */
+static int fill_mass(const struct massless *w, const struct matrix *mass, struct matrix *to)
+{
+    const size_t n = mass->rows;
+    double *one = malloc(n * sizeof *one);
+    struct matrix ones = {0};
+    for (size_t d = 0; one && d < n; d++) {
+        one[d] = w->is[d] ? 1.0 : 0.0;
+    }
+    const int done = one && tribo_matrix_diagonal(&ones, n, one) && tribo_matrix_sum(to, 1.0, mass, 1.0, &ones);
+    tribo_matrix_free(&ones);
+    free(one);
+    return done;
+}
+
+static void exchange(struct matrix *a, struct matrix *b)
+{
+    const struct matrix c = *a;
+    *a = *b;
+    *b = c;
+}
+
+/* The largest row sum of what accelerates by places: those of w, and forces of elastic contacts, as large as they can be beside
+ * q = 1. 0 if out of memory. */
+static int find_stiffest(tribo_system *s)
+{
+    const size_t n = s->ndof, c = s->ncontact;
+    struct massless *w = &s->massless;
+    double *q = calloc(3 * n + c + 1, sizeof *q);
+    if (!q) {
+        return 0;
+    }
+    double *places = q + n, *rate = q + 2 * n, *force = q + 3 * n;
+    for (size_t d = 0; d < n; d++) {
+        places[d] = q[d] = w->is[d] ? 0.0 : 1.0;
+    }
+    tribo_matrix_add_sizes(&w->follow, q, places);
+    tribo_matrix_add_sizes(&s->direction, places, force);
+    for (size_t i = 0; i < c; i++) {
+        force[i] = tribo_massless_touches(w, i) ? force[i] / w->compliance[i] : 0.0;
+    }
+    tribo_matrix_add_sizes(&w->give, force, places);
+    tribo_matrix_add_sizes(&s->stiffness, places, rate);
+    tribo_matrix_add_sizes(&s->response, force, rate);
+    w->stiffest = tribo_largest(rate, n);
+    free(q);
+    return 1;
+}
+
+/* A system that accelerates w by nothing; then it is told all of mass, stiffness and direction, and how w follows. */
+static int build(struct model *m, struct massless *w, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)
+{
+    struct matrix mass = {0}, stiffness = {0}, direction = {0};
+    const int done =
+        fill_mass(w, &m->mass, &mass) && without(w, &m->stiffness, 1, &stiffness) && without(w, &m->direction, 0, &direction);
+    exchange(&m->mass, &mass);
+    exchange(&m->stiffness, &stiffness);
+    exchange(&m->direction, &direction);
+    int status = done ? build_massive(m, sys) : tribo_model_no_memory(m);
+    if (!status) {
+        exchange(&(*sys)->mass, &mass);
+        exchange(&(*sys)->elastic, &stiffness);
+        exchange(&(*sys)->direction, &direction);
+        (*sys)->massless = *w;
+        *w = (struct massless){0};
+        status = find_stiffest(*sys) ? TRIBO_OK : tribo_model_no_memory(m);
+    }
+    tribo_matrix_free(&mass);
+    tribo_matrix_free(&stiffness);
+    tribo_matrix_free(&direction);
+    return status;
+}
+
+int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)
+{
+    struct massless w = {0};
+    int status = find_massless(m, &w) ? TRIBO_OK : tribo_model_no_memory(m);
+    if (status || w.count == 0 || w.count == m->ndof) {
+        status = status ? status : build_massive(m, sys);
+    } else {
+        status = check_damping(m, &w);
+        status = status ? status : find_statics(m, &w);
+        status = status ? status : build(m, &w, build_massive, sys);
+    }
+    tribo_massless_free(&w);
+    return status;
+}
