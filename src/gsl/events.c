@@ -11,6 +11,9 @@
 /* Where events make no headway, ten times as much is taken for rounding, until it is so many times what it was. */
 #define MOST_DOUBT 1e6
 
+/* At rest, either direction, open. */
+#define SLIPS 4
+
 /* Events that there may be at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
 static double most_credit(const struct events *e)
 {
@@ -25,8 +28,9 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
         return status;
     }
     e->next = malloc(tribo_system_dimension(sys) * sizeof *e->next);
+    e->lasted = calloc(SLIPS * sys->ncontact + 1, sizeof *e->lasted);
     e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
-    if (!e->next || !e->search.guard) {
+    if (!e->next || !e->lasted || !e->search.guard) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contacts", sys->ncontact);
     }
     drv->excess = drv->backslip = 0.0;
@@ -37,6 +41,7 @@ void tribo_events_free(struct events *e)
 {
     tribo_stick_slip_free(&e->stick_slip);
     free(e->next);
+    free(e->lasted);
     free(e->search.guard);
 }
 
@@ -145,6 +150,26 @@ static int count_event(struct events *e, tribo_driver *drv, const struct guard *
     return m->doubt > MOST_DOUBT ? give_up(e, drv, t) : TRIBO_OK;
 }
 
+/* Phases that begin alike in one period after the other last alike. */
+static void expect(struct events *e, const struct guard *event, double when)
+{
+    if (e->begun && event) {
+        *e->begun = when;
+    }
+    e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.slip[event->contact] + 1) : NULL;
+    e->search.expected = e->begun ? *e->begun : 0.0;
+}
+
+/* A run that does not continue another one is not to depend on it, not even in its rounding. */
+static void forget(struct events *e, int continues)
+{
+    e->begun = NULL;
+    e->search.expected = 0.0;
+    if (!continues) {
+        memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
+    }
+}
+
 /* What the search has learnt of the size of velocities, and how far the phase strayed from the law. */
 static void learn(struct events *e, tribo_driver *drv)
 {
@@ -246,6 +271,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         }
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
+    expect(e, event, when);
     if (!status && event && e->company) {
         e->company->decided(e->company);
     }
@@ -268,6 +294,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     e->credit = most_credit(e);
     e->paid = *t;
     e->suspects = 0;
+    forget(e, continues);
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }

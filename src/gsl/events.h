@@ -36,6 +36,9 @@ struct events {
 
     struct company *company; /* NULL: nobody */
 
+    double *lasted; /* [ncontact][4] how long the last phase did that began as contact i turned to this slip; 0: none yet */
+    double *begun;  /* which of them this phase is; NULL if it began otherwise */
+
     double credit, paid;            /* how many more events there may be, as of when */
     size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
     size_t suspects;
