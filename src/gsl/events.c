@@ -11,6 +11,9 @@
 /* Where events make no headway, ten times as much is taken for rounding, until it is so many times what it was. */
 #define MOST_DOUBT 1e6
 
+/* So many steps without events mean that there is no headway, if together they do not take 1/(16 fastest). */
+#define MOST_IDLE 10000
+
 /* At rest, either direction, open. */
 #define SLIPS 4
 
@@ -144,7 +147,8 @@ static int count_event(struct events *e, tribo_driver *drv, const struct guard *
     suspect(e, event->contact);
     e->credit -= 1.0;
     if (e->credit < 0.0) {
-        e->credit = most;
+        /* not all of it, since that would be headway */
+        e->credit = 0.5 * most;
         m->doubt *= 10.0;
     }
     return m->doubt > MOST_DOUBT ? give_up(e, drv, t) : TRIBO_OK;
@@ -168,6 +172,14 @@ static void forget(struct events *e, int continues)
     if (!continues) {
         memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
     }
+}
+
+/* Counts a phase that the method ends for itself. Some are shorter than others, but they must get somewhere. */
+static int count_step(struct events *e, tribo_driver *drv, double t, double tau, double fastest)
+{
+    e->idle = 16.0 * fastest * (t - e->since) < 1.0 ? e->idle + 1 : 0;
+    e->since = e->idle ? e->since : t;
+    return e->idle > MOST_IDLE ? tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", t, tau) : TRIBO_OK;
 }
 
 /* What the search has learnt of the size of velocities, and how far the phase strayed from the law. */
@@ -269,6 +281,8 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         } else {
             e->stick_slip.reached = event->contact;
         }
+    } else if (*t < end) {
+        status = count_step(e, drv, *t, when, fastest);
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
     expect(e, event, when);
@@ -294,6 +308,8 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     e->credit = most_credit(e);
     e->paid = *t;
     e->suspects = 0;
+    e->idle = 0;
+    e->since = *t;
     forget(e, continues);
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
