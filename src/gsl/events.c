@@ -8,20 +8,23 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where events make no headway, ten times as much is taken for rounding, until it is so many times what it was. */
-#define MOST_DOUBT 1e6
+/* Where events are many, now and then so many times as much is taken for rounding. */
+#define DOUBT 10.0
 
-/* So many steps without events mean that there is no headway, if together they do not take 1/(16 fastest). */
-#define MOST_IDLE 10000
-
-/* At rest, either direction, open. */
-#define SLIPS 4
-
-/* Events that there may be at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
+/* Events that there may be at once, and again in every time of 1/(16 fastest), before that: some contacts, and some of each. */
 static double most_credit(const struct events *e)
 {
     return 32.0 + 8.0 * (double)e->stick_slip.contacts;
 }
+
+/* Phases that together take less than this time are no headway if they are so many. */
+static size_t most_idle(const struct events *e)
+{
+    return 10000 + 100 * e->stick_slip.contacts;
+}
+
+/* At rest, either direction, open. */
+#define SLIPS 4
 
 int tribo_events_create(struct events *e, tribo_driver *drv)
 {
@@ -132,26 +135,37 @@ static void suspect(struct events *e, size_t contact)
 }
 
 /* Counts an event against the credit that has gathered since the last one. */
-static int count_event(struct events *e, tribo_driver *drv, const struct guard *event, double t, double fastest)
+static void count_event(struct events *e, tribo_driver *drv, const struct guard *event, double t, double fastest)
 {
     const double most = most_credit(e);
     struct stick_slip *m = &e->stick_slip;
     drv->events++;
     e->credit += 16.0 * most * fastest * (t - e->paid);
     e->paid = t;
+    m->doubt = 1.0;
     if (e->credit >= most) {
         e->credit = most;
         e->suspects = 0;
-        m->doubt = 1.0;
     }
     suspect(e, event->contact);
     e->credit -= 1.0;
     if (e->credit < 0.0) {
-        /* not all of it, since that would be headway */
-        e->credit = 0.5 * most;
-        m->doubt *= 10.0;
+        e->credit = most;
+        m->doubt = DOUBT;
     }
-    return m->doubt > MOST_DOUBT ? give_up(e, drv, t) : TRIBO_OK;
+}
+
+/* Counts a phase that took tau until t, whatever it was ended by. */
+static int count_phase(struct events *e, tribo_driver *drv, int event, double t, double tau, double fastest)
+{
+    e->idle++;
+    if (16.0 * fastest * (t - e->since) >= 1.0) {
+        e->since = t;
+        e->idle = 0;
+    }
+    return e->idle <= most_idle(e) ? TRIBO_OK
+           : event ? give_up(e, drv, t)
+                   : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", t, tau);
 }
 
 /* Phases that begin alike in one period after the other last alike. */
@@ -172,14 +186,6 @@ static void forget(struct events *e, int continues)
     if (!continues) {
         memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
     }
-}
-
-/* Counts a phase that the method ends for itself. Some are shorter than others, but they must get somewhere. */
-static int count_step(struct events *e, tribo_driver *drv, double t, double tau, double fastest)
-{
-    e->idle = 16.0 * fastest * (t - e->since) < 1.0 ? e->idle + 1 : 0;
-    e->since = e->idle ? e->since : t;
-    return e->idle > MOST_IDLE ? tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", t, tau) : TRIBO_OK;
 }
 
 /* What the search has learnt of the size of velocities, and how far the phase strayed from the law. */
@@ -275,15 +281,14 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     learn(e, drv);
     sys->evaluations += e->shows_between ? e->search.looks : 0;
     if (event) {
-        status = count_event(e, drv, event, *t, fastest);
+        count_event(e, drv, event, *t, fastest);
         if (event->slides) {
             e->stick_slip.slip[event->contact] = 0;
         } else {
             e->stick_slip.reached = event->contact;
         }
-    } else if (*t < end) {
-        status = count_step(e, drv, *t, when, fastest);
     }
+    status = event || *t < end ? count_phase(e, drv, event != NULL, *t, when, fastest) : TRIBO_OK;
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
     expect(e, event, when);
     if (!status && event && e->company) {

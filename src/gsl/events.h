@@ -40,7 +40,7 @@ struct events {
     double *begun;  /* which of them this phase is; NULL if it began otherwise */
 
     double credit, paid;            /* how many more events there may be, as of when */
-    size_t idle;                    /* steps without events since then, */
+    size_t idle;                    /* phases since then, */
     double since;                   /* which is not long ago */
     size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
     size_t suspects;
