@@ -8,8 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where events are many, now and then so many times as much is taken for rounding. */
+/* Where events are many, so many times as much is taken for rounding by one decision; where they make no headway, by all of them,
+ * and again so many times as much, until it is MOST_DOUBT times what it was. */
 #define DOUBT 10.0
+#define MOST_DOUBT 1e6
 
 /* Events that there may be at once, and again in every time of 1/(16 fastest), before that: some contacts, and some of each. */
 static double most_credit(const struct events *e)
@@ -17,11 +19,11 @@ static double most_credit(const struct events *e)
     return 32.0 + 8.0 * (double)e->stick_slip.contacts;
 }
 
-/* Phases that together take less than this time are no headway if they are so many. */
-static size_t most_idle(const struct events *e)
-{
-    return 10000 + 100 * e->stick_slip.contacts;
-}
+/* That they use up their credit in this part of such a time is no headway. */
+#define HEADWAY 1e-2
+
+/* So many steps without events mean that there is no headway, if together they take less than such a time. */
+#define MOST_IDLE 10000
 
 /* At rest, either direction, open. */
 #define SLIPS 4
@@ -134,38 +136,52 @@ static void suspect(struct events *e, size_t contact)
     }
 }
 
+/* The credit is full. */
+static void trust(struct events *e, double t)
+{
+    e->credit = most_credit(e);
+    e->since = t;
+    e->suspects = 0;
+    e->stick_slip.doubt = 1.0;
+}
+
+/* The credit is used up. Where there is no headway, not all of it is given back, since that would be trust. */
+static void distrust(struct events *e, double t, double fastest)
+{
+    struct stick_slip *m = &e->stick_slip;
+    const int stuck = 16.0 * fastest * (t - e->since) < HEADWAY;
+    e->credit = (stuck ? 0.5 : 1.0) * most_credit(e);
+    e->since = t;
+    m->doubt = stuck ? DOUBT * m->doubt : DOUBT;
+}
+
 /* Counts an event against the credit that has gathered since the last one. */
-static void count_event(struct events *e, tribo_driver *drv, const struct guard *event, double t, double fastest)
+static int count_event(struct events *e, tribo_driver *drv, const struct guard *event, double t, double fastest)
 {
     const double most = most_credit(e);
-    struct stick_slip *m = &e->stick_slip;
     drv->events++;
     e->credit += 16.0 * most * fastest * (t - e->paid);
     e->paid = t;
-    m->doubt = 1.0;
     if (e->credit >= most) {
-        e->credit = most;
-        e->suspects = 0;
+        trust(e, t);
     }
     suspect(e, event->contact);
     e->credit -= 1.0;
     if (e->credit < 0.0) {
-        e->credit = most;
-        m->doubt = DOUBT;
+        distrust(e, t, fastest);
     }
+    return e->stick_slip.doubt > MOST_DOUBT ? give_up(e, drv, t) : TRIBO_OK;
 }
 
-/* Counts a phase that took tau until t, whatever it was ended by. */
-static int count_phase(struct events *e, tribo_driver *drv, int event, double t, double tau, double fastest)
+/* Counts a step that no event ended. */
+static int count_step(struct events *e, tribo_driver *drv, double t, double tau, double fastest)
 {
-    e->idle++;
-    if (16.0 * fastest * (t - e->since) >= 1.0) {
-        e->since = t;
+    if (16.0 * fastest * (t - e->rested) >= 1.0) {
+        e->rested = t;
         e->idle = 0;
     }
-    return e->idle <= most_idle(e) ? TRIBO_OK
-           : event ? give_up(e, drv, t)
-                   : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", t, tau);
+    return ++e->idle <= MOST_IDLE ? TRIBO_OK
+                                  : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", t, tau);
 }
 
 /* Phases that begin alike in one period after the other last alike. */
@@ -281,14 +297,15 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     learn(e, drv);
     sys->evaluations += e->shows_between ? e->search.looks : 0;
     if (event) {
-        count_event(e, drv, event, *t, fastest);
+        status = count_event(e, drv, event, *t, fastest);
         if (event->slides) {
             e->stick_slip.slip[event->contact] = 0;
         } else {
             e->stick_slip.reached = event->contact;
         }
+    } else if (*t < end) {
+        status = count_step(e, drv, *t, when, fastest);
     }
-    status = event || *t < end ? count_phase(e, drv, event != NULL, *t, when, fastest) : TRIBO_OK;
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
     expect(e, event, when);
     if (!status && event && e->company) {
@@ -310,11 +327,9 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
                                  drv->dt, t1);
     }
     int status = on_context(drv, tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues));
-    e->credit = most_credit(e);
-    e->paid = *t;
-    e->suspects = 0;
+    e->paid = e->rested = *t;
     e->idle = 0;
-    e->since = *t;
+    trust(e, *t);
     forget(e, continues);
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);

@@ -39,9 +39,9 @@ struct events {
     double *lasted; /* [ncontact][4] how long the last phase did that began as contact i turned to this slip; 0: none yet */
     double *begun;  /* which of them this phase is; NULL if it began otherwise */
 
-    double credit, paid;            /* how many more events there may be, as of when */
-    size_t idle;                    /* phases since then, */
-    double since;                   /* which is not long ago */
+    double credit, paid, since;     /* how many more events there may be, as of when; since when it is being used up */
+    size_t idle;                    /* steps that no event ended since then, */
+    double rested;                  /* which is not long ago */
     size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
     size_t suspects;
 };
