@@ -1,6 +1,6 @@
 /* Intervals [a, b] are walked through from left to right. Where all guards are positive at both ends, their quintics and the
  * bounds of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b, the
- * interval becomes shorter: up to where the quintics have their first zero, or by half. */
+ * interval becomes shorter: up to where the quintics have their first zero, or by a part. */
 #include "first_zero.h"
 #include "../common/real.h"
 
@@ -214,6 +214,12 @@ static double find_bounds(struct first_zero *s, double a, double longest, double
     return length;
 }
 
+/* What to try after an interval of length h: with care where it is of the length that bounds allow. */
+static double longer(const struct first_zero *s, double h)
+{
+    return (SHORT * h < 0.5 * s->reach ? 1.7 : 1.15) * h;
+}
+
 /* Where to look next: not further than to where a zero is expected, which is then in reach. */
 static double next_look(const struct first_zero *s, double a, double h, double longest)
 {
@@ -248,7 +254,7 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
             return 0;
         }
         if (a >= better) {
-            find_bounds(s, a, longest, &better);
+            h = greater(h, find_bounds(s, a, longest, &better));
         }
         double b = next_look(s, a, h, longest);
         sample(s, b);
@@ -267,12 +273,12 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
                 *when = b + step;
                 return 1;
             }
-            h = greater(h, 1.7 * (b - a));
+            h = greater(h, longer(s, b - a));
             a = b;
             keep_left(s);
             continue;
         }
-        h = 0.5 * (b - a);
+        h = 0.7 * (b - a);
         if (!(a + h > a && a + h < b && h > s->resolution)) {
             /* nothing left to divide: a guard that is below zero fell right here, and what else is in doubt is rounding */
             below = first_to_fall(s, b - a, &at);
