@@ -8,10 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where events are many, so many times as much is taken for rounding by one decision; where they make no headway, by all of them,
- * and again so many times as much, until it is MOST_DOUBT times what it was. */
+/* Where events are many, so many times as much is taken for rounding by one decision. */
 #define DOUBT 10.0
-#define MOST_DOUBT 1e6
 
 /* Events that there may be at once, and again in every time of 1/(16 fastest), before that: some contacts, and some of each. */
 static double most_credit(const struct events *e)
@@ -19,8 +17,10 @@ static double most_credit(const struct events *e)
     return 32.0 + 8.0 * (double)e->stick_slip.contacts;
 }
 
-/* That they use up their credit in this part of such a time is no headway. */
+/* That they use up their credit in this part of such a time is no headway, and so many of them in a row are the end. Some hundred
+ * thousand happen where limits swing, and lead on. */
 #define HEADWAY 1e-2
+#define MOST_STUCK 1e6
 
 /* So many steps without events mean that there is no headway, if together they take less than such a time. */
 #define MOST_IDLE 10000
@@ -136,23 +136,11 @@ static void suspect(struct events *e, size_t contact)
     }
 }
 
-/* The credit is full. */
-static void trust(struct events *e, double t)
+/* Gives events all their credit, from t on. */
+static void refill(struct events *e, double t)
 {
     e->credit = most_credit(e);
     e->since = t;
-    e->suspects = 0;
-    e->stick_slip.doubt = 1.0;
-}
-
-/* The credit is used up. Where there is no headway, not all of it is given back, since that would be trust. */
-static void distrust(struct events *e, double t, double fastest)
-{
-    struct stick_slip *m = &e->stick_slip;
-    const int stuck = 16.0 * fastest * (t - e->since) < HEADWAY;
-    e->credit = (stuck ? 0.5 : 1.0) * most_credit(e);
-    e->since = t;
-    m->doubt = stuck ? DOUBT * m->doubt : DOUBT;
 }
 
 /* Counts an event against the credit that has gathered since the last one. */
@@ -162,15 +150,19 @@ static int count_event(struct events *e, tribo_driver *drv, const struct guard *
     drv->events++;
     e->credit += 16.0 * most * fastest * (t - e->paid);
     e->paid = t;
+    e->stick_slip.doubt = 1.0;
     if (e->credit >= most) {
-        trust(e, t);
+        refill(e, t);
+        e->suspects = 0;
     }
     suspect(e, event->contact);
     e->credit -= 1.0;
     if (e->credit < 0.0) {
-        distrust(e, t, fastest);
+        e->stick_slip.doubt = DOUBT;
+        e->stuck = 16.0 * fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
+        refill(e, t);
     }
-    return e->stick_slip.doubt > MOST_DOUBT ? give_up(e, drv, t) : TRIBO_OK;
+    return e->stuck > MOST_STUCK ? give_up(e, drv, t) : TRIBO_OK;
 }
 
 /* Counts a step that no event ended. */
@@ -328,8 +320,9 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     }
     int status = on_context(drv, tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues));
     e->paid = e->rested = *t;
-    e->idle = 0;
-    trust(e, *t);
+    e->idle = e->suspects = 0;
+    e->stuck = 0.0;
+    refill(e, *t);
     forget(e, continues);
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);

