@@ -520,5 +520,6 @@ TEST(other_methods)
 }
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
-          {stuck, 2}, {open, 2}, {constant_load, 2}, {swinging_limits, 8}, {multipliers_of_swinging_limits, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
-          {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2}, {other_methods, 5})
+          {stuck, 2}, {open, 2}, {constant_load, 2}, {swinging_limits, 8}, {multipliers_of_swinging_limits, 2}, {belt, 2},
+          {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2},
+          {nothing_left, 2}, {errors, 2}, {other_methods, 5})
