@@ -11,7 +11,7 @@
 /* Where events are many, so many times as much is taken for rounding by one decision. */
 #define DOUBT 10.0
 
-/* Events that there may be at once, and again in every time of 1/(16 fastest), before that: some contacts, and some of each. */
+/* Events that there may be before that at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
 static double most_credit(const struct events *e)
 {
     return 32.0 + 8.0 * (double)e->stick_slip.contacts;
@@ -25,8 +25,8 @@ static double most_credit(const struct events *e)
 /* So many steps without events mean that there is no headway, if together they take less than such a time. */
 #define MOST_IDLE 10000
 
-/* At rest, either direction, open. */
-#define SLIPS 4
+/* Slips from -1 to 3. */
+#define SLIPS 5
 
 int tribo_events_create(struct events *e, tribo_driver *drv)
 {

@@ -36,7 +36,7 @@ struct events {
 
     struct company *company; /* NULL: nobody */
 
-    double *lasted; /* [ncontact][4] how long the last phase did that began as contact i turned to this slip; 0: none yet */
+    double *lasted; /* [ncontact][5] how long the last phase did that began as contact i turned to this slip; 0: none yet */
     double *begun;  /* which of them this phase is; NULL if it began otherwise */
 
     double credit, paid, since;     /* how many more events there may be, as of when; since when it is being used up */

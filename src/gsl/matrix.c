@@ -41,16 +41,10 @@ static size_t diagonal(const struct matrix *a, size_t i, size_t j)
     return j + a->rows - i;
 }
 
-/* So many entries at most are multiplied with before anything else is worth while. */
-#define FEW 4
-
 /* Fills `fast` if that pays: with diagonals if half of their entries are not zero, with all entries if a third of them is not. */
 static int speed_up(struct matrix *a)
 {
     const size_t entries = a->first[a->rows];
-    if (entries <= FEW) {
-        return 1;
-    }
     size_t *place = calloc(a->rows + a->cols + 1, sizeof *place);
     if (!place) {
         tribo_matrix_free(a);
