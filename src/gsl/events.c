@@ -8,14 +8,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Where events make no headway, ten times as much is taken for rounding, until it is so many times what it was. */
-#define MOST_DOUBT 1e6
+/* Where events are many, so many times as much is taken for rounding by one decision. */
+#define DOUBT 10.0
 
-/* Events that there may be at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
+/* Events that there may be before that at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
 static double most_credit(const struct events *e)
 {
     return 32.0 + 8.0 * (double)e->stick_slip.contacts;
 }
+
+/* That they use up their credit in this part of such a time is no headway, and so many of them in a row are the end. Some hundred
+ * thousand happen where limits swing, and lead on. */
+#define HEADWAY 1e-2
+#define MOST_STUCK 1e6
+
+/* So many steps without events mean that there is no headway, if together they take less than such a time. */
+#define MOST_IDLE 10000
+
+/* Slips from -1 to 3. */
+#define SLIPS 5
 
 int tribo_events_create(struct events *e, tribo_driver *drv)
 {
@@ -25,8 +36,9 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
         return status;
     }
     e->next = malloc(tribo_system_dimension(sys) * sizeof *e->next);
+    e->lasted = calloc(SLIPS * sys->ncontact + 1, sizeof *e->lasted);
     e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
-    if (!e->next || !e->search.guard) {
+    if (!e->next || !e->lasted || !e->search.guard) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contacts", sys->ncontact);
     }
     e->stick_slip.abstol = drv->abstol;
@@ -39,6 +51,7 @@ void tribo_events_free(struct events *e)
 {
     tribo_stick_slip_free(&e->stick_slip);
     free(e->next);
+    free(e->lasted);
     free(e->search.guard);
 }
 
@@ -130,26 +143,64 @@ static void suspect(struct events *e, size_t contact)
     }
 }
 
+/* Gives events all their credit, from t on. */
+static void refill(struct events *e, double t)
+{
+    e->credit = most_credit(e);
+    e->since = t;
+}
+
 /* Counts an event against the credit that has gathered since the last one. */
 static int count_event(struct events *e, tribo_driver *drv, size_t contact, double t, double fastest)
 {
     const double most = most_credit(e);
-    struct stick_slip *m = &e->stick_slip;
     drv->events++;
     e->credit += 16.0 * most * fastest * (t - e->paid);
     e->paid = t;
+    e->stick_slip.doubt = 1.0;
     if (e->credit >= most) {
-        e->credit = most;
+        refill(e, t);
         e->suspects = 0;
-        m->doubt = 1.0;
     }
     suspect(e, contact);
     e->credit -= 1.0;
     if (e->credit < 0.0) {
-        e->credit = most;
-        m->doubt *= 10.0;
+        e->stick_slip.doubt = DOUBT;
+        e->stuck = 16.0 * fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
+        refill(e, t);
     }
-    return m->doubt > MOST_DOUBT ? give_up(e, drv, t) : TRIBO_OK;
+    return e->stuck > MOST_STUCK ? give_up(e, drv, t) : TRIBO_OK;
+}
+
+/* Counts a step that no event ended. */
+static int count_step(struct events *e, tribo_driver *drv, double t, double tau, double fastest)
+{
+    if (16.0 * fastest * (t - e->rested) >= 1.0) {
+        e->rested = t;
+        e->idle = 0;
+    }
+    return ++e->idle <= MOST_IDLE ? TRIBO_OK
+                                  : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", t, tau);
+}
+
+/* Phases that begin alike in one period after the other last alike. */
+static void expect(struct events *e, const struct guard *event, double when)
+{
+    if (e->begun && event) {
+        *e->begun = when;
+    }
+    e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.slip[event->contact] + 1) : NULL;
+    e->search.expected = e->begun ? *e->begun : 0.0;
+}
+
+/* A run that does not continue another one is not to depend on it, not even in its rounding. */
+static void forget(struct events *e, int continues)
+{
+    e->begun = NULL;
+    e->search.expected = 0.0;
+    if (!continues) {
+        memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
+    }
 }
 
 /* What the search has learnt of the size of velocities, and how far the phase strayed from the law. */
@@ -252,8 +303,11 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         } else {
             e->stick_slip.reached = event->contact;
         }
+    } else if (*t < end) {
+        status = count_step(e, drv, *t, when, fastest);
     }
     status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
+    expect(e, event, when);
     if (!status && event && e->company) {
         e->company->decided(e->company);
     }
@@ -278,9 +332,11 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
                                  drv->dt, t1);
     }
     int status = on_context(drv, tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues));
-    e->credit = most_credit(e);
-    e->paid = *t;
-    e->suspects = 0;
+    e->paid = e->rested = *t;
+    e->idle = e->suspects = 0;
+    e->stuck = 0.0;
+    refill(e, *t);
+    forget(e, continues);
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }

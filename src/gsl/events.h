@@ -36,7 +36,13 @@ struct events {
 
     struct company *company; /* NULL: nobody */
 
-    double credit, paid;            /* how many more events there may be, as of when */
+    double *lasted; /* [ncontact][5] how long the last phase did that began as contact i turned to this slip; 0: none yet */
+    double *begun;  /* which of them this phase is; NULL if it began otherwise */
+
+    double credit, paid, since;     /* how many more events there may be, as of when; since when it is being used up */
+    double stuck;                   /* how many did so in a row in hardly any time */
+    size_t idle;                    /* steps that no event ended since then, */
+    double rested;                  /* which is not long ago */
     size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
     size_t suspects;
 };

@@ -1,6 +1,6 @@
 /* Intervals [a, b] are walked through from left to right. Where all guards are positive at both ends, their quintics and the
  * bounds of what these leave out tell whether they are so between; where they do not tell, or a guard is not positive at b, the
- * interval becomes shorter: up to where the quintics have their first zero, or by half. */
+ * interval becomes shorter: up to where the quintics have their first zero, or by a part. */
 #include "first_zero.h"
 #include "../common/real.h"
 
@@ -10,6 +10,11 @@
 /* So many looks at a motion between two events, or a first step of zero, mean that it has frequencies which cannot be followed.
  */
 #define MOST_LOOKS ((size_t)1 << 24)
+
+/* The third derivative of a sum of exponentials and sines is at most the root of its size times its bend (Cauchy, Schwarz), that
+ * of powers of time at most 4.5 times this and 60 size/longest^3. So over this part of a first length it changes what two
+ * derivatives tell by a thousandth of noise. */
+#define SHORT 2.5e-7
 
 /* A guard that begins at zero may stray from there by this part of its size. */
 #define ALLOWED 1e-14
@@ -34,10 +39,13 @@ static void sample(struct first_zero *s, double tau)
 {
     s->go(s->motion, tau);
     for (size_t k = 0; k < s->guards; k++) {
-        s->guard[k].middle = s->read(s->motion, &s->guard[k]);
-        s->guard[k].middle.g += s->guard[k].allowance;
+        struct sample *m = &s->guard[k].middle;
+        *m = s->read(s->motion, &s->guard[k]);
+        s->lost |= !((m->g - m->g) + (m->d - m->d) + (m->e - m->e) == 0.0);
+        m->g += s->guard[k].allowance;
     }
     s->looks++;
+    s->lost |= s->looks >= MOST_LOOKS;
 }
 
 /* 1 if no guard can be below zero between its left sample and the next one, h later. */
@@ -83,17 +91,25 @@ static struct guard *first_to_fall(struct first_zero *s, double h, double *when)
     return first;
 }
 
-/* The last sample becomes the left one. A guard that has left zero needs no allowance any more. */
-static void keep_left(struct first_zero *s)
+/* A guard that has left zero at the middle sample needs no allowance any more. */
+static void drop_allowances(struct first_zero *s)
 {
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
-        g->left = g->middle;
-        if (g->allowance > 0.0 && g->left.g > 3.0 * g->allowance) {
-            g->left.g -= g->allowance;
+        if (g->allowance > 0.0 && g->middle.g > 3.0 * g->allowance) {
+            g->middle.g -= g->allowance;
             g->right.g -= g->allowance;
             g->allowance = 0.0;
         }
+    }
+}
+
+/* The middle sample becomes the left one. */
+static void keep_left(struct first_zero *s)
+{
+    drop_allowances(s);
+    for (size_t k = 0; k < s->guards; k++) {
+        s->guard[k].left = s->guard[k].middle;
     }
 }
 
@@ -104,48 +120,82 @@ static void keep_right(struct first_zero *s)
     }
 }
 
-/* Whether another guard is below zero where the middle sample is, or by its slope step after it. */
-static int some_below(const struct first_zero *s, const struct guard *but, double step)
+static int some_below(const struct first_zero *s)
 {
     for (size_t k = 0; k < s->guards; k++) {
-        const struct guard *g = &s->guard[k];
-        if (g != but && g->middle.g + step * g->middle.d < -noise(g)) {
+        if (s->guard[k].middle.g < -noise(&s->guard[k])) {
             return 1;
         }
     }
     return 0;
 }
 
-/* How far a guard's zero is from its middle sample by Newton's method, if that is as good as another look; 0 if there is need of
- * one. */
-static double last_bit(const struct first_zero *s, const struct guard *g)
+/* The least that two derivatives make of a guard on its way from the middle sample to a step after it. */
+static double least_until(const struct sample *m, double step)
 {
-    const double step = g->middle.d < 0.0 ? -g->middle.g / g->middle.d : 0.0;
-    return fabs(0.5 * g->middle.e * step * step) <= noise(g) && !some_below(s, g, step) ? step : 0.0;
+    const double end = m->g + step * (m->d + 0.5 * step * m->e);
+    const int turns = m->d < 0.0 && m->d + step * m->e > 0.0;
+    return turns ? lesser(end, m->g - 0.5 * m->d * m->d / m->e) : end;
+}
+
+/* How far it is from the middle sample to a guard's zero by two derivatives; HUGE_VAL if it is out of their reach. */
+static double step_to_zero(const struct first_zero *s, const struct guard *g)
+{
+    const struct sample *m = &g->middle;
+    if (!(m->d < 0.0 && m->g + 2.0 * s->reach * m->d < 0.0 && m->g >= -noise(g))) {
+        return HUGE_VAL;
+    }
+    const double square = m->d * m->d - 2.0 * m->e * m->g;
+    const double step = square > 0.0 ? 2.0 * m->g / (sqrt(square) - m->d) : HUGE_VAL;
+    return step <= s->reach ? step : HUGE_VAL;
+}
+
+/* The guard that is the first to meet zero within reach of the middle sample, and when; NULL if there is none. */
+static struct guard *first_near(const struct first_zero *s, double *step)
+{
+    struct guard *first = NULL;
+    *step = HUGE_VAL;
+    for (size_t k = 0; k < s->guards; k++) {
+        const double own = step_to_zero(s, &s->guard[k]);
+        if (own < *step) {
+            first = &s->guard[k];
+            *step = own;
+        }
+    }
+    for (size_t k = 0; first && k < s->guards; k++) {
+        const struct guard *g = &s->guard[k];
+        if (g != first && least_until(&g->middle, *step) < -noise(g)) {
+            return NULL;
+        }
+    }
+    return first;
 }
 
 /* A guard is not positive at *b; falls seems to be the first to be so, at from *a. Narrows [*a, *b] to the first zero of all
  * guards: returns that guard, with *when, or NULL if [*a, *b] must be divided to tell. */
 static const struct guard *narrow(struct first_zero *s, struct guard *falls, double at, double *a, double *b, double *when)
 {
-    while (falls->right.g < -noise(falls) && *a + at > *a && *a + at < *b && s->looks < MOST_LOOKS) {
-        const double trial = *a + at;
+    while (falls->right.g < -noise(falls) && *a + at > *a && *a + at < *b && !s->lost) {
+        /* a little before the zero, so that it is in reach from there */
+        const double length = at > s->reach ? at - 0.5 * s->reach : at, trial = *a + length;
+        double step;
         sample(s, trial);
-        const double step = last_bit(s, falls);
-        if (some_below(s, falls, 0.0) || (falls->middle.g < -noise(falls) && step == 0.0)) {
+        if (some_below(s)) {
             *b = trial;
             keep_right(s);
             falls = first_to_fall(s, *b - *a, &at);
             continue;
         }
-        if (!all_positive(s, at, 1)) {
+        if (!all_positive(s, length, 1)) {
             *b = trial;
             keep_right(s);
             return NULL;
         }
-        *when = greater(trial + step, 0.0);
-        if (step != 0.0 || falls->middle.g <= noise(falls)) {
-            return falls;
+        drop_allowances(s);
+        const struct guard *near = first_near(s, &step);
+        if (near || falls->middle.g <= noise(falls)) {
+            *when = near ? greater(trial + step, 0.0) : trial;
+            return near ? near : falls;
         }
         *a = trial;
         keep_left(s);
@@ -155,6 +205,28 @@ static const struct guard *narrow(struct first_zero *s, struct guard *falls, dou
     return all_positive(s, *b - *a, 0) ? falls : NULL;
 }
 
+/* Finds bounds from a on, and the reach that they leave to two derivatives. Returns a length of interval to try. */
+static double find_bounds(struct first_zero *s, double a, double longest, double *better)
+{
+    *better = s->bound(s->motion, a);
+    const double length = first_length(s, longest);
+    s->reach = SHORT * length;
+    return length;
+}
+
+/* What to try after an interval of length h: with care where it is of the length that bounds allow. */
+static double longer(const struct first_zero *s, double h)
+{
+    return (SHORT * h < 0.5 * s->reach ? 1.7 : 1.15) * h;
+}
+
+/* Where to look next: not further than to where a zero is expected, which is then in reach. */
+static double next_look(const struct first_zero *s, double a, double h, double longest)
+{
+    const double b = lesser(a + h, longest), before = s->expected - 0.5 * s->reach;
+    return before > a + s->reach && before < b ? before : b;
+}
+
 int tribo_first_zero(struct first_zero *s, double longest, const struct guard **first, double *when)
 {
     *first = NULL;
@@ -162,7 +234,8 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         return 1;
     }
     s->looks = 0;
-    double a = 0.0, better = s->bound(s->motion, 0.0), h = first_length(s, longest), at = 0.0;
+    s->lost = 0;
+    double a = 0.0, better, h = find_bounds(s, a, longest, &better), at = 0.0, step;
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];
         g->allowance = greater(g->allowance, greater(ALLOWED * g->size, DBL_MIN));
@@ -177,13 +250,13 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         }
     }
     while (a < longest) {
-        if (s->looks >= MOST_LOOKS || !(h > 0.0)) {
+        if (s->lost || !(h > 0.0)) {
             return 0;
         }
         if (a >= better) {
-            better = s->bound(s->motion, a);
+            h = greater(h, find_bounds(s, a, longest, &better));
         }
-        double b = lesser(a + h, longest);
+        double b = next_look(s, a, h, longest);
         sample(s, b);
         keep_right(s);
         struct guard *below = first_to_fall(s, b - a, &at);
@@ -193,12 +266,19 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
                 return 1;
             }
         } else if (all_positive(s, b - a, 0)) {
-            h = 1.7 * (b - a);
+            drop_allowances(s);
+            const struct guard *near = first_near(s, &step);
+            if (near && b + step <= longest) {
+                *first = near;
+                *when = b + step;
+                return 1;
+            }
+            h = greater(h, longer(s, b - a));
             a = b;
             keep_left(s);
             continue;
         }
-        h = 0.5 * (b - a);
+        h = 0.7 * (b - a);
         if (!(a + h > a && a + h < b && h > s->resolution)) {
             /* nothing left to divide: a guard that is below zero fell right here, and what else is in doubt is rounding */
             below = first_to_fall(s, b - a, &at);

@@ -29,16 +29,19 @@ struct first_zero {
     size_t guards;
     struct guard *guard;
     void (*go)(void *motion, double tau);
-    struct sample (*read)(const void *motion, const struct guard *guard); /* the guard where go went */
+    struct sample (*read)(void *motion, const struct guard *guard); /* the guard where go went */
     /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */
     double (*bound)(void *motion, double tau);
     void *motion;
+    double expected;   /* when there may be a zero, for all that the caller knows; 0: no idea */
+    double reach;      /* over such times two derivatives tell all of every guard but rounding */
     double resolution; /* times closer than this are the same */
     size_t looks;
+    int lost; /* there is no end of looks, or what they see is not finite */
 };
 
 /* The guard that is first to meet zero, and when; *first is NULL if none does before longest. Guards start at zero or above.
- * 1, or 0 if this takes too many looks. */
+ * 1, or 0 if this takes too many looks, or guards are not finite. */
 int tribo_first_zero(struct first_zero *s, double longest, const struct guard **first, double *when);
 
 #endif

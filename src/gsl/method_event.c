@@ -27,6 +27,8 @@ struct event {
     double fastest;           /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
     double tau, length;              /* where go() was; that of the step, and what bounds hold for */
+    const double *seen;              /* what was read last there; NULL: nothing yet */
+    struct sample sight;             /* and what it was */
     double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
     double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
     double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
@@ -305,7 +307,9 @@ static double step_length(const struct event *e)
 
 static void go(void *motion, double tau)
 {
-    ((struct event *)motion)->tau = tau;
+    struct event *e = motion;
+    e->tau = tau;
+    e->seen = NULL;
 }
 
 /* Adds factor times a polynomial at s with so many terms, c apart, and its derivatives. */
@@ -322,15 +326,20 @@ static void add_polynomial(struct sample *to, double factor, size_t terms, size_
     to->e += 2.0 * factor * v2;
 }
 
-static struct sample read_guard(const void *motion, const struct guard *g)
+/* The two sides of what is watched follow one another, and are computed once. */
+static struct sample read_guard(void *motion, const struct guard *g)
 {
-    const struct event *e = motion;
+    struct event *e = motion;
     const size_t c = e->sys->ncontact;
     struct sample x = {g->offset, 0.0, 0.0};
-    if (e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact]) {
-        add_polynomial(&x, g->side, 2 * e->order + 1, e->planar.room, g->output, e->tau);
-    } else if (g->side != 0.0) {
-        add_polynomial(&x, g->side, e->order + 1, c, g->output, e->tau);
+    if (g->side != 0.0 && e->seen != g->output) {
+        const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
+        e->seen = g->output;
+        e->sight = (struct sample){0.0, 0.0, 0.0};
+        add_polynomial(&e->sight, 1.0, plane ? 2 * e->order + 1 : e->order + 1, plane ? e->planar.room : c, g->output, e->tau);
+    }
+    if (g->side != 0.0) {
+        x = (struct sample){x.g + g->side * e->sight.g, g->side * e->sight.d, g->side * e->sight.e};
     }
     if (g->limit != 0.0) {
         add_polynomial(&x, g->limit, e->terms, c, e->limit + g->contact, e->tau);

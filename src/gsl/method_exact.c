@@ -22,6 +22,8 @@ struct exact {
     size_t helds, room, bytes, revision;
 
     struct modal_motion motion; /* of the phase */
+    const struct output *seen;  /* what was read last where go() was; NULL: nothing yet */
+    struct sample sight;        /* and what it was */
     double *work;               /* of transitions, allocated when one is first asked for */
     size_t columns;             /* for so many */
 };
@@ -87,7 +89,9 @@ static int find_held(struct exact *x, const struct modal **found)
 
 static void go(void *motion, double tau)
 {
-    tribo_modal_motion_go(&((struct exact *)motion)->motion, tau);
+    struct exact *x = motion;
+    tribo_modal_motion_go(&x->motion, tau);
+    x->seen = NULL;
 }
 
 static void move_to(void *motion, double tau, const double *from, double *to)
@@ -95,13 +99,18 @@ static void move_to(void *motion, double tau, const double *from, double *to)
     tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
 }
 
-/* A guard where go() was. */
-static struct sample read_guard(const void *motion, const struct guard *g)
+/* A guard where go() was. The two sides of an output follow one another, and are computed once. */
+static struct sample read_guard(void *motion, const struct guard *g)
 {
-    const struct modal_motion *x = &((const struct exact *)motion)->motion;
+    struct exact *e = motion;
+    const struct modal_motion *x = &e->motion;
     struct sample v = {0.0, 0.0, 0.0};
+    if (g->output && e->seen != g->output) {
+        e->seen = g->output;
+        e->sight = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
+    }
     if (g->output) {
-        v = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
+        v = e->sight;
     }
     v = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
     if (g->limit != 0.0) {
@@ -137,7 +146,13 @@ static double bound(void *motion, double tau)
     }
     tribo_modal_motion_bound(&x->motion, tau);
     for (size_t k = 0; k < x->events.search.guards; k++) {
-        bound_guard(x, &x->events.search.guard[k]);
+        struct guard *g = &x->events.search.guard[k];
+        if (k > 0 && g->output && g->output == g[-1].output) {
+            g->size = g[-1].size;
+            g->bend = g[-1].bend;
+        } else {
+            bound_guard(x, g);
+        }
     }
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
 }

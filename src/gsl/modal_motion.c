@@ -110,9 +110,10 @@ static void for_resonances(struct modal_motion *x, double tau)
 /* e^{lambda delta} of an exponent. */
 static void grow(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
-    const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0;
-    *re = size * cos(h->li[p] * delta);
-    *im = size * sin(h->li[p] * delta);
+    const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0, angle = h->li[p] * delta;
+    const double c = cos(angle), s = sin(angle); /* at once, where the compiler can */
+    *re = size * c;
+    *im = size * s;
 }
 
 /* The same where |lambda delta| is tiny. */
@@ -129,18 +130,14 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
     const struct modal *h = x->h;
     const double delta = tau - x->tau;
     const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
+    const double *cos_from = close ? x->cos_t : x->cos_0, *sin_from = close ? x->sin_t : x->sin_0;
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega;
-        if (close) {
-            const double turn = omega * delta, c = 1.0 - 0.5 * turn * turn, ct = x->cos_t[s], st = x->sin_t[s];
-            x->cos_t[s] = c * ct - turn * st;
-            x->sin_t[s] = c * st + turn * ct;
-        } else {
-            /* from t0, since what rounding leaves of a late time must not tremble within a phase */
-            const double c = cos(omega * tau), d = sin(omega * tau);
-            x->cos_t[s] = c * x->cos_0[s] - d * x->sin_0[s];
-            x->sin_t[s] = d * x->cos_0[s] + c * x->sin_0[s];
-        }
+        const double angle = h->forcing[s].omega * (close ? delta : tau);
+        /* far ones from t0, since what rounding leaves of a late time must not tremble within a phase */
+        const double c = close ? 1.0 - 0.5 * angle * angle : cos(angle), d = close ? angle : sin(angle);
+        const double ct = cos_from[s], st = sin_from[s];
+        x->cos_t[s] = c * ct - d * st;
+        x->sin_t[s] = d * ct + c * st;
     }
     for (size_t p = 0; p < h->exponents; p++) {
         const double lr = h->lr[p], li = h->li[p], zr = close ? x->wr[p] : x->zr[p], zi = close ? x->wi[p] : x->zi[p];

@@ -3,25 +3,45 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Arrays are many and short: blocks of so many bytes hold several. */
+#define BLOCK 4096
+
+/* With room for arrays behind it, as it is aligned for. */
+union block {
+    struct {
+        union block *next;
+        size_t used, room;
+    } has;
+    double number;
+};
+
 /* Zeroed memory that belongs to a list. NULL if there is none left. */
 static void *take(void **list, size_t *bytes, size_t count, size_t size)
 {
-    void **block = calloc(1, sizeof *block + (count + 1) * size);
-    if (!block) {
-        return NULL;
+    const size_t units = (count * size + sizeof(union block)) / sizeof(union block);
+    union block *block = *list;
+    if (!block || block->has.room - block->has.used < units) {
+        const size_t least = BLOCK / sizeof(union block), room = units > least ? units : least;
+        block = calloc(room + 1, sizeof *block);
+        if (!block) {
+            return NULL;
+        }
+        block->has.next = *list;
+        block->has.room = room;
+        *list = block;
+        *bytes += (room + 1) * sizeof *block;
     }
-    *block = *list;
-    *list = block;
-    *bytes += (count + 1) * size;
-    return block + 1;
+    void *array = block + 1 + block->has.used;
+    block->has.used += units;
+    return array;
 }
 
 void tribo_modal_give_back(void *list)
 {
-    while (list) {
-        void *next = *(void **)list;
-        free(list);
-        list = next;
+    for (union block *block = list; block;) {
+        union block *next = block->has.next;
+        free(block);
+        block = next;
     }
 }
 

@@ -83,7 +83,7 @@ static void go(void *motion, double tau)
     c->at = c->from + tau;
 }
 
-static struct sample read_slope(const void *motion, const struct guard *guard)
+static struct sample read_slope(void *motion, const struct guard *guard)
 {
     const struct course *c = motion;
     double v[3];

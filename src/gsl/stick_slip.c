@@ -477,15 +477,30 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     return status;
 }
 
+/* lo = the limits by which contacts slide at the time set with velocities v: others than those that were last decided with, if
+ * they swing, or fall with the speed. */
+static void find_sliding_limits(struct stick_slip *m, const tribo_system *sys, const double *v)
+{
+    tribo_system_limits(sys, m->lo, m->hi);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->lo[i] = greater(m->lo[i], 0.0);
+    }
+    if (m->breakaway.some) {
+        tribo_breakaway_take(&m->breakaway, sys->ncontact, m->lo, m->hi);
+        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->slip, v, m->lo, m->hi);
+    }
+}
+
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
 {
     tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
     if (sys->massless.count) {
         tribo_elastic_find(m, sys, y);
     }
+    find_sliding_limits(m, sys, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double rests = tribo_massless_touches(&sys->massless, i) ? m->spring[i] : m->force[i];
-        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? rests : -m->slip[i] * m->limit[i];
+        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? rests : -m->slip[i] * m->lo[i];
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
     tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->v);

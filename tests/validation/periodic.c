@@ -275,6 +275,40 @@ TEST(swinging_limits)
     search_free(&s);
 }
 
+/* The determinant of the period map's derivative, by differences of motions that start apart from y. */
+static double determinant(const struct search *s, const double *y)
+{
+    const double apart = 1e-5;
+    double slope[2][2];
+    for (int k = 0; k < 2; k++) {
+        double z[2][3];
+        for (int side = 0; side < 2; side++) {
+            double t = 0.0;
+            memcpy(z[side], y, sizeof z[side]);
+            z[side][k] += side ? apart : -apart;
+            driver_advance(s->drv, &t, s->period, z[side]);
+        }
+        slope[0][k] = (z[1][0] - z[0][0]) / (2.0 * apart);
+        slope[1][k] = (z[1][1] - z[0][1]) / (2.0 * apart);
+    }
+    return slope[0][0] * slope[1][1] - slope[0][1] * slope[1][0];
+}
+
+/* Where a body reverses, the jump of its acceleration is twice the limit of that instant, not that of an earlier one. */
+TEST(multipliers_of_swinging_limits)
+{
+    const double omega = 0.7, cosine = 0.04, sine = -0.08;
+    struct search s = oscillator_search(methods[_i], 0.1, 0.15, 1.0, omega);
+    double y[3] = {0}, re[2], im[2];
+    assert_ok(tribo_system_add_limit(s.sys, 2.0 * omega, &cosine, &sine));
+    find(&s, 0.0, y);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    const double product = re[0] * re[1] - im[0] * im[1];
+    require(fabs(product) > 0.05, "%g", product);
+    assert_close(product, determinant(&s, y), 1e-7);
+    search_free(&s);
+}
+
 /* A free body between two bounds of friction: x'' = cos(t) + f. */
 TEST(rigid_body)
 {
@@ -486,5 +520,6 @@ TEST(other_methods)
 }
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
-          {stuck, 2}, {open, 2}, {constant_load, 2}, {swinging_limits, 8}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
-          {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2}, {other_methods, 5})
+          {stuck, 2}, {open, 2}, {constant_load, 2}, {swinging_limits, 8}, {multipliers_of_swinging_limits, 2}, {belt, 2},
+          {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2},
+          {nothing_left, 2}, {errors, 2}, {other_methods, 5})

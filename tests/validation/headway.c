@@ -1,0 +1,100 @@
+/* Motions that get nowhere: by guards, or steps, that no system makes. The loop over events must find out after little work. */
+#include <math.h>
+
+#include "../../src/gsl/events.h"
+#include "../support.h"
+
+static int (*honest_begin)(void *motion, double t, const double *y, double *reach);
+static struct events *spoilt;
+static tribo_system *sys;
+static tribo_driver *drv;
+
+/* A driver of an oscillator that slides and sticks, whose phases begin by `begin`. */
+static void spoil(const char *method, int (*begin)(void *motion, double t, const double *y, double *reach))
+{
+    assert_ok(tribo_system_oscillator(&sys, 1.0, 1.5, 0.5));
+    assert_ok(tribo_driver_create(&drv, sys, method, 0.01, 1e-10, 1e-10));
+    assert_ok(drv->method->open(drv, &spoilt));
+    honest_begin = spoilt->begin;
+    spoilt->begin = begin;
+}
+
+static void give_back(void)
+{
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* Every contact that slides seems to go the other way, and to stop a moment after it began. */
+static int begin_backwards(void *motion, double t, const double *y, double *reach)
+{
+    const int status = honest_begin(motion, t, y, reach);
+    for (size_t k = 0; k < spoilt->search.guards; k++) {
+        struct guard *g = &spoilt->search.guard[k];
+        g->side = g->slides ? -g->side : g->side;
+    }
+    return status;
+}
+
+/* Every contact at rest seems to be at its limit before it is. */
+static int begin_weak(void *motion, double t, const double *y, double *reach)
+{
+    const int status = honest_begin(motion, t, y, reach);
+    for (size_t k = 0; k < spoilt->search.guards; k++) {
+        struct guard *g = &spoilt->search.guard[k];
+        g->offset -= g->slides ? 0.0 : 0.5;
+    }
+    return status;
+}
+
+static int begin_short(void *motion, double t, const double *y, double *reach)
+{
+    const int status = honest_begin(motion, t, y, reach);
+    *reach = 1e-25;
+    return status;
+}
+
+static const char *const methods[] = {"exact", "event"};
+
+TEST(events_chatter)
+{
+    double y[3] = {0.0}, t = 0.0;
+    size_t events;
+    spoil(methods[_i % 2], _i < 2 ? begin_backwards : begin_weak);
+    assert_status(tribo_driver_advance(drv, &t, 600.0, y), TRIBO_ERR_CHATTER);
+    assert_says(tribo_driver_message(drv), "contact 0");
+    assert_ok(tribo_driver_count(drv, TRIBO_COUNT_EVENTS, &events));
+    require(events < 1100000, "%zu events", events);
+    give_back();
+}
+END_TEST
+
+TEST(steps_end)
+{
+    double y[3] = {0.0}, t = 0.0;
+    size_t steps;
+    spoil(methods[_i], begin_short);
+    assert_status(tribo_driver_advance(drv, &t, 600.0, y), TRIBO_ERR_STEP);
+    assert_says(tribo_driver_message(drv), "step is down to 1e-25");
+    assert_ok(tribo_driver_count(drv, TRIBO_COUNT_STEPS, &steps));
+    require(steps < 20000, "%zu steps", steps);
+    give_back();
+}
+END_TEST
+
+/* Limits whose rates overflow. */
+TEST(guards_overflow)
+{
+    const double sine[] = {1e300};
+    double y[3] = {0.0}, t = 0.0;
+    assert_ok(tribo_system_oscillator(&sys, 0.0, 1.5, 0.5));
+    assert_ok(tribo_system_add_limit(sys, 1e150, NULL, sine));
+    assert_ok(tribo_driver_create(&drv, sys, "event", 0.01, 1e-9, 1e-9));
+    assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_STEP);
+    assert_says(tribo_driver_message(drv), "after 1 looks");
+    assert_exact(t, 0.0);
+    give_back();
+}
+END_TEST
+
+TEST_MAIN("headway", {events_chatter, 4}, {steps_end, 2}, {guards_overflow, 1})
