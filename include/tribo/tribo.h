@@ -217,14 +217,18 @@ TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const 
  * tribo_force. Forces jump at |v| = epsilon, so that integrators are of first order there. VELOCITY_LIMITED and SMOOTH know no
  * stick, and need velocities.
  *
+ * Planar contacts go by the same rule, in their plane: near stick within the ellipse of ratio*limit; a contact whose f_eq is
+ * outside that goes by the ellipse of limit from there on, and slides the way in which it was held. |v| is then the length of v.
+ * Both directions of one have the same ratio and velocity.
+ *
  * A limit that falls with the speed. N(|v|) takes the place of limit in every law and coupling; forces are as continuous in v as
  * they were.
  *
  * TRIBO_REAL_MAX_RATE is that of static limits, and so is the epsilon of tribo_set_epsilon_step. TRIBO_COUNT_SOLVES counts each
  * time that forces of an island are found. tribo_solve_box knows no limits, and so no static ones.
- * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (a
- * law without stick needs velocities; tribo_set_law returns it too. A ratio above 1 in a context with planar contacts;
- * tribo_set_planar returns it too. tribo_step_force_mean returns it for static limits); on error all stays as it was. */
+ * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1; ratios or velocities of one planar contact that differ, for
+ * which tribo_set_planar returns it too), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (a law without stick needs
+ * velocities; tribo_set_law returns it too); on error all stays as it was. */
 TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
 
 /* ratio, velocity [n] out, each or NULL: 1 where nothing was set, and velocity 0 where there is none. */
@@ -258,8 +262,8 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  *   sharing   of redundant contacts in a group with planar ones R f is unique, and f one of the solutions, near the last one
  * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
  * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
- * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_DUPLICATE (a direction of two contacts),
- * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling, and not beside static limits, tribo_set_static),
+ * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (also: static limits that differ, tribo_set_static),
+ * TRIBO_ERR_DUPLICATE (a direction of two contacts), TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling),
  * TRIBO_ERR_MEMORY; on error all stays as it was. */
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 

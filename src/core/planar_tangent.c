@@ -21,6 +21,27 @@ static void resume(tribo_context *ctx, const struct cluster *g)
     }
 }
 
+/* What d makes of the limits of a cluster, where these fall with the speed: with v, in the plane by |v|. */
+static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    double *dlimit = ctx->plane.dlimit;
+    if (ctx->set.breaking != FALLS) {
+        return *d;
+    }
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = member[k], first = i - (ctx->planar->role[i] == ROLE_SECOND);
+        const int directions = ctx->planar->role[i] == ROLE_SCALAR ? 1 : 2;
+        const double speed = tribo_length(directions, ctx->plane.v + first), rate = tribo_limit_rate(ctx, i, speed);
+        dlimit[i] = tribo_entry(d->limit, i);
+        for (size_t j = first; j < first + (size_t)directions; j++) {
+            const double part = speed > 0.0 ? ctx->plane.v[j] / speed : directions == 1;
+            dlimit[i] += product(rate, part * tribo_entry(d->v, j));
+        }
+    }
+    return (struct change){d->v, d->a, dlimit};
+}
+
 /* How the units of a planar contact follow its limits: part of either direction, and epsilon, as a part of itself. */
 struct units_change {
     double part[2], epsilon;
@@ -28,7 +49,8 @@ struct units_change {
 
 static struct units_change change_units(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
 {
-    const double *limit = ctx->set.limit + i, dlimit[2] = {tribo_limit_change(ctx, d, i), tribo_limit_change(ctx, d, i + 1)};
+    const double *limit = ctx->follow.contacts.limit + i,
+                 dlimit[2] = {tribo_limit_change(ctx, d, i), tribo_limit_change(ctx, d, i + 1)};
     const size_t far = s->part[0] == 1.0 && tribo_epsilon_of(&ctx->follow.contacts, i) == s->epsilon ? 0 : 1;
     struct units_change u = {{0.0, 0.0}, 0.0};
     for (size_t k = 0; k < 2 && !s->open; k++) {
@@ -55,19 +77,21 @@ static void slide_product(const tribo_context *ctx, size_t i, const struct chang
         const double grow =
             slope * (quotient(s.length > 0.0 ? s.n[k] * along : dx[k], s.epsilon) - product(product(s.speed, u.epsilon), s.n[k]));
         const double own = product(carried * s.n[k], tribo_limit_change(ctx, d, i + k));
-        df[i + k] = s.open ? 0.0 : product(ctx->set.limit[i + k], turn + grow) + own;
+        df[i + k] = s.open ? 0.0 : product(ctx->follow.contacts.limit[i + k], turn + grow) + own;
     }
 }
 
-/* df of all contacts of a cluster that are not near stick, and of the others what their limits make of it. */
-static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
+/* df of all contacts of a cluster that are not near stick, and of the others what their limits make of it. by_v: what limits
+ * that follow v make of d, which the derivatives of scalar contacts know. */
+static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d,
+                              const struct change *by_v, double *df)
 {
     const size_t *member = ctx->planar->member + g->member;
     const struct disc_qp *p = &ctx->plane.problem;
     for (size_t k = 0; k < g->size; k++) {
         const size_t i = member[k];
         if (ctx->planar->role[i] == ROLE_FIRST) {
-            slide_product(ctx, i, d, df);
+            slide_product(ctx, i, by_v, df);
         } else if (ctx->planar->role[i] == ROLE_SCALAR) {
             const struct tangent *law = &ctx->last.tangent[i];
             df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i));
@@ -75,7 +99,7 @@ static void products_of_slips(const tribo_context *ctx, const struct cluster *g,
     }
     for (size_t e = 0; e < p->size; e++) {
         const size_t i = member[ctx->plane.near[e]];
-        df[i] = product(p->y[e], tribo_limit_change(ctx, d, i));
+        df[i] = product(p->y[e], tribo_limit_change(ctx, by_v, i));
     }
 }
 
@@ -177,12 +201,13 @@ static void cluster_product(tribo_context *ctx, const struct cluster *g, const s
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
     double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
-    products_of_slips(ctx, g, d, df);
+    const struct change by_v = with_limits(ctx, g, d);
+    products_of_slips(ctx, g, d, &by_v, df);
     for (size_t e = 0; e < p->size; e++) {
-        dshift[e] = clamp(shift_change(ctx, member, e, d), -STEEPEST, STEEPEST);
+        dshift[e] = clamp(shift_change(ctx, member, e, &by_v), -STEEPEST, STEEPEST);
     }
     drag_all(p, dshift, dy);
-    find_rhs(ctx, g, d, df, dshift, dy, rhs);
+    find_rhs(ctx, g, &by_v, df, dshift, dy, rhs);
     if (p->size) {
         tribo_disc_follow(p, rhs, move);
     }
