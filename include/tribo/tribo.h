@@ -331,9 +331,18 @@ TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const doubl
 
 /* The same with derivatives. f, df_dv, df_dfeq, df_dlimit [n] out, each or NULL. Where epsilon follows the limit
  * (tribo_set_epsilon_step), df_dlimit takes that into account. Derivatives are those of scalar contacts: TRIBO_ERR_UNSUPPORTED
- * if one is planar. */
+ * if one is planar, see tribo_force_tangent_planar. */
 TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
                                   double *df_dfeq, double *df_dlimit);
+
+/* The same where contacts may be planar, which have blocks of derivatives.
+ * f                        [n] out, or NULL
+ * df_dv, df_dfeq, df_dlimit   [n][2] out, each or NULL; the rows of the two directions of a planar contact are its 2x2 block: how
+ *                          this component of f follows the first one and the second one. Of a scalar contact: its derivative, 0
+ * One-sided at a kink, also where the limits of both directions are equal and change differently. Where the band of a planar
+ * contact ends they grow from inside, see tribo_balance_tangent. Returns what tribo_force does, and TRIBO_ERR_NO_CONVERGENCE. */
+TRIBO_API int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                                         double *df_dfeq, double *df_dlimit);
 
 /* f_eq and f of coupled contacts, z'' = R f + a.
  * v    [n] in   relative velocity

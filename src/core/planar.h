@@ -65,6 +65,7 @@ void tribo_plane_free(struct plane *plane);
 /* A contact in motion, in units in which the direction with the longer way to the edge of its band has limit 1. */
 struct slide {
     int open;
+    size_t far;     /* that direction, 0 or 1 */
     double part[2]; /* limits, in these units */
     double x[2];    /* part v */
     double n[2];    /* its direction, or 0 */
@@ -72,6 +73,14 @@ struct slide {
     double epsilon; /* the length at which the contact slides */
     double speed;   /* length/epsilon */
 };
+/* The law of a planar contact whose f_eq is given: its limits there, and its motion. */
+struct given {
+    double limit[2];
+    struct contacts c; /* of its two directions */
+    struct slide s;
+    int near;
+};
+
 struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double *v);
 
 /* Whether the force of a contact is not known from its velocity alone. */

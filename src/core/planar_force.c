@@ -18,7 +18,7 @@ struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double
 {
     const double reach[2] = {product(c->bound[i], tribo_epsilon_of(c, i)), product(c->bound[i + 1], tribo_epsilon_of(c, i + 1))};
     const size_t far = reach[1] > reach[0] || (reach[1] == reach[0] && c->bound[i + 1] > c->bound[i]) ? i + 1 : i;
-    struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .epsilon = tribo_epsilon_of(c, far)};
+    struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .far = far - i, .epsilon = tribo_epsilon_of(c, far)};
     for (size_t k = 0; k < 2 && !s.open; k++) {
         s.part[k] = c->bound[i + k] == c->bound[far] ? 1.0 : quotient(c->bound[i + k], c->bound[far]);
         s.x[k] = product(s.part[k], v[k]);
@@ -396,16 +396,14 @@ double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, siz
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
 
-/* The point of the lens that is nearest to f_eq - kappa, as R_d measures it. */
-static int force_near(const tribo_context *ctx, size_t k, const struct slide *s, const double *bound, const double *feq,
-                      double *f)
+int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
 {
-    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * s->speed : 0.0;
-    const double force = greater(bound[0], bound[1]);
+    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
+    const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
     const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
     const double m[4] = {weight[0] * weight[0] * (own[0] / r), across, across, weight[1] * weight[1] * (own[2] / r)};
-    const double shift[2] = {turn * s->n[0], turn * s->n[1]};
-    double aim[2], pull[2], y[2];
+    const double shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
+    double aim[2], pull[2];
     for (int d = 0; d < 2; d++) {
         aim[d] = bound[d] > 0.0 ? quotient(cut(feq[d]), bound[d]) : 0.0;
     }
@@ -416,10 +414,8 @@ static int force_near(const tribo_context *ctx, size_t k, const struct slide *s,
     for (int d = 0; d < 2; d++) {
         pull[d] = -(m[2 * d] * aim[0] + m[2 * d + 1] * aim[1]);
     }
-    const int done = tribo_disc_single(m, pull, shift, y);
-    f[0] = y[0] * bound[0];
-    f[1] = y[1] * bound[1];
-    return done;
+    tribo_disc_alone(x, m, pull, shift);
+    return tribo_disc_solve(&x->p);
 }
 
 int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq)
@@ -448,21 +444,32 @@ static int beyond(const double *limit, const double *feq)
     return tribo_length(2, y) > 1.0;
 }
 
+void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
+{
+    const size_t i = ctx->planar->first[k];
+    g->c = tribo_planar_view(ctx, i, g->limit);
+    g->s = tribo_planar_slide(&g->c, 0, v);
+    g->near = tribo_planar_near(ctx->set.law, &g->s);
+    if (ctx->set.breaking) {
+        tribo_planar_limits(ctx, i, g->near && !beyond(g->limit, feq), v, g->limit);
+    }
+}
+
 int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
+    const double none[2] = {0.0, 0.0};
     for (size_t k = 0; k < ctx->planar->count; k++) {
-        double limit[2];
         const size_t i = ctx->planar->first[k];
-        const struct contacts c = tribo_planar_view(ctx, i, limit);
-        const struct slide s = tribo_planar_slide(&c, 0, v + i);
-        const int near = tribo_planar_near(ctx->set.law, &s);
-        if (ctx->set.breaking) {
-            tribo_planar_limits(ctx, i, near && !beyond(limit, feq + i), v + i, limit);
-        }
-        if (!near) {
-            tribo_planar_slide_force(ctx->set.law, &s, c.limit, f + i);
-        } else if (!force_near(ctx, k, &s, c.bound, feq + i, f + i)) {
+        struct given g;
+        struct disc_alone x;
+        tribo_planar_given(ctx, k, v + i, feq ? feq + i : none, &g);
+        if (!g.near) {
+            tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f + i);
+        } else if (!tribo_planar_given_near(ctx, k, &g, feq + i, &x)) {
             return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
+        } else {
+            f[i] = x.p.y[0] * g.c.bound[0];
+            f[i + 1] = x.p.y[1] * g.c.bound[1];
         }
     }
     return TRIBO_OK;

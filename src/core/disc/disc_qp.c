@@ -187,9 +187,7 @@ int tribo_disc_solve(struct disc_qp *p)
 
 /* ------------------------------------------------------------------------------------------------------------ room */
 
-enum { VECTORS = 19 }; /* of doubles, press being two of them */
-
-/* Makes vectors of store [VECTORS s]. */
+/* Makes vectors of store [TRIBO_DISC_VECTORS s], press being two of them. */
 static void lay_out(struct disc_qp *p, double *store, size_t s)
 {
     double **const vector[] = {&p->pull, &p->shift,   &p->y,         &p->gradient, &p->noise,      &p->gain,
@@ -205,7 +203,7 @@ int tribo_disc_create(struct disc_qp *p, size_t most)
     const size_t s = most + 1;
     struct box_qp *f = &p->factor;
     *p = (struct disc_qp){0};
-    double *store = calloc(VECTORS * s, sizeof *store);
+    double *store = calloc(TRIBO_DISC_VECTORS * s, sizeof *store);
     lay_out(p, store, s);
     p->wide = calloc(s, 1);
     p->place = malloc(s);
@@ -236,23 +234,14 @@ void tribo_disc_free(struct disc_qp *p)
     *p = (struct disc_qp){0};
 }
 
-int tribo_disc_single(const double *s, const double *pull, const double *shift, double *y)
+void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull, const double *shift)
 {
-    enum { S = 3 };
-    double store[VECTORS * S] = {0.0}, own[S * S] = {s[0], s[1], s[2], s[3]}, matrix[S * S], l[S * S], basis[S * S];
-    unsigned char wide[S] = {2}, place[S];
-    signed char at[S];
-    size_t near[S], order[S];
-    struct freedom freedom[S];
-    struct disc_qp p = {.size = 2, .wide = wide, .place = place, .s = own, .matrix = matrix, .freedom = freedom};
-    p.factor = (struct box_qp){.near = near, .order = order, .at = at, .l = l, .basis = basis};
-    lay_out(&p, store, S);
-    for (size_t k = 0; k < 2; k++) {
-        p.pull[k] = pull[k];
-        p.shift[k] = shift[k];
-    }
-    const int done = tribo_disc_solve(&p);
-    y[0] = p.y[0];
-    y[1] = p.y[1];
-    return done;
+    memset(x, 0, sizeof *x);
+    memcpy(x->s, s, 4 * sizeof *s);
+    x->wide[0] = 2;
+    x->p = (struct disc_qp){.size = 2, .wide = x->wide, .place = x->place, .s = x->s, .matrix = x->matrix, .freedom = x->freedom};
+    x->p.factor = (struct box_qp){.near = x->near, .order = x->order, .at = x->at, .l = x->l, .basis = x->basis};
+    lay_out(&x->p, x->store, TRIBO_DISC_ALONE);
+    memcpy(x->p.pull, pull, 2 * sizeof *pull);
+    memcpy(x->p.shift, shift, 2 * sizeof *shift);
 }

@@ -49,8 +49,21 @@ struct disc_qp {
 int tribo_disc_create(struct disc_qp *p, size_t most);
 void tribo_disc_free(struct disc_qp *p);
 
-/* The problem of one planar contact alone, s [2][2], without room of a caller's. */
-int tribo_disc_single(const double *s, const double *pull, const double *shift, double *y);
+/* Vectors of doubles in a problem, and room for the problem of one planar contact alone. */
+enum { TRIBO_DISC_VECTORS = 19, TRIBO_DISC_ALONE = 3 };
+struct disc_alone {
+    double store[TRIBO_DISC_VECTORS * TRIBO_DISC_ALONE], s[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
+    double matrix[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE], l[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
+    double basis[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
+    unsigned char wide[TRIBO_DISC_ALONE], place[TRIBO_DISC_ALONE];
+    signed char at[TRIBO_DISC_ALONE];
+    size_t near[TRIBO_DISC_ALONE], order[TRIBO_DISC_ALONE];
+    struct freedom freedom[TRIBO_DISC_ALONE];
+    struct disc_qp p;
+};
+
+/* That problem, s [2][2], in room of the caller's; it begins with y = 0. */
+void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull, const double *shift);
 
 /* Solves the problem from y. 1, or 0 without convergence. */
 int tribo_disc_solve(struct disc_qp *p);
