@@ -259,7 +259,9 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  *             kappa = (2 limit/epsilon) v, over the lens: f and f + kappa are both within the limits. On a line that is the
  *             scalar law; which tangential directions are taken does not matter; and at v = 0 it is Coulomb's law, also where
  *             R_d or limits differ by direction.
- *   sharing   of redundant contacts in a group with planar ones R f is unique, and f one of the solutions, near the last one
+ *   sharing   as tribo_set_sharing says, but least norms are found to about 1e-8 of the limits only, where limits and the
+ *             eigenvalues of R that are not 0 are alike; far from that f is one of the solutions, with R f right. That takes a few
+ *             solutions in the place of one
  * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
  * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
  * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (also: static limits that differ, tribo_set_static),

@@ -138,7 +138,8 @@ static void fill_groups(struct planar *c, const struct delassus *op, struct memo
         if (label[p->member[0]] == SIZE_MAX) {
             continue;
         }
-        const struct cluster *to = &c->cluster[label[p->member[0]]];
+        struct cluster *to = &c->cluster[label[p->member[0]]];
+        to->redundant |= p->group->nullity > 0;
         double *unit = p->step, ignored;
         memset(unit, 0, size * sizeof *unit);
         for (size_t j = 0; j < size; j++) {

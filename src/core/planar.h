@@ -24,6 +24,7 @@ struct cluster {
     size_t size;
     size_t member; /* first of them */
     size_t r;      /* first entry of [size][size] */
+    int redundant; /* R is singular */
 };
 
 /* Constant; clones have it in common. The clusters are there if there is an operator. */

@@ -170,6 +170,7 @@ void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double
         for (size_t j = 0; j < n; j++) {
             p->s[e * n + j] = weight * (bound[member[near[j]]] / u.force) * (row[near[j]] / u.r);
         }
+        p->weight[e] = weight;
         p->pull[e] = pull_of(ctx, g, near[e], a[member[near[e]]]);
         p->y[e] = ctx->plane.y[member[near[e]]];
     }
@@ -190,8 +191,10 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
     p->factor.work.factorizations = 0;
-    const int done = tribo_disc_solve(p);
-    ctx->plane.solved++;
+    int done = tribo_disc_solve(p);
+    if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
+        done = tribo_disc_share(p);
+    }
     ctx->count.solves++;
     ctx->count.reused += p->factor.work.factorizations == 0;
     ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
@@ -217,6 +220,7 @@ static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, con
         tribo_planar_pose(ctx, g, a);
         status = solve(ctx, g);
     } while (!status && ctx->set.breaking && tribo_planar_break(ctx, g, dt, a));
+    ctx->plane.solved++;
     ctx->last.rank += status ? 0 : ctx->plane.problem.sets.rank;
     return status;
 }

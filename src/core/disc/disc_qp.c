@@ -185,14 +185,74 @@ int tribo_disc_solve(struct disc_qp *p)
     return settle(p, FROM_INTERIOR, step_down);
 }
 
+/* ------------------------------------------------------------------------------------------------ redundant contacts */
+
+/* As stiff as that, in parts of s, is what takes y to the least norm. */
+#define SOFT 1e-6
+
+/* Newton's steps until none moves y: where the rest is soft, distances are settled long before y is. */
+static void come_to_rest(struct disc_qp *p)
+{
+    double moved = 1.0;
+    for (int round = 0; round < FROM_INTERIOR && moved > 1e-11; round++) {
+        step_newton(p);
+        look(p);
+        moved = 0.0;
+        for (size_t i = 0; i < p->size; i++) {
+            moved = greater(moved, fabs(p->y[i] - p->from[i]));
+        }
+    }
+}
+
+/* y = the solution with so much stiffness more. */
+static int solve_softly(struct disc_qp *p, double more)
+{
+    for (size_t i = 0; i < p->size; i++) {
+        p->s[i * (p->size + 1)] = p->diagonal[i] + more * p->weight[i] * p->weight[i];
+    }
+    const int done = tribo_disc_solve(p);
+    come_to_rest(p);
+    return done;
+}
+
+/* Off by no more than that, in parts of limits, y is not solved for again: that would leave the share. */
+#define SHARED 1e-12
+
+/* The solution with a little stiffness more is off by that; those with half and a quarter of it show by how much, to second
+ * order. */
+int tribo_disc_share(struct disc_qp *p)
+{
+    const double part[] = {1.0, 0.5, 0.25}, weight[] = {1.0 / 3.0, -2.0, 8.0 / 3.0};
+    double most = 0.0;
+    int done = 1;
+    for (size_t i = 0; i < p->size; i++) {
+        p->diagonal[i] = p->s[i * (p->size + 1)];
+        most = greater(most, p->diagonal[i]);
+        p->share[i] = 0.0;
+    }
+    for (int k = 0; k < 3; k++) {
+        done = solve_softly(p, part[k] * SOFT * most) && done;
+        for (size_t i = 0; i < p->size; i++) {
+            p->share[i] += weight[k] * p->y[i];
+        }
+    }
+    for (size_t i = 0; i < p->size; i++) {
+        p->s[i * (p->size + 1)] = p->diagonal[i];
+    }
+    tribo_disc_gains(p);
+    project(p, p->share, p->share, 1.0);
+    look(p);
+    return done && (p->residual < SHARED || tribo_disc_solve(p));
+}
+
 /* ------------------------------------------------------------------------------------------------------------ room */
 
 /* Makes vectors of store [TRIBO_DISC_VECTORS s], press being two of them. */
 static void lay_out(struct disc_qp *p, double *store, size_t s)
 {
-    double **const vector[] = {&p->pull, &p->shift,   &p->y,         &p->gradient, &p->noise,      &p->gain,
-                               &p->to,   &p->outward, &p->curvature, &p->step,     &p->spare,      &p->best,
-                               &p->from, &p->aim,     &p->slide,     &p->factor.q, &p->factor.row, &p->press};
+    double **const vector[] = {&p->pull,    &p->shift,     &p->y,          &p->gradient, &p->noise,    &p->gain,  &p->to,
+                               &p->outward, &p->curvature, &p->step,       &p->spare,    &p->best,     &p->from,  &p->aim,
+                               &p->slide,   &p->factor.q,  &p->factor.row, &p->weight,   &p->diagonal, &p->share, &p->press};
     for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
         *vector[k] = store + k * s;
     }
