@@ -242,6 +242,8 @@ int tribo_disc_share(struct disc_qp *p)
     tribo_disc_gains(p);
     project(p, p->share, p->share, 1.0);
     look(p);
+    project(p, p->to, p->to, 1.0); /* what slides is on its rim, to the last digit */
+    look(p);
     return done && (p->residual < SHARED || tribo_disc_solve(p));
 }
 
