@@ -263,7 +263,8 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  *             eigenvalues of R that are not 0 are alike; far from that f is one of the solutions, with R f right. That takes a few
  *             solutions in the place of one
  * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
- * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
+ * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, and for bodies of tribo_set_operator_mass that
+ * need more digits than that (shares that differ by more than 1e10), from here or from tribo_set_operator_....
  * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (also: static limits that differ, tribo_set_static),
  * TRIBO_ERR_DUPLICATE (a direction of two contacts), TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling),
  * TRIBO_ERR_MEMORY; on error all stays as it was. */

@@ -253,6 +253,24 @@ static int check_first(const tribo_context *ctx, size_t count, const size_t *fir
     return TRIBO_OK;
 }
 
+/* In ordinary digits, light bodies between heavy ones come out right to this ratio. */
+#define SPREAD_MOST 1e10
+
+/* Clusters have no more digits. */
+static int check_spread(const tribo_context *ctx, const struct planar *c, const struct delassus *op)
+{
+    for (size_t k = 0; op->diagonal && k < op->groups; k++) {
+        const struct group *g = &op->group[k];
+        if (g->graded && g->spread > SPREAD_MOST && c->group_of[op->member[g->first]] == TRIBO_ALONE) {
+            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                              "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
+                              "planar contacts not more than %g can be told",
+                              g->uneven, g->spread, SPREAD_MOST);
+        }
+    }
+    return TRIBO_OK;
+}
+
 int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
                          struct planar **planar, struct plane *plane)
 {
@@ -269,7 +287,12 @@ int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *f
         tribo_planar_release(*planar);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contacts in the plane", count);
     }
-    return TRIBO_OK;
+    status = *planar ? check_spread(ctx, *planar, op) : TRIBO_OK;
+    if (status) {
+        tribo_plane_free(plane);
+        tribo_planar_release(*planar);
+    }
+    return status;
 }
 
 void tribo_planar_install(tribo_context *ctx, struct planar *planar, const struct plane *plane)

@@ -113,6 +113,26 @@ static void move_in_plane(const char *method, double light, const double *limit,
     tribo_system_destroy(sys);
 }
 
+/* What ordinary digits do not tell is refused, whichever call comes first. */
+TEST(hidden_in_the_plane)
+{
+    const double inverse[4] = {1.0, 1.0, _i ? 1e8 : 1e12, 0.0}, val[] = {1.0, 1.0, 1.0, -1.0, 1.0};
+    const size_t rowptr[] = {0, 1, 2, 4, 5}, col[] = {0, 1, 0, 2, 2}, first = 0;
+    const int want = _i ? TRIBO_OK : TRIBO_ERR_UNSUPPORTED;
+    for (int before = 0; before < 2; before++) {
+        tribo_context *c;
+        assert_ok(tribo_create(&c, 4));
+        assert_ok(tribo_set_limit_all(c, 1.0));
+        assert_ok(before ? tribo_set_planar(c, 1, &first) : TRIBO_OK);
+        assert_status(tribo_set_operator_mass(c, 3, inverse, rowptr, col, val), before ? want : TRIBO_OK);
+        assert_status(before ? want : tribo_set_planar(c, 1, &first), want);
+        if (want) {
+            assert_says(tribo_message(c), "contact 2 touches bodies of which one is 1e+12 times as heavy as the other");
+        }
+        tribo_destroy(c);
+    }
+}
+
 /* The step form of planar contacts takes scalar ones along: as near a fine run by another method as without the light body. */
 TEST(in_the_plane)
 {
@@ -128,4 +148,5 @@ TEST(in_the_plane)
     }
 }
 
-TEST_MAIN("light_body", {in_the_plane, 6}, {moves_as_if_alone, (int)(COUNT(methods) * COUNT(limits) * COUNT(ratios))}, {hidden_bodies, 1})
+TEST_MAIN("light_body", {in_the_plane, 6}, {hidden_in_the_plane, 2},
+          {moves_as_if_alone, (int)(COUNT(methods) * COUNT(limits) * COUNT(ratios))}, {hidden_bodies, 1})
