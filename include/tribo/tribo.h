@@ -260,8 +260,8 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  *             scalar law; which tangential directions are taken does not matter; and at v = 0 it is Coulomb's law, also where
  *             R_d or limits differ by direction.
  *   sharing   as tribo_set_sharing says, but least norms are found to about 1e-8 of the limits only, where limits and the
- *             eigenvalues of R that are not 0 are alike; far from that f is one of the solutions, with R f right. That takes a few
- *             solutions in the place of one
+ *             eigenvalues of R that are not 0 are alike; far from that f is one of the solutions, with R f right. It takes a
+ *             few solutions in the place of one
  * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
  * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, and for bodies of tribo_set_operator_mass that
  * need more digits than that (shares that differ by more than 1e10), from here or from tribo_set_operator_....

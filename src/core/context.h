@@ -287,8 +287,8 @@ void tribo_planar_feq(tribo_context *ctx, const double *a);
 int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq);
 int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 
-/* What is given of planar contact k at v and f_eq, [2] each; and near stick the point of its lens that is nearest to f_eq - kappa,
- * as R_d measures it: x->p.y, in parts of limits. 1, or 0 without convergence. */
+/* What is given of planar contact k at v and f_eq, [2] each; and near stick the point of its lens that is nearest to
+ * f_eq - kappa, as R_d measures it: x->p.y, in parts of limits. 1, or 0 without convergence. */
 void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g);
 int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x);
 
