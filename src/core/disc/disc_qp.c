@@ -190,11 +190,12 @@ int tribo_disc_solve(struct disc_qp *p)
 /* As stiff as that, in parts of s, is what takes y to the least norm. */
 #define SOFT 1e-6
 
-/* Newton's steps until none moves y: where the rest is soft, distances are settled long before y is. */
+/* Newton's steps until one has moved y by so little that it was the last: where the rest is soft, distances are settled long
+ * before y is. */
 static void come_to_rest(struct disc_qp *p)
 {
     double moved = 1.0;
-    for (int round = 0; round < FROM_INTERIOR && moved > 1e-11; round++) {
+    for (int round = 0; round < FROM_INTERIOR && moved > 1e-8; round++) {
         step_newton(p);
         look(p);
         moved = 0.0;
