@@ -66,6 +66,9 @@
 !>   TRBFRC(IH, N, V, FEQ, F, IERR)                  V(N), FEQ(N)                      F(N)
 !>   TRBFTN(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      F(N), its derivatives by V, FEQ, limit
 !>          IERR)
+!>   TRBFTP(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      the same of planar contacts: DFDV(2,N) and
+!>          IERR)                                                                      so on, (J,I) is how F(I) follows direction J
+!>                                                                                     of its contact; scalar ones: (2,I) is 0
 !>   TRBBAL(IH, N, V, A, FEQ, F, IERR)               V(N), A(N)                        FEQ(N), F(N)
 !>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
 !>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
@@ -678,6 +681,19 @@ subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
   call find(ih, ctx, ierr, n)
   if (ierr == TRIBO_OK) ierr = c_force_tangent(ctx, v, feq, f, dfdv, dfdq, dfdn)
 end subroutine trbftn
+
+subroutine trbftp(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: v(*), feq(*)
+  real(dp), intent(inout) :: f(*), dfdv(*), dfdq(*), dfdn(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_force_tangent_planar(ctx, v, feq, f, dfdv, dfdq, dfdn)
+end subroutine trbftp
 
 subroutine trbbal(ih, n, v, a, feq, f, ierr)
   use tribo_fixed

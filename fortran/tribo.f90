@@ -70,7 +70,7 @@ module tribo_contexts
     procedure :: set_operator_csr, set_operator_mass, set_operator_callback
     procedure :: set_coupling, get_coupling
     procedure :: set_sharing, get_sharing
-    procedure :: force, force_tangent
+    procedure :: force, force_tangent, force_tangent_planar
     procedure :: balance, balance_tangent, tangent_product, limit_product
     procedure :: step_force, step_force_mean
     procedure :: solve_box
@@ -717,6 +717,27 @@ contains
     if (w%status == TRIBO_OK) w%status = c_force_tangent(w%ctx, v, feq, f, df_dv, df_dfeq, df_dlimit)
     call finish(w, stat, errmsg)
   end subroutine force_tangent
+
+  !> The same where contacts may be planar: df_dv(:, i), df_dfeq(:, i), df_dlimit(:, i) is how component i of the force follows the
+  !> first and the second direction of its contact; of a scalar contact its derivative and 0.
+  subroutine force_tangent_planar(this, v, feq, f, df_dv, df_dfeq, df_dlimit, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    real(dp), intent(in) :: v(:), feq(:)
+    real(dp), intent(inout), optional, contiguous :: f(:), df_dv(:, :), df_dfeq(:, :), df_dlimit(:, :)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    call expect_size(w, 'v', v, w%n)
+    call expect_size(w, 'feq', feq, w%n)
+    if (present(f)) call expect_size(w, 'f', f, w%n)
+    if (present(df_dv)) call expect_shape(w, 'df_dv', shape(df_dv), [2, w%n])
+    if (present(df_dfeq)) call expect_shape(w, 'df_dfeq', shape(df_dfeq), [2, w%n])
+    if (present(df_dlimit)) call expect_shape(w, 'df_dlimit', shape(df_dlimit), [2, w%n])
+    if (w%status == TRIBO_OK) w%status = c_force_tangent_planar(w%ctx, v, feq, f, df_dv, df_dfeq, df_dlimit)
+    call finish(w, stat, errmsg)
+  end subroutine force_tangent_planar
 
   !> f_eq and f of coupled contacts, z'' = R f + a. a is the relative acceleration without friction, minus the contact's driven
   !> acceleration; feq is 0 for open contacts; abs(f) <= limit. Where contacts are redundant R f is unique and f one of the

@@ -412,6 +412,19 @@ module tribo_c
       integer(c_int) :: answer
     end function c_force_tangent
 
+    function c_force_tangent_planar(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit) result(answer) &
+      bind(c,name='tribo_force_tangent_planar')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in), optional :: v(*)
+      real(c_double), intent(in), optional :: feq(*)
+      real(c_double), intent(inout), optional :: f(*)
+      real(c_double), intent(inout), optional :: df_dv(*)
+      real(c_double), intent(inout), optional :: df_dfeq(*)
+      real(c_double), intent(inout), optional :: df_dlimit(*)
+      integer(c_int) :: answer
+    end function c_force_tangent_planar
+
     function c_balance(ctx, v, a, feq, f) result(answer) bind(c,name='tribo_balance')
       import
       type(c_ptr), value :: ctx

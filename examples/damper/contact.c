@@ -17,20 +17,38 @@ static const char *read_coordinates(const char *origin, const char *text, char e
     return text;
 }
 
+/* 1, 2, 3 for x, y, z; 0 for what is none. */
+static int read_direction(char name)
+{
+    for (int d = 1; d <= 3; d++) {
+        if (name == "xyz"[d - 1] || name == "123"[d - 1]) {
+            return d;
+        }
+    }
+    return 0;
+}
+
 struct place read_place(const char *origin, const char *text)
 {
     struct place p = {.origin = origin};
     const char *at = read_coordinates(origin, text, ',', p.at);
-    for (int d = 1; d <= 3; d++) {
-        if (at[0] && !at[1] && (at[0] == "xyz"[d - 1] || at[0] == "123"[d - 1])) {
-            p.direction = d;
-        }
-    }
-    if (!p.direction && at[0] && at[1] && strspn(at, "xyz") == strlen(at)) {
-        die("%s: direction \"%s\": contacts slide along one axis here, x, y or z", origin, at);
-    }
+    p.direction = at[0] && !at[1] ? read_direction(at[0]) : 0;
     if (!p.direction) {
         die("%s: direction \"%s\" must be x, y or z", origin, at);
+    }
+    return p;
+}
+
+/* The same where there may be two directions; *second is 0, or the other one. */
+static struct place read_places(const char *origin, const char *text, int *second)
+{
+    struct place p = {.origin = origin};
+    const char *at = read_coordinates(origin, text, ',', p.at);
+    const int plane = at[0] && at[1];
+    p.direction = read_direction(at[0]);
+    *second = plane ? read_direction(at[1]) : 0;
+    if (!p.direction || (plane && (!*second || at[2] || *second == p.direction))) {
+        die("%s: direction \"%s\" must be x, y or z; or two of them, for a contact that slides in their plane", origin, at);
     }
     return p;
 }
@@ -69,15 +87,16 @@ static void read_word(const char *origin, char *word, struct contact *c, struct 
     }
 }
 
-struct contact read_contact(const char *origin, const char *text)
+size_t read_contact(const char *origin, const char *text, struct contact *contact, size_t count)
 {
     struct contact c = {.mu = 1.0};
+    int second;
     struct words w = {(double)NAN, (double)NAN, (double)NAN, (double)NAN};
     char *copy = new_text("%s", text), *place = copy + strspn(copy, PARTED), *word = place + strcspn(place, PARTED);
     if (*word) {
         *word++ = '\0';
     }
-    c.at = read_place(origin, place);
+    c.at = read_places(origin, place, &second);
     for (word += strspn(word, PARTED); *word; word += strspn(word, PARTED)) {
         char *end = word + strcspn(word, PARTED);
         const int last = *end == '\0';
@@ -97,7 +116,17 @@ struct contact read_contact(const char *origin, const char *text)
     c.limit = isnan(w.load) ? w.limit : w.mu * w.load;
     c.to.direction = c.at.direction;
     c.to.origin = origin;
-    return c;
+    c.planar = second != 0;
+    if (count + (second ? 2 : 1) > MAX_CONTACTS) {
+        die("%s: there are %zu contacts already of %d, and one in a plane counts twice", origin, count, (int)MAX_CONTACTS);
+    }
+    contact[count++] = c;
+    if (second) {
+        c.planar = 0;
+        c.at.direction = c.to.direction = second;
+        contact[count++] = c;
+    }
+    return count;
 }
 
 /* Messages show what is in the line. */
@@ -116,12 +145,9 @@ size_t read_contacts(const char *path, struct contact *contact, size_t count)
     struct lines l = open_lines(path);
     const size_t before = count;
     while (next_data(&l)) {
-        if (count == MAX_CONTACTS) {
-            die_at(&l, "there are %d contacts already", (int)MAX_CONTACTS);
-        }
         l.at[strcspn(l.at, "\r")] = '\0';
         make_printable(l.at);
-        contact[count++] = read_contact(new_text("%s:%zu: contact %s", path, l.line, l.at), l.at);
+        count = read_contact(new_text("%s:%zu: contact %s", path, l.line, l.at), l.at, contact, count);
     }
     close_lines(&l);
     if (count == before) {

@@ -78,6 +78,13 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
     need(tribo_system_get_frequencies(d->sys, d->omega), tribo_message(contacts));
     need(tribo_system_set_damping_ratio(d->sys, d->damping), tribo_message(contacts));
     need(tribo_set_law(contacts, o->law), tribo_message(contacts));
+    size_t first[MAX_CONTACTS];
+    for (size_t c = 0; c < d->contacts; c++) {
+        if (o->contact[c].planar) {
+            first[d->planar++] = c;
+        }
+    }
+    need(tribo_set_planar(contacts, d->planar, first), tribo_message(contacts));
 }
 
 /* A spring so many times as stiff as the lowest mode that is no rigid body's leaves of its frequency what is still right. */

@@ -12,6 +12,7 @@
 struct damper {
     tribo_system *sys;                     /* without a load */
     size_t ndof, modes, contacts, motions; /* motions: modes and sliders */
+    size_t planar;                         /* contacts in a plane, of which contacts counts both directions */
     double *omega;                         /* [modes] natural frequencies, rad/time */
     double *load_shape;                    /* [modes] the modes where and as the load acts */
     double *contact_shape;                 /* [contacts][modes] the same for the contacts */

@@ -173,10 +173,10 @@ size_t stuck_frequencies(const struct damper *d, double *omega)
     return n;
 }
 
-/* Whether all contacts are rigid, and have the limit that varies. */
+/* Whether all contacts are rigid, along one axis, and have the limit that varies. */
 static int one_limit(const struct damper *d)
 {
-    int one = 1;
+    int one = d->planar == 0;
     for (size_t c = 0; c < d->contacts; c++) {
         one = one && isnan(d->limit[c]) && d->mu[c] == 1.0 && d->stiffness[c] == 0.0;
     }

@@ -42,16 +42,23 @@ void check_steps(const struct damper *d, double hz)
     }
 }
 
-static struct run create_run(struct worker *w, double limit, double hz)
+tribo_driver *create_marcher(struct worker *w, double limit, double hz)
 {
-    struct run r = {.d = w->d, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(w->d, hz)};
-    const double dt = r.period / (double)r.steps;
+    const double dt = 1.0 / (hz * steps_of(w->d, hz));
     tribo_context *contacts = tribo_system_context(w->sys);
-    r.free = free_scale(w->d, r.omega);
+    tribo_driver *drv;
     set_point(w, limit, hz);
     /* stuck contacts relax within a step or so, which rk4 still follows; epsilon then goes along with each limit */
     need(tribo_set_epsilon_step(contacts, dt, 1.0), tribo_message(contacts));
-    need(tribo_driver_create(&r.drv, w->sys, "rk4/fixed", dt, 0.0, 0.0), tribo_message(contacts));
+    need(tribo_driver_create(&drv, w->sys, "rk4/fixed", dt, 0.0, 0.0), tribo_message(contacts));
+    return drv;
+}
+
+static struct run create_run(struct worker *w, double limit, double hz)
+{
+    struct run r = {.d = w->d, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(w->d, hz)};
+    r.free = free_scale(w->d, r.omega);
+    r.drv = create_marcher(w, limit, hz);
     return r;
 }
 

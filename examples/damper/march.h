@@ -10,4 +10,7 @@ void check_steps(const struct damper *d, double hz);
  * repeats itself. y out: the state at the beginning of a period. */
 struct motion march(struct worker *w, double limit, double hz, double *y);
 
+/* The driver that does: set to this limit and frequency. */
+tribo_driver *create_marcher(struct worker *w, double limit, double hz);
+
 #endif

@@ -14,7 +14,9 @@ struct worker create_worker(const struct damper *d, int march)
 {
     struct worker w = {.d = d, .march = march, .dimension = 2 * d->motions + 1};
     need(tribo_system_clone(d->sys, &w.sys), NULL);
-    need(tribo_driver_create(&w.drv, w.sys, "exact", 1.0, 0.0, 0.0), tribo_message(tribo_system_context(w.sys)));
+    if (!d->planar) {
+        need(tribo_driver_create(&w.drv, w.sys, "exact", 1.0, 0.0, 0.0), tribo_message(tribo_system_context(w.sys)));
+    }
     w.limit = need_memory(d->contacts, sizeof *w.limit);
     w.c = need_memory(2 * d->motions, sizeof *w.c);
     memcpy(w.c, d->load_shape, d->modes * sizeof *w.c);

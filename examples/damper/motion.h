@@ -18,7 +18,7 @@ struct motion {
 struct worker {
     const struct damper *d;
     tribo_system *sys;
-    tribo_driver *drv; /* "exact" */
+    tribo_driver *drv; /* "exact"; NULL with contacts in a plane */
     int march;         /* steady motions are found by marching */
     size_t dimension;
     double *limit; /* [contacts] */

@@ -33,10 +33,7 @@ static void set_damping(const char *origin, const char *value, struct options *o
 
 static void set_contact(const char *origin, const char *value, struct options *o)
 {
-    if (o->contacts == MAX_CONTACTS) {
-        die("%s: there are %d contacts already", origin, (int)MAX_CONTACTS);
-    }
-    o->contact[o->contacts++] = read_contact(origin, value);
+    o->contacts = read_contact(origin, value, o->contact, o->contacts);
 }
 
 static void set_contacts(const char *origin, const char *value, struct options *o)
@@ -220,13 +217,17 @@ int limits_vary(const struct options *o)
     return vary;
 }
 
-/* Sliders without mass are for "exact" only. */
-static void check_springs(const struct options *o)
+/* Sliders without mass cannot be marched with, and contacts in a plane have no closed form. */
+static void check_method(const struct options *o)
 {
     for (size_t c = 0; c < o->contacts; c++) {
         if (o->contact[c].stiffness > 0.0 && (o->march || o->check)) {
             die("%s: marching takes rigid contacts only: leave out stiffness=, or %s", o->contact[c].at.origin,
                 o->march ? "--method march" : "--check");
+        }
+        if (o->contact[c].planar && !o->march) {
+            die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only",
+                o->contact[c].at.origin);
         }
     }
 }
@@ -235,7 +236,7 @@ static void check_springs(const struct options *o)
 static void complete(struct options *o)
 {
     need_structure(o);
-    check_springs(o);
+    check_method(o);
     if (o->frequencies && strcmp(o->frequencies, "none") == 0) {
         o->frequencies = NULL;
     }

@@ -8,6 +8,7 @@
 
 #include "../common/output.h"
 #include "linear.h"
+#include "march.h"
 
 struct tables open_tables(const struct options *o)
 {
@@ -175,10 +176,13 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     double *state = need_memory(w->dimension, sizeof *state);
     signed char *slip = need_memory(d->contacts, sizeof *slip);
     FILE *table = create_table(t, what);
-    set_point(w, m->limit, m->hz);
-    /* what sticks has velocities that are rounding, to be told from those of what slides */
-    const double size = fmax(m->amplitude, 1e-6 * free_amplitude(d, TURN * m->hz));
-    need(tribo_set_epsilon_all(contacts, 1e-8 * TURN * m->hz * size), tribo_message(contacts));
+    tribo_driver *marcher = w->drv ? NULL : create_marcher(w, m->limit, m->hz), *drv = marcher ? marcher : w->drv;
+    if (!marcher) {
+        set_point(w, m->limit, m->hz);
+        /* what sticks has velocities that are rounding, to be told from those of what slides */
+        const double size = fmax(m->amplitude, 1e-6 * free_amplitude(d, TURN * m->hz));
+        need(tribo_set_epsilon_all(contacts, 1e-8 * TURN * m->hz * size), tribo_message(contacts));
+    }
     memcpy(state, y, w->dimension * sizeof *state);
     fprintf(table, "cycle,t,displacement");
     for (size_t c = 0; c < d->contacts; c++) {
@@ -187,12 +191,13 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     fprintf(table, "\n");
     for (int i = 0; i <= STEPS; i++) {
         const double cycle = (double)PERIODS * i / STEPS;
-        need(tribo_driver_advance(w->drv, &now, cycle / m->hz, state), tribo_driver_message(w->drv));
+        need(tribo_driver_advance(drv, &now, cycle / m->hz, state), tribo_driver_message(drv));
         need(tribo_system_contacts(w->sys, now, state, v, NULL, f), tribo_message(contacts));
         need(tribo_get_slip(contacts, slip), tribo_message(contacts));
         write_instant(table, d, cycle, now, state, v, f, slip);
     }
     close_table(table, what);
+    tribo_driver_destroy(marcher);
     free(v);
     free(state);
     free(slip);

@@ -217,14 +217,18 @@ TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const 
  * tribo_force. Forces jump at |v| = epsilon, so that integrators are of first order there. VELOCITY_LIMITED and SMOOTH know no
  * stick, and need velocities.
  *
+ * Planar contacts go by the same rule, in their plane: near stick within the ellipse of ratio*limit; a contact whose f_eq is
+ * outside that goes by the ellipse of limit from there on, and slides the way in which it was held. |v| is then the length of v.
+ * Both directions of one have the same ratio and velocity.
+ *
  * A limit that falls with the speed. N(|v|) takes the place of limit in every law and coupling; forces are as continuous in v as
  * they were.
  *
  * TRIBO_REAL_MAX_RATE is that of static limits, and so is the epsilon of tribo_set_epsilon_step. TRIBO_COUNT_SOLVES counts each
  * time that forces of an island are found. tribo_solve_box knows no limits, and so no static ones.
- * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (a
- * law without stick needs velocities; tribo_set_law returns it too. A ratio above 1 in a context with planar contacts;
- * tribo_set_planar returns it too. tribo_step_force_mean returns it for static limits); on error all stays as it was. */
+ * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1; ratios or velocities of one planar contact that differ, for
+ * which tribo_set_planar returns it too), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (a law without stick needs
+ * velocities; tribo_set_law returns it too); on error all stays as it was. */
 TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
 
 /* ratio, velocity [n] out, each or NULL: 1 where nothing was set, and velocity 0 where there is none. */
@@ -255,11 +259,14 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  *             kappa = (2 limit/epsilon) v, over the lens: f and f + kappa are both within the limits. On a line that is the
  *             scalar law; which tangential directions are taken does not matter; and at v = 0 it is Coulomb's law, also where
  *             R_d or limits differ by direction.
- *   sharing   of redundant contacts in a group with planar ones R f is unique, and f one of the solutions, near the last one
+ *   sharing   as tribo_set_sharing says, but least norms are found to about 1e-8 of the limits only, where limits and the
+ *             eigenvalues of R that are not 0 are alike; far from that f is one of the solutions, with R f right. It takes a
+ *             few solutions in the place of one
  * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
- * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
- * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_DUPLICATE (a direction of two contacts),
- * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling, and not beside static limits, tribo_set_static),
+ * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, and for bodies of tribo_set_operator_mass that
+ * need more digits than that (shares that differ by more than 1e10), from here or from tribo_set_operator_....
+ * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (also: static limits that differ, tribo_set_static),
+ * TRIBO_ERR_DUPLICATE (a direction of two contacts), TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling),
  * TRIBO_ERR_MEMORY; on error all stays as it was. */
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 
@@ -327,9 +334,18 @@ TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const doubl
 
 /* The same with derivatives. f, df_dv, df_dfeq, df_dlimit [n] out, each or NULL. Where epsilon follows the limit
  * (tribo_set_epsilon_step), df_dlimit takes that into account. Derivatives are those of scalar contacts: TRIBO_ERR_UNSUPPORTED
- * if one is planar. */
+ * if one is planar, see tribo_force_tangent_planar. */
 TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
                                   double *df_dfeq, double *df_dlimit);
+
+/* The same where contacts may be planar, which have blocks of derivatives.
+ * f                        [n] out, or NULL
+ * df_dv, df_dfeq, df_dlimit   [n][2] out, each or NULL; the rows of the two directions of a planar contact are its 2x2 block: how
+ *                          this component of f follows the first one and the second one. Of a scalar contact: its derivative, 0
+ * One-sided at a kink, also where the limits of both directions are equal and change differently. Where the band of a planar
+ * contact ends they grow from inside, see tribo_balance_tangent. Returns what tribo_force does, and TRIBO_ERR_NO_CONVERGENCE. */
+TRIBO_API int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                                         double *df_dfeq, double *df_dlimit);
 
 /* f_eq and f of coupled contacts, z'' = R f + a.
  * v    [n] in   relative velocity

@@ -211,11 +211,18 @@ void tribo_refresh_static(tribo_context *ctx);
 /* Whether a law can do without stick what breaking wants of it; a status. */
 int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
 
+/* Both directions of a planar contact have one ratio, and one velocity if there are any; a status. */
+int tribo_check_one_ratio(const tribo_context *ctx, const double *ratio, const double *velocity, size_t count,
+                          const size_t *first);
+
 /* For what knows no static limits: fails if there are any. who: "... knows no". */
 int tribo_refuse_static(const tribo_context *ctx, const char *who);
 
 /* limit [n] = the limits of contacts i, i + 1, ... at v by these f_eq; NULL: those near stick hold. Where limits are static. */
 void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit);
+
+/* The limit by which contact i slides at this speed. */
+double tribo_limit_at(const tribo_context *ctx, size_t i, double speed);
 
 /* d(limit)/dv; 0 without a Stribeck velocity. */
 double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
@@ -280,6 +287,15 @@ void tribo_planar_feq(tribo_context *ctx, const double *a);
 int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq);
 int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 
+/* What is given of planar contact k at v and f_eq, [2] each; and near stick the point of its lens that is nearest to
+ * f_eq - kappa, as R_d measures it: x->p.y, in parts of limits. 1, or 0 without convergence. */
+void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g);
+int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x);
+
+/* Derivatives of these forces, [n][2] each or NULL; a status. */
+int tribo_planar_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
+                        double *df_dlimit);
+
 /* R f at place k of a cluster, with the contact's own force or without it. */
 double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, size_t k, int own);
 
@@ -300,6 +316,25 @@ int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const doub
 void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a);
 struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g);
 
+/* The force of a planar contact that is not near stick. */
+void tribo_planar_slide_force(const struct law *law, const struct slide *s, const double *limit, double *f);
+
+/* R f + a at place k of a cluster without the forces of the contact that begins at place from; all of them: directions 0. */
+double tribo_planar_others(const tribo_context *ctx, const struct cluster *g, size_t k, size_t from, size_t directions, double a);
+
+/* planar_static.c, where limits are static: limit [2] of the planar contact at i: those to stick, or by which it slides at v. */
+void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const double *v, double *limit);
+
+/* What laws see of the planar contact at i, with limits to stick; its limits become limit [2]. */
+struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, double *limit);
+
+/* Contacts of a cluster near stick at v hold, for now, the others have the limit by which they slide; or all hold, at NULL. */
+void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double *v);
+
+/* Those that the solution cannot hold slide from here on, at the end of a step of dt from v = 0, or (0) from rest; returns how
+ * many. a [n] is what pulls. */
+size_t tribo_planar_break(tribo_context *ctx, const struct cluster *g, double dt, const double *a);
+
 /* What changes about all contacts, [n] each, or NULL for nothing. */
 struct change {
     const double *v, *a, *limit;
@@ -316,10 +351,11 @@ static inline double tribo_limit_change(const tribo_context *ctx, const struct c
     return ctx->set.limit[i] > 0.0 ? tribo_entry(d->limit, i) : 0.0;
 }
 
-/* The same in parts of the limit. */
+/* The same in parts of the limit that it goes by. */
 static inline double tribo_limit_growth(const tribo_context *ctx, const struct change *d, size_t i)
 {
-    return ctx->set.limit[i] > 0.0 ? quotient(tribo_entry(d->limit, i), ctx->set.limit[i]) : 0.0;
+    const double limit = ctx->follow.contacts.limit[i];
+    return limit > 0.0 ? quotient(tribo_entry(d->limit, i), limit) : 0.0;
 }
 
 /* planar_tangent.c: the derivatives of a cluster's forces at the last tribo_balance_tangent. */

@@ -68,22 +68,27 @@ static int check_force(const tribo_context *ctx, const double *v, const double *
     return ctx->planar && ctx->set.law->uses_feq ? tribo_planar_check_feq(ctx, v, feq) : TRIBO_OK;
 }
 
-static void hand_out(size_t n, const struct tangent *d, double *df_dv, double *df_dfeq, double *df_dlimit)
+/* Derivatives, each or NULL, in every entry that is so many from the one before. */
+struct derivatives {
+    double *dv, *dfeq, *dlimit;
+    size_t stride;
+};
+
+static void hand_out(size_t i, size_t n, const struct tangent *d, const struct derivatives *to)
 {
-    for (size_t k = 0; df_dv && k < n; k++) {
-        df_dv[k] = d[k].dv;
+    for (size_t k = 0; to->dv && k < n; k++) {
+        to->dv[(i + k) * to->stride] = d[k].dv;
     }
-    for (size_t k = 0; df_dfeq && k < n; k++) {
-        df_dfeq[k] = d[k].dfeq;
+    for (size_t k = 0; to->dfeq && k < n; k++) {
+        to->dfeq[(i + k) * to->stride] = d[k].dfeq;
     }
-    for (size_t k = 0; df_dlimit && k < n; k++) {
-        df_dlimit[k] = d[k].dlimit;
+    for (size_t k = 0; to->dlimit && k < n; k++) {
+        to->dlimit[(i + k) * to->stride] = d[k].dlimit;
     }
 }
 
-/* Each output may be NULL. */
-static void evaluate(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
-                     double *df_dlimit)
+/* f may be NULL. */
+static void evaluate(const tribo_context *ctx, const double *v, const double *feq, double *f, const struct derivatives *to)
 {
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double used[TRIBO_CHUNK];
@@ -100,9 +105,9 @@ static void evaluate(const tribo_context *ctx, const double *v, const double *fe
         if (f) {
             ctx->set.law->force(&c, n, v + i, used, f + i);
         }
-        if (df_dv || df_dfeq || df_dlimit) {
+        if (to->dv || to->dfeq || to->dlimit) {
             tribo_law_tangents(ctx, &c, i, n, v + i, used, d);
-            hand_out(n, d, df_dv ? df_dv + i : NULL, df_dfeq ? df_dfeq + i : NULL, df_dlimit ? df_dlimit + i : NULL);
+            hand_out(i, n, d, to);
         }
     }
 }
@@ -119,7 +124,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    evaluate(ctx, v, feq, f, NULL, NULL, NULL);
+    evaluate(ctx, v, feq, f, &(struct derivatives){NULL, NULL, NULL, 1});
     return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -135,10 +140,37 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     }
     if (ctx->planar && (df_dv || df_dfeq || df_dlimit)) {
         return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                          "derivatives of planar contact %zu are no diagonals: see tribo_balance_tangent", ctx->planar->first[0]);
+                          "derivatives of planar contact %zu are no diagonals: see tribo_force_tangent_planar",
+                          ctx->planar->first[0]);
     }
-    evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
+    evaluate(ctx, v, feq, f, &(struct derivatives){df_dv, df_dfeq, df_dlimit, 1});
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
+}
+
+/* A scalar contact has nothing beside its diagonal. */
+static void clear(size_t n, double *block)
+{
+    for (size_t k = 0; block && k < 2 * n; k++) {
+        block[k] = 0.0;
+    }
+}
+
+int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                               double *df_dfeq, double *df_dlimit)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_force(ctx, v, feq);
+    if (status) {
+        return status;
+    }
+    clear(ctx->n, df_dv);
+    clear(ctx->n, df_dfeq);
+    clear(ctx->n, df_dlimit);
+    evaluate(ctx, v, feq, f, &(struct derivatives){df_dv, df_dfeq, df_dlimit, 2});
+    status = ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
+    return status || !ctx->planar ? status : tribo_planar_blocks(ctx, v, feq, df_dv, df_dfeq, df_dlimit);
 }
 
 static double limit_near(const tribo_context *ctx, size_t i, double v, double feq)

@@ -1,5 +1,4 @@
 /* Life of planar contacts: clusters are made whenever operator or contacts change. */
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,14 +35,14 @@ void tribo_planar_release(struct planar *planar)
 
 int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t n)
 {
-    enum { VECTORS = 6 };
+    enum { VECTORS = 7 };
     *plane = (struct plane){0};
     if (!planar) {
         return 1;
     }
     plane->near = malloc((planar->largest + 1) * sizeof *plane->near);
     plane->y = calloc(VECTORS * (n + 1), sizeof *plane->y);
-    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->df, &plane->other};
+    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->df, &plane->other, &plane->dlimit};
     for (size_t k = 1; plane->y && k < VECTORS; k++) {
         *vector[k] = plane->y + k * (n + 1);
     }
@@ -139,7 +138,8 @@ static void fill_groups(struct planar *c, const struct delassus *op, struct memo
         if (label[p->member[0]] == SIZE_MAX) {
             continue;
         }
-        const struct cluster *to = &c->cluster[label[p->member[0]]];
+        struct cluster *to = &c->cluster[label[p->member[0]]];
+        to->redundant |= p->group->nullity > 0;
         double *unit = p->step, ignored;
         memset(unit, 0, size * sizeof *unit);
         for (size_t j = 0; j < size; j++) {
@@ -253,6 +253,24 @@ static int check_first(const tribo_context *ctx, size_t count, const size_t *fir
     return TRIBO_OK;
 }
 
+/* In ordinary digits, light bodies between heavy ones come out right to this ratio. */
+#define SPREAD_MOST 1e10
+
+/* Clusters have no more digits. */
+static int check_spread(const tribo_context *ctx, const struct planar *c, const struct delassus *op)
+{
+    for (size_t k = 0; op->diagonal && k < op->groups; k++) {
+        const struct group *g = &op->group[k];
+        if (g->graded && g->spread > SPREAD_MOST && c->group_of[op->member[g->first]] == TRIBO_ALONE) {
+            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                              "contact %zu touches bodies of which one is %g times as heavy as the other, and in a group with "
+                              "planar contacts not more than %g can be told",
+                              g->uneven, g->spread, SPREAD_MOST);
+        }
+    }
+    return TRIBO_OK;
+}
+
 int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
                          struct planar **planar, struct plane *plane)
 {
@@ -269,7 +287,12 @@ int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *f
         tribo_planar_release(*planar);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contacts in the plane", count);
     }
-    return TRIBO_OK;
+    status = *planar ? check_spread(ctx, *planar, op) : TRIBO_OK;
+    if (status) {
+        tribo_plane_free(plane);
+        tribo_planar_release(*planar);
+    }
+    return status;
 }
 
 void tribo_planar_install(tribo_context *ctx, struct planar *planar, const struct plane *plane)
@@ -300,10 +323,8 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     struct plane plane;
     int status = check_first(ctx, count, first, owner);
     free(owner);
-    if (!status && count) {
-        char who[64];
-        snprintf(who, sizeof who, "planar contact %zu knows no", first[0]);
-        status = tribo_refuse_static(ctx, who);
+    if (!status && ctx->set.breaking) {
+        status = tribo_check_one_ratio(ctx, ctx->set.ratio, ctx->set.stribeck, count, first);
     }
     status = status ? status : tribo_planar_prepare(ctx, count, first, ctx->op, &ctx->memory, &planar, &plane);
     if (!status) {

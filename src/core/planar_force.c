@@ -18,7 +18,7 @@ struct slide tribo_planar_slide(const struct contacts *c, size_t i, const double
 {
     const double reach[2] = {product(c->bound[i], tribo_epsilon_of(c, i)), product(c->bound[i + 1], tribo_epsilon_of(c, i + 1))};
     const size_t far = reach[1] > reach[0] || (reach[1] == reach[0] && c->bound[i + 1] > c->bound[i]) ? i + 1 : i;
-    struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .epsilon = tribo_epsilon_of(c, far)};
+    struct slide s = {.open = !(c->bound[i] > 0.0 || c->bound[i + 1] > 0.0), .far = far - i, .epsilon = tribo_epsilon_of(c, far)};
     for (size_t k = 0; k < 2 && !s.open; k++) {
         s.part[k] = c->bound[i + k] == c->bound[far] ? 1.0 : quotient(c->bound[i + k], c->bound[far]);
         s.x[k] = product(s.part[k], v[k]);
@@ -39,6 +39,12 @@ int tribo_planar_near(const struct law *law, const struct slide *s)
     return !law->sticks_in_band ? s->length == 0.0 : law->relaxes ? s->speed < EDGE : s->speed <= 1.0;
 }
 
+int tribo_scalar_near(const struct law *law, const struct contacts *c, size_t i, double v)
+{
+    const double speed = quotient(fabs(v), tribo_epsilon_of(c, i));
+    return law->uses_feq && c->limit[i] > 0.0 && (!law->sticks_in_band ? v == 0.0 : law->relaxes ? speed < EDGE : speed <= 1.0);
+}
+
 /* Laws that read no f_eq are those of a scalar contact, along the direction of motion. */
 double tribo_planar_carried(const struct law *law, double speed, double *slope)
 {
@@ -55,13 +61,12 @@ double tribo_planar_carried(const struct law *law, double speed, double *slope)
     return f;
 }
 
-/* f of a contact that is not near stick. */
-static void slide_force(const tribo_context *ctx, size_t i, const struct slide *s, double *f)
+void tribo_planar_slide_force(const struct law *law, const struct slide *s, const double *limit, double *f)
 {
     double ignored;
-    const double carried = tribo_planar_carried(ctx->set.law, s->speed, &ignored);
+    const double carried = tribo_planar_carried(law, s->speed, &ignored);
     for (size_t k = 0; k < 2; k++) {
-        f[k] = carried * s->n[k] * ctx->set.limit[i + k];
+        f[k] = carried * s->n[k] * limit[k];
     }
 }
 
@@ -81,14 +86,13 @@ static void take(tribo_context *ctx, size_t k, int directions)
 static void take_scalar(tribo_context *ctx, size_t k, size_t i, double v)
 {
     const struct law *law = ctx->set.law;
+    const struct contacts *c = &ctx->follow.contacts;
     struct disc_qp *p = &ctx->plane.problem;
-    const double epsilon = tribo_epsilon_of(&ctx->follow.contacts, i), speed = quotient(fabs(v), epsilon);
-    const int near = !law->sticks_in_band ? v == 0.0 : law->relaxes ? speed < EDGE : speed <= 1.0;
-    if (near && law->uses_feq && ctx->set.limit[i] > 0.0) {
-        p->shift[p->size] = law->relaxes ? 2.0 * quotient(v, epsilon) : 0.0;
+    if (tribo_scalar_near(law, c, i, v)) {
+        p->shift[p->size] = law->relaxes ? 2.0 * quotient(v, tribo_epsilon_of(c, i)) : 0.0;
         take(ctx, k, 1);
     } else if (law->uses_feq && ctx->last.did.of[i] == STORED) {
-        ctx->last.f[i] = sliding(v, ctx->set.limit[i]);
+        ctx->last.f[i] = sliding(v, c->limit[i]);
     }
 }
 
@@ -98,7 +102,7 @@ static void take_planar(tribo_context *ctx, size_t k, size_t i, const double *v)
     struct disc_qp *p = &ctx->plane.problem;
     const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v);
     if (!tribo_planar_near(ctx->set.law, &s)) {
-        slide_force(ctx, i, &s, ctx->last.f + i);
+        tribo_planar_slide_force(ctx->set.law, &s, ctx->follow.contacts.limit + i, ctx->last.f + i);
         return;
     }
     for (size_t d = 0; d < 2; d++) {
@@ -166,6 +170,7 @@ void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double
         for (size_t j = 0; j < n; j++) {
             p->s[e * n + j] = weight * (bound[member[near[j]]] / u.force) * (row[near[j]] / u.r);
         }
+        p->weight[e] = weight;
         p->pull[e] = pull_of(ctx, g, near[e], a[member[near[e]]]);
         p->y[e] = ctx->plane.y[member[near[e]]];
     }
@@ -186,8 +191,10 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
     p->factor.work.factorizations = 0;
-    const int done = tribo_disc_solve(p);
-    ctx->plane.solved++;
+    int done = tribo_disc_solve(p);
+    if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
+        done = tribo_disc_share(p);
+    }
     ctx->count.solves++;
     ctx->count.reused += p->factor.work.factorizations == 0;
     ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
@@ -196,7 +203,6 @@ static int solve(tribo_context *ctx, const struct cluster *g)
                           "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing",
                           p->size, member[near[0]], p->residual);
     }
-    ctx->last.rank += p->sets.rank;
     ctx->last.residual = greater(ctx->last.residual, p->residual);
     for (size_t e = 0; e < p->size; e++) {
         const size_t i = member[near[e]];
@@ -204,6 +210,19 @@ static int solve(tribo_context *ctx, const struct cluster *g)
         ctx->last.f[i] = p->y[e] * ctx->follow.contacts.bound[i];
     }
     return TRIBO_OK;
+}
+
+/* Where limits are static, until nobody breaks away any more. */
+static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
+{
+    int status;
+    do {
+        tribo_planar_pose(ctx, g, a);
+        status = solve(ctx, g);
+    } while (!status && ctx->set.breaking && tribo_planar_break(ctx, g, dt, a));
+    ctx->plane.solved++;
+    ctx->last.rank += status ? 0 : ctx->plane.problem.sets.rank;
+    return status;
 }
 
 /* Where planar contacts join islands there are fewer of them; and those that clusters solve for are not skipped. */
@@ -228,8 +247,7 @@ static void store_planar(tribo_context *ctx)
 
 /* ------------------------------------------------------------------------------------------------------------- f_eq */
 
-/* a + R f at place k of a cluster without the forces of the contact that begins at place from. */
-static double others(const tribo_context *ctx, const struct cluster *g, size_t k, size_t from, size_t directions, double a)
+double tribo_planar_others(const tribo_context *ctx, const struct cluster *g, size_t k, size_t from, size_t directions, double a)
 {
     const size_t *member = ctx->planar->member + g->member;
     const double *row = ctx->planar->r + g->r + k * g->size;
@@ -243,23 +261,25 @@ static double others(const tribo_context *ctx, const struct cluster *g, size_t k
 
 static double scalar_feq(const tribo_context *ctx, const struct cluster *g, size_t k, double a)
 {
-    return quotient(-others(ctx, g, k, k, 1, a), ctx->planar->r[g->r + k * (g->size + 1)]);
+    return quotient(-tribo_planar_others(ctx, g, k, k, 1, a), ctx->planar->r[g->r + k * (g->size + 1)]);
 }
 
-/* x = -R_d^-1 x. What friction cannot move, in a direction of its own or because the two are one, goes far away. */
-static void push(const double *own, double *x)
+struct block tribo_block_of(const double *own)
 {
     const double mean = 0.5 * own[0] + 0.5 * own[2], half = 0.5 * own[0] - 0.5 * own[2];
     const double turned[2] = {half, own[1]}, spread = tribo_length(2, turned);
-    const double great = mean + spread, small = greater(mean - spread, 0.0);
-    /* the direction of the greater eigenvalue */
     const double raw[2] = {half >= 0.0 ? spread + half : own[1], half >= 0.0 ? own[1] : spread - half},
                  length = tribo_length(2, raw);
-    const double e[2] = {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0};
-    const double along = e[0] * x[0] + e[1] * x[1], across = e[0] * x[1] - e[1] * x[0];
-    const int lost = small <= 16.0 * DBL_EPSILON * great && fabs(across) <= 1e-12 * (fabs(x[0]) + fabs(x[1]));
-    const double first = quotient(-along, greater(great, TRIBO_IMMOVABLE));
-    const double second = lost ? 0.0 : quotient(-across, greater(small, TRIBO_IMMOVABLE));
+    return (struct block){
+        mean + spread, greater(mean - spread, 0.0), {length > 0.0 ? raw[0] / length : 1.0, length > 0.0 ? raw[1] / length : 0.0}};
+}
+
+void tribo_planar_push(const struct block *b, double *x)
+{
+    const double *e = b->e, along = e[0] * x[0] + e[1] * x[1], across = e[0] * x[1] - e[1] * x[0];
+    const int lost = b->small <= 16.0 * DBL_EPSILON * b->great && fabs(across) <= 1e-12 * (fabs(x[0]) + fabs(x[1]));
+    const double first = quotient(-along, greater(b->great, TRIBO_IMMOVABLE));
+    const double second = lost ? 0.0 : quotient(-across, greater(b->small, TRIBO_IMMOVABLE));
     x[0] = cut(e[0] * first - e[1] * second);
     x[1] = cut(e[1] * first + e[0] * second);
 }
@@ -267,9 +287,10 @@ static void push(const double *own, double *x)
 static void planar_feq(const tribo_context *ctx, const struct cluster *g, size_t k, const double *a, double *feq)
 {
     const double *r = ctx->planar->r + g->r + k * (g->size + 1), own[3] = {r[0], r[1], r[g->size + 1]};
-    feq[0] = others(ctx, g, k, k, 2, a[0]);
-    feq[1] = others(ctx, g, k + 1, k, 2, a[1]);
-    push(own, feq);
+    feq[0] = tribo_planar_others(ctx, g, k, k, 2, a[0]);
+    feq[1] = tribo_planar_others(ctx, g, k + 1, k, 2, a[1]);
+    const struct block block = tribo_block_of(own);
+    tribo_planar_push(&block, feq);
 }
 
 void tribo_planar_feq(tribo_context *ctx, const double *a)
@@ -319,9 +340,11 @@ int tribo_planar_balance(tribo_context *ctx, const double *v, const double *a)
     ctx->plane.solved = 0;
     for (size_t k = 0; !status && k < ctx->planar->clusters; k++) {
         const struct cluster *g = &ctx->planar->cluster[k];
+        if (ctx->set.breaking) {
+            tribo_planar_hold(ctx, g, v);
+        }
         if (tribo_planar_collect(ctx, g, v)) {
-            tribo_planar_pose(ctx, g, a);
-            status = solve(ctx, g);
+            status = solve_all(ctx, g, 0.0, a);
             scalar_laws(ctx, g, v, a);
         }
     }
@@ -359,9 +382,11 @@ int tribo_planar_step(tribo_context *ctx, double dt, const double *v, const sign
         for (size_t j = 0; j < g->size; j++) {
             ctx->plane.a[member[j]] = quotient(v[member[j]], dt);
         }
+        if (ctx->set.breaking) {
+            tribo_planar_hold(ctx, g, NULL);
+        }
         if (collect_free(ctx, g, known)) {
-            tribo_planar_pose(ctx, g, ctx->plane.a);
-            status = solve(ctx, g);
+            status = solve_all(ctx, g, dt, ctx->plane.a);
         }
     }
     count_skipped(ctx);
@@ -370,20 +395,19 @@ int tribo_planar_step(tribo_context *ctx, double dt, const double *v, const sign
 
 double tribo_planar_feels(const tribo_context *ctx, const struct cluster *g, size_t k, int own)
 {
-    return others(ctx, g, k, k, own ? 0 : 1, 0.0);
+    return tribo_planar_others(ctx, g, k, k, own ? 0 : 1, 0.0);
 }
 
 /* ------------------------------------------------------------------------------------------------ f_eq that is given */
 
-/* The point of the lens that is nearest to f_eq - kappa, as R_d measures it. */
-static int force_near(const tribo_context *ctx, size_t k, const struct slide *s, const double *feq, double *f)
+int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct given *g, const double *feq, struct disc_alone *x)
 {
-    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * s->speed : 0.0;
-    const double *bound = ctx->follow.contacts.bound + ctx->planar->first[k], force = greater(bound[0], bound[1]);
+    const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
+    const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
     const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
     const double m[4] = {weight[0] * weight[0] * (own[0] / r), across, across, weight[1] * weight[1] * (own[2] / r)};
-    const double shift[2] = {turn * s->n[0], turn * s->n[1]};
-    double aim[2], pull[2], y[2];
+    const double shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
+    double aim[2], pull[2];
     for (int d = 0; d < 2; d++) {
         aim[d] = bound[d] > 0.0 ? quotient(cut(feq[d]), bound[d]) : 0.0;
     }
@@ -394,17 +418,17 @@ static int force_near(const tribo_context *ctx, size_t k, const struct slide *s,
     for (int d = 0; d < 2; d++) {
         pull[d] = -(m[2 * d] * aim[0] + m[2 * d + 1] * aim[1]);
     }
-    const int done = tribo_disc_single(m, pull, shift, y);
-    f[0] = y[0] * bound[0];
-    f[1] = y[1] * bound[1];
-    return done;
+    tribo_disc_alone(x, m, pull, shift);
+    return tribo_disc_solve(&x->p);
 }
 
 int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq)
 {
     for (size_t k = 0; k < ctx->planar->count; k++) {
+        double limit[2];
         const size_t i = ctx->planar->first[k];
-        const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v + i);
+        const struct contacts c = tribo_planar_view(ctx, i, limit);
+        const struct slide s = tribo_planar_slide(&c, 0, v + i);
         for (size_t j = i; tribo_planar_near(ctx->set.law, &s) && j < i + 2; j++) {
             if (!isfinite(feq[j])) {
                 return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
@@ -414,15 +438,42 @@ int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const doub
     return TRIBO_OK;
 }
 
+/* Whether f_eq is beyond the limits. */
+static int beyond(const double *limit, const double *feq)
+{
+    double y[2];
+    for (int d = 0; d < 2; d++) {
+        y[d] = limit[d] > 0.0 ? quotient(cut(feq[d]), limit[d]) : 0.0;
+    }
+    return tribo_length(2, y) > 1.0;
+}
+
+void tribo_planar_given(const tribo_context *ctx, size_t k, const double *v, const double *feq, struct given *g)
+{
+    const size_t i = ctx->planar->first[k];
+    g->c = tribo_planar_view(ctx, i, g->limit);
+    g->s = tribo_planar_slide(&g->c, 0, v);
+    g->near = tribo_planar_near(ctx->set.law, &g->s);
+    if (ctx->set.breaking) {
+        tribo_planar_limits(ctx, i, g->near && !beyond(g->limit, feq), v, g->limit);
+    }
+}
+
 int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
+    const double none[2] = {0.0, 0.0};
     for (size_t k = 0; k < ctx->planar->count; k++) {
         const size_t i = ctx->planar->first[k];
-        const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v + i);
-        if (!tribo_planar_near(ctx->set.law, &s)) {
-            slide_force(ctx, i, &s, f + i);
-        } else if (!force_near(ctx, k, &s, feq + i, f + i)) {
+        struct given g;
+        struct disc_alone x;
+        tribo_planar_given(ctx, k, v + i, feq ? feq + i : none, &g);
+        if (!g.near) {
+            tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f + i);
+        } else if (!tribo_planar_given_near(ctx, k, &g, feq + i, &x)) {
             return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
+        } else {
+            f[i] = x.p.y[0] * g.c.bound[0];
+            f[i + 1] = x.p.y[1] * g.c.bound[1];
         }
     }
     return TRIBO_OK;
@@ -433,7 +484,7 @@ int tribo_planar_force(const tribo_context *ctx, const double *v, const double *
 signed char tribo_planar_slip(const tribo_context *ctx, size_t k)
 {
     const size_t i = ctx->planar->first[k];
-    const double *limit = ctx->set.limit + i, *f = ctx->last.f + i, rounding = 8.0 * DBL_EPSILON;
+    const double *limit = ctx->follow.contacts.limit + i, *f = ctx->last.f + i, rounding = 8.0 * DBL_EPSILON;
     if (!(limit[0] > 0.0 || limit[1] > 0.0)) {
         return OPEN;
     }
@@ -450,11 +501,11 @@ void tribo_planar_slips(const tribo_context *ctx, signed char *slip)
 
 double tribo_planar_rate(const tribo_context *ctx, size_t k)
 {
-    const struct contacts *c = &ctx->follow.contacts;
-    const size_t i = ctx->planar->first[k];
+    double limit[2];
+    const struct contacts c = tribo_planar_view(ctx, ctx->planar->first[k], limit);
     const double *own = ctx->planar->own[k], none[2] = {0.0, 0.0};
-    const struct slide s = tribo_planar_slide(c, i, none);
-    const double far = s.part[0] == 1.0 ? c->bound[i] : c->bound[i + 1];
+    const struct slide s = tribo_planar_slide(&c, 0, none);
+    const double far = s.part[0] == 1.0 ? c.bound[0] : c.bound[1];
     if (s.open) {
         return 0.0;
     }

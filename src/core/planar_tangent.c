@@ -21,53 +21,94 @@ static void resume(tribo_context *ctx, const struct cluster *g)
     }
 }
 
-/* How the units of a planar contact follow its limits: part of either direction, and epsilon, as a part of itself. */
-struct units_change {
-    double part[2], epsilon;
+/* What d makes of the limits of a cluster, where these fall with the speed: with v, in the plane by |v|. */
+static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    double *dlimit = ctx->plane.dlimit;
+    if (ctx->set.breaking != FALLS) {
+        return *d;
+    }
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = member[k], first = i - (ctx->planar->role[i] == ROLE_SECOND);
+        const int directions = ctx->planar->role[i] == ROLE_SCALAR ? 1 : 2;
+        const double speed = tribo_length(directions, ctx->plane.v + first), rate = tribo_limit_rate(ctx, i, speed);
+        dlimit[i] = tribo_entry(d->limit, i);
+        for (size_t j = first; j < first + (size_t)directions; j++) {
+            const double part = speed > 0.0 ? ctx->plane.v[j] / speed : directions == 1;
+            dlimit[i] += product(rate, part * tribo_entry(d->v, j));
+        }
+    }
+    return (struct change){d->v, d->a, dlimit};
+}
+
+/* What changes about one planar contact: velocity, limits, and epsilon, as a part of itself. */
+struct turn {
+    double v[2], limit[2], epsilon;
 };
 
-static struct units_change change_units(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
+static struct turn turn_of(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
 {
-    const double *limit = ctx->set.limit + i, dlimit[2] = {tribo_limit_change(ctx, d, i), tribo_limit_change(ctx, d, i + 1)};
-    const size_t far = s->part[0] == 1.0 && tribo_epsilon_of(&ctx->follow.contacts, i) == s->epsilon ? 0 : 1;
-    struct units_change u = {{0.0, 0.0}, 0.0};
-    for (size_t k = 0; k < 2 && !s->open; k++) {
-        u.part[k] = k == far ? 0.0 : quotient(dlimit[k] - product(s->part[k], dlimit[far]), limit[far]);
-    }
-    u.epsilon = s->open || !ctx->follow.contacts.follows ? 0.0 : tribo_limit_growth(ctx, d, i + far);
-    return u;
+    const struct contacts *c = &ctx->follow.contacts;
+    struct turn t = {{tribo_entry(d->v, i), tribo_entry(d->v, i + 1)},
+                     {tribo_limit_change(ctx, d, i), tribo_limit_change(ctx, d, i + 1)},
+                     0.0};
+    t.epsilon = s->open || !c->follows ? 0.0 : quotient(t.limit[s->far], c->limit[i + s->far]);
+    return t;
 }
 
-/* df of a planar contact that is not near stick. */
-static void slide_product(const tribo_context *ctx, size_t i, const struct change *d, double *df)
+/* How x of a slide changes, and with it the parts of which it is made. */
+static void turn_slide(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dx)
 {
-    const double *v = ctx->plane.v + i;
-    const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v);
-    const struct units_change u = change_units(ctx, i, &s, d);
+    for (size_t k = 0; k < 2; k++) {
+        const double wider = t->limit[k] - product(s->part[k], t->limit[s->far]);
+        const double part = s->open || k == s->far ? 0.0 : quotient(wider, limit[s->far]);
+        dx[k] = product(s->part[k], t->v[k]) + product(part, v[k]);
+    }
+}
+
+/* df [2] of a planar contact that is not near stick. */
+static void turn_force(const struct law *law, const struct slide *s, const double *limit, const double *v, const struct turn *t,
+                       double *df)
+{
     double slope, dx[2];
-    const double carried = tribo_planar_carried(ctx->set.law, s.speed, &slope);
+    const double carried = tribo_planar_carried(law, s->speed, &slope);
+    turn_slide(s, limit, v, t, dx);
+    const double along = s->n[0] * dx[0] + s->n[1] * dx[1];
     for (size_t k = 0; k < 2; k++) {
-        dx[k] = product(s.part[k], tribo_entry(d->v, i + k)) + product(u.part[k], v[k]);
-    }
-    const double along = s.n[0] * dx[0] + s.n[1] * dx[1];
-    for (size_t k = 0; k < 2; k++) {
-        const double turn = s.length > 0.0 ? carried * quotient(dx[k] - s.n[k] * along, s.length) : 0.0;
-        const double grow =
-            slope * (quotient(s.length > 0.0 ? s.n[k] * along : dx[k], s.epsilon) - product(product(s.speed, u.epsilon), s.n[k]));
-        const double own = product(carried * s.n[k], tribo_limit_change(ctx, d, i + k));
-        df[i + k] = s.open ? 0.0 : product(ctx->set.limit[i + k], turn + grow) + own;
+        const double turn = s->length > 0.0 ? carried * quotient(dx[k] - s->n[k] * along, s->length) : 0.0;
+        const double faster = quotient(s->length > 0.0 ? s->n[k] * along : dx[k], s->epsilon);
+        const double grow = slope * (faster - product(product(s->speed, t->epsilon), s->n[k]));
+        const double own = product(carried * s->n[k], t->limit[k]);
+        df[k] = s->open ? 0.0 : product(limit[k], turn + grow) + own;
     }
 }
 
-/* df of all contacts of a cluster that are not near stick, and of the others what their limits make of it. */
-static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
+/* How the shift of a lens changes. */
+static void turn_shift(const struct slide *s, const double *limit, const double *v, const double *shift, const struct turn *t,
+                       double *dshift)
+{
+    double dx[2];
+    turn_slide(s, limit, v, t, dx);
+    for (size_t k = 0; k < 2; k++) {
+        dshift[k] = 2.0 * quotient(dx[k], s->epsilon) - product(shift[k], t->epsilon);
+    }
+}
+
+/* df of all contacts of a cluster that are not near stick, and of the others what their limits make of it. by_v: what limits
+ * that follow v make of d, which the derivatives of scalar contacts know. */
+static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d,
+                              const struct change *by_v, double *df)
 {
     const size_t *member = ctx->planar->member + g->member;
     const struct disc_qp *p = &ctx->plane.problem;
     for (size_t k = 0; k < g->size; k++) {
         const size_t i = member[k];
         if (ctx->planar->role[i] == ROLE_FIRST) {
-            slide_product(ctx, i, d, df);
+            const struct contacts *c = &ctx->follow.contacts;
+            const struct slide s = tribo_planar_slide(c, i, ctx->plane.v + i);
+            const struct turn t = turn_of(ctx, i, &s, by_v);
+            turn_force(ctx->set.law, &s, c->limit + i, ctx->plane.v + i, &t, df + i);
         } else if (ctx->planar->role[i] == ROLE_SCALAR) {
             const struct tangent *law = &ctx->last.tangent[i];
             df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i));
@@ -75,28 +116,31 @@ static void products_of_slips(const tribo_context *ctx, const struct cluster *g,
     }
     for (size_t e = 0; e < p->size; e++) {
         const size_t i = member[ctx->plane.near[e]];
-        df[i] = product(p->y[e], tribo_limit_change(ctx, d, i));
+        df[i] = product(p->y[e], tribo_limit_change(ctx, by_v, i));
     }
 }
 
-/* How the shift of direction e of the problem changes. */
-static double shift_change(const tribo_context *ctx, const size_t *member, size_t e, const struct change *d)
+/* Lenses that move faster with v have the derivatives of these. */
+#define STEEPEST 1e150
+
+/* How the shift of the contact at e of the problem changes. */
+static void shift_change(const tribo_context *ctx, const size_t *member, size_t e, const struct change *d, double *dshift)
 {
     const struct contacts *c = &ctx->follow.contacts;
+    const struct disc_qp *p = &ctx->plane.problem;
     const size_t i = member[ctx->plane.near[e]];
-    const double dv = tribo_entry(d->v, i), shift = ctx->plane.problem.shift[e];
-    if (!ctx->set.law->relaxes) {
-        return 0.0;
-    }
-    if (ctx->planar->role[i] == ROLE_SCALAR) {
+    dshift[0] = dshift[p->wide[e] - 1] = 0.0;
+    if (ctx->set.law->relaxes && p->wide[e] == 2) {
+        const struct slide s = tribo_planar_slide(c, i, ctx->plane.v + i);
+        const struct turn t = turn_of(ctx, i, &s, d);
+        turn_shift(&s, c->limit + i, ctx->plane.v + i, p->shift + e, &t, dshift);
+    } else if (ctx->set.law->relaxes) {
         const double epsilon = c->follows ? tribo_limit_growth(ctx, d, i) : 0.0;
-        return product(2.0 * quotient(1.0, tribo_epsilon_of(c, i)), dv) - product(shift, epsilon);
+        dshift[0] = product(2.0 * quotient(1.0, tribo_epsilon_of(c, i)), tribo_entry(d->v, i)) - product(p->shift[e], epsilon);
     }
-    const size_t second = ctx->planar->role[i] == ROLE_SECOND;
-    const struct slide s = tribo_planar_slide(c, i - second, ctx->plane.v + i - second);
-    const struct units_change u = change_units(ctx, i - second, &s, d);
-    const double dx = product(s.part[second], dv) + product(u.part[second], ctx->plane.v[i]);
-    return 2.0 * quotient(dx, s.epsilon) - product(shift, u.epsilon);
+    for (size_t k = 0; k < p->wide[e]; k++) {
+        dshift[k] = clamp(dshift[k], -STEEPEST, STEEPEST);
+    }
 }
 
 /* y of the contacts near stick goes with their shift; dshift [size]. */
@@ -168,21 +212,19 @@ static void reverse(const tribo_context *ctx, const struct cluster *g, const str
     }
 }
 
-/* Lenses that move faster with v have the derivatives of these. */
-#define STEEPEST 1e150
-
 /* df [n] of a cluster that was resumed. */
 static void cluster_product(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
     double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
-    products_of_slips(ctx, g, d, df);
-    for (size_t e = 0; e < p->size; e++) {
-        dshift[e] = clamp(shift_change(ctx, member, e, d), -STEEPEST, STEEPEST);
+    const struct change by_v = with_limits(ctx, g, d);
+    products_of_slips(ctx, g, d, &by_v, df);
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        shift_change(ctx, member, e, &by_v, dshift + e);
     }
     drag_all(p, dshift, dy);
-    find_rhs(ctx, g, d, df, dshift, dy, rhs);
+    find_rhs(ctx, g, &by_v, df, dshift, dy, rhs);
     if (p->size) {
         tribo_disc_follow(p, rhs, move);
     }
@@ -235,4 +277,80 @@ void tribo_planar_product(tribo_context *ctx, const struct change *d, double *df
         resume(ctx, g);
         cluster_product(ctx, g, d, df);
     }
+}
+
+/* ------------------------------------------------------------------------------------------------ f_eq that is given */
+
+/* df [2] of a contact near stick, whose problem is solved and linearized, by t and a change of f_eq. */
+static void turn_near(struct disc_qp *p, const struct given *g, const double *v, int relaxes, const struct turn *t,
+                      const double *dfeq, double *df)
+{
+    const double *bound = g->c.bound;
+    double dshift[2] = {0.0, 0.0}, dy[2], off[2], growth[2], rhs[2], move[2];
+    if (relaxes) {
+        turn_shift(&g->s, g->c.limit, v, p->shift, t, dshift);
+    }
+    for (size_t k = 0; k < 2; k++) {
+        dshift[k] = clamp(dshift[k], -STEEPEST, STEEPEST);
+    }
+    tribo_disc_drag(p, 0, dshift, dy);
+    for (size_t k = 0; k < 2; k++) {
+        growth[k] = bound[k] > 0.0 ? quotient(t->limit[k], bound[k]) : 0.0;
+        off[k] = bound[k] > 0.0 ? (p->y[k] + p->shift[k]) * growth[k] - quotient(dfeq[k], bound[k]) + dshift[k] + dy[k] : 0.0;
+    }
+    for (size_t k = 0; k < 2; k++) {
+        rhs[k] = growth[k] * p->gradient[k] + p->s[2 * k] * off[0] + p->s[2 * k + 1] * off[1];
+    }
+    tribo_disc_follow(p, rhs, move);
+    for (size_t k = 0; k < 2; k++) {
+        df[k] = product(bound[k], dy[k] + move[k]) + p->y[k] * t->limit[k];
+    }
+}
+
+/* t with what limits that are static make of it, of the contact at i: they follow those that the caller set, and |v|. */
+static struct turn turn_static(const tribo_context *ctx, size_t i, const struct given *g, const double *v, struct turn t)
+{
+    const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit, speed = tribo_length(2, v);
+    const double faster = speed > 0.0 ? (v[0] * t.v[0] + v[1] * t.v[1]) / speed : 0.0;
+    t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
+    for (size_t k = 0; k < 2 && ctx->set.breaking; k++) {
+        const double part = set[k] > 0.0 ? quotient(g->c.limit[k], set[k]) : 0.0;
+        t.limit[k] = product(part, t.limit[k]) + product(tribo_limit_rate(ctx, i + k, speed), faster);
+    }
+    return t;
+}
+
+int tribo_planar_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
+                        double *df_dlimit)
+{
+    double *const out[3] = {df_dv, df_dfeq, df_dlimit};
+    const double none[2] = {0.0, 0.0};
+    for (size_t q = 0; q < ctx->planar->count; q++) {
+        const size_t i = ctx->planar->first[q];
+        struct given g;
+        struct disc_alone x;
+        tribo_planar_given(ctx, q, v + i, feq ? feq + i : none, &g);
+        if (g.near && !tribo_planar_given_near(ctx, q, &g, feq + i, &x)) {
+            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
+        }
+        if (g.near) {
+            tribo_disc_gradients(&x.p);
+            tribo_disc_places(&x.p);
+            tribo_disc_linearize(&x.p);
+        }
+        for (size_t column = 0; column < 6; column++) {
+            double unit[6] = {0.0}, df[2] = {0.0, 0.0};
+            unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
+            const struct turn t = turn_static(ctx, i, &g, v + i, (struct turn){{unit[0], unit[1]}, {unit[4], unit[5]}, 0.0});
+            if (g.near) {
+                turn_near(&x.p, &g, v + i, ctx->set.law->relaxes, &t, unit + 2, df);
+            } else {
+                turn_force(ctx->set.law, &g.s, g.c.limit, v + i, &t, df);
+            }
+            for (size_t k = 0; out[column / 2] && k < 2; k++) {
+                out[column / 2][2 * (i + k) + column % 2] = df[k];
+            }
+        }
+    }
+    return TRIBO_OK;
 }

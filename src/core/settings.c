@@ -390,13 +390,11 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
     int status = ratio ? check_static(ctx, ratio, velocity, &above) : TRIBO_OK;
     const int breaking = above == ctx->n ? NEVER : velocity ? FALLS : DROPS;
     status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
+    if (!status && breaking && ctx->planar) {
+        status = tribo_check_one_ratio(ctx, ratio, velocity, ctx->planar->count, ctx->planar->first);
+    }
     if (status) {
         return status;
-    }
-    if (breaking && ctx->planar) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                          "ratio[%zu] = %g: there are no static limits beside planar contacts, and contact %zu is one", above,
-                          ratio[above], ctx->planar->first[0]);
     }
     tribo_write_modes(ctx);
     ctx->set.breaking = breaking;

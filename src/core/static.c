@@ -9,7 +9,8 @@
  *     until there are none
  *
  * all of them together, so that the order of contacts does not matter. Limits only fall, so that this ends. A contact that has
- * broken away and that the others now hold rests with less than the kinetic limit, as it may. */
+ * broken away and that the others now hold rests with less than the kinetic limit, as it may. planar_static.c is this in the
+ * plane. */
 #include "context.h"
 
 /* N(|v|), and its derivative by |v|. */
@@ -23,6 +24,12 @@ static double limit_at(const tribo_context *ctx, size_t i, double speed, double 
     const double more = (hold - slide) * exp(-quotient(speed, scale));
     *rate = quotient(-more, scale);
     return slide + more;
+}
+
+double tribo_limit_at(const tribo_context *ctx, size_t i, double speed)
+{
+    double ignored;
+    return limit_at(ctx, i, speed, &ignored);
 }
 
 double tribo_limit_rate(const tribo_context *ctx, size_t i, double v)
@@ -41,11 +48,10 @@ static int near_stick(const tribo_context *ctx, size_t i, double v)
 
 void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit)
 {
-    double ignored;
     for (size_t k = 0; k < n; k++) {
         const double hold = ctx->follow.hold[i + k];
         const int holds = ctx->set.breaking == DROPS && near_stick(ctx, i + k, v[k]) && !(feq && fabs(feq[k]) > hold);
-        limit[k] = holds ? hold : limit_at(ctx, i + k, fabs(v[k]), &ignored);
+        limit[k] = holds ? hold : tribo_limit_at(ctx, i + k, fabs(v[k]));
     }
 }
 
@@ -70,9 +76,8 @@ size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt)
     size_t broken = 0;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
-        double rate;
         if (breaks(ctx, p, k)) {
-            ctx->follow.now[i] = limit_at(ctx, i, product(dt, fabs(p->gradient[k])), &rate);
+            ctx->follow.now[i] = tribo_limit_at(ctx, i, product(dt, fabs(p->gradient[k])));
             broken += ctx->follow.now[i] < ctx->follow.hold[i];
         }
     }
@@ -84,9 +89,8 @@ void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree)
 {
     for (size_t i = 0; i < ctx->n; i++) {
         const double hold = ctx->follow.hold[i], held = product(ctx->op->diagonal[i] * dt, hold), beyond = fabs(vfree[i]) - held;
-        double rate;
         if ((!ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE) && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
-            ctx->follow.now[i] = limit_at(ctx, i, beyond, &rate);
+            ctx->follow.now[i] = tribo_limit_at(ctx, i, beyond);
             ctx->last.f[i] = copysign(ctx->follow.now[i], -vfree[i]);
         }
     }
@@ -151,6 +155,24 @@ int tribo_refuse_static(const tribo_context *ctx, const char *who)
     for (size_t i = 0; ctx->set.breaking && i < ctx->n; i++) {
         if (ctx->set.ratio[i] > 1.0) {
             return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "%s static limits, and ratio[%zu] = %g", who, i, ctx->set.ratio[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_check_one_ratio(const tribo_context *ctx, const double *ratio, const double *velocity, size_t count,
+                          const size_t *first)
+{
+    for (size_t k = 0; k < count; k++) {
+        const size_t i = first[k];
+        if (ratio[i] < ratio[i + 1] || ratio[i] > ratio[i + 1]) {
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g and ratio[%zu] = %g are of one planar contact, and differ",
+                              i, ratio[i], i + 1, ratio[i + 1]);
+        }
+        if (velocity && (velocity[i] < velocity[i + 1] || velocity[i] > velocity[i + 1])) {
+            return tribo_fail(ctx, TRIBO_ERR_RANGE,
+                              "velocity[%zu] = %g and velocity[%zu] = %g are of one planar contact, and differ", i, velocity[i],
+                              i + 1, velocity[i + 1]);
         }
     }
     return TRIBO_OK;

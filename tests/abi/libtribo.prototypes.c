@@ -50,6 +50,8 @@ TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
 TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
                                   double *df_dfeq, double *df_dlimit);
+TRIBO_API int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
+                                         double *df_dfeq, double *df_dlimit);
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);

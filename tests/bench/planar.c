@@ -1,5 +1,5 @@
 /* What planar contacts cost: the step and the balance at rest, which are one problem, beside projected Gauss-Seidel in plain C;
- * and a balance within the band, which is the lenses'. Prints a table. */
+ * and a balance within the band, which is the lenses'. Where Siconos is installed, a second table of the step by its solvers. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +8,10 @@
 #include "../../examples/common/output.h"
 #include "harness.h"
 #include "tribo/tribo.h"
+
+#if defined(HAVE_SICONOS)
+#include "peer_tresca.h"
+#endif
 
 #define ENOUGH 1e-10 /* a sweep that moves no force by more ends Gauss-Seidel */
 #define MOST_SWEEPS 20000
@@ -178,6 +182,91 @@ static double difference(struct scene *s)
     return most;
 }
 
+#if defined(HAVE_SICONOS)
+
+/* A solver of Siconos at work on a scene. */
+struct peer {
+    struct scene *scene;
+    struct tresca *tresca;
+    double f[2 * MOST];
+    size_t calls;
+    int failed;
+};
+
+static void peer_step(void *data)
+{
+    struct peer *p = data;
+    p->failed |= tresca_solve(p->tresca, p->scene->pull[p->calls++ % 2], p->f) != 0;
+}
+
+/* The largest difference of R f from tribo's, both at the first pull. */
+static double peer_difference(struct peer *p)
+{
+    const struct scene *s = p->scene;
+    const size_t n = 2 * s->n;
+    double most = 0.0;
+    need(tribo_step_force(s->ctx, 1.0, s->pull[0], p->scene->f), tribo_message(s->ctx));
+    p->failed |= tresca_solve(p->tresca, s->pull[0], p->f) != 0;
+    for (size_t i = 0; i < n; i++) {
+        double sum = 0.0;
+        for (size_t k = 0; k < n; k++) {
+            sum += s->r[i * n + k] * (s->f[k] - p->f[k]);
+        }
+        most = fmax(most, fabs(sum));
+    }
+    return most;
+}
+
+/* Times of solver by solver in those of tribo, both from their last solutions. */
+static void print_peers(struct scene *s, const struct effort *effort)
+{
+    printf("| %s | %zu |", s->name, s->n);
+    for (size_t k = 0; tresca_name(k); k++) {
+        if (k == 2 && strcmp(s->name, "redundant") == 0) {
+            printf(" |"); /* Newton's matrix is singular, which it prints */
+            continue;
+        }
+        struct peer p = {.scene = s, .tresca = tresca_create(k, s->n, s->r, ENOUGH)};
+        if (!p.tresca) {
+            die("out of memory for Siconos");
+        }
+        const double apart = peer_difference(&p);
+        struct job mine = {step, s, 0.0}, theirs = {peer_step, &p, 0.0};
+        for (int twice = 0; twice < 2; twice++) {
+            probe_job(&mine);
+            probe_job(&theirs);
+        }
+        const struct timing t = time_job(&theirs, &mine, effort);
+        printf(" %.3g us, %.2g%s, %.0e |", 1e6 * t.seconds, t.ratio, p.failed ? " (no convergence)" : "", apart);
+        tresca_destroy(p.tresca);
+    }
+    printf("\n");
+    fflush(stdout);
+}
+
+static void print_peer_head(void)
+{
+    printf("\n| coupling | contacts |");
+    for (size_t k = 0; tresca_name(k); k++) {
+        printf(" %s |", tresca_name(k));
+    }
+    printf("\n|---|---|---|---|---|\n");
+}
+
+#else
+
+static void print_peers(struct scene *s, const struct effort *effort)
+{
+    (void)s;
+    (void)effort;
+}
+
+static void print_peer_head(void)
+{
+}
+
+#endif
+
 static size_t sliding(struct scene *s)
 {
     signed char slip[2 * MOST];
@@ -227,6 +316,16 @@ int main(int argc, char **argv)
             } else {
                 print_row(&s, &effort);
             }
+            scene_destroy(&s);
+        }
+    }
+    if (!smoke) {
+        print_peer_head();
+    }
+    for (size_t k = 0; !smoke && k < sizeof name / sizeof *name; k++) {
+        for (size_t n = 1; n <= MOST; n *= 10) {
+            struct scene s = scene_create(name[k], n);
+            print_peers(&s, &effort);
             scene_destroy(&s);
         }
     }

@@ -251,7 +251,8 @@ C
       INTEGER N
       PARAMETER (N = 4)
       INTEGER IH, IERR, K, IFIRST(1)
-      DOUBLE PRECISION V(N), A(N), FEQ(N), F(N)
+      DOUBLE PRECISION V(N), A(N), FEQ(N), F(N), GIVEN(N), X(2*N,3)
+      CALL CLEAR(6*N, X)
       IFIRST(1) = 2
       CALL TRBPLN(IH, 1, IFIRST, IERR)
       CALL CMPI('TRBPLN', IERR)
@@ -262,6 +263,11 @@ C
          CALL CMPR('TRBBAL', N, FEQ)
          CALL CMPR('TRBBAL', N, F)
          CALL QUERY(IH)
+         CALL SCSTAT(K, V, A, GIVEN)
+         CALL TRBFTP(IH, N, V, GIVEN, F, X(1,1), X(1,2), X(1,3), IERR)
+         CALL CMPI('TRBFTP', IERR)
+         CALL CMPR('TRBFTP', N, F)
+         CALL CMPR('TRBFTP', 6*N, X)
          CALL TRBSTM(IH, N, 0.125D0, A, V, F, IERR)
          CALL CMPI('TRBSTM', IERR)
          CALL CMPR('TRBSTM', N, F)

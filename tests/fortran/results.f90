@@ -163,9 +163,10 @@ contains
 
   subroutine planar(c)
     type(tribo_context), intent(inout) :: c
-    real(dp) :: feq(n), f(n)
+    real(dp) :: feq(n), f(n), x(2, n, 3)
     integer :: stat, k
 
+    x = 0
     call c%set_planar([2], stat)
     call compare('set_planar', stat)
     do k = 1, states
@@ -174,6 +175,10 @@ contains
       call compare('planar: feq', feq)
       call compare('planar: f', f)
       call queries(c)
+      call c%force_tangent_planar(scene_v(:, k), scene_feq(:, k), f, x(:, :, 1), x(:, :, 2), x(:, :, 3), stat)
+      call compare('planar: force_tangent_planar', stat)
+      call compare('planar: force_tangent_planar: f', f)
+      call compare('planar: force_tangent_planar: derivatives', reshape(x, [6 * n]))
       call c%step_force_mean(0.125_dp, scene_a(:, k), scene_v(:, k), f, stat)
       call compare('planar: step_force_mean', stat)
       call compare('planar: step_force_mean: f', f)

@@ -189,13 +189,16 @@ static void set_operator(tribo_context *c, int form)
 static void planar(tribo_context *c)
 {
     const size_t first = 1;
-    double feq[N] = {0.0}, f[N] = {0.0};
+    double feq[N] = {0.0}, f[N] = {0.0}, x[3][2 * N] = {{0.0}};
     put_one(tribo_set_planar(c, 1, &first));
     for (size_t k = 0; k < STATES; k++) {
         put_one(tribo_balance(c, scene_v[k], scene_a[k], feq, f));
         put(N, feq);
         put(N, f);
         queries(c);
+        put_one(tribo_force_tangent_planar(c, scene_v[k], scene_feq[k], f, x[0], x[1], x[2]));
+        put(N, f);
+        put(6 * N, x[0]);
         put_one(tribo_step_force_mean(c, 0.125, scene_a[k], scene_v[k], f));
         put(N, f);
         queries(c);

@@ -439,6 +439,57 @@ TEST(between)
 }
 END_TEST
 
+/* A mass of 1 kg on springs that couple x and y, driven along x at 2.5 Hz with 5% damping: the amplitude along x with a contact of
+ * limit 0.4 in the plane, by small steps of their own. */
+static double plane_amplitude(void)
+{
+    const double w[2] = {20.0, sqrt(200.0)}, c[2] = {0.05 * (w[0] + w[1]), 0.05 * (w[0] - w[1])}, period = 0.4, limit = 0.4;
+    const int steps = 20000, periods = 60;
+    const double dt = period / steps;
+    double x = 0.0, y = 0.0, u = 0.0, v = 0.0, most = 0.0, least = 0.0;
+    for (int k = 0; k < periods * steps; k++) {
+        const double p = sin(2.0 * PI * k / steps);
+        const double a = u + dt * (p - 300.0 * x - 100.0 * y - c[0] * u - c[1] * v);
+        const double b = v + dt * (-100.0 * x - 300.0 * y - c[1] * u - c[0] * v);
+        const double speed = hypot(a, b), left = speed > dt * limit ? 1.0 - dt * limit / speed : 0.0;
+        u = left * a;
+        v = left * b;
+        x += dt * u;
+        y += dt * v;
+        most = k < (periods - 1) * steps ? x : fmax(most, x);
+        least = k < (periods - 1) * steps ? x : fmin(least, x);
+    }
+    return 0.5 * (most - least);
+}
+
+/* A contact in a plane, in all the ways to say it, is marched to; "exact" says that it cannot. */
+TEST(plane)
+{
+    static const char *const way[] = {"--contact 0,0,0,xy:limit=0.4", "--contact 0,0,0,yx:mu=0.5:load=0.8", "--contacts c.txt"};
+    const double want = plane_amplitude();
+    write_text("M.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1\n2 2 1\n");
+    write_text("K.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 300\n2 1 100\n2 2 300\n");
+    write_text("dofs.txt", "1 1 1 0 0 0\n2 1 2 0 0 0\n");
+    write_text("c.txt", "# steel on steel\n0,0,0,xy mu=0.4 load=1\n");
+    for (size_t k = 0; k < COUNT(way); k++) {
+        char line[TEXT], table[TEXT];
+        double limit, hz, amplitude;
+        snprintf(line, sizeof line, OWN " --load 0,0,0,x --damping 0.05 --drive 2.5 %s", way[k]);
+        assert_refused(line, way[k], "in a plane are for --method march");
+        strcat(line, " --method march");
+        const struct outcome o = assert_runs(line);
+        require(!says(o.out, "not found"), "%s", o.out);
+        read_text("damper-curve.csv", table);
+        require(sscanf(strchr(table, '\n'), "%lf,%lf,%lf", &limit, &hz, &amplitude) == 3, "%s", table);
+        assert_close(amplitude, want, 1e-3 * want);
+    }
+    assert_runs(OWN " --load 0,0,0,x --damping 0.05 --drive 2.5 --contact 0,0,0,xy --limits 0.05:1:5 --method march");
+    require(value_of("damper.best.limit") > 0.05, "best limit %g", value_of("damper.best.limit"));
+    assert_refused(OWN " --load 0,0,0,xy --contact 0,0,0,x", "a load in a plane", "must be x, y or z");
+    assert_refused(OWN " --load 0,0,0,x --contact 0,0,0,xyz", "three directions", "or two of them");
+}
+END_TEST
+
 /* ---------------------------------------------------------------------------------------------------------- small ones */
 
 /* One mass: without friction the amplitude is F/(2 zeta k), and friction dissipates most at pi F/8, where it has half of that.
@@ -480,4 +531,4 @@ TEST(few)
 END_TEST
 
 TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {parts, 1}, {files_of_words, 1}, {same_limit, 1},
-          {between, 1}, {one_mass, 1}, {few, 1})
+          {between, 1}, {plane, 1}, {one_mass, 1}, {few, 1})

@@ -258,5 +258,101 @@ TEST(ellipse)
     tribo_destroy(c);
 }
 
+/* ------------------------------------------------------------------------------------------- blocks of derivatives */
+
+#define STEP 1e-7
+
+/* Column d of the block by v, f_eq or limits (kind 0, 1, 2) beside differences of f; returns how many entries are smooth. */
+static size_t check_column(tribo_context *c, const double *v, const double *feq, const double *limit, int kind, size_t d,
+                           const double *block)
+{
+    double at[3][3], f[3][3];
+    size_t smooth = 0;
+    for (int side = 0; side < 3; side++) {
+        const double *const from[3] = {v, feq, limit};
+        for (int k = 0; k < 3; k++) {
+            memcpy(at[k], from[k], sizeof at[k]);
+        }
+        at[kind][d] += (side - 1) * STEP;
+        assert_ok(tribo_set_limit(c, at[2]));
+        assert_ok(tribo_force(c, at[0], at[1], f[side]));
+    }
+    assert_ok(tribo_set_limit(c, limit));
+    for (size_t i = 0; i < 3; i++) {
+        const double forward = (f[2][i] - f[1][i]) / STEP, backward = (f[1][i] - f[0][i]) / STEP;
+        const double want = i < 2 && d < 2 ? block[2 * i + d] : i == d ? block[2 * i] : 0.0, size = 1.0 + fabs(want);
+        if (fabs(forward - backward) < 1e-4 * size) {
+            require(fabs(want - 0.5 * (forward + backward)) < 3e-5 * size, "f[%zu] by [%zu] of %d: %g, not %g", i, d, kind, want,
+                    0.5 * (forward + backward));
+            smooth++;
+        }
+    }
+    return smooth;
+}
+
+/* One planar contact and a scalar one: every law, epsilon given or not, static limits that drop or fall or none. */
+TEST(blocks)
+{
+    const int law = _i % tribo_law_count(), follows = _i / tribo_law_count() % 2, way = _i / tribo_law_count() / 2;
+    const double r[9] = {2.0, 0.4, 0.0, 0.4, 1.0, 0.0, 0.0, 0.0, 1.5};
+    struct random g = random_of(_i);
+    size_t smooth = 0, all = 0;
+    if (way == 1 && (law == TRIBO_VELOCITY_LIMITED || law == TRIBO_SMOOTH)) {
+        return;
+    }
+    for (int k = 0; k < 80; k++) {
+        const double limit[3] = {1.0, uniform(&g, 0.3, 1.5), 1.2}, scale = law == TRIBO_COULOMB ? k % 2 : 1.0;
+        const double v[3] = {scale * uniform(&g, -0.1, 0.1), scale * uniform(&g, -0.1, 0.1), uniform(&g, -0.1, 0.1)};
+        const double feq[3] = {uniform(&g, -2.0, 2.0), uniform(&g, -2.0, 2.0), uniform(&g, -2.0, 2.0)};
+        double block[3][6], f[3], want[3];
+        tribo_context *c = context_of(3, law, 1.0, 0.1, THREE(1.0, 1.0, 1.0));
+        assert_ok(tribo_set_limit(c, limit));
+        assert_ok(tribo_set_operator_dense(c, r));
+        assert_ok(tribo_set_planar(c, 1, ONE(0)));
+        assert_ok(follows ? tribo_set_epsilon_step(c, 0.05, 2.0) : TRIBO_OK);
+        assert_ok(way ? tribo_set_static(c, THREE(1.3, 1.3, 1.6), way == 2 ? THREE(0.2, 0.2, 0.2) : NULL) : TRIBO_OK);
+        assert_ok(tribo_accept(c, THREE(9.0, 9.0, 9.0), feq));
+        assert_status(tribo_force_tangent(c, v, feq, NULL, block[0], NULL, NULL), TRIBO_ERR_UNSUPPORTED);
+        assert_says(tribo_message(c), "tribo_force_tangent_planar");
+        assert_ok(tribo_force_tangent_planar(c, v, feq, f, block[0], block[1], block[2]));
+        assert_ok(tribo_force(c, v, feq, want));
+        assert_all_exact(f, want, 3);
+        for (int kind = law == TRIBO_COULOMB ? 1 : 0; kind < 3; kind++) {
+            for (size_t d = 0; d < 3; d++) {
+                smooth += check_column(c, v, feq, limit, kind, d, block[kind]);
+                all += 3;
+            }
+            assert_exact(block[kind][5], 0.0);
+        }
+        tribo_destroy(c);
+    }
+    require(10 * smooth > 9 * all, "only %zu of %zu compared", smooth, all);
+}
+
+/* Without planar contacts the first column is tribo_force_tangent; and at corners, rims and ends of the band all is bounded. */
+TEST(bounded)
+{
+    struct random g = random_of(_i);
+    tribo_context *c = disc(TRIBO_QUINN, 1.0, 1.0, 1.0), *scalar = context_of(2, TRIBO_QUINN, 1.0, 1.0, TWO(1.0, 1.0));
+    for (int k = 0; k < 400; k++) {
+        const double speed = 1.0 - pow(10.0, -(k % 17)), angle = uniform(&g, -PI, PI), turn = PI / 4.0 * (double)below(&g, 8);
+        const double v[2] = {speed * cos(angle), speed * sin(angle)}, size = below(&g, 2) ? 1.0 : 2.0;
+        const double feq[2] = {size * cos(angle + turn), size * sin(angle + turn)};
+        double by_v[4], by_feq[4], by_limit[4], diagonal[2];
+        assert_ok(tribo_force_tangent_planar(c, v, feq, NULL, by_v, by_feq, by_limit));
+        for (int i = 0; i < 4; i++) {
+            require(fabs(by_v[i]) < 1e9 && fabs(by_feq[i]) < 1e9 && fabs(by_limit[i]) < 1e9, "%g %g %g", by_v[i], by_feq[i],
+                    by_limit[i]);
+        }
+        assert_ok(tribo_force_tangent_planar(scalar, v, feq, NULL, by_v, NULL, NULL));
+        assert_ok(tribo_force_tangent(scalar, v, feq, NULL, diagonal, NULL, NULL));
+        assert_all_exact(by_v, ((const double[]){diagonal[0], 0.0, diagonal[1], 0.0}), 4);
+    }
+    assert_status(tribo_force_tangent_planar(NULL, TWO(0.0, 0.0), TWO(0.0, 0.0), NULL, NULL, NULL, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_force_tangent_planar(c, TWO(0.0, 0.0), TWO(0.0, NAN), NULL, NULL, NULL, NULL), TRIBO_ERR_NOT_FINITE);
+    tribo_destroy(c);
+    tribo_destroy(scalar);
+}
+
 TEST_MAIN("planar", {arguments, 1}, {large_groups, 1}, {undone, 1}, {rest, 4}, {motion, 1}, {lens, 1}, {line, 4}, {flat, 2},
-          {open, 1}, {immovable, 1}, {ellipse, 1})
+          {open, 1}, {immovable, 1}, {ellipse, 1}, {blocks, 36}, {bounded, 2})

@@ -419,4 +419,97 @@ TEST(limits)
     require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
 }
 
-TEST_MAIN("planar_coupled", {random_problems, 5}, {steps, 5}, {turned, 3}, {tangents, 3}, {limits, 12})
+/* ------------------------------------------------------------------------------------------------ redundant contacts */
+
+/* m planar contacts that hold one body in the same way: pulled along any line they share as scalar ones do; and ask for nothing
+ * but the last forces if told so. */
+TEST(identical_contacts_share)
+{
+    enum { MOST = 6 };
+    struct random g = random_of(_i);
+    const size_t m = 2 + below(&g, MOST - 1);
+    const double angle = uniform(&g, -PI, PI), e[2] = {cos(angle), sin(angle)};
+    double r[4 * MOST * MOST] = {0.0}, line[MOST * MOST], limit[2 * MOST], a[2 * MOST], f[2 * MOST], want[MOST], total = 0.0;
+    const double none[2 * MOST] = {0.0};
+    size_t first[MOST];
+    tribo_context *c, *scalar;
+    for (size_t i = 0; i < m; i++) {
+        first[i] = 2 * i;
+        limit[2 * i] = limit[2 * i + 1] = uniform(&g, 0.2, 2.0);
+        total += limit[2 * i];
+        for (size_t j = 0; j < m; j++) {
+            line[i * m + j] = r[4 * i * m + 2 * j] = r[(2 * i + 1) * 2 * m + 2 * j + 1] = 1.0;
+        }
+    }
+    assert_ok(tribo_create(&c, 2 * m));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_planar(c, m, first));
+    assert_ok(tribo_create(&scalar, m));
+    assert_ok(tribo_set_operator_dense(scalar, line));
+    for (size_t i = 0; i < m; i++) {
+        want[i] = limit[2 * i];
+    }
+    assert_ok(tribo_set_limit(scalar, want));
+    for (int k = 0; k < 10; k++) {
+        const double pull = total * uniform(&g, -1.2, 1.2);
+        double pulls[MOST];
+        for (size_t i = 0; i < 2 * m; i++) {
+            a[i] = pull * e[i % 2];
+            pulls[i / 2] = pull;
+        }
+        assert_ok(tribo_balance(scalar, none, pulls, NULL, want));
+        assert_ok(tribo_balance(c, none, a, NULL, f));
+        for (size_t i = 0; i < 2 * m; i++) {
+            assert_close(f[i], want[i / 2] * e[i % 2], 2e-8 * total);
+        }
+    }
+    tribo_destroy(c);
+    tribo_destroy(scalar);
+}
+
+/* The share is the same whatever was solved before, and no other solution has a smaller norm; without it, the forces stay near
+ * the last ones. */
+TEST(least_norm)
+{
+    struct random g = random_of(_i);
+    size_t apart = 0;
+    for (int k = 0; k < 20; k++) {
+        const struct recipe recipe = {4 + below(&g, 8), 3, 0.0, 0.9, 1.0, 0.0, 0.5, 0.0};
+        struct scene s = scene_create(&g, &recipe);
+        double f[LARGEST], again[LARGEST], last[LARGEST], disturbed[LARGEST], norm_of = 0.0, norm_of_last = 0.0;
+        for (size_t i = 0; i < s.p.n; i++) { /* what some forces balance, with a little to slide */
+            f[i] = s.p.limit[i] * uniform(&g, -1.0, 1.0);
+            s.p.v[i] = s.p.a[i] = 0.0;
+        }
+        for (size_t i = 0; i < s.p.n; i++) {
+            last[i] = -(double)acceleration(&s.p, i, f);
+        }
+        memcpy(s.p.a, last, sizeof s.p.a);
+        tribo_context *c = scene_context(&s, TRIBO_QUINN), *d = scene_context(&s, TRIBO_QUINN);
+        assert_ok(tribo_set_sharing(d, TRIBO_SHARE_PREVIOUS));
+        for (size_t i = 0; i < s.p.n; i++) {
+            disturbed[i] = 3.0 * s.p.a[i] * uniform(&g, -1.0, 1.0);
+        }
+        assert_ok(tribo_balance(c, s.p.v, s.p.a, NULL, f));
+        assert_ok(tribo_balance(c, s.p.v, disturbed, NULL, again));
+        assert_ok(tribo_balance(c, s.p.v, s.p.a, NULL, again));
+        assert_ok(tribo_balance(d, s.p.v, disturbed, NULL, last));
+        assert_ok(tribo_balance(d, s.p.v, s.p.a, NULL, last));
+        assert_all_close(again, f, s.p.n, 1e-7);
+        check_fixed_point(&s, 1, f);
+        for (size_t i = 0; i < s.p.n; i++) {
+            norm_of += f[i] * f[i];
+            norm_of_last += last[i] * last[i];
+            assert_close((double)acceleration(&s.p, i, f), (double)acceleration(&s.p, i, last), 1e-10);
+        }
+        require(norm_of <= norm_of_last + 1e-7, "norm %.17g, and %.17g can be", norm_of, norm_of_last);
+        apart += norm_of < norm_of_last - 1e-3;
+        tribo_destroy(c);
+        tribo_destroy(d);
+    }
+    require(apart > 3, "%zu of 20 shares differ", apart);
+}
+
+TEST_MAIN("planar_coupled", {identical_contacts_share, 20}, {least_norm, 5}, {random_problems, 5}, {steps, 5}, {turned, 3},
+          {tangents, 3}, {limits, 12})

@@ -49,6 +49,8 @@ struct group {
     size_t terms;          /* entries of the fullest row */
     struct sparse *sparse; /* R and the pattern of its factor, if they are sparse */
     int graded;            /* they are kept to twice as many digits */
+    double spread;         /* how much the shares of bodies in one entry of R's diagonal differ, at most; that of contact */
+    size_t uneven;         /* uneven */
     size_t nullity;        /* size - rank of R: redundant contacts */
 };
 

@@ -185,16 +185,77 @@ int tribo_disc_solve(struct disc_qp *p)
     return settle(p, FROM_INTERIOR, step_down);
 }
 
+/* ------------------------------------------------------------------------------------------------ redundant contacts */
+
+/* As stiff as that, in parts of s, is what takes y to the least norm. */
+#define SOFT 1e-6
+
+/* Newton's steps until one has moved y by so little that it was the last: where the rest is soft, distances are settled long
+ * before y is. */
+static void come_to_rest(struct disc_qp *p)
+{
+    double moved = 1.0;
+    for (int round = 0; round < FROM_INTERIOR && moved > 1e-8; round++) {
+        step_newton(p);
+        look(p);
+        moved = 0.0;
+        for (size_t i = 0; i < p->size; i++) {
+            moved = greater(moved, fabs(p->y[i] - p->from[i]));
+        }
+    }
+}
+
+/* y = the solution with so much stiffness more. */
+static int solve_softly(struct disc_qp *p, double more)
+{
+    for (size_t i = 0; i < p->size; i++) {
+        p->s[i * (p->size + 1)] = p->diagonal[i] + more * p->weight[i] * p->weight[i];
+    }
+    const int done = tribo_disc_solve(p);
+    come_to_rest(p);
+    return done;
+}
+
+/* Off by no more than that, in parts of limits, y is not solved for again: that would leave the share. */
+#define SHARED 1e-12
+
+/* The solution with a little stiffness more is off by that; those with half and a quarter of it show by how much, to second
+ * order. */
+int tribo_disc_share(struct disc_qp *p)
+{
+    const double part[] = {1.0, 0.5, 0.25}, weight[] = {1.0 / 3.0, -2.0, 8.0 / 3.0};
+    double most = 0.0;
+    int done = 1;
+    for (size_t i = 0; i < p->size; i++) {
+        p->diagonal[i] = p->s[i * (p->size + 1)];
+        most = greater(most, p->diagonal[i]);
+        p->share[i] = 0.0;
+    }
+    for (int k = 0; k < 3; k++) {
+        done = solve_softly(p, part[k] * SOFT * most) && done;
+        for (size_t i = 0; i < p->size; i++) {
+            p->share[i] += weight[k] * p->y[i];
+        }
+    }
+    for (size_t i = 0; i < p->size; i++) {
+        p->s[i * (p->size + 1)] = p->diagonal[i];
+    }
+    tribo_disc_gains(p);
+    project(p, p->share, p->share, 1.0);
+    look(p);
+    project(p, p->to, p->to, 1.0); /* what slides is on its rim, to the last digit */
+    look(p);
+    return done && (p->residual < SHARED || tribo_disc_solve(p));
+}
+
 /* ------------------------------------------------------------------------------------------------------------ room */
 
-enum { VECTORS = 19 }; /* of doubles, press being two of them */
-
-/* Makes vectors of store [VECTORS s]. */
+/* Makes vectors of store [TRIBO_DISC_VECTORS s], press being two of them. */
 static void lay_out(struct disc_qp *p, double *store, size_t s)
 {
-    double **const vector[] = {&p->pull, &p->shift,   &p->y,         &p->gradient, &p->noise,      &p->gain,
-                               &p->to,   &p->outward, &p->curvature, &p->step,     &p->spare,      &p->best,
-                               &p->from, &p->aim,     &p->slide,     &p->factor.q, &p->factor.row, &p->press};
+    double **const vector[] = {&p->pull,    &p->shift,     &p->y,          &p->gradient, &p->noise,    &p->gain,  &p->to,
+                               &p->outward, &p->curvature, &p->step,       &p->spare,    &p->best,     &p->from,  &p->aim,
+                               &p->slide,   &p->factor.q,  &p->factor.row, &p->weight,   &p->diagonal, &p->share, &p->press};
     for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
         *vector[k] = store + k * s;
     }
@@ -205,7 +266,7 @@ int tribo_disc_create(struct disc_qp *p, size_t most)
     const size_t s = most + 1;
     struct box_qp *f = &p->factor;
     *p = (struct disc_qp){0};
-    double *store = calloc(VECTORS * s, sizeof *store);
+    double *store = calloc(TRIBO_DISC_VECTORS * s, sizeof *store);
     lay_out(p, store, s);
     p->wide = calloc(s, 1);
     p->place = malloc(s);
@@ -236,23 +297,14 @@ void tribo_disc_free(struct disc_qp *p)
     *p = (struct disc_qp){0};
 }
 
-int tribo_disc_single(const double *s, const double *pull, const double *shift, double *y)
+void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull, const double *shift)
 {
-    enum { S = 3 };
-    double store[VECTORS * S] = {0.0}, own[S * S] = {s[0], s[1], s[2], s[3]}, matrix[S * S], l[S * S], basis[S * S];
-    unsigned char wide[S] = {2}, place[S];
-    signed char at[S];
-    size_t near[S], order[S];
-    struct freedom freedom[S];
-    struct disc_qp p = {.size = 2, .wide = wide, .place = place, .s = own, .matrix = matrix, .freedom = freedom};
-    p.factor = (struct box_qp){.near = near, .order = order, .at = at, .l = l, .basis = basis};
-    lay_out(&p, store, S);
-    for (size_t k = 0; k < 2; k++) {
-        p.pull[k] = pull[k];
-        p.shift[k] = shift[k];
-    }
-    const int done = tribo_disc_solve(&p);
-    y[0] = p.y[0];
-    y[1] = p.y[1];
-    return done;
+    memset(x, 0, sizeof *x);
+    memcpy(x->s, s, 4 * sizeof *s);
+    x->wide[0] = 2;
+    x->p = (struct disc_qp){.size = 2, .wide = x->wide, .place = x->place, .s = x->s, .matrix = x->matrix, .freedom = x->freedom};
+    x->p.factor = (struct box_qp){.near = x->near, .order = x->order, .at = x->at, .l = x->l, .basis = x->basis};
+    lay_out(&x->p, x->store, TRIBO_DISC_ALONE);
+    memcpy(x->p.pull, pull, 2 * sizeof *pull);
+    memcpy(x->p.shift, shift, 2 * sizeof *shift);
 }

@@ -25,6 +25,7 @@ struct disc_qp {
     unsigned char *wide;  /* [size] how many directions the contact that begins with this one has: 1, 2, or 0 if none does */
     double *s;            /* [size][size] */
     double *pull, *shift; /* [size] shift: c of the lenses */
+    double *weight;       /* [size] what tribo_disc_share counts y by */
     /* what is found; in: where to begin */
     double *y;       /* [size] */
     double residual; /* how far y is from the fixed point, at most, in parts of limits */
@@ -39,6 +40,7 @@ struct disc_qp {
     struct freedom *freedom; /* [size] */
     size_t freedoms;
     double *matrix, *step, *spare, *best, *from, *aim, *slide, *press; /* [size][size]; [size], press [2 size] */
+    double *diagonal, *share;                                          /* [size] */
     struct group group;
     struct sets sets;
     struct box_qp factor; /* of matrix */
@@ -49,11 +51,28 @@ struct disc_qp {
 int tribo_disc_create(struct disc_qp *p, size_t most);
 void tribo_disc_free(struct disc_qp *p);
 
-/* The problem of one planar contact alone, s [2][2], without room of a caller's. */
-int tribo_disc_single(const double *s, const double *pull, const double *shift, double *y);
+/* Vectors of doubles in a problem, and room for the problem of one planar contact alone. */
+enum { TRIBO_DISC_VECTORS = 22, TRIBO_DISC_ALONE = 3 };
+struct disc_alone {
+    double store[TRIBO_DISC_VECTORS * TRIBO_DISC_ALONE], s[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
+    double matrix[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE], l[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
+    double basis[TRIBO_DISC_ALONE * TRIBO_DISC_ALONE];
+    unsigned char wide[TRIBO_DISC_ALONE], place[TRIBO_DISC_ALONE];
+    signed char at[TRIBO_DISC_ALONE];
+    size_t near[TRIBO_DISC_ALONE], order[TRIBO_DISC_ALONE];
+    struct freedom freedom[TRIBO_DISC_ALONE];
+    struct disc_qp p;
+};
+
+/* That problem, s [2][2], in room of the caller's; it begins with y = 0. */
+void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull, const double *shift);
 
 /* Solves the problem from y. 1, or 0 without convergence. */
 int tribo_disc_solve(struct disc_qp *p);
+
+/* Where s is singular, of all solutions the one in which the sum of (weight y)^2 is least, to about 1e-8 where the other
+ * eigenvalues of s are alike; y is one of them. 1, or 0 without convergence. */
+int tribo_disc_share(struct disc_qp *p);
 
 /* ---- tangent_qp.c */
 

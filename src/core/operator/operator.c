@@ -358,9 +358,11 @@ static int find_grading(struct group *g, const struct inertia *from, const size_
         const double spread = spread_of(from, member[c]);
         if (spread > most) {
             most = spread;
+            g->uneven = member[c];
             *flaw = (struct flaw){member[c], g->size, spread};
         }
     }
+    g->spread = most;
     g->graded = most > GRADED_FROM && g->size <= GRADED_TO;
     return most <= (g->graded ? GRADED_MOST : GRADED_MOST_LARGE);
 }
