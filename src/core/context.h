@@ -26,6 +26,8 @@ struct chunk {
     double least, largest; /* limit */
     double widest;         /* width */
     double band;           /* no epsilon of a contact that is not open is larger; negative if all are open */
+    int even;              /* all have the same width and rate */
+    int alike;             /* and the same limit, above 0 */
 };
 
 static inline size_t tribo_chunks(size_t n)
@@ -126,8 +128,21 @@ static inline size_t tribo_chunk_size(const tribo_context *ctx, size_t i)
     return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
 }
 
-/* check.c */
-int tribo_all_finite(const double *x, size_t n);
+/* The contacts of the chunk that begins with i, as laws see them. */
+static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, size_t i)
+{
+    struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+    c.alike = ctx->follow.chunk[i / TRIBO_CHUNK].alike;
+    return c;
+}
+
+/* check.c: whether no number is larger than most, which is finite, and all are finite. Nothing that they are makes an exception. */
+int tribo_all_within(const double *x, size_t n, double most);
+
+static inline int tribo_all_finite(const double *x, size_t n)
+{
+    return tribo_all_within(x, n, DBL_MAX);
+}
 
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
 int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
@@ -222,7 +237,7 @@ double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
 
 /* The law's derivatives for contacts i, i + 1, ..., of which c is a view. */
 void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
-                        const double *feq, struct tangent *d);
+                        const double *feq, const struct tangents *d);
 
 /* The near contacts of a problem hold, for now. */
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p);

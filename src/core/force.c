@@ -26,15 +26,11 @@ static void skip_planar(const tribo_context *ctx, size_t i, size_t n, double *us
 /* The same for the n contacts from i on. */
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
-    if (ctx->set.law->uses_feq) {
-        double room[TRIBO_CHUNK];
-        const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
-        select_feq(n, v + i, band, feq + i, used);
-        if (ctx->planar) {
-            skip_planar(ctx, i, n, used);
-        }
-    } else {
-        memset(used, 0, n * sizeof *used);
+    double room[TRIBO_CHUNK];
+    const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
+    select_feq(n, v + i, band, feq + i, used);
+    if (ctx->planar) {
+        skip_planar(ctx, i, n, used);
     }
 }
 
@@ -45,16 +41,24 @@ TRIBO_SIMD static void cut_all(size_t n, double *x)
     }
 }
 
-static int check_force(const tribo_context *ctx, const double *v, const double *feq)
+/* The same as laws take it, [n]: what the caller has, if all of it is plain; otherwise in room. A law that uses none reads
+ * velocities. */
+static const double *legible_feq(const tribo_context *ctx, int plain, size_t i, size_t n, const double *v, const double *feq,
+                                 double *room)
 {
-    int status = tribo_need_epsilon(ctx);
-    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
-    if (status) {
-        return status;
+    if (!ctx->set.law->uses_feq) {
+        return v + i;
     }
-    if (!feq && ctx->n && ctx->set.law->uses_feq) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
+    if (plain) {
+        return feq + i;
     }
+    used_feq(ctx, i, n, v, feq, room);
+    cut_all(n, room);
+    return room;
+}
+
+static int check_used(const tribo_context *ctx, const double *v, const double *feq)
+{
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double used[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
@@ -65,44 +69,57 @@ static int check_force(const tribo_context *ctx, const double *v, const double *
             }
         }
     }
-    return ctx->planar && ctx->set.law->uses_feq ? tribo_planar_check_feq(ctx, v, feq) : TRIBO_OK;
+    return TRIBO_OK;
 }
 
-static void hand_out(size_t n, const struct tangent *d, double *df_dv, double *df_dfeq, double *df_dlimit)
+/* plain: f_eq is such that laws take it as it is, wherever that matters or not. */
+static int check_force(const tribo_context *ctx, const double *v, const double *feq, int *plain)
 {
-    for (size_t k = 0; df_dv && k < n; k++) {
-        df_dv[k] = d[k].dv;
+    int status = tribo_need_epsilon(ctx);
+    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
+    *plain = !ctx->set.law->uses_feq;
+    if (status || *plain) {
+        return status;
     }
-    for (size_t k = 0; df_dfeq && k < n; k++) {
-        df_dfeq[k] = d[k].dfeq;
+    if (!feq && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
     }
-    for (size_t k = 0; df_dlimit && k < n; k++) {
-        df_dlimit[k] = d[k].dlimit;
-    }
+    *plain = tribo_all_within(feq, ctx->n, TRIBO_FAR);
+    status = *plain ? TRIBO_OK : check_used(ctx, v, feq);
+    return status || !ctx->planar ? status : tribo_planar_check_feq(ctx, v, feq);
 }
 
 /* Each output may be NULL. */
-static void evaluate(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv, double *df_dfeq,
-                     double *df_dlimit)
+struct outputs {
+    double *f;
+    struct tangents d;
+};
+
+/* Where output x of contact i goes, if anywhere; otherwise where it does not matter. */
+static double *place_of(double *x, size_t i, double *elsewhere)
 {
+    return x ? x + i : elsewhere;
+}
+
+static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
+{
+    const struct tangents *d = &out->d;
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double used[TRIBO_CHUNK];
-        struct tangent d[TRIBO_CHUNK];
+        double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], ignored[3][TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
-        double limit[TRIBO_CHUNK];
-        struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-        used_feq(ctx, i, n, v, feq, used);
-        cut_all(n, used);
+        const double *used = legible_feq(ctx, plain, i, n, v, feq, room);
+        struct contacts c = tribo_chunk_contacts(ctx, i);
         if (ctx->set.breaking) {
             tribo_find_limits(ctx, i, n, v + i, used, limit);
             c.limit = c.bound = limit;
         }
-        if (f) {
-            ctx->set.law->force(&c, n, v + i, used, f + i);
+        if (out->f) {
+            ctx->set.law->force(&c, n, v + i, used, out->f + i);
         }
-        if (df_dv || df_dfeq || df_dlimit) {
-            tribo_law_tangents(ctx, &c, i, n, v + i, used, d);
-            hand_out(n, d, df_dv ? df_dv + i : NULL, df_dfeq ? df_dfeq + i : NULL, df_dlimit ? df_dlimit + i : NULL);
+        if (d->dv || d->dfeq || d->dlimit) {
+            const struct tangents at = {place_of(d->dv, i, ignored[0]), place_of(d->dfeq, i, ignored[1]),
+                                        place_of(d->dlimit, i, ignored[2])};
+            tribo_law_tangents(ctx, &c, i, n, v + i, used, &at);
         }
     }
 }
@@ -112,14 +129,15 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check_force(ctx, v, feq);
+    int plain;
+    const int status = check_force(ctx, v, feq, &plain);
     if (status) {
         return status;
     }
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    evaluate(ctx, v, feq, f, NULL, NULL, NULL);
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {NULL, NULL, NULL}});
     return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -129,7 +147,8 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check_force(ctx, v, feq);
+    int plain;
+    const int status = check_force(ctx, v, feq, &plain);
     if (status) {
         return status;
     }
@@ -137,7 +156,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
         return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
                           "derivatives of planar contact %zu are no diagonals: see tribo_balance_tangent", ctx->planar->first[0]);
     }
-    evaluate(ctx, v, feq, f, df_dv, df_dfeq, df_dlimit);
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}});
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -158,7 +177,8 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     if (!ctx->set.law->remembers) {
         return tribo_check_finite(ctx, "v", v, ctx->n);
     }
-    const int status = check_force(ctx, v, feq);
+    int ignored;
+    const int status = check_force(ctx, v, feq, &ignored);
     if (status) {
         return status;
     }

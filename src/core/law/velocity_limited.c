@@ -13,10 +13,9 @@ static inline struct tangent limited_tangent(double v, double feq, double limit,
                                              unsigned char moving, double follows)
 {
     (void)feq, (void)moving, (void)limit;
-    if (fabs(v) > epsilon) {
-        return sliding_tangent(v);
-    }
-    return (struct tangent){-0.5 * slope, 0.0, -(1.0 - follows) * quotient(v, epsilon)};
+    const int inside = fabs(v) <= epsilon;
+    const double rate = -(1.0 - follows) * quotient(v, epsilon);
+    return (struct tangent){inside ? -0.5 * slope : 0.0, 0.0, inside ? rate : sliding_rate(v)};
 }
 
 TRIBO_LAW_LOOPS(limited)
