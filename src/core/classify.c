@@ -57,12 +57,11 @@ TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, do
     }
 }
 
-/* The same for chunk k, which begins with contact i; 0 for open ones. */
-static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, const double *a)
+void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
 {
-    feq_alone(n, ctx->op->diagonal + i, a + i, ctx->last.feq + i);
-    if (ctx->follow.chunk[k].least == 0.0) {
-        no_feq_if_open(n, ctx->follow.contacts.limit + i, ctx->last.feq + i);
+    feq_alone(n, ctx->op->diagonal + i, a + i, feq);
+    if (ctx->follow.chunk[i / TRIBO_CHUNK].least == 0.0) {
+        no_feq_if_open(n, ctx->follow.contacts.limit + i, feq);
     }
 }
 
@@ -209,7 +208,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
         const size_t n = tribo_chunk_size(ctx, i);
         const int asked = ctx->last.did.stored[k] == ALL_STORED || (some && ctx->last.did.stored[k] == SOME_STORED);
         if (wanted || (asked && ctx->set.law->uses_feq)) {
-            find_feq(ctx, k, i, n, a);
+            tribo_find_feq(ctx, i, n, a, ctx->last.feq + i);
         }
         if (ctx->set.breaking) {
             const int known = asked && ctx->set.law->uses_feq;
@@ -220,6 +219,31 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
             ctx->set.law->force(&c, n, v + i, ctx->last.feq + i, ctx->last.f + i);
         }
     }
+}
+
+/* Whether the law reads f_eq of a contact of chunk k, which begins with contact i. */
+static int reads_feq(const tribo_context *ctx, size_t k, size_t i, size_t n, const double *v)
+{
+    const double band = ctx->set.law->sticks_in_band ? ctx->follow.chunk[k].band : lesser(ctx->follow.chunk[k].band, 0.0);
+    return ctx->set.law->uses_feq && any_in_band(n, v + i, band);
+}
+
+/* No force is kept: what each contact did is written down at once, while its force is at hand. */
+int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    const int status = check_motion(ctx, v, a);
+    for (size_t i = 0, k = 0; !status && i < ctx->n; i += TRIBO_CHUNK, k++) {
+        double room[2][TRIBO_CHUNK], *balancing = feq ? feq + i : room[0], *force = f ? f + i : room[1];
+        const size_t n = tribo_chunk_size(ctx, i);
+        const struct contacts c = tribo_chunk_contacts(ctx, i);
+        const int wanted = feq || reads_feq(ctx, k, i, n, v);
+        if (wanted) {
+            tribo_find_feq(ctx, i, n, a, balancing);
+        }
+        ctx->set.law->force(&c, n, v + i, wanted ? balancing : v + i, force);
+        tribo_find_slips(&c, n, force, ctx->set.law->holds, ctx->last.did.of + i);
+    }
+    return status;
 }
 
 /* The same of the n contacts of chunk k, from i on, which do not all store it. */

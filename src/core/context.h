@@ -200,6 +200,12 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a);
  * all were alone. */
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 
+/* f_eq [n] of the contacts of the chunk that begins with i, as if all were alone; 0 for open ones. */
+void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
+
+/* The whole of tribo_balance, where no two contacts share a body and all limits are given; f_eq and f may be NULL. */
+int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
+
 /* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
 size_t tribo_next_near(const signed char *did, size_t *i, size_t end);
 
@@ -249,7 +255,10 @@ size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
 /* The same for contacts in no group, from their forces with static limits; these become right. */
 void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
-/* queries.c: writes modes down, before limits change. */
+/* queries.c: the slip [n] of contacts with forces f [n]. */
+void tribo_find_slips(const struct contacts *c, size_t n, const double *f, double holds, signed char *slip);
+
+/* Writes modes down, before limits change. */
 void tribo_write_modes(tribo_context *ctx);
 
 /* The force of the contact at place k of a group as the solver takes it. */
@@ -272,6 +281,12 @@ int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct boun
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
 {
     return tribo_memory_problem(ctx->op, &ctx->memory, k);
+}
+
+/* Whether every contact can be looked at by itself, at the limit that is set. */
+static inline int tribo_all_alone(const tribo_context *ctx)
+{
+    return !ctx->op->groups && !ctx->planar && !ctx->set.breaking;
 }
 
 /* planar.c: contacts and clusters for an operator that op is to become, and their taking the place of the old ones. */

@@ -34,6 +34,18 @@ TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const doub
     }
 }
 
+TRIBO_SIMD void tribo_find_slips(const struct contacts *c, size_t n, const double *restrict f, double holds,
+                                 signed char *restrict slip)
+{
+    const double *limit = c->limit, one = *limit;
+    for (size_t i = 0; c->alike && i < n; i++) {
+        slip[i] = mode_of(STORED, f[i], one, holds);
+    }
+    for (size_t i = 0; !c->alike && i < n; i++) {
+        slip[i] = mode_of(STORED, f[i], limit[i], holds);
+    }
+}
+
 void tribo_write_modes(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
