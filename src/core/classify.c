@@ -46,7 +46,7 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
 TRIBO_SIMD static void feq_alone(size_t n, const double *restrict r, const double *restrict a, double *restrict feq)
 {
     for (size_t i = 0; i < n; i++) {
-        feq[i] = quotient(-a[i], r[i]);
+        feq[i] = tribo_alone(a[i], r[i]);
     }
 }
 
@@ -225,7 +225,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
 static int reads_feq(const tribo_context *ctx, size_t k, size_t i, size_t n, const double *v)
 {
     const double band = ctx->set.law->sticks_in_band ? ctx->follow.chunk[k].band : lesser(ctx->follow.chunk[k].band, 0.0);
-    return ctx->set.law->uses_feq && any_in_band(n, v + i, band);
+    return ctx->set.law->uses_feq && (fabs(v[i]) <= band || any_in_band(n, v + i, band));
 }
 
 /* No force is kept: what each contact did is written down at once, while its force is at hand. */
@@ -233,14 +233,17 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
 {
     const int status = check_motion(ctx, v, a);
     for (size_t i = 0, k = 0; !status && i < ctx->n; i += TRIBO_CHUNK, k++) {
-        double room[2][TRIBO_CHUNK], *balancing = feq ? feq + i : room[0], *force = f ? f + i : room[1];
+        double room[TRIBO_CHUNK], *force = f ? f + i : room;
         const size_t n = tribo_chunk_size(ctx, i);
         const struct contacts c = tribo_chunk_contacts(ctx, i);
-        const int wanted = feq || reads_feq(ctx, k, i, n, v);
-        if (wanted) {
-            tribo_find_feq(ctx, i, n, a, balancing);
+        if (feq) {
+            tribo_find_feq(ctx, i, n, a, feq + i);
         }
-        ctx->set.law->force(&c, n, v + i, wanted ? balancing : v + i, force);
+        if (!feq && reads_feq(ctx, k, i, n, v)) {
+            ctx->set.law->balance(&c, n, v + i, a + i, ctx->op->diagonal + i, force);
+        } else {
+            ctx->set.law->force(&c, n, v + i, feq ? feq + i : v + i, force);
+        }
         tribo_find_slips(&c, n, force, ctx->set.law->holds, ctx->last.did.of + i);
     }
     return status;

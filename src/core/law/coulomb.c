@@ -27,5 +27,6 @@ const struct law tribo_law_coulomb = {
     .uses_feq = 1,
     .holds = 1.0,
     .force = coulomb_force_all,
+    .balance = coulomb_balance_all,
     .tangent = coulomb_tangent_all,
 };

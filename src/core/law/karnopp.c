@@ -27,5 +27,6 @@ const struct law tribo_law_karnopp = {
     .sticks_in_band = 1,
     .holds = 1.0,
     .force = karnopp_force_all,
+    .balance = karnopp_balance_all,
     .tangent = karnopp_tangent_all,
 };

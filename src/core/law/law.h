@@ -87,6 +87,8 @@ struct law {
     /* f_eq is finite, also where it does not matter, and TRIBO_FAR at most; v is any finite number. A law that does not use f_eq
      * gets numbers all the same. */
     void (*force)(const struct contacts *c, size_t n, const double *v, const double *feq, double *f);
+    /* the same with the f_eq of contacts that share no body: a and R_ii are finite, and R_ii above 0 */
+    void (*balance)(const struct contacts *c, size_t n, const double *v, const double *a, const double *r, double *f);
     void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d);
 };
 
@@ -94,6 +96,12 @@ extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law
     tribo_law_quinn_reversal;
 
 const struct law *tribo_law(int id); /* NULL if there is none */
+
+/* f_eq of a contact that shares no body. */
+static inline double tribo_alone(double a, double r)
+{
+    return quotient(-a, r);
+}
 
 static inline double sign(double x)
 {
@@ -118,10 +126,17 @@ static inline double held_rate(double feq, int held)
     return held ? 0.0 : sign(feq);
 }
 
-/* Defines <name>_force_all and <name>_tangent_all from the law's functions of one contact, <name>_force and <name>_tangent. */
-#define TRIBO_LAW_EACH(name, limit, epsilon, slope)                                                                              \
+/* Defines <name>_force_all, <name>_balance_all and <name>_tangent_all from the law's functions of one contact, <name>_force and
+ * <name>_tangent. */
+#define TRIBO_FORCE_EACH(name, limit, epsilon, slope)                                                                              \
     for (size_t i = 0; i < n; i++) {                                                                                             \
         f[i] = name##_force(v[i], feq[i], limit, epsilon, slope, moving[i]);                                                     \
+    }
+
+/* In one loop, since divisions take long and the rest is done meanwhile. */
+#define TRIBO_BALANCE_EACH(name, limit, epsilon, slope)                                                                          \
+    for (size_t i = 0; i < n; i++) {                                                                                             \
+        f[i] = name##_force(v[i], tribo_alone(a[i], r[i]), limit, epsilon, slope, moving[i]);                                    \
     }
 
 #define TRIBO_TANGENT_EACH(name, limit, epsilon, slope)                                                                          \
@@ -149,7 +164,12 @@ static inline double held_rate(double feq, int held)
     TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
                                             const double *restrict feq, double *restrict f)                                      \
     {                                                                                                                            \
-        TRIBO_LAW_LOOP(TRIBO_LAW_EACH, name)                                                                                     \
+        TRIBO_LAW_LOOP(TRIBO_FORCE_EACH, name)                                                                                   \
+    }                                                                                                                            \
+    TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n, const double *restrict v,                      \
+                                              const double *restrict a, const double *restrict r, double *restrict f)            \
+    {                                                                                                                            \
+        TRIBO_LAW_LOOP(TRIBO_BALANCE_EACH, name)                                                                                 \
     }                                                                                                                            \
     TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n, const double *restrict v,                       \
                                              const double *restrict feq, double *restrict dv, double *restrict dfeq,             \

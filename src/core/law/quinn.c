@@ -33,5 +33,6 @@ const struct law tribo_law_quinn = {
     .relaxes = 1,
     .holds = 1.0,
     .force = quinn_force_all,
+    .balance = quinn_balance_all,
     .tangent = quinn_tangent_all,
 };

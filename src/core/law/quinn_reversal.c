@@ -32,15 +32,31 @@ static int reverses(const struct contacts *c, size_t i, double v, double feq)
     return c->moving[i] && fabs(feq) > c->limit[i] && c->limit[i] > 0.0 && fabs(v) <= tribo_epsilon_of(c, i);
 }
 
+/* The force of contact i where it is not Quinn's. */
+static void cross(const struct contacts *c, size_t i, double v, double feq, double *f)
+{
+    if (reverses(c, i, v, feq)) {
+        const double limit = c->limit[i];
+        double g, dg;
+        crossing(quotient(fabs(feq), limit), &g, &dg);
+        *f = clamp(sign(feq) * g * limit - tribo_slope_of(c, i) * v, -limit, limit);
+    }
+}
+
 static void reversal_force_all(const struct contacts *c, size_t n, const double *v, const double *feq, double *f)
 {
     tribo_law_quinn.force(c, n, v, feq, f);
     for (size_t i = 0; i < n; i++) {
-        if (reverses(c, i, v[i], feq[i])) {
-            const double limit = c->limit[i];
-            double g, dg;
-            crossing(quotient(fabs(feq[i]), limit), &g, &dg);
-            f[i] = clamp(sign(feq[i]) * g * limit - tribo_slope_of(c, i) * v[i], -limit, limit);
+        cross(c, i, v[i], feq[i], f + i);
+    }
+}
+
+static void reversal_balance_all(const struct contacts *c, size_t n, const double *v, const double *a, const double *r, double *f)
+{
+    tribo_law_quinn.balance(c, n, v, a, r, f);
+    for (size_t i = 0; i < n; i++) {
+        if (c->moving[i]) {
+            cross(c, i, v[i], tribo_alone(a[i], r[i]), f + i);
         }
     }
 }
@@ -79,5 +95,6 @@ const struct law tribo_law_quinn_reversal = {
     .remembers = 1,
     .holds = 1.0,
     .force = reversal_force_all,
+    .balance = reversal_balance_all,
     .tangent = reversal_tangent_all,
 };

@@ -28,5 +28,6 @@ const struct law tribo_law_velocity_limited = {
     .sticks_in_band = 1,
     .holds = 1.0,
     .force = limited_force_all,
+    .balance = limited_balance_all,
     .tangent = limited_tangent_all,
 };
