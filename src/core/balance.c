@@ -228,20 +228,6 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
     return status || !ctx->planar ? status : tribo_planar_balance(ctx, v, a);
 }
 
-/* Where no two contacts share a body, each is looked at once. */
-static int balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
-{
-    const int status = tribo_balance_alone(ctx, v, a, feq, f);
-    if (!status) {
-        tribo_begin_call(ctx);
-        ctx->last.residual = 0.0;
-        ctx->last.did.all_stored = 0;
-        ctx->last.modes = MODES_WRITTEN;
-        ctx->count.skipped += ctx->op->islands;
-    }
-    return status;
-}
-
 int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
     if (!ctx) {
@@ -252,7 +238,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         return status;
     }
     if (tribo_all_alone(ctx)) {
-        return balance_alone(ctx, v, a, feq, f);
+        return tribo_balance_alone(ctx, v, a, feq, f);
     }
     status = tribo_classify(ctx, v, a);
     if (status) {

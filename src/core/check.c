@@ -27,17 +27,15 @@ TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
     return room >= 0;
 }
 
-int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
+int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     if (!x && n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
     }
-    if (!tribo_all_finite(x, n)) { /* only now the culprit is looked for */
-        size_t i = 0;
-        while (isfinite(x[i])) {
-            i++;
+    for (size_t i = 0; i < n; i++) {
+        if (!isfinite(x[i])) {
+            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
         }
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
     }
     return TRIBO_OK;
 }

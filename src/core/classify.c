@@ -228,25 +228,60 @@ static int reads_feq(const tribo_context *ctx, size_t k, size_t i, size_t n, con
     return ctx->set.law->uses_feq && (fabs(v[i]) <= band || any_in_band(n, v + i, band));
 }
 
+/* Without what many contacts are worth. */
+static void balance_one(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const double balancing = *c->limit > 0.0 ? tribo_alone(*a, *ctx->op->diagonal) : 0.0;
+    double force;
+    ctx->set.law->force(c, 1, v, &balancing, &force);
+    *ctx->last.did.of = tribo_slip_of(force, *c->limit, ctx->set.law->holds);
+    if (feq) {
+        *feq = balancing;
+    }
+    if (f) {
+        *f = force;
+    }
+}
+
+/* Those of chunk k, which begins with contact i. */
+static void balance_chunk(tribo_context *ctx, size_t k, size_t i, const double *v, const double *a, double *feq, double *f)
+{
+    double room[TRIBO_CHUNK], *force = f ? f + i : room;
+    const size_t n = tribo_chunk_size(ctx, i);
+    const struct contacts c = tribo_chunk_contacts(ctx, i);
+    if (feq) {
+        tribo_find_feq(ctx, i, n, a, feq + i);
+    }
+    if (!feq && reads_feq(ctx, k, i, n, v)) {
+        ctx->set.law->balance(&c, n, v + i, a + i, ctx->op->diagonal + i, force);
+    } else {
+        ctx->set.law->force(&c, n, v + i, feq ? feq + i : v + i, force);
+    }
+    tribo_find_slips(&c, n, force, ctx->set.law->holds, ctx->last.did.of + i);
+}
+
 /* No force is kept: what each contact did is written down at once, while its force is at hand. */
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
     const int status = check_motion(ctx, v, a);
-    for (size_t i = 0, k = 0; !status && i < ctx->n; i += TRIBO_CHUNK, k++) {
-        double room[TRIBO_CHUNK], *force = f ? f + i : room;
-        const size_t n = tribo_chunk_size(ctx, i);
-        const struct contacts c = tribo_chunk_contacts(ctx, i);
-        if (feq) {
-            tribo_find_feq(ctx, i, n, a, feq + i);
-        }
-        if (!feq && reads_feq(ctx, k, i, n, v)) {
-            ctx->set.law->balance(&c, n, v + i, a + i, ctx->op->diagonal + i, force);
-        } else {
-            ctx->set.law->force(&c, n, v + i, feq ? feq + i : v + i, force);
-        }
-        tribo_find_slips(&c, n, force, ctx->set.law->holds, ctx->last.did.of + i);
+    if (status) {
+        return status;
     }
-    return status;
+    if (ctx->n == 1) {
+        balance_one(ctx, v, a, feq, f);
+    } else {
+        for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+            balance_chunk(ctx, k, i, v, a, feq, f);
+        }
+    }
+    ctx->last.residual = 0.0;
+    ctx->last.rank = 0;
+    ctx->last.linearized = 0;
+    ctx->last.did.all_stored = 0;
+    ctx->last.modes = MODES_WRITTEN;
+    ctx->count.skipped += ctx->op->islands;
+    return TRIBO_OK;
 }
 
 /* The same of the n contacts of chunk k, from i on, which do not all store it. */

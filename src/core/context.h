@@ -141,11 +141,17 @@ int tribo_all_within(const double *x, size_t n, double most);
 
 static inline int tribo_all_finite(const double *x, size_t n)
 {
-    return tribo_all_within(x, n, DBL_MAX);
+    return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
 }
 
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
-int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
+
+static inline int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
+{
+    return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
+}
+
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
@@ -202,6 +208,14 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
 
 /* f_eq [n] of the contacts of the chunk that begins with i, as if all were alone; 0 for open ones. */
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
+
+/* Which way a contact slides by its force, of which an open one has none: that reaches its limit, or this part of it. */
+static inline signed char tribo_slip_of(double f, double limit, double holds)
+{
+    const double edge = holds * limit;
+    const int64_t forth = f <= -edge ? -1 : 0, back = f >= edge ? -1 : 0, closed = limit > 0.0 ? -1 : 0; /* as wide as f */
+    return (signed char)(back - forth + (~closed & OPEN));
+}
 
 /* The whole of tribo_balance, where no two contacts share a body and all limits are given; f_eq and f may be NULL. */
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);

@@ -34,23 +34,15 @@ TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const doub
     }
 }
 
-/* The same where all forces are at hand, of which open contacts have none. */
-static inline signed char slip_of(double f, double limit, double holds)
-{
-    const double edge = holds * limit;
-    const int64_t forth = f <= -edge ? -1 : 0, back = f >= edge ? -1 : 0, closed = limit > 0.0 ? -1 : 0; /* as wide as f */
-    return (signed char)(back - forth + (~closed & OPEN));
-}
-
 TRIBO_SIMD void tribo_find_slips(const struct contacts *c, size_t n, const double *restrict f, double holds,
                                  signed char *restrict slip)
 {
     const double *limit = c->limit, one = *limit;
     for (size_t i = 0; c->alike && i < n; i++) {
-        slip[i] = slip_of(f[i], one, holds);
+        slip[i] = tribo_slip_of(f[i], one, holds);
     }
     for (size_t i = 0; !c->alike && i < n; i++) {
-        slip[i] = slip_of(f[i], limit[i], holds);
+        slip[i] = tribo_slip_of(f[i], limit[i], holds);
     }
 }
 
