@@ -87,29 +87,49 @@ static void expect(const tribo_context *ctx, const double *x, size_t i, int writ
     }
 }
 
-enum { LANES = 4 }; /* side by side, since one would have to be found in order */
-
-TRIBO_SIMD void tribo_take_limits(size_t n, const double *restrict from, double *restrict to, struct chunk *chunk)
+/* Each of the first with its partner in the second half. */
+static inline void fold(size_t half, double *least, double *largest)
 {
-    double least[LANES], largest[LANES];
-    size_t i = 0;
-    for (size_t k = 0; k < LANES; k++) {
-        least[k] = largest[k] = from[0];
+    for (size_t k = 0; k < half; k++) {
+        least[k] = lesser(least[k], least[k + half]);
+        largest[k] = greater(largest[k], largest[k + half]);
     }
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            to[i + k] = from[i + k];
-            least[k] = lesser(least[k], from[i + k]);
-            largest[k] = greater(largest[k], from[i + k]);
-        }
+}
+
+/* Of a whole chunk, half upon half: one after the other they would have to be looked at in order. */
+TRIBO_SIMD static void find_bounds(const double *x, struct chunk *chunk)
+{
+    enum { HALF = TRIBO_CHUNK / 2, FEW = 8 };
+    double least[HALF], largest[HALF];
+    for (size_t k = 0; k < HALF; k++) {
+        least[k] = lesser(x[k], x[k + HALF]);
+        largest[k] = greater(x[k], x[k + HALF]);
     }
-    for (; i < n; i++) {
-        to[i] = from[i];
-        least[0] = lesser(least[0], from[i]);
-        largest[0] = greater(largest[0], from[i]);
+    fold(HALF / 2, least, largest);
+    fold(HALF / 4, least, largest);
+    fold(FEW, least, largest);
+    for (size_t k = 1; k < FEW; k++) {
+        least[0] = lesser(least[0], least[k]);
+        largest[0] = greater(largest[0], largest[k]);
     }
-    chunk->least = lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
-    chunk->largest = greater(greater(largest[0], largest[1]), greater(largest[2], largest[3]));
+    chunk->least = least[0];
+    chunk->largest = largest[0];
+}
+
+void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk)
+{
+    memcpy(to, from, n * sizeof *to);
+    if (n == TRIBO_CHUNK) {
+        find_bounds(from, chunk);
+        return;
+    }
+    double least = from[0], largest = from[0];
+    for (size_t i = 1; i < n; i++) {
+        least = lesser(least, from[i]);
+        largest = greater(largest, from[i]);
+    }
+    chunk->least = least;
+    chunk->largest = largest;
 }
 
 TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
