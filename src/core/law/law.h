@@ -108,17 +108,23 @@ static inline double sign(double x)
     return x != 0.0 ? copysign(1.0, x) : 0.0;
 }
 
+/* v where |v| <= epsilon, and elsewhere what makes no product overflow: laws reckon with it for all contacts before they choose. */
+static inline double inside_band(double v, double epsilon)
+{
+    return clamp(v, -epsilon, epsilon);
+}
+
 /* -limit sgn v, for v != 0. */
 static inline double sliding(double v, double limit)
 {
     return copysign(limit, -v);
 }
 
-/* How limit follows the force of a contact that slides, and of one that carries clamp(feq, -limit, limit): these and the laws
+/* How the force follows the limit where a contact slides, and where it carries clamp(feq, -limit, limit). These and the laws
  * choose between numbers that are there already, which is what makes loops of them fast. */
 static inline double sliding_rate(double v)
 {
-    return -sign(v);
+    return copysign(1.0, -v);
 }
 
 static inline double held_rate(double feq, int held)

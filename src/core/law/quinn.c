@@ -5,21 +5,20 @@
 static inline double quinn_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)moving;
-    const int inside = fabs(v) <= epsilon;
-    const double f = clamp(clamp(feq, -limit, limit) - slope * (inside ? v : 0.0), -limit, limit);
-    return inside ? f : sliding(v, limit);
+    const double f = clamp(clamp(feq, -limit, limit) - slope * inside_band(v, epsilon), -limit, limit);
+    return fabs(v) > epsilon ? sliding(v, limit) : f;
 }
 
 static inline struct tangent quinn_tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
                                            double follows)
 {
     (void)moving;
-    const int inside = fabs(v) <= epsilon, held = fabs(feq) < limit;
-    const double x = clamp(feq, -limit, limit) - slope * (inside ? v : 0.0);
-    const int slides = fabs(v) > epsilon, beyond = fabs(x) > limit;
-    const double rate = held_rate(feq, held) - (1.0 - follows) * 2.0 * quotient(v, epsilon);
-    return (struct tangent){slides ? 0.0 : beyond ? 0.0 : -slope, slides ? 0.0 : beyond ? 0.0 : held ? 1.0 : 0.0,
-                            slides ? sliding_rate(v) : beyond ? sign(x) : rate};
+    const int slides = fabs(v) > epsilon, held = fabs(feq) < limit;
+    const double near = inside_band(v, epsilon), x = clamp(feq, -limit, limit) - slope * near;
+    const int full = fabs(x) > limit;
+    const double gain = held ? 1.0 : 0.0, rest = held_rate(feq, held) - (1.0 - follows) * 2.0 * quotient(near, epsilon);
+    return (struct tangent){slides | full ? 0.0 : -slope, slides | full ? 0.0 : gain,
+                            slides ? sliding_rate(v) : full ? copysign(1.0, x) : rest};
 }
 
 TRIBO_LAW_LOOPS(quinn)
