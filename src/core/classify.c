@@ -253,53 +253,68 @@ static void balance_one(tribo_context *ctx, const double *v, const double *a, do
 {
     const struct contacts *c = &ctx->follow.contacts;
     const double balancing = *c->limit > 0.0 ? tribo_alone(*a, *ctx->op->diagonal) : 0.0;
-    double force;
-    ctx->set.law->force(c, 1, v, &balancing, &force);
-    *ctx->last.did.of = tribo_slip_of(force, *c->limit, ctx->set.law->holds);
+    ctx->set.law->force(c, 1, v, &balancing, ctx->last.f);
     if (feq) {
         *feq = balancing;
     }
     if (f) {
-        *f = force;
+        *f = *ctx->last.f;
     }
 }
 
-/* Those of chunk k, which begins with contact i. */
-static void balance_chunk(tribo_context *ctx, size_t k, size_t i, const double *v, const double *a, double *feq, double *f)
+/* Those of chunk k, which begins with contact i, f [n]. */
+static void balance_chunk(const tribo_context *ctx, size_t k, size_t i, const double *v, const double *a, double *feq, double *f)
 {
-    double room[TRIBO_CHUNK], *force = f ? f + i : room;
     const size_t n = tribo_chunk_size(ctx, i);
     const struct contacts c = tribo_chunk_contacts(ctx, i);
     if (feq) {
         tribo_find_feq(ctx, i, n, a, feq + i);
     }
     if (!feq && reads_feq(ctx, k, i, n, v)) {
-        ctx->set.law->balance(&c, n, v + i, a + i, ctx->op->diagonal + i, force);
+        ctx->set.law->balance(&c, n, v + i, a + i, ctx->op->diagonal + i, f);
     } else {
-        ctx->set.law->force(&c, n, v + i, feq ? feq + i : v + i, force);
+        ctx->set.law->force(&c, n, v + i, feq ? feq + i : v + i, f);
     }
-    tribo_find_slips(&c, n, force, ctx->set.law->holds, ctx->last.did.of + i);
 }
 
-/* No force is kept: what each contact did is written down at once, while its force is at hand. */
+/* The forces of a few contacts are kept. */
+static void balance_few(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    if (ctx->n == 1) {
+        balance_one(ctx, v, a, feq, f);
+    } else if (ctx->n) {
+        balance_chunk(ctx, 0, 0, v, a, feq, ctx->last.f);
+        tribo_copy(f, ctx->last.f, f ? ctx->n : 0);
+    }
+    tribo_store_all(ctx);
+    ctx->last.modes = MODES_IN_FORCES;
+    ctx->last.holds = ctx->set.law->holds;
+}
+
+/* Those of many would have to be written to memory and read again: what each contact did is written down while its force is at
+ * hand. */
+static void balance_many(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        double room[TRIBO_CHUNK], *force = f ? f + i : room;
+        const struct contacts c = tribo_chunk_contacts(ctx, i);
+        balance_chunk(ctx, k, i, v, a, feq, force);
+        tribo_find_slips(&c, tribo_chunk_size(ctx, i), force, ctx->set.law->holds, ctx->last.did.of + i);
+    }
+    ctx->last.did.all_stored = 0;
+    ctx->last.modes = MODES_WRITTEN;
+}
+
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
     const int status = check_motion(ctx, v, a);
     if (status) {
         return status;
     }
-    if (ctx->n == 1) {
-        balance_one(ctx, v, a, feq, f);
-    } else {
-        for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-            balance_chunk(ctx, k, i, v, a, feq, f);
-        }
-    }
+    (ctx->n <= TRIBO_CHUNK ? balance_few : balance_many)(ctx, v, a, feq, f);
     ctx->last.residual = 0.0;
     ctx->last.rank = 0;
     ctx->last.linearized = 0;
-    ctx->last.did.all_stored = 0;
-    ctx->last.modes = MODES_WRITTEN;
     ctx->count.skipped += ctx->op->islands;
     return TRIBO_OK;
 }

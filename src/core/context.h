@@ -209,14 +209,6 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
 /* f_eq [n] of the contacts of the chunk that begins with i, as if all were alone; 0 for open ones. */
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
 
-/* Which way a contact slides by its force, of which an open one has none: that reaches its limit, or this part of it. */
-static inline signed char tribo_slip_of(double f, double limit, double holds)
-{
-    const double edge = holds * limit;
-    const int64_t forth = f <= -edge ? -1 : 0, back = f >= edge ? -1 : 0, closed = limit > 0.0 ? -1 : 0; /* as wide as f */
-    return (signed char)(back - forth + (~closed & OPEN));
-}
-
 /* The whole of tribo_balance, where no two contacts share a body and all limits are given; f_eq and f may be NULL. */
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 

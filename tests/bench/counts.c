@@ -188,11 +188,16 @@ enum { SCENES = sizeof scenes / sizeof *scenes };
 static double run_scene(const struct scene *s)
 {
     switch (s->subject) {
-    case KERNEL: return count_kernel(s->kernel, s->n, s->alike);
-    case CHAIN: return count_chain(s->method, s->n);
-    case OSCILLATOR: return count_oscillator(s->alpha, s->omega);
-    case BELT: return count_belt();
-    default: break;
+    case KERNEL:
+        return count_kernel(s->kernel, s->n, s->alike);
+    case CHAIN:
+        return count_chain(s->method, s->n);
+    case OSCILLATOR:
+        return count_oscillator(s->alpha, s->omega);
+    case BELT:
+        return count_belt();
+    default:
+        break;
     }
 #if defined(HAVE_FORTRAN)
     return count_fixed_form();

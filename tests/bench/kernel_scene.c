@@ -49,12 +49,17 @@ void kernel_call(struct kernel_scene *s)
 {
     int status = 0;
     switch (s->kernel) {
-    case FORCE: status = tribo_force(s->ctx, s->v, s->a, s->out[0]); break;
+    case FORCE:
+        status = tribo_force(s->ctx, s->v, s->a, s->out[0]);
+        break;
     case FORCE_TANGENT:
         status = tribo_force_tangent(s->ctx, s->v, s->a, s->out[0], s->out[1], s->out[2], s->out[3]);
         break;
-    case SET_LIMIT: status = tribo_set_limit(s->ctx, s->limit); break;
-    default: status = tribo_balance(s->ctx, s->v, s->a, NULL, s->out[0]);
+    case SET_LIMIT:
+        status = tribo_set_limit(s->ctx, s->limit);
+        break;
+    default:
+        status = tribo_balance(s->ctx, s->v, s->a, NULL, s->out[0]);
     }
     need(status, tribo_message(s->ctx));
 }

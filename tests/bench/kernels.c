@@ -76,7 +76,8 @@ static void measure(size_t n, int alike, size_t contacts, int repeats)
 int main(int count, char **argument)
 {
     program = "bench_kernels";
-    const int quick = count == 2 && strcmp(argument[1], "--quick") == 0, smoke = count == 2 && strcmp(argument[1], "--smoke") == 0;
+    const int quick = count == 2 && strcmp(argument[1], "--quick") == 0,
+              smoke = count == 2 && strcmp(argument[1], "--smoke") == 0;
     if (count > 1 && !quick && !smoke) {
         printf("%s", help);
         return strcmp(argument[1], "--help") == 0 ? EXIT_SUCCESS : EXIT_FAILURE;

@@ -134,7 +134,7 @@ static inline double held_rate(double feq, int held)
 
 /* Defines <name>_force_all, <name>_balance_all and <name>_tangent_all from the law's functions of one contact, <name>_force and
  * <name>_tangent. */
-#define TRIBO_FORCE_EACH(name, limit, epsilon, slope)                                                                              \
+#define TRIBO_FORCE_EACH(name, limit, epsilon, slope)                                                                            \
     for (size_t i = 0; i < n; i++) {                                                                                             \
         f[i] = name##_force(v[i], feq[i], limit, epsilon, slope, moving[i]);                                                     \
     }
@@ -168,18 +168,15 @@ static inline double held_rate(double feq, int held)
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
     TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
-                                            const double *restrict feq, double *restrict f)                                      \
-    {                                                                                                                            \
-        TRIBO_LAW_LOOP(TRIBO_FORCE_EACH, name)                                                                                   \
-    }                                                                                                                            \
-    TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n, const double *restrict v,                      \
-                                              const double *restrict a, const double *restrict r, double *restrict f)            \
-    {                                                                                                                            \
-        TRIBO_LAW_LOOP(TRIBO_BALANCE_EACH, name)                                                                                 \
-    }                                                                                                                            \
-    TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n, const double *restrict v,                       \
-                                             const double *restrict feq, double *restrict dv, double *restrict dfeq,             \
-                                             double *restrict dlimit)                                                            \
+                                            const double *restrict feq, double *restrict f){TRIBO_LAW_LOOP(                      \
+        TRIBO_FORCE_EACH, name)} TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n,                   \
+                                                                           const double *restrict v, const double *restrict a,   \
+                                                                           const double *restrict r,                             \
+                                                                           double *restrict f){TRIBO_LAW_LOOP(                   \
+        TRIBO_BALANCE_EACH, name)} TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n,                  \
+                                                                            const double *restrict v,                            \
+                                                                            const double *restrict feq, double *restrict dv,     \
+                                                                            double *restrict dfeq, double *restrict dlimit)      \
     {                                                                                                                            \
         const double scales = c->scales;                                                                                         \
         TRIBO_LAW_LOOP(TRIBO_TANGENT_EACH, name)                                                                                 \

@@ -18,7 +18,9 @@ static inline struct tangent quinn_tangent(double v, double feq, double limit, d
     const int full = fabs(x) > limit;
     const double gain = held ? 1.0 : 0.0, rest = held_rate(feq, held) - (1.0 - follows) * 2.0 * quotient(near, epsilon);
     return (struct tangent){slides | full ? 0.0 : -slope, slides | full ? 0.0 : gain,
-                            slides ? sliding_rate(v) : full ? copysign(1.0, x) : rest};
+                            slides ? sliding_rate(v)
+                            : full ? copysign(1.0, x)
+                                   : rest};
 }
 
 TRIBO_LAW_LOOPS(quinn)

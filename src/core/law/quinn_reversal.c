@@ -71,8 +71,7 @@ static struct tangent reversal_tangent(const struct contacts *c, size_t i, doubl
                            : (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * turned};
 }
 
-static void reversal_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq,
-                                 const struct tangents *d)
+static void reversal_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d)
 {
     tribo_law_quinn.tangent(c, n, v, feq, d);
     for (size_t i = 0; i < n; i++) {
