@@ -185,6 +185,13 @@ void tribo_store_all(tribo_context *ctx)
     }
 }
 
+/* No contact of chunk k that is faster is near stick. */
+static double widest_band(const tribo_context *ctx, size_t k)
+{
+    const double band = ctx->follow.chunk[k].band;
+    return ctx->set.law->sticks_in_band ? band : lesser(band, 0.0);
+}
+
 int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 {
     struct deeds now = ctx->spare;
@@ -198,7 +205,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const double band = ctx->set.law->sticks_in_band ? ctx->follow.chunk[k].band : lesser(ctx->follow.chunk[k].band, 0.0);
+        const double band = widest_band(ctx, k);
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
         if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
@@ -244,7 +251,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
 /* Whether the law reads f_eq of a contact of chunk k, which begins with contact i. */
 static int reads_feq(const tribo_context *ctx, size_t k, size_t i, size_t n, const double *v)
 {
-    const double band = ctx->set.law->sticks_in_band ? ctx->follow.chunk[k].band : lesser(ctx->follow.chunk[k].band, 0.0);
+    const double band = widest_band(ctx, k);
     return ctx->set.law->uses_feq && (fabs(v[i]) <= band || any_in_band(n, v + i, band));
 }
 

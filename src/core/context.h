@@ -136,7 +136,8 @@ static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, siz
     return c;
 }
 
-/* check.c: whether no number is larger than most, which is finite, and all are finite. Nothing that they are makes an exception. */
+/* check.c: whether all numbers are finite, and none is larger than most, which is finite. Whatever they are, no floating-point
+ * exception is raised. */
 int tribo_all_within(const double *x, size_t n, double most);
 
 static inline int tribo_all_finite(const double *x, size_t n)

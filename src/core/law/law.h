@@ -108,7 +108,8 @@ static inline double sign(double x)
     return x != 0.0 ? copysign(1.0, x) : 0.0;
 }
 
-/* v where |v| <= epsilon, and elsewhere what makes no product overflow: laws reckon with it for all contacts before they choose. */
+/* v where |v| <= epsilon, and elsewhere what makes no product overflow: laws reckon with it for all contacts before they
+ * choose. */
 static inline double inside_band(double v, double epsilon)
 {
     return clamp(v, -epsilon, epsilon);
@@ -168,18 +169,21 @@ static inline double held_rate(double feq, int held)
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
     TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
-                                            const double *restrict feq, double *restrict f){TRIBO_LAW_LOOP(                      \
-        TRIBO_FORCE_EACH, name)} TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n,                   \
-                                                                           const double *restrict v, const double *restrict a,   \
-                                                                           const double *restrict r,                             \
-                                                                           double *restrict f){TRIBO_LAW_LOOP(                   \
-        TRIBO_BALANCE_EACH, name)} TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n,                  \
-                                                                            const double *restrict v,                            \
-                                                                            const double *restrict feq, double *restrict dv,     \
-                                                                            double *restrict dfeq, double *restrict dlimit)      \
+                                            const double *restrict feq, double *restrict f)                                      \
+    {                                                                                                                            \
+        TRIBO_LAW_LOOP(TRIBO_FORCE_EACH, name);                                                                                  \
+    }                                                                                                                            \
+    TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n, const double *restrict v,                      \
+                                              const double *restrict a, const double *restrict r, double *restrict f)            \
+    {                                                                                                                            \
+        TRIBO_LAW_LOOP(TRIBO_BALANCE_EACH, name);                                                                                \
+    }                                                                                                                            \
+    TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n, const double *restrict v,                       \
+                                             const double *restrict feq, double *restrict dv, double *restrict dfeq,             \
+                                             double *restrict dlimit)                                                            \
     {                                                                                                                            \
         const double scales = c->scales;                                                                                         \
-        TRIBO_LAW_LOOP(TRIBO_TANGENT_EACH, name)                                                                                 \
+        TRIBO_LAW_LOOP(TRIBO_TANGENT_EACH, name);                                                                                \
     }                                                                                                                            \
     static void name##_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq,                       \
                                    const struct tangents *d)                                                                     \
