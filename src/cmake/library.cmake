@@ -15,6 +15,9 @@ if(TRIBO_SIMD AND CMAKE_C_COMPILER_ID STREQUAL "GNU")
   check_c_source_runs([[
     __attribute__((target_clones("avx2", "default"))) static int zero(void) { return 0; }
     int main(void) { return zero(); }]] TRIBO_HAVE_CLONES)
+  check_c_source_compiles([[
+    __attribute__((target_clones("arch=x86-64-v4", "avx2", "default"))) static int zero(void) { return 0; }
+    int main(void) { return zero(); }]] TRIBO_HAVE_CLONES_512)
 endif()
 
 # Linking decides where the functions of math.h are, since a library of that name may be another system's (gcc -m32).
@@ -102,7 +105,7 @@ function(tribo_library target)
     endif()
   endif()
   if(TRIBO_SIMD AND TRIBO_HAVE_CLONES)
-    target_compile_definitions(${target} PRIVATE TRIBO_CLONES)
+    target_compile_definitions(${target} PRIVATE TRIBO_CLONES $<$<BOOL:${TRIBO_HAVE_CLONES_512}>:TRIBO_CLONES_512>)
   endif()
   if(TRIBO_LIBM)
     target_link_libraries(${target} PRIVATE m)

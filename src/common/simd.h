@@ -8,7 +8,9 @@
 
 #include "compiler.h"
 
-#if defined(TRIBO_CLONES)
+#if defined(TRIBO_CLONES_512)
+#define TRIBO_SIMD __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
+#elif defined(TRIBO_CLONES)
 #define TRIBO_SIMD __attribute__((target_clones("avx2", "default")))
 #else
 #define TRIBO_SIMD

@@ -234,7 +234,13 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
         return TRIBO_ERR_NULL;
     }
     int status = tribo_need_operator(ctx);
-    status = status ? status : tribo_classify(ctx, v, a);
+    if (status) {
+        return status;
+    }
+    if (tribo_all_alone(ctx)) {
+        return tribo_balance_alone(ctx, v, a, feq, f);
+    }
+    status = tribo_classify(ctx, v, a);
     if (status) {
         return status;
     }

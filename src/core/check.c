@@ -3,61 +3,68 @@
 
 #include "context.h"
 
-/* x - x is zero if x is finite, and NaN otherwise; sums side by side, since one would have to be added up in order. */
-TRIBO_SIMD int tribo_all_finite(const double *x, size_t n)
+/* The size of a number as one that compares alike: infinity and NaN are larger than all others. As integers they raise no
+ * exception. */
+static inline int64_t bits_of(const double *x)
 {
-    enum { SUMS = 8 };
-    double sum[SUMS] = {0.0}, all = 0.0;
-    size_t i = 0;
-    for (; i < n % SUMS; i++) {
-        all += x[i] - x[i];
-    }
-    if (n < SUMS) {
-        return all == 0.0;
-    }
-    for (; i < n; i += SUMS) {
-        for (size_t k = 0; k < SUMS; k++) {
-            sum[k] += x[i + k] - x[i + k];
-        }
-    }
-    return all + (sum[0] + sum[1] + (sum[2] + sum[3]) + (sum[4] + sum[5] + (sum[6] + sum[7]))) == 0.0;
+    int64_t bits;
+    memcpy(&bits, x, sizeof bits);
+    return bits;
 }
 
-int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
+static inline int64_t size_of(int64_t bits)
+{
+    return bits & INT64_MAX;
+}
+
+TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
+{
+    const int64_t limit = bits_of(&most);
+    int64_t room = 0; /* negative once one is */
+    for (size_t i = 0; i < n; i++) {
+        room |= limit - size_of(bits_of(x + i));
+    }
+    return room >= 0;
+}
+
+int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     if (!x && n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
     }
-    if (!tribo_all_finite(x, n)) { /* only now the culprit is looked for */
-        size_t i = 0;
-        while (isfinite(x[i])) {
-            i++;
+    for (size_t i = 0; i < n; i++) {
+        if (!isfinite(x[i])) {
+            return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
         }
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
     }
     return TRIBO_OK;
 }
 
+/* And finite. -0 is not negative. */
 TRIBO_SIMD static int none_negative(const double *x, size_t n)
 {
-    int64_t any = 0; /* as wide as what is compared */
+    const double most = DBL_MAX;
+    const int64_t limit = bits_of(&most);
+    int64_t room = 0;
     for (size_t i = 0; i < n; i++) {
-        any |= x[i] < 0.0 ? -1 : 0;
+        const int64_t bits = bits_of(x + i), size = size_of(bits);
+        room |= (limit - size) | (bits & -size);
     }
-    return !any;
+    return room >= 0;
 }
 
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
+    if (x && none_negative(x, n)) {
+        return TRIBO_OK;
+    }
     const int status = tribo_check_finite(ctx, name, x, n);
-    if (status || none_negative(x, n)) {
-        return status;
+    for (size_t i = 0; !status && i < n; i++) {
+        if (x[i] < 0.0) {
+            return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "%s[%zu] = %g is negative", name, i, x[i]);
+        }
     }
-    size_t i = 0;
-    while (!(x[i] < 0.0)) {
-        i++;
-    }
-    return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "%s[%zu] = %g is negative", name, i, x[i]);
+    return status;
 }
 
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n)

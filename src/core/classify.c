@@ -46,7 +46,7 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
 TRIBO_SIMD static void feq_alone(size_t n, const double *restrict r, const double *restrict a, double *restrict feq)
 {
     for (size_t i = 0; i < n; i++) {
-        feq[i] = quotient(-a[i], r[i]);
+        feq[i] = tribo_alone(a[i], r[i]);
     }
 }
 
@@ -57,12 +57,11 @@ TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, do
     }
 }
 
-/* The same for chunk k, which begins with contact i; 0 for open ones. */
-static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, const double *a)
+void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
 {
-    feq_alone(n, ctx->op->diagonal + i, a + i, ctx->last.feq + i);
-    if (ctx->follow.chunk[k].least == 0.0) {
-        no_feq_if_open(n, ctx->follow.contacts.limit + i, ctx->last.feq + i);
+    feq_alone(n, ctx->op->diagonal + i, a + i, feq);
+    if (ctx->follow.chunk[i / TRIBO_CHUNK].least == 0.0) {
+        no_feq_if_open(n, ctx->follow.contacts.limit + i, feq);
     }
 }
 
@@ -88,29 +87,49 @@ static void expect(const tribo_context *ctx, const double *x, size_t i, int writ
     }
 }
 
-enum { LANES = 4 }; /* side by side, since one would have to be found in order */
-
-TRIBO_SIMD void tribo_take_limits(size_t n, const double *restrict from, double *restrict to, struct chunk *chunk)
+/* Each of the first with its partner in the second half. */
+static inline void fold(size_t half, double *least, double *largest)
 {
-    double least[LANES], largest[LANES];
-    size_t i = 0;
-    for (size_t k = 0; k < LANES; k++) {
-        least[k] = largest[k] = from[0];
+    for (size_t k = 0; k < half; k++) {
+        least[k] = lesser(least[k], least[k + half]);
+        largest[k] = greater(largest[k], largest[k + half]);
     }
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            to[i + k] = from[i + k];
-            least[k] = lesser(least[k], from[i + k]);
-            largest[k] = greater(largest[k], from[i + k]);
-        }
+}
+
+/* Of a whole chunk, half upon half: one after the other they would have to be looked at in order. */
+TRIBO_SIMD static void find_bounds(const double *x, struct chunk *chunk)
+{
+    enum { HALF = TRIBO_CHUNK / 2, FEW = 8 };
+    double least[HALF], largest[HALF];
+    for (size_t k = 0; k < HALF; k++) {
+        least[k] = lesser(x[k], x[k + HALF]);
+        largest[k] = greater(x[k], x[k + HALF]);
     }
-    for (; i < n; i++) {
-        to[i] = from[i];
-        least[0] = lesser(least[0], from[i]);
-        largest[0] = greater(largest[0], from[i]);
+    fold(HALF / 2, least, largest);
+    fold(HALF / 4, least, largest);
+    fold(FEW, least, largest);
+    for (size_t k = 1; k < FEW; k++) {
+        least[0] = lesser(least[0], least[k]);
+        largest[0] = greater(largest[0], largest[k]);
     }
-    chunk->least = lesser(lesser(least[0], least[1]), lesser(least[2], least[3]));
-    chunk->largest = greater(greater(largest[0], largest[1]), greater(largest[2], largest[3]));
+    chunk->least = least[0];
+    chunk->largest = largest[0];
+}
+
+void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk)
+{
+    memcpy(to, from, n * sizeof *to);
+    if (n == TRIBO_CHUNK) {
+        find_bounds(from, chunk);
+        return;
+    }
+    double least = from[0], largest = from[0];
+    for (size_t i = 1; i < n; i++) {
+        least = lesser(least, from[i]);
+        largest = greater(largest, from[i]);
+    }
+    chunk->least = least;
+    chunk->largest = largest;
 }
 
 TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
@@ -166,6 +185,13 @@ void tribo_store_all(tribo_context *ctx)
     }
 }
 
+/* No contact of chunk k that is faster is near stick. */
+static double widest_band(const tribo_context *ctx, size_t k)
+{
+    const double band = ctx->follow.chunk[k].band;
+    return ctx->set.law->sticks_in_band ? band : lesser(band, 0.0);
+}
+
 int tribo_classify(tribo_context *ctx, const double *v, const double *a)
 {
     struct deeds now = ctx->spare;
@@ -179,7 +205,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const double band = ctx->set.law->sticks_in_band ? ctx->follow.chunk[k].band : lesser(ctx->follow.chunk[k].band, 0.0);
+        const double band = widest_band(ctx, k);
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
         if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
@@ -209,7 +235,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
         const size_t n = tribo_chunk_size(ctx, i);
         const int asked = ctx->last.did.stored[k] == ALL_STORED || (some && ctx->last.did.stored[k] == SOME_STORED);
         if (wanted || (asked && ctx->set.law->uses_feq)) {
-            find_feq(ctx, k, i, n, a);
+            tribo_find_feq(ctx, i, n, a, ctx->last.feq + i);
         }
         if (ctx->set.breaking) {
             const int known = asked && ctx->set.law->uses_feq;
@@ -220,6 +246,84 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
             ctx->set.law->force(&c, n, v + i, ctx->last.feq + i, ctx->last.f + i);
         }
     }
+}
+
+/* Whether the law reads f_eq of a contact of chunk k, which begins with contact i. */
+static int reads_feq(const tribo_context *ctx, size_t k, size_t i, size_t n, const double *v)
+{
+    const double band = widest_band(ctx, k);
+    return ctx->set.law->uses_feq && (fabs(v[i]) <= band || any_in_band(n, v + i, band));
+}
+
+/* Without what many contacts are worth. */
+static void balance_one(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const double balancing = *c->limit > 0.0 ? tribo_alone(*a, *ctx->op->diagonal) : 0.0;
+    ctx->set.law->force(c, 1, v, &balancing, ctx->last.f);
+    if (feq) {
+        *feq = balancing;
+    }
+    if (f) {
+        *f = *ctx->last.f;
+    }
+}
+
+/* Those of chunk k, which begins with contact i, f [n]. */
+static void balance_chunk(const tribo_context *ctx, size_t k, size_t i, const double *v, const double *a, double *feq, double *f)
+{
+    const size_t n = tribo_chunk_size(ctx, i);
+    const struct contacts c = tribo_chunk_contacts(ctx, i);
+    if (feq) {
+        tribo_find_feq(ctx, i, n, a, feq + i);
+    }
+    if (!feq && reads_feq(ctx, k, i, n, v)) {
+        ctx->set.law->balance(&c, n, v + i, a + i, ctx->op->diagonal + i, f);
+    } else {
+        ctx->set.law->force(&c, n, v + i, feq ? feq + i : v + i, f);
+    }
+}
+
+/* The forces of a few contacts are kept. */
+static void balance_few(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    if (ctx->n == 1) {
+        balance_one(ctx, v, a, feq, f);
+    } else if (ctx->n) {
+        balance_chunk(ctx, 0, 0, v, a, feq, ctx->last.f);
+        tribo_copy(f, ctx->last.f, f ? ctx->n : 0);
+    }
+    tribo_store_all(ctx);
+    ctx->last.modes = MODES_IN_FORCES;
+    ctx->last.holds = ctx->set.law->holds;
+}
+
+/* Those of many would have to be written to memory and read again: what each contact did is written down while its force is at
+ * hand. */
+static void balance_many(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        double room[TRIBO_CHUNK], *force = f ? f + i : room;
+        const struct contacts c = tribo_chunk_contacts(ctx, i);
+        balance_chunk(ctx, k, i, v, a, feq, force);
+        tribo_find_slips(&c, tribo_chunk_size(ctx, i), force, ctx->set.law->holds, ctx->last.did.of + i);
+    }
+    ctx->last.did.all_stored = 0;
+    ctx->last.modes = MODES_WRITTEN;
+}
+
+int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
+{
+    const int status = check_motion(ctx, v, a);
+    if (status) {
+        return status;
+    }
+    (ctx->n <= TRIBO_CHUNK ? balance_few : balance_many)(ctx, v, a, feq, f);
+    ctx->last.residual = 0.0;
+    ctx->last.rank = 0;
+    ctx->last.linearized = 0;
+    ctx->count.skipped += ctx->op->islands;
+    return TRIBO_OK;
 }
 
 /* The same of the n contacts of chunk k, from i on, which do not all store it. */

@@ -26,6 +26,8 @@ struct chunk {
     double least, largest; /* limit */
     double widest;         /* width */
     double band;           /* no epsilon of a contact that is not open is larger; negative if all are open */
+    int even;              /* all have the same width and rate */
+    int alike;             /* and the same limit, above 0 */
 };
 
 static inline size_t tribo_chunks(size_t n)
@@ -126,11 +128,31 @@ static inline size_t tribo_chunk_size(const tribo_context *ctx, size_t i)
     return ctx->n - i < TRIBO_CHUNK ? ctx->n - i : TRIBO_CHUNK;
 }
 
-/* check.c */
-int tribo_all_finite(const double *x, size_t n);
+/* The contacts of the chunk that begins with i, as laws see them. */
+static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, size_t i)
+{
+    struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+    c.alike = ctx->follow.chunk[i / TRIBO_CHUNK].alike;
+    return c;
+}
+
+/* check.c: whether all numbers are finite, and none is larger than most, which is finite. Whatever they are, no floating-point
+ * exception is raised. */
+int tribo_all_within(const double *x, size_t n, double most);
+
+static inline int tribo_all_finite(const double *x, size_t n)
+{
+    return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
+}
 
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
-int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
+
+static inline int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
+{
+    return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
+}
+
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
@@ -185,6 +207,12 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a);
  * all were alone. */
 void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, int wanted);
 
+/* f_eq [n] of the contacts of the chunk that begins with i, as if all were alone; 0 for open ones. */
+void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
+
+/* The whole of tribo_balance, where no two contacts share a body and all limits are given; f_eq and f may be NULL. */
+int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
+
 /* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
 size_t tribo_next_near(const signed char *did, size_t *i, size_t end);
 
@@ -229,7 +257,7 @@ double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
 
 /* The law's derivatives for contacts i, i + 1, ..., of which c is a view. */
 void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
-                        const double *feq, struct tangent *d);
+                        const double *feq, const struct tangents *d);
 
 /* The near contacts of a problem hold, for now. */
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p);
@@ -241,7 +269,10 @@ size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
 /* The same for contacts in no group, from their forces with static limits; these become right. */
 void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
-/* queries.c: writes modes down, before limits change. */
+/* queries.c: the slip [n] of contacts with forces f [n]. */
+void tribo_find_slips(const struct contacts *c, size_t n, const double *f, double holds, signed char *slip);
+
+/* Writes modes down, before limits change. */
 void tribo_write_modes(tribo_context *ctx);
 
 /* The force of the contact at place k of a group as the solver takes it. */
@@ -264,6 +295,12 @@ int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct boun
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
 {
     return tribo_memory_problem(ctx->op, &ctx->memory, k);
+}
+
+/* Whether every contact can be looked at by itself, at the limit that is set. */
+static inline int tribo_all_alone(const tribo_context *ctx)
+{
+    return !ctx->op->groups && !ctx->planar && !ctx->set.breaking;
 }
 
 /* planar.c: contacts and clusters for an operator that op is to become, and their taking the place of the old ones. */

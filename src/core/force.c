@@ -26,15 +26,11 @@ static void skip_planar(const tribo_context *ctx, size_t i, size_t n, double *us
 /* The same for the n contacts from i on. */
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
-    if (ctx->set.law->uses_feq) {
-        double room[TRIBO_CHUNK];
-        const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
-        select_feq(n, v + i, band, feq + i, used);
-        if (ctx->planar) {
-            skip_planar(ctx, i, n, used);
-        }
-    } else {
-        memset(used, 0, n * sizeof *used);
+    double room[TRIBO_CHUNK];
+    const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
+    select_feq(n, v + i, band, feq + i, used);
+    if (ctx->planar) {
+        skip_planar(ctx, i, n, used);
     }
 }
 
@@ -45,16 +41,24 @@ TRIBO_SIMD static void cut_all(size_t n, double *x)
     }
 }
 
-static int check_force(const tribo_context *ctx, const double *v, const double *feq)
+/* The same as laws take it, [n]: what the caller has, if all of it is plain; otherwise in room. A law that uses none reads
+ * velocities. */
+static const double *legible_feq(const tribo_context *ctx, int plain, size_t i, size_t n, const double *v, const double *feq,
+                                 double *room)
 {
-    int status = tribo_need_epsilon(ctx);
-    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
-    if (status) {
-        return status;
+    if (!ctx->set.law->uses_feq) {
+        return v + i;
     }
-    if (!feq && ctx->n && ctx->set.law->uses_feq) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
+    if (plain) {
+        return feq + i;
     }
+    used_feq(ctx, i, n, v, feq, room);
+    cut_all(n, room);
+    return room;
+}
+
+static int check_used(const tribo_context *ctx, const double *v, const double *feq)
+{
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double used[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
@@ -65,49 +69,57 @@ static int check_force(const tribo_context *ctx, const double *v, const double *
             }
         }
     }
-    return ctx->planar && ctx->set.law->uses_feq ? tribo_planar_check_feq(ctx, v, feq) : TRIBO_OK;
+    return TRIBO_OK;
 }
 
-/* Derivatives, each or NULL, in every entry that is so many from the one before. */
-struct derivatives {
-    double *dv, *dfeq, *dlimit;
-    size_t stride;
+/* plain: f_eq is such that laws take it as it is, wherever that matters or not. */
+static int check_force(const tribo_context *ctx, const double *v, const double *feq, int *plain)
+{
+    int status = tribo_need_epsilon(ctx);
+    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
+    *plain = !ctx->set.law->uses_feq;
+    if (status || *plain) {
+        return status;
+    }
+    if (!feq && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
+    }
+    *plain = tribo_all_within(feq, ctx->n, TRIBO_FAR);
+    status = *plain ? TRIBO_OK : check_used(ctx, v, feq);
+    return status || !ctx->planar ? status : tribo_planar_check_feq(ctx, v, feq);
+}
+
+/* Each output may be NULL. */
+struct outputs {
+    double *f;
+    struct tangents d;
 };
 
-static void hand_out(size_t i, size_t n, const struct tangent *d, const struct derivatives *to)
+/* Where output x of contact i goes, if anywhere; otherwise where it does not matter. */
+static double *place_of(double *x, size_t i, double *elsewhere)
 {
-    for (size_t k = 0; to->dv && k < n; k++) {
-        to->dv[(i + k) * to->stride] = d[k].dv;
-    }
-    for (size_t k = 0; to->dfeq && k < n; k++) {
-        to->dfeq[(i + k) * to->stride] = d[k].dfeq;
-    }
-    for (size_t k = 0; to->dlimit && k < n; k++) {
-        to->dlimit[(i + k) * to->stride] = d[k].dlimit;
-    }
+    return x ? x + i : elsewhere;
 }
 
-/* f may be NULL. */
-static void evaluate(const tribo_context *ctx, const double *v, const double *feq, double *f, const struct derivatives *to)
+static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
 {
+    const struct tangents *d = &out->d;
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double used[TRIBO_CHUNK];
-        struct tangent d[TRIBO_CHUNK];
+        double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], ignored[3][TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
-        double limit[TRIBO_CHUNK];
-        struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-        used_feq(ctx, i, n, v, feq, used);
-        cut_all(n, used);
+        const double *used = legible_feq(ctx, plain, i, n, v, feq, room);
+        struct contacts c = tribo_chunk_contacts(ctx, i);
         if (ctx->set.breaking) {
             tribo_find_limits(ctx, i, n, v + i, used, limit);
             c.limit = c.bound = limit;
         }
-        if (f) {
-            ctx->set.law->force(&c, n, v + i, used, f + i);
+        if (out->f) {
+            ctx->set.law->force(&c, n, v + i, used, out->f + i);
         }
-        if (to->dv || to->dfeq || to->dlimit) {
-            tribo_law_tangents(ctx, &c, i, n, v + i, used, d);
-            hand_out(i, n, d, to);
+        if (d->dv || d->dfeq || d->dlimit) {
+            const struct tangents at = {place_of(d->dv, i, ignored[0]), place_of(d->dfeq, i, ignored[1]),
+                                        place_of(d->dlimit, i, ignored[2])};
+            tribo_law_tangents(ctx, &c, i, n, v + i, used, &at);
         }
     }
 }
@@ -117,14 +129,15 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check_force(ctx, v, feq);
+    int plain;
+    const int status = check_force(ctx, v, feq, &plain);
     if (status) {
         return status;
     }
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    evaluate(ctx, v, feq, f, &(struct derivatives){NULL, NULL, NULL, 1});
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {NULL, NULL, NULL}});
     return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -134,7 +147,8 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = check_force(ctx, v, feq);
+    int plain;
+    const int status = check_force(ctx, v, feq, &plain);
     if (status) {
         return status;
     }
@@ -143,15 +157,17 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
                           "derivatives of planar contact %zu are no diagonals: see tribo_force_tangent_planar",
                           ctx->planar->first[0]);
     }
-    evaluate(ctx, v, feq, f, &(struct derivatives){df_dv, df_dfeq, df_dlimit, 1});
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}});
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
-/* A scalar contact has nothing beside its diagonal. */
-static void clear(size_t n, double *block)
+/* block [n][2] of n numbers that begin it: a scalar contact has nothing beside its own derivative. */
+static void spread(size_t n, double *block)
 {
-    for (size_t k = 0; block && k < 2 * n; k++) {
-        block[k] = 0.0;
+    for (size_t i = n; block && i-- > 0;) {
+        const double own = block[i];
+        block[2 * i] = own;
+        block[2 * i + 1] = 0.0;
     }
 }
 
@@ -161,14 +177,15 @@ int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const 
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    int status = check_force(ctx, v, feq);
+    int plain;
+    int status = check_force(ctx, v, feq, &plain);
     if (status) {
         return status;
     }
-    clear(ctx->n, df_dv);
-    clear(ctx->n, df_dfeq);
-    clear(ctx->n, df_dlimit);
-    evaluate(ctx, v, feq, f, &(struct derivatives){df_dv, df_dfeq, df_dlimit, 2});
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}});
+    spread(ctx->n, df_dv);
+    spread(ctx->n, df_dfeq);
+    spread(ctx->n, df_dlimit);
     status = ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
     return status || !ctx->planar ? status : tribo_planar_blocks(ctx, v, feq, df_dv, df_dfeq, df_dlimit);
 }
@@ -190,7 +207,8 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
     if (!ctx->set.law->remembers) {
         return tribo_check_finite(ctx, "v", v, ctx->n);
     }
-    const int status = check_force(ctx, v, feq);
+    int ignored;
+    const int status = check_force(ctx, v, feq, &ignored);
     if (status) {
         return status;
     }

@@ -50,12 +50,12 @@ double tribo_planar_carried(const struct law *law, double speed, double *slope)
 {
     const double one = 1.0, two = 2.0, none = 0.0;
     const unsigned char moving = 0;
-    const struct contacts c = {&one, &one, &one, &two, &moving, 0, 0};
+    const struct contacts c = {&one, &one, &one, &two, &moving, 0, 0, 0};
     double f = -1.0;
     struct tangent d = {0.0, 0.0, 0.0};
     if (!law->uses_feq) {
         law->force(&c, 1, &speed, &none, &f);
-        law->tangent(&c, 1, &speed, &none, &d);
+        law->tangent(&c, 1, &speed, &none, &(struct tangents){&d.dv, &d.dfeq, &d.dlimit});
     }
     *slope = d.dv;
     return f;

@@ -46,6 +46,16 @@ static double largest_of(size_t n, const double *x)
     return largest;
 }
 
+/* Compared with the first, so that all are looked at. */
+static int even(size_t n, const double *x)
+{
+    int differ = 0;
+    for (size_t i = 1; i < n; i++) {
+        differ |= x[i] != x[0];
+    }
+    return !differ;
+}
+
 static void find_widths(tribo_context *ctx)
 {
     const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
@@ -53,6 +63,7 @@ static void find_widths(tribo_context *ctx)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
+        ctx->follow.chunk[k].even = even(n, ctx->set.width + i) && even(n, ctx->set.rate + i);
         ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
     }
 }
@@ -74,6 +85,9 @@ static void cut_far(tribo_context *ctx)
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
     }
+    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+        ctx->follow.chunk[k].alike = 0;
+    }
     c->bound = ctx->follow.cut_limit;
     *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
 }
@@ -92,13 +106,15 @@ void tribo_refresh_limits(tribo_context *ctx)
     const int follows = epsilon_follows(ctx);
     ctx->follow.largest = 0.0;
     ctx->follow.contacts =
-        (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows};
+        (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows, 0};
     if (ctx->set.breaking) {
         tribo_refresh_static(ctx);
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->follow.largest = greater(ctx->follow.largest, ctx->follow.chunk[k].largest);
-        ctx->follow.chunk[k].band = band_of(&ctx->follow.chunk[k], follows);
+        struct chunk *chunk = &ctx->follow.chunk[k];
+        ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
+        chunk->band = band_of(chunk, follows);
+        chunk->alike = !ctx->set.breaking && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
     }
     if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);

@@ -98,16 +98,16 @@ void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree)
 
 /* What a law says of a given limit becomes what it says of the caller's, and of v on which that limit depends. */
 void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
-                        const double *feq, struct tangent *d)
+                        const double *feq, const struct tangents *d)
 {
     ctx->set.law->tangent(c, n, v, feq, d);
     for (size_t k = 0; ctx->set.breaking && k < n; k++) {
         struct contacts one = tribo_contacts_from(c, k);
         struct tangent fixed;
         one.scales = 0;
-        ctx->set.law->tangent(&one, 1, v + k, feq + k, &fixed);
-        d[k].dv += product(fixed.dlimit, tribo_limit_rate(ctx, i + k, v[k]));
-        d[k].dlimit *= one.bound[0] > 0.0 ? quotient(one.bound[0], ctx->follow.cut_limit[i + k]) : 1.0;
+        ctx->set.law->tangent(&one, 1, v + k, feq + k, &(struct tangents){&fixed.dv, &fixed.dfeq, &fixed.dlimit});
+        d->dv[k] += product(fixed.dlimit, tribo_limit_rate(ctx, i + k, v[k]));
+        d->dlimit[k] *= one.bound[0] > 0.0 ? quotient(one.bound[0], ctx->follow.cut_limit[i + k]) : 1.0;
     }
 }
 
@@ -143,7 +143,7 @@ void tribo_refresh_static(tribo_context *ctx)
     }
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
     const double *now = ctx->follow.now;
-    *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales};
+    *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales, 0};
     for (size_t i = 0; i < ctx->n; i++) {
         struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
         chunk->largest = i % TRIBO_CHUNK ? greater(chunk->largest, now[i]) : now[i];

@@ -7,12 +7,23 @@ set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
 . tests/setup.sh
 
+case " $* " in *" --counts "*)
+    # Instructions instead of times, which repeat: see counts.sh. `--counts --refresh` writes the table anew.
+    case " $* " in *" --refresh "*) refresh=--refresh ;; *) refresh= ;; esac
+    setup gcc libc6-dev gfortran make cmake pkg-config libgsl-dev check valgrind
+    cmake -S . -B build/counts -DCMAKE_BUILD_TYPE=Release -DTRIBO_FORTRAN=ON -DTRIBO_BUILD_EXAMPLES=OFF
+    cmake --build build/counts --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench_counts
+    exec sh tests/bench/counts.sh build/counts/tests/bench/bench_counts tests/bench/counts.txt $refresh
+    ;;
+esac
+
 setup gcc libc6-dev make cmake pkg-config libgsl-dev check gnuplot-nox
 
 build=build/bench results=$PWD/build/bench/results
 echo "== Building in $build"
 cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_FORTRAN=OFF -DTRIBO_BUILD_EXAMPLES=OFF -DTRIBO_BENCH_PEERS=ON
-cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance bench_periodic bench_planar
+cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance bench_periodic bench_planar \
+    bench_kernels
 
 echo "== Running; tables and pictures go to $results"
 mkdir -p "$results/balance"
@@ -21,6 +32,7 @@ OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench --out "$result
 case " $* " in *" --quick "*) quick=--quick ;; *) quick= ;; esac
 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out "$results/balance" $quick > "$results/balance/tables.txt"
 $build/tests/bench/bench_planar > "$results/planar.txt"
+$build/tests/bench/bench_kernels $quick > "$results/kernels.txt"
 $build/tests/bench/bench_periodic --out "$results" > "$results/periodic.txt"
 
 echo "== Drawing"
@@ -32,4 +44,4 @@ for format in png svg; do
 done
 
 awk -f tests/bench/tables.awk "$results"/*.csv | tee "$results/tables.txt"
-cat "$results/balance/tables.txt" "$results/planar.txt" "$results/periodic.txt"
+cat "$results/balance/tables.txt" "$results/kernels.txt" "$results/planar.txt" "$results/periodic.txt"

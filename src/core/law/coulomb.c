@@ -4,14 +4,17 @@
 static inline double coulomb_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)epsilon, (void)slope, (void)moving;
-    return v != 0.0 ? sliding(v, limit) : clamp(feq, -limit, limit);
+    const double held = clamp(feq, -limit, limit);
+    return v != 0.0 ? sliding(v, limit) : held;
 }
 
 static inline struct tangent coulomb_tangent(double v, double feq, double limit, double epsilon, double slope,
                                              unsigned char moving, double follows)
 {
     (void)epsilon, (void)slope, (void)moving, (void)follows;
-    return v != 0.0 ? sliding_tangent(v) : held_tangent(feq, limit);
+    const int slides = v != 0.0, held = fabs(feq) < limit;
+    const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
+    return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};
 }
 
 TRIBO_LAW_LOOPS(coulomb)
@@ -24,5 +27,6 @@ const struct law tribo_law_coulomb = {
     .uses_feq = 1,
     .holds = 1.0,
     .force = coulomb_force_all,
+    .balance = coulomb_balance_all,
     .tangent = coulomb_tangent_all,
 };

@@ -4,14 +4,17 @@
 static inline double karnopp_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)slope, (void)moving;
-    return fabs(v) > epsilon ? sliding(v, limit) : clamp(feq, -limit, limit);
+    const double held = clamp(feq, -limit, limit);
+    return fabs(v) > epsilon ? sliding(v, limit) : held;
 }
 
 static inline struct tangent karnopp_tangent(double v, double feq, double limit, double epsilon, double slope,
                                              unsigned char moving, double follows)
 {
     (void)slope, (void)moving, (void)follows;
-    return fabs(v) > epsilon ? sliding_tangent(v) : held_tangent(feq, limit);
+    const int slides = fabs(v) > epsilon, held = fabs(feq) < limit;
+    const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
+    return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};
 }
 
 TRIBO_LAW_LOOPS(karnopp)
@@ -24,5 +27,6 @@ const struct law tribo_law_karnopp = {
     .sticks_in_band = 1,
     .holds = 1.0,
     .force = karnopp_force_all,
+    .balance = karnopp_balance_all,
     .tangent = karnopp_tangent_all,
 };

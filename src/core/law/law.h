@@ -23,6 +23,7 @@ struct contacts {
     const unsigned char *moving; /* reversal memory */
     int follows;
     int scales; /* epsilon goes with the caller's limit, also where it is in width (static limits) */
+    int alike;  /* limit, bound, width and rate of the first are those of all */
 };
 
 /* follows is a constant. */
@@ -44,7 +45,8 @@ static inline double tribo_rate(double epsilon)
 
 static inline struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
 {
-    return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i, c->moving + i, c->follows, c->scales};
+    return (struct contacts){c->limit + i,  c->bound + i, c->width + i, c->rate + i,
+                             c->moving + i, c->follows,   c->scales,    c->alike};
 }
 
 /* epsilon and slope of contact i, where follows is no constant: factors are chosen, not products, which might overflow where they
@@ -69,6 +71,11 @@ struct tangent {
     double dv, dfeq, dlimit;
 };
 
+/* The same of many contacts. */
+struct tangents {
+    double *dv, *dfeq, *dlimit;
+};
+
 struct law {
     int id;
     const char *name, *reference;
@@ -77,9 +84,12 @@ struct law {
     int relaxes;        /* inside the band f = clamp(f_eq) - slope v, otherwise clamp(f_eq) */
     int remembers;      /* uses the reversal memory, and must be told of accepted steps */
     double holds;       /* a contact counts as stuck while |f| is less than this part of its limit */
-    /* f_eq is finite, also where it does not matter, and TRIBO_FAR at most; v is any finite number */
+    /* f_eq is finite, also where it does not matter, and TRIBO_FAR at most; v is any finite number. A law that does not use f_eq
+     * gets numbers all the same. */
     void (*force)(const struct contacts *c, size_t n, const double *v, const double *feq, double *f);
-    void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, struct tangent *d);
+    /* the same with the f_eq of contacts that share no body: a and R_ii are finite, and R_ii above 0 */
+    void (*balance)(const struct contacts *c, size_t n, const double *v, const double *a, const double *r, double *f);
+    void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d);
 };
 
 extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law_smooth, tribo_law_karnopp, tribo_law_quinn,
@@ -87,9 +97,22 @@ extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law
 
 const struct law *tribo_law(int id); /* NULL if there is none */
 
+/* f_eq of a contact that shares no body. */
+static inline double tribo_alone(double a, double r)
+{
+    return quotient(-a, r);
+}
+
 static inline double sign(double x)
 {
-    return (double)((x > 0.0) - (x < 0.0));
+    return x != 0.0 ? copysign(1.0, x) : 0.0;
+}
+
+/* v where |v| <= epsilon, and elsewhere what makes no product overflow: laws reckon with it for all contacts before they
+ * choose. */
+static inline double inside_band(double v, double epsilon)
+{
+    return clamp(v, -epsilon, epsilon);
 }
 
 /* -limit sgn v, for v != 0. */
@@ -98,43 +121,74 @@ static inline double sliding(double v, double limit)
     return copysign(limit, -v);
 }
 
-/* How these forces change: of a contact that slides, and of one that carries clamp(feq, -limit, limit). */
-static inline struct tangent sliding_tangent(double v)
+/* How the force follows the limit where a contact slides, and where it carries clamp(feq, -limit, limit). These and the laws
+ * choose between numbers that are there already, which is what makes loops of them fast. */
+static inline double sliding_rate(double v)
 {
-    return (struct tangent){0.0, 0.0, -sign(v)};
+    return copysign(1.0, -v);
 }
 
-static inline struct tangent held_tangent(double feq, double limit)
+static inline double held_rate(double feq, int held)
 {
-    const int held = fabs(feq) < limit;
-    return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
+    return held ? 0.0 : sign(feq);
 }
 
-/* Defines <name>_force_all and <name>_tangent_all from the law's functions of one contact, <name>_force and <name>_tangent. */
-#define TRIBO_LAW_LOOP(name, follows)                                                                                            \
+/* Defines <name>_force_all, <name>_balance_all and <name>_tangent_all from the law's functions of one contact, <name>_force and
+ * <name>_tangent. */
+#define TRIBO_FORCE_EACH(name, limit, epsilon, slope)                                                                            \
     for (size_t i = 0; i < n; i++) {                                                                                             \
-        f[i] = name##_force(v[i], feq[i], limit[i], tribo_epsilon(follows, width[i], bound[i]),                                  \
-                            tribo_slope(follows, rate[i], bound[i]), moving[i]);                                                 \
+        f[i] = name##_force(v[i], feq[i], limit, epsilon, slope, moving[i]);                                                     \
+    }
+
+/* In one loop, since divisions take long and the rest is done meanwhile. */
+#define TRIBO_BALANCE_EACH(name, limit, epsilon, slope)                                                                          \
+    for (size_t i = 0; i < n; i++) {                                                                                             \
+        f[i] = name##_force(v[i], tribo_alone(a[i], r[i]), limit, epsilon, slope, moving[i]);                                    \
+    }
+
+#define TRIBO_TANGENT_EACH(name, limit, epsilon, slope)                                                                          \
+    for (size_t i = 0; i < n; i++) {                                                                                             \
+        const struct tangent d = name##_tangent(v[i], feq[i], limit, epsilon, slope, moving[i], scales);                         \
+        dv[i] = d.dv;                                                                                                            \
+        dfeq[i] = d.dfeq;                                                                                                        \
+        dlimit[i] = d.dlimit;                                                                                                    \
+    }
+
+/* What is the same for all contacts is read once, and whether epsilon follows the limit is asked once. */
+#define TRIBO_LAW_LOOP(each, name)                                                                                               \
+    const double *limit = c->limit, *bound = c->bound, *width = c->width, *rate = c->rate;                                       \
+    const unsigned char *moving = c->moving;                                                                                     \
+    if (c->alike) {                                                                                                              \
+        const double one = *limit, epsilon = tribo_epsilon_of(c, 0), slope = tribo_slope_of(c, 0);                               \
+        each(name, one, epsilon, slope)                                                                                          \
+    } else if (c->follows) {                                                                                                     \
+        each(name, limit[i], tribo_epsilon(1, width[i], bound[i]), tribo_slope(1, rate[i], bound[i]))                            \
+    } else {                                                                                                                     \
+        each(name, limit[i], tribo_epsilon(0, width[i], bound[i]), tribo_slope(0, rate[i], bound[i]))                            \
     }
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
     TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
                                             const double *restrict feq, double *restrict f)                                      \
     {                                                                                                                            \
-        const double *limit = c->limit, *bound = c->bound, *width = c->width, *rate = c->rate;                                   \
-        const unsigned char *moving = c->moving;                                                                                 \
-        if (c->follows) {                                                                                                        \
-            TRIBO_LAW_LOOP(name, 1)                                                                                              \
-        } else {                                                                                                                 \
-            TRIBO_LAW_LOOP(name, 0)                                                                                              \
-        }                                                                                                                        \
+        TRIBO_LAW_LOOP(TRIBO_FORCE_EACH, name);                                                                                  \
     }                                                                                                                            \
-    static void name##_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, struct tangent *d)    \
+    TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n, const double *restrict v,                      \
+                                              const double *restrict a, const double *restrict r, double *restrict f)            \
     {                                                                                                                            \
-        for (size_t i = 0; i < n; i++) {                                                                                         \
-            d[i] = name##_tangent(v[i], feq[i], c->limit[i], tribo_epsilon_of(c, i), tribo_slope_of(c, i), c->moving[i],         \
-                                  c->scales);                                                                                    \
-        }                                                                                                                        \
+        TRIBO_LAW_LOOP(TRIBO_BALANCE_EACH, name);                                                                                \
+    }                                                                                                                            \
+    TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n, const double *restrict v,                       \
+                                             const double *restrict feq, double *restrict dv, double *restrict dfeq,             \
+                                             double *restrict dlimit)                                                            \
+    {                                                                                                                            \
+        const double scales = c->scales;                                                                                         \
+        TRIBO_LAW_LOOP(TRIBO_TANGENT_EACH, name);                                                                                \
+    }                                                                                                                            \
+    static void name##_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq,                       \
+                                   const struct tangents *d)                                                                     \
+    {                                                                                                                            \
+        name##_tangent_to(c, n, v, feq, d->dv, d->dfeq, d->dlimit);                                                              \
     }
 
 #endif

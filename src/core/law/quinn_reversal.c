@@ -1,7 +1,7 @@
 /* Quinn's law, second order also where a contact is driven through v = 0 without stick: there, for r = |f_eq|/N > 1, the
  * law's xi is scaled by g(r), which makes the time to cross the band exact for constant load. It holds for contacts
  * that came in sliding (moving); contacts that break away from stick keep Quinn's form, which is better for them. */
-#include "quinn.h"
+#include "law.h"
 
 /* g(r) = r - (r^2-1)/2 ln((r+1)/(r-1)) and g'(r) = 2 - r ln((r+1)/(r-1)), for r >= 1. */
 static void crossing(double r, double *g, double *dg)
@@ -27,38 +27,62 @@ static void crossing(double r, double *g, double *dg)
     }
 }
 
-static int reverses(double v, double feq, double limit, double epsilon, unsigned char moving)
+static int reverses(const struct contacts *c, size_t i, double v, double feq)
 {
-    return moving && fabs(v) <= epsilon && fabs(feq) > limit && limit > 0.0;
+    return c->moving[i] && fabs(feq) > c->limit[i] && c->limit[i] > 0.0 && fabs(v) <= tribo_epsilon_of(c, i);
 }
 
-static double reversal_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+/* The force of contact i where it is not Quinn's. */
+static void cross(const struct contacts *c, size_t i, double v, double feq, double *f)
 {
-    if (!reverses(v, feq, limit, epsilon, moving)) {
-        return quinn_force(v, feq, limit, epsilon, slope, moving);
+    if (reverses(c, i, v, feq)) {
+        const double limit = c->limit[i];
+        double g, dg;
+        crossing(quotient(fabs(feq), limit), &g, &dg);
+        *f = clamp(sign(feq) * g * limit - tribo_slope_of(c, i) * v, -limit, limit);
     }
-    double g, dg;
-    crossing(quotient(fabs(feq), limit), &g, &dg);
-    return clamp(sign(feq) * g * limit - slope * v, -limit, limit);
 }
 
-static struct tangent reversal_tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
-                                       double follows)
+static void reversal_force_all(const struct contacts *c, size_t n, const double *v, const double *feq, double *f)
 {
-    if (!reverses(v, feq, limit, epsilon, moving)) {
-        return quinn_tangent(v, feq, limit, epsilon, slope, moving, follows);
+    tribo_law_quinn.force(c, n, v, feq, f);
+    for (size_t i = 0; i < n; i++) {
+        cross(c, i, v[i], feq[i], f + i);
     }
+}
+
+static void reversal_balance_all(const struct contacts *c, size_t n, const double *v, const double *a, const double *r, double *f)
+{
+    tribo_law_quinn.balance(c, n, v, a, r, f);
+    for (size_t i = 0; i < n; i++) {
+        if (c->moving[i]) {
+            cross(c, i, v[i], tribo_alone(a[i], r[i]), f + i);
+        }
+    }
+}
+
+static struct tangent reversal_tangent(const struct contacts *c, size_t i, double v, double feq)
+{
+    const double limit = c->limit[i], slope = tribo_slope_of(c, i), r = quotient(fabs(feq), limit), follows = c->scales;
     double g, dg;
-    const double r = quotient(fabs(feq), limit);
     crossing(r, &g, &dg);
-    const double x = sign(feq) * g * limit - slope * v;
-    if (fabs(x) > limit) {
-        return (struct tangent){0.0, 0.0, sign(x)};
-    }
-    return (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * 2.0 * quotient(v, epsilon)};
+    const double x = sign(feq) * g * limit - slope * v, turned = 2.0 * quotient(v, tribo_epsilon_of(c, i));
+    return fabs(x) > limit ? (struct tangent){0.0, 0.0, sign(x)}
+                           : (struct tangent){-slope, dg, sign(feq) * (g - r * dg) - (1.0 - follows) * turned};
 }
 
-TRIBO_LAW_LOOPS(reversal)
+static void reversal_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d)
+{
+    tribo_law_quinn.tangent(c, n, v, feq, d);
+    for (size_t i = 0; i < n; i++) {
+        if (reverses(c, i, v[i], feq[i])) {
+            const struct tangent one = reversal_tangent(c, i, v[i], feq[i]);
+            d->dv[i] = one.dv;
+            d->dfeq[i] = one.dfeq;
+            d->dlimit[i] = one.dlimit;
+        }
+    }
+}
 
 const struct law tribo_law_quinn_reversal = {
     .id = 5,
@@ -70,5 +94,6 @@ const struct law tribo_law_quinn_reversal = {
     .remembers = 1,
     .holds = 1.0,
     .force = reversal_force_all,
+    .balance = reversal_balance_all,
     .tangent = reversal_tangent_all,
 };

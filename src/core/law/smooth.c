@@ -25,5 +25,6 @@ const struct law tribo_law_smooth = {
     .sticks_in_band = 1,
     .holds = 0.7615941559557649, /* tanh(1), at |v| = epsilon */
     .force = smooth_force_all,
+    .balance = smooth_balance_all,
     .tangent = smooth_tangent_all,
 };

@@ -4,19 +4,17 @@
 static inline double limited_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
 {
     (void)feq, (void)moving;
-    const int inside = fabs(v) <= epsilon;
-    const double f = clamp(-0.5 * slope * (inside ? v : 0.0), -limit, limit);
-    return inside ? f : sliding(v, limit);
+    const double f = clamp(-0.5 * slope * inside_band(v, epsilon), -limit, limit);
+    return fabs(v) > epsilon ? sliding(v, limit) : f;
 }
 
 static inline struct tangent limited_tangent(double v, double feq, double limit, double epsilon, double slope,
                                              unsigned char moving, double follows)
 {
     (void)feq, (void)moving, (void)limit;
-    if (fabs(v) > epsilon) {
-        return sliding_tangent(v);
-    }
-    return (struct tangent){-0.5 * slope, 0.0, -(1.0 - follows) * quotient(v, epsilon)};
+    const int slides = fabs(v) > epsilon;
+    const double rate = -(1.0 - follows) * quotient(inside_band(v, epsilon), epsilon);
+    return (struct tangent){slides ? 0.0 : -0.5 * slope, 0.0, slides ? sliding_rate(v) : rate};
 }
 
 TRIBO_LAW_LOOPS(limited)
@@ -29,5 +27,6 @@ const struct law tribo_law_velocity_limited = {
     .sticks_in_band = 1,
     .holds = 1.0,
     .force = limited_force_all,
+    .balance = limited_balance_all,
     .tangent = limited_tangent_all,
 };

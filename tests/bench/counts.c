@@ -1,0 +1,229 @@
+/* Fixed amounts of work, whose instructions callgrind counts: see run.sh --counts. bench_counts --list names the scenes;
+ * bench_counts SCENE runs one, and prints how many units of what its work is. Nothing but counted() is to be counted. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../../examples/common/output.h"
+#include "kernel_scene.h"
+#include "tribo/tribo_gsl.h"
+
+enum { WARM = 100 };
+
+/* What is counted, so many times. */
+struct work {
+    void (*run)(void *data);
+    void *data;
+    size_t times;
+};
+
+/* A function that stays one, under this name: the compiler cannot see which job it runs. */
+#if defined(__GNUC__)
+__attribute__((noinline))
+#endif
+void counted(const struct work *w);
+
+void counted(const struct work *w)
+{
+    for (size_t k = 0; k < w->times; k++) {
+        w->run(w->data);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------- contacts */
+
+static void run_kernel(void *data)
+{
+    kernel_call(data);
+}
+
+static double count_kernel(enum kernel kernel, size_t n, int alike)
+{
+    struct kernel_scene s;
+    const struct work w = {run_kernel, &s, n == 1 ? 10000 : 100};
+    kernel_scene_create(&s, kernel, n, alike);
+    for (int k = 0; k < WARM; k++) {
+        kernel_call(&s);
+    }
+    counted(&w);
+    kernel_scene_destroy(&s);
+    return (double)(w.times * n);
+}
+
+#if defined(HAVE_FORTRAN)
+/* As a Fortran 77 program calls them. */
+void trbnew_(const int *n, int *ih, int *ierr);
+void trblim_(const int *ih, const int *n, const double *limit, int *ierr);
+void trbopd_(const int *ih, const int *n, const double *r, int *ierr);
+void trbbal_(const int *ih, const int *n, const double *v, const double *a, double *feq, double *f, int *ierr);
+void trbdel_(const int *ih, int *ierr);
+
+static void run_fixed_form(void *data)
+{
+    static const int one = 1;
+    static const double v = 1e-7, a = 0.5;
+    double feq, f;
+    int status;
+    trbbal_(data, &one, &v, &a, &feq, &f, &status);
+    need(status, NULL);
+}
+
+static double count_fixed_form(void)
+{
+    static const double unit = 1.0;
+    const int one = 1;
+    int handle, status[3];
+    trbnew_(&one, &handle, status);
+    trblim_(&handle, &one, &unit, status + 1);
+    trbopd_(&handle, &one, &unit, status + 2);
+    need(status[0] | status[1] | status[2], NULL);
+    const struct work w = {run_fixed_form, &handle, 10000};
+    run_fixed_form(&handle);
+    counted(&w);
+    trbdel_(&handle, status);
+    return (double)w.times;
+}
+#endif
+
+/* -------------------------------------------------------------------------------------------------------------- drivers */
+
+struct motion {
+    tribo_driver *drv;
+    double t, stretch, *y;
+};
+
+static void run_motion(void *data)
+{
+    struct motion *m = data;
+    need(tribo_driver_advance(m->drv, &m->t, m->t + m->stretch, m->y), tribo_driver_message(m->drv));
+}
+
+static double progress(const struct motion *m, int which)
+{
+    size_t value;
+    need(tribo_driver_count(m->drv, which, &value), NULL);
+    return (double)value;
+}
+
+/* Counts 200 steps, or the events of a time, after as much that is not counted. */
+static double count_motion(tribo_system *sys, size_t n, const char *method, double dt, double stretch)
+{
+    struct motion m = {.stretch = stretch, .y = need_memory(2 * n + 1, sizeof *m.y)};
+    const int which = dt > 0.0 ? TRIBO_COUNT_STEPS : TRIBO_COUNT_EVENTS;
+    const struct work w = {run_motion, &m, 1};
+    memset(m.y, 0, (2 * n + 1) * sizeof *m.y);
+    need(tribo_driver_create(&m.drv, sys, method, dt > 0.0 ? dt : 0.01, 1e-11, 1e-11), NULL);
+    run_motion(&m);
+    const double before = progress(&m, which);
+    counted(&w);
+    const double units = progress(&m, which) - before;
+    tribo_driver_destroy(m.drv);
+    tribo_system_destroy(sys);
+    free(m.y);
+    return units;
+}
+
+static double count_chain(const char *method, size_t n)
+{
+    tribo_system *sys;
+    const double dt = n > 100 ? 3e-4 : 1e-2;
+    need(tribo_system_chain(&sys, n, 1.0, 0.25, 0.5), NULL);
+    need(tribo_set_epsilon_step(tribo_system_context(sys), dt, 0.4), NULL);
+    return count_motion(sys, n, method, dt, 200.0 * dt);
+}
+
+static double count_oscillator(double alpha, double omega)
+{
+    tribo_system *sys;
+    need(tribo_system_oscillator(&sys, 1.0, alpha, omega), NULL);
+    return count_motion(sys, 1, "exact", 0.0, 200.0);
+}
+
+static double count_belt(void)
+{
+    tribo_system *sys;
+    need(tribo_system_belt(&sys, 2.0, 0.5, 0.25, 1.0, 0.5), NULL);
+    return count_motion(sys, 2, "exact", 0.0, 60.0);
+}
+
+/* --------------------------------------------------------------------------------------------------------------- scenes */
+
+enum subject { KERNEL, FIXED_FORM, CHAIN, OSCILLATOR, BELT };
+
+static const struct scene {
+    const char *name, *unit;
+    enum subject subject;
+    enum kernel kernel;
+    size_t n;
+    int alike;
+    const char *method;
+    double alpha, omega;
+} scenes[] = {
+    {"force-alike", "contact", KERNEL, FORCE, 1000, 1, NULL, 0.0, 0.0},
+    {"force", "contact", KERNEL, FORCE, 1000, 0, NULL, 0.0, 0.0},
+    {"force-tangent-alike", "contact", KERNEL, FORCE_TANGENT, 1000, 1, NULL, 0.0, 0.0},
+    {"force-tangent", "contact", KERNEL, FORCE_TANGENT, 1000, 0, NULL, 0.0, 0.0},
+    {"balance-alike", "contact", KERNEL, BALANCE, 1000, 1, NULL, 0.0, 0.0},
+    {"balance", "contact", KERNEL, BALANCE, 1000, 0, NULL, 0.0, 0.0},
+    {"balance-stuck", "contact", KERNEL, BALANCE_STUCK, 1000, 0, NULL, 0.0, 0.0},
+    {"set-limit", "contact", KERNEL, SET_LIMIT, 1000, 0, NULL, 0.0, 0.0},
+    {"force-one", "call", KERNEL, FORCE, 1, 0, NULL, 0.0, 0.0},
+    {"balance-one", "call", KERNEL, BALANCE, 1, 0, NULL, 0.0, 0.0},
+    {"set-limit-one", "call", KERNEL, SET_LIMIT, 1, 0, NULL, 0.0, 0.0},
+#if defined(HAVE_FORTRAN)
+    {"trbbal-one", "call", FIXED_FORM, FORCE, 1, 0, NULL, 0.0, 0.0},
+#endif
+    {"central-32", "step", CHAIN, FORCE, 32, 0, "central/fixed", 0.0, 0.0},
+    {"central-1000", "step", CHAIN, FORCE, 1000, 0, "central/fixed", 0.0, 0.0},
+    {"rk4-32", "step", CHAIN, FORCE, 32, 0, "rk4/fixed", 0.0, 0.0},
+    {"rk4-1000", "step", CHAIN, FORCE, 1000, 0, "rk4/fixed", 0.0, 0.0},
+    {"moreau-32", "step", CHAIN, FORCE, 32, 0, "moreau/fixed", 0.0, 0.0},
+    {"exact-7a", "event", OSCILLATOR, FORCE, 1, 0, NULL, 1.5, 0.5},
+    {"exact-7b", "event", OSCILLATOR, FORCE, 1, 0, NULL, 2.0, 2.0},
+    {"exact-belt", "event", BELT, FORCE, 2, 0, NULL, 0.0, 0.0},
+};
+enum { SCENES = sizeof scenes / sizeof *scenes };
+
+static double run_scene(const struct scene *s)
+{
+    switch (s->subject) {
+    case KERNEL:
+        return count_kernel(s->kernel, s->n, s->alike);
+    case CHAIN:
+        return count_chain(s->method, s->n);
+    case OSCILLATOR:
+        return count_oscillator(s->alpha, s->omega);
+    case BELT:
+        return count_belt();
+    default:
+        break;
+    }
+#if defined(HAVE_FORTRAN)
+    return count_fixed_form();
+#else
+    return 0.0;
+#endif
+}
+
+int main(int count, char **argument)
+{
+    const char *name = count == 2 ? argument[1] : "";
+    const int list = strcmp(name, "--list") == 0, all = strcmp(name, "--smoke") == 0;
+    int found = list;
+    program = "bench_counts";
+    for (size_t k = 0; k < SCENES; k++) {
+        if (list) {
+            printf("%s\n", scenes[k].name);
+        } else if (all || strcmp(name, scenes[k].name) == 0) {
+            const double units = run_scene(&scenes[k]);
+            need(units > 0.0 ? 0 : TRIBO_ERR_STATE, scenes[k].name);
+            printf("%.0f %s\n", units, scenes[k].unit);
+            found = 1;
+        }
+    }
+    if (!found) {
+        fprintf(stderr, "usage: bench_counts --list | --smoke | SCENE\n");
+    }
+    return found ? EXIT_SUCCESS : EXIT_FAILURE;
+}

@@ -1,0 +1,24 @@
+/* Contacts that share no body, and the calls whose cost a contact is looked at. */
+#ifndef TRIBO_BENCH_KERNEL_SCENE_H
+#define TRIBO_BENCH_KERNEL_SCENE_H
+
+#include "tribo/tribo.h"
+
+enum kernel { FORCE, FORCE_TANGENT, BALANCE, BALANCE_STUCK, SET_LIMIT, KERNELS };
+extern const char *const kernel_name[KERNELS];
+
+struct kernel_scene {
+    enum kernel kernel;
+    size_t n;
+    tribo_context *ctx;
+    double *limit, *v, *a; /* [n]; a is f_eq where that is given */
+    double *out[4];
+};
+
+/* alike: one limit and one epsilon for all. Velocities are within two epsilons, or of BALANCE_STUCK within one. */
+void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, int alike);
+void kernel_scene_destroy(struct kernel_scene *s);
+
+void kernel_call(struct kernel_scene *s);
+
+#endif

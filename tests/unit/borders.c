@@ -1,0 +1,191 @@
+/* Calls look at contacts in chunks of 128, and at vectors of them: what they say of a contact does not depend on its place, nor
+ * on how many there are, nor on whether all have the same limit and epsilon. */
+#include <stdio.h>
+
+#include "support.h"
+
+#define MOST 300
+
+static const size_t counts[] = {1, 2, 7, 8, 9, 127, 128, 129, 255, 256, 257, MOST};
+static const size_t places[] = {0, 1, 3, 7, 8, 9, 126, 127, 128, 129, 255, 256, 299};
+
+/* -------------------------------------------------------------------------------------------------------------- errors */
+
+struct arrays {
+    double v[MOST], a[MOST], limit[MOST];
+    struct {
+        double f[MOST], feq[MOST], d[3][MOST];
+    } out;
+};
+
+static tribo_context *create(size_t n)
+{
+    tribo_context *c;
+    double unit[MOST];
+    for (size_t i = 0; i < n; i++) {
+        unit[i] = 1.0;
+    }
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_limit(c, unit));
+    assert_ok(tribo_set_epsilon(c, unit));
+    assert_ok(tribo_set_operator_diagonal(c, unit));
+    return c;
+}
+
+/* x[i] = value makes the call fail with this status, and a message that names it. */
+static void expect(tribo_context *c, int got, int want, const char *name, size_t i, double value)
+{
+    char text[80];
+    snprintf(text, sizeof text, "%s[%zu] = %g is ", name, i, value);
+    require(got == want, "%s: %d, not %d", text, got, want);
+    assert_says(tribo_message(c), text);
+}
+
+static void expect_all(tribo_context *c, struct arrays *s, size_t i, double value)
+{
+    const double v = s->v[i], a = s->a[i];
+    const int status = TRIBO_ERR_NOT_FINITE;
+    stain(&s->out, sizeof s->out);
+    s->v[i] = value;
+    expect(c, tribo_force(c, s->v, s->a, s->out.f), status, "v", i, value);
+    expect(c, tribo_force_tangent(c, s->v, s->a, s->out.f, s->out.d[0], s->out.d[1], s->out.d[2]), status, "v", i, value);
+    expect(c, tribo_balance(c, s->v, s->a, s->out.feq, s->out.f), status, "v", i, value);
+    s->v[i] = v;
+    s->a[i] = value;
+    expect(c, tribo_force(c, s->v, s->a, s->out.f), status, "feq", i, value);
+    expect(c, tribo_force_tangent(c, s->v, s->a, s->out.f, s->out.d[0], s->out.d[1], s->out.d[2]), status, "feq", i, value);
+    expect(c, tribo_balance(c, s->v, s->a, s->out.feq, s->out.f), status, "a", i, value);
+    s->a[i] = a;
+    ck_assert(stained(&s->out, sizeof s->out));
+}
+
+static void expect_limit(tribo_context *c, struct arrays *s, size_t n, size_t i, double value, int status)
+{
+    double kept[MOST];
+    s->limit[i] = value;
+    expect(c, tribo_set_limit(c, s->limit), status, "limit", i, value);
+    s->limit[i] = 1.0;
+    assert_ok(tribo_get_limit(c, kept));
+    for (size_t k = 0; k < n; k++) {
+        assert_exact(kept[k], 1.0);
+    }
+}
+
+TEST(culprits)
+{
+    const size_t n = counts[_i];
+    tribo_context *c = create(n);
+    static struct arrays s;
+    for (size_t i = 0; i < n; i++) {
+        s.v[i] = 0.5 - (double)(i % 2);
+        s.a[i] = 0.25;
+        s.limit[i] = 1.0;
+    }
+    for (size_t k = 0; k < COUNT(places) && places[k] < n; k++) {
+        const double values[] = {NAN, INFINITY, -INFINITY};
+        for (size_t m = 0; m < COUNT(values); m++) {
+            expect_all(c, &s, places[k], values[m]);
+            expect_limit(c, &s, n, places[k], values[m], TRIBO_ERR_NOT_FINITE);
+        }
+        expect_limit(c, &s, n, places[k], -DBL_MIN, TRIBO_ERR_NEGATIVE);
+        s.limit[places[k]] = -0.0;
+        assert_ok(tribo_set_limit(c, s.limit));
+        s.limit[places[k]] = 1.0;
+        assert_ok(tribo_set_limit(c, s.limit));
+    }
+    tribo_destroy(c);
+}
+
+/* Where f_eq does not matter it may be anything, and beyond 1e300 it is cut, also beside others that are plain. */
+TEST(feq_that_does_not_matter)
+{
+    const size_t n = counts[_i];
+    tribo_context *c = create(n);
+    double v[MOST], feq[MOST], want[MOST], got[MOST];
+    for (size_t i = 0; i < n; i++) {
+        v[i] = i % 3 ? 0.25 : -4.0;
+        feq[i] = 0.125 * (double)(i % 5);
+    }
+    assert_ok(tribo_force(c, v, feq, want));
+    for (size_t k = 0; k < COUNT(places) && places[k] < n; k++) {
+        const size_t i = places[k];
+        const double before = feq[i];
+        feq[i] = i % 3 ? before : k % 2 ? NAN : -INFINITY;
+        assert_ok(tribo_force(c, v, feq, got));
+        assert_all_exact(got, want, n);
+        feq[i] = i % 3 ? 1.7e308 : before;
+        assert_ok(tribo_force(c, v, feq, got));
+        assert_exact(got[i], i % 3 ? 0.5 : 1.0);
+        feq[i] = before;
+    }
+    tribo_destroy(c);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- places */
+
+struct scene {
+    double r[MOST], limit[MOST], epsilon[MOST], v[MOST], a[MOST];
+};
+
+/* Chunks in which all contacts have one limit and one epsilon, chunks in which one has not, and others. */
+static struct scene draw(struct random *g, int kind)
+{
+    struct scene s;
+    for (size_t i = 0; i < MOST; i++) {
+        const int alike = kind == 0 || (kind == 1 && i != 130 && i != MOST - 1) || (kind == 2 && i < 128);
+        s.r[i] = i % 50 ? log_uniform(g, 2.0) : 0.0;
+        s.limit[i] = alike ? 1.25 : below(g, 9) ? log_uniform(g, 1.0) : 0.0;
+        s.epsilon[i] = alike ? 0.75 : log_uniform(g, 1.0);
+        s.v[i] = below(g, 4) ? uniform(g, -2.0, 2.0) * s.epsilon[i] : below(g, 2) ? s.epsilon[i] : 0.0;
+        s.a[i] = uniform(g, -2.0, 2.0) * s.limit[i] * (i % 7 ? 1.0 : s.r[i]);
+    }
+    return s;
+}
+
+struct results {
+    double f[MOST], df[4][MOST], feq[MOST], balanced[MOST], only[MOST];
+    signed char slip[MOST];
+};
+
+static void call(int law, int follows, const struct scene *s, size_t i, size_t n, struct results *r)
+{
+    tribo_context *c;
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_law(c, law));
+    assert_ok(tribo_set_limit(c, s->limit + i));
+    assert_ok(tribo_set_operator_diagonal(c, s->r + i));
+    assert_ok(follows ? tribo_set_epsilon_step(c, 0.1, 0.5) : tribo_set_epsilon(c, s->epsilon + i));
+    assert_ok(tribo_accept(c, s->v + i, s->a + i));
+    assert_ok(tribo_force(c, s->v + i, s->a + i, r->f + i));
+    assert_ok(tribo_force_tangent(c, s->v + i, s->a + i, r->df[3] + i, r->df[0] + i, r->df[1] + i, r->df[2] + i));
+    assert_ok(tribo_balance(c, s->v + i, s->a + i, NULL, r->only + i));
+    assert_ok(tribo_balance(c, s->v + i, s->a + i, r->feq + i, r->balanced + i));
+    assert_ok(tribo_get_slip(c, r->slip + i));
+    tribo_destroy(c);
+}
+
+TEST(as_alone)
+{
+    static struct results many, each;
+    struct random g = random_of(_i);
+    const struct scene s = draw(&g, _i % 4);
+    for (int law = 0; law < tribo_law_count(); law++) {
+        for (int follows = 0; follows < 2; follows++) {
+            call(law, follows, &s, 0, MOST, &many);
+            for (size_t i = 0; i < MOST; i++) {
+                call(law, follows, &s, i, 1, &each);
+            }
+            assert_all_exact(many.f, each.f, MOST);
+            assert_all_exact(many.df[3], many.f, MOST);
+            for (int k = 0; k < 4; k++) {
+                assert_all_exact(many.df[k], each.df[k], MOST);
+            }
+            assert_all_exact(many.feq, each.feq, MOST);
+            assert_all_exact(many.balanced, each.balanced, MOST);
+            assert_all_exact(many.only, each.balanced, MOST);
+            ck_assert_mem_eq(many.slip, each.slip, MOST);
+        }
+    }
+}
+
+TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 8})
