@@ -44,6 +44,15 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
     return sum;
 }
 
+/* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
+enum { MATRIX_BLOCK = 128 };
+
+/* y [end - begin] += factor times rows begin to end - 1 of A x. */
+void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y);
+
+/* y = A x. */
+void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
+
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
 

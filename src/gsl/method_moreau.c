@@ -234,14 +234,15 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
     }
 }
 
-static int moreau_step(tribo_driver *drv, double t, double next, double *y)
+static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct moreau *m = drv->own;
     struct step_form *s = &m->common;
     tribo_system *sys = drv->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     const double h = next - t;
-    double *du = s->a, *u = y + n;
+    double *du = s->a;
+    const double *u = from + n;
     /* steps of equal length differ by the rounding of time only */
     if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
         const int status = prepare(m, sys, h);
@@ -254,7 +255,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
         find_load(m, sys, t);
     }
     for (size_t i = 0; i < n; i++) {
-        s->u[i] = y[i] + 0.5 * h * u[i];
+        s->u[i] = from[i] + 0.5 * h * u[i];
         du[i] = 0.5 * h * m->load[i];
     }
     find_load(m, sys, next);
@@ -291,11 +292,11 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_relative(s, sys, s->u, s->end);
     s->goes_on = 1;
     for (size_t i = 0; i < n; i++) {
-        y[i] += 0.5 * h * (u[i] + s->u[i]);
-        u[i] = s->u[i];
+        y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
+        y[n + i] = s->u[i];
     }
-    y[2 * n] += h * tribo_step_form_power(sys, s->f, s->v, s->end);
-    return TRIBO_OK;
+    y[2 * n] = from[2 * n] + h * tribo_step_form_power(sys, s->f, s->v, s->end);
+    return tribo_driver_check(drv, y);
 }
 
 static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)

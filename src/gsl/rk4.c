@@ -41,30 +41,42 @@ TRIBO_SIMD static void add_stage(size_t n, const double *restrict y, double h, c
     }
 }
 
-TRIBO_SIMD static void finish(size_t n, double h, const double *restrict k, const double *restrict sum, double *restrict y)
+/* With the first slope, which becomes part of the sum where it is. */
+TRIBO_SIMD static void first_stage(size_t n, const double *restrict y, double h, const double *restrict k, double *restrict stage)
 {
     for (size_t j = 0; j < n; j++) {
-        y[j] += h * (sum[j] + k[j]);
+        stage[j] = y[j] + h * k[j];
     }
 }
 
-static int step(tribo_driver *drv, double t, double next, double *y)
+TRIBO_SIMD static void finish(size_t n, double h, const double *restrict k, const double *restrict sum,
+                              const double *restrict from, double *restrict y)
 {
-    const double h = next - t, node[] = {0.5, 0.5, 1.0}, weight[] = {1.0, 2.0, 2.0};
+    for (size_t j = 0; j < n; j++) {
+        y[j] = from[j] + h * (sum[j] + k[j]);
+    }
+}
+
+static int step(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    const double h = next - t, node[] = {0.5, 0.5, 1.0};
     const struct rk4 *r = drv->own;
     const gsl_odeiv2_system *ode = &drv->sys->odeiv2;
-    if (tribo_system_begin_step(drv->sys, t, y, r->k)) {
+    if (tribo_system_begin_step(drv->sys, t, from, r->sum)) {
         return tribo_driver_explain(drv, t, h);
     }
-    memset(r->sum, 0, ode->dimension * sizeof *r->sum);
     for (int i = 0; i < 3; i++) {
-        add_stage(ode->dimension, y, node[i] * h, r->k, weight[i], r->sum, r->stage);
+        if (i == 0) {
+            first_stage(ode->dimension, from, node[0] * h, r->sum, r->stage);
+        } else {
+            add_stage(ode->dimension, from, node[i] * h, r->k, 2.0, r->sum, r->stage);
+        }
         if (ode->function(t + node[i] * h, r->stage, r->k, ode->params)) {
             return tribo_driver_explain(drv, t, h);
         }
     }
-    finish(ode->dimension, h / 6.0, r->k, r->sum, y);
-    return TRIBO_OK;
+    finish(ode->dimension, h / 6.0, r->k, r->sum, from, y);
+    return tribo_driver_check(drv, y);
 }
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
