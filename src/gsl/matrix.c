@@ -86,6 +86,19 @@ static int speed_up(struct matrix *a)
     return done;
 }
 
+/* With what speeds up products. */
+static int finish(struct matrix *a)
+{
+    if (!speed_up(a)) {
+        return 0;
+    }
+    a->identity = a->rows == a->cols && a->diagonals == 1 && a->offset[0] == 0;
+    for (size_t i = 0; a->identity && i < a->rows; i++) {
+        a->identity = a->fast[i] == 1.0;
+    }
+    return 1;
+}
+
 int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries)
 {
     size_t count = 0;
@@ -105,7 +118,7 @@ int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const do
         }
         a->first[i + 1] = k;
     }
-    return speed_up(a);
+    return finish(a);
 }
 
 int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
@@ -118,7 +131,7 @@ int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
         a->col[i] = i;
         a->val[i] = entries ? entries[i] : 1.0;
     }
-    return speed_up(a);
+    return finish(a);
 }
 
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done)
@@ -144,7 +157,7 @@ int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
     memcpy(a->first, from->first, (from->rows + 1) * sizeof *a->first);
     memcpy(a->col, from->col, entries * sizeof *a->col);
     memcpy(a->val, from->val, entries * sizeof *a->val);
-    return speed_up(a);
+    return finish(a);
 }
 
 int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b)
@@ -163,7 +176,7 @@ int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, d
         }
         to->first[i + 1] = count;
     }
-    return speed_up(to);
+    return finish(to);
 }
 
 /* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
@@ -205,7 +218,7 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
     free(by_col);
     free(by_row);
     free(start);
-    return done && speed_up(a);
+    return done && finish(a);
 }
 
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
@@ -355,6 +368,15 @@ void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
         memset(y + i, 0, (end - i) * sizeof *y);
         tribo_matrix_add_rows(a, i, end, 1.0, x, y + i);
     }
+}
+
+const double *tribo_matrix_image(const struct matrix *a, const double *x, double *room)
+{
+    if (a->identity) {
+        return x;
+    }
+    tribo_matrix_multiply(a, x, room);
+    return room;
 }
 
 /* y [3][rows] = A x for three vectors. */
@@ -508,6 +530,7 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
 
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
+    a->identity = 0;
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             a->val[k] *= factor[i];

@@ -14,6 +14,7 @@ struct matrix {
     size_t diagonals; /* number of diagonals in `fast`, 0 if it holds no diagonals */
     ptrdiff_t *offset;
     double *fast; /* [diagonals][rows] or [rows][cols] or NULL */
+    int identity; /* multiplying with it changes nothing */
 };
 
 /* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */
@@ -52,6 +53,9 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
 
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
+
+/* A x, which is x itself or stands in room [rows]. */
+const double *tribo_matrix_image(const struct matrix *a, const double *x, double *room);
 
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
