@@ -27,7 +27,8 @@ struct bodies_alone {
     size_t revision;                /* of the system */
 };
 
-/* A step: velocities u at the time from become those at to, by the forces at t and q, and q moves on with them for a time of h. */
+/* A step: velocities u at the time from become those at to, by the forces at t and q, and q moves on with them for a time
+ * of h. */
 struct body_step {
     double from, t, to, h;
     const double *q, *u;

@@ -1,5 +1,6 @@
 /* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
- * 2/omega_max. Damping acts on the velocity of half a step before. Contacts that share no body go their own way (bodies_alone). */
+ * 2/omega_max. Damping acts on the velocity of half a step before. Where contacts share no body, bodies_alone.c takes the
+ * steps. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -108,7 +109,7 @@ static void drift(size_t n, double h, const double *q, const double *u, double *
     }
 }
 
-/* u and y at the end of a step, y with positions and energy only. */
+/* A step of all contacts together. */
 static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
 {
     struct central *x = drv->own;
@@ -124,7 +125,7 @@ static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
     return status ? status : tribo_driver_check(drv, y);
 }
 
-/* The same block by block. */
+/* The same where each contact has a body of its own. y gets positions and energy; velocities are in u until somebody looks. */
 static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
 {
     struct central *x = drv->own;
