@@ -747,8 +747,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine advance
 
-  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, _PERIODS, _NEWTON, since creation, and
-  !> TRIBO_COUNT_FREEDOM, of the last periodic motion found.
+  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, _PERIODS, _NEWTON, _RESTED, since creation,
+  !> and TRIBO_COUNT_FREEDOM, of the last periodic motion found.
   subroutine count_long(this, which, value, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     integer, intent(in) :: which

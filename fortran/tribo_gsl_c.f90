@@ -21,6 +21,8 @@ module tribo_gsl_constants
   integer, parameter, public :: TRIBO_COUNT_NEWTON = 106
   !> no count: the dimension of the family that the last periodic motion found belongs to
   integer, parameter, public :: TRIBO_COUNT_FREEDOM = 107
+  !> degrees of freedom that steps left out since nothing moved there
+  integer, parameter, public :: TRIBO_COUNT_RESTED = 108
 
   !> the largest force of a contact at rest beyond its limit
   integer, parameter, public :: TRIBO_REAL_EXCESS = 100

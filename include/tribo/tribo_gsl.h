@@ -182,7 +182,8 @@ typedef struct tribo_driver tribo_driver;
  *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt
  *               that is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule
  *               (Moreau and Jean). Second order, with planar contacts as tribo_step_force_mean; but for scalar contacts
- *               that reverse without sticking, and central with damping: there first order
+ *               that reverse without sticking, and central with damping: there first order. Where no two contacts share a
+ *               body, central leaves out bodies that rest among others at rest, and TRIBO_COUNT_RESTED counts them
  *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
  *               Planar contacts: event, and not exact. They must have limits that do not change, and those at rest must not be
@@ -280,7 +281,8 @@ enum {
     TRIBO_COUNT_EVENTS = 104,      /* events located */
     TRIBO_COUNT_PERIODS = 105,     /* periods that tribo_driver_find_periodic integrated, of each search rounded up */
     TRIBO_COUNT_NEWTON = 106,      /* steps of Newton's method that it took */
-    TRIBO_COUNT_FREEDOM = 107      /* no count: the dimension of the family that the last periodic motion found belongs to */
+    TRIBO_COUNT_FREEDOM = 107,     /* no count: the dimension of the family that the last periodic motion found belongs to */
+    TRIBO_COUNT_RESTED = 108       /* degrees of freedom that steps left out since nothing moved there */
 };
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
 

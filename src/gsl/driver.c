@@ -268,6 +268,9 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
     case TRIBO_COUNT_FREEDOM:
         *value = drv->freedom;
         return TRIBO_OK;
+    case TRIBO_COUNT_RESTED:
+        *value = drv->rested;
+        return TRIBO_OK;
     default:
         return TRIBO_ERR_RANGE;
     }
@@ -315,18 +318,41 @@ int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
     return status;
 }
 
-int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
+static int show(tribo_driver *drv, double t, const double *y, int event)
 {
-    const int status = tribo_driver_keep(drv, t, y);
-    if (status || !drv->seen) {
-        return status;
-    }
-    const int answer = drv->seen(t, y, event, drv->data);
+    const int answer = drv->seen ? drv->seen(t, y, event, drv->data) : 0;
     return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
 }
 
-int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
-                             int (*step)(tribo_driver *, double, double, double *))
+int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
+{
+    const int status = tribo_driver_keep(drv, t, y);
+    return status ? status : show(drv, t, y, event);
+}
+
+/* So many steps of length h, the last one to t1: from and to are the last good state and room for the next in turn. Returns the
+ * former. */
+static double *march(tribo_driver *drv, double h, double steps, double t1, double *from, double *to, tribo_fixed_step *step,
+                     int *status)
+{
+    const double begin = drv->time;
+    *status = TRIBO_OK;
+    for (double k = 1.0; k <= steps && !*status; k++) {
+        const double next = k < steps ? begin + k * h : t1;
+        *status = step(drv, drv->time, next, from, to);
+        if (!*status) {
+            double *last = from;
+            from = to;
+            to = last;
+            drv->time = next;
+            drv->steps++;
+            *status = show(drv, next, from, 0);
+        }
+    }
+    return from;
+}
+
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step)
 {
     const double begin = *t, whole = (t1 - begin) / drv->dt, resolution = DBL_EPSILON * greater(fabs(begin), fabs(t1));
     if (drv->dt < 16.0 * resolution) {
@@ -337,16 +363,10 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
     const double rest = greater(1e-6, 4.0 * resolution / drv->dt);
     const double steps = fabs(whole - round(whole)) < rest && whole > 0.5 ? round(whole) : greater(ceil(whole), 1.0);
     const double h = whole > steps ? (t1 - begin) / steps : drv->dt;
-    int status = TRIBO_OK;
-    for (double k = 1.0; k <= steps && !status; k++) {
-        const double next = k < steps ? begin + k * h : t1;
-        status = step(drv, *t, next, y);
-        if (!status) {
-            *t = next;
-            status = tribo_driver_accept(drv, *t, y, 0);
-            drv->steps += !status || status == TRIBO_ERR_STOPPED;
-        }
-    }
+    int status;
+    double *good = march(drv, h, steps, t1, drv->state, y, step, &status);
+    memcpy(good == y ? drv->state : y, good, tribo_system_dimension(drv->sys) * sizeof *y);
+    *t = drv->time;
     return status;
 }
 

@@ -39,6 +39,7 @@ struct tribo_driver {
     struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting */
     void (*free_shooting)(struct shooting *s);
     size_t freedom; /* dimension of the family of the last one */
+    size_t rested;  /* degrees of freedom left out, step by step */
     char message[240];
 };
 
@@ -64,9 +65,12 @@ int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
 /* The same without telling the observer. */
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
 
-/* Steps of drv->dt to t1, the last one shorter where it must be. step takes y from t to next. */
-int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
-                             int (*step)(tribo_driver *, double, double, double *));
+/* A step from the state at t to that at next, y, all of which it writes and finds finite. */
+typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
+
+/* Steps of drv->dt from y, which is the last good state, to t1, the last one shorter where it must be. States are kept as by
+ * tribo_driver_accept, but not copied. */
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step);
 
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
     tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck, tribo_method_rk8pd,

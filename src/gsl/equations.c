@@ -1,12 +1,13 @@
 /* The equations of motion of a system, and its life. */
 #include "elastic.h"
 #include "../common/real.h"
+#include "../common/simd.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
+static void free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
 {
     const size_t n = sys->ndof;
     tribo_system_set_time(sys, t);
@@ -16,64 +17,121 @@ void tribo_system_free_motion(tribo_system *sys, double t, const double *y, doub
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, y + n, acceleration);
     }
+}
+
+void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
+{
+    free_acceleration(sys, t, y, acceleration);
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
     if (sys->base_harmonics) {
         tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
         tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, a);
     }
-    tribo_matrix_multiply_add(&sys->direction, 1.0, y + n, v);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, y + sys->ndof, v);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
 }
 
-/* Completes dydt from the forces. */
-static void add_forces(const tribo_system *sys, const double *y, double *dydt)
+/* v and a as contacts see the motion: vectors of the system, or, where nothing is between them, of the motion itself. */
+struct seen {
+    const double *v, *a;
+};
+
+static struct seen see(tribo_system *sys, double t, const double *y, double *acceleration)
+{
+    if (sys->base_harmonics) {
+        tribo_system_free_motion(sys, t, y, acceleration, sys->v, sys->a);
+        return (struct seen){sys->v, sys->a};
+    }
+    free_acceleration(sys, t, y, acceleration);
+    return (struct seen){tribo_matrix_image(&sys->direction, y + sys->ndof, sys->v),
+                         tribo_matrix_image(&sys->direction, acceleration, sys->a)};
+}
+
+enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
+
+TRIBO_SIMD static double power_of(size_t n, const double *restrict tally, const double *restrict f, const double *restrict v)
+{
+    double part[LANES] = {0.0}, sum = 0.0;
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[k] -= tally[i + k] * f[i + k] * v[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        sum -= tally[i] * f[i] * v[i];
+    }
+    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
+}
+
+static void add_forces(const tribo_system *sys, const double *v, double *acceleration, double *power)
+{
+    *power = power_of(sys->ncontact, sys->tally, sys->f, v);
+    tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, acceleration);
+}
+
+int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
+{
+    sys->evaluations++;
+    const struct seen seen = see(sys, t, y, acceleration);
+    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, NULL, sys->f);
+    if (!sys->status) {
+        add_forces(sys, seen.v, acceleration, power);
+    }
+    return sys->status;
+}
+
+int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
+{
+    int law;
+    tribo_get_law(sys->contacts, &law);
+    if (law != TRIBO_QUINN_REVERSAL) {
+        return tribo_system_rates(sys, t, y, acceleration, power);
+    }
+    sys->evaluations++;
+    const struct seen seen = see(sys, t, y, acceleration);
+    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, sys->feq, sys->f);
+    if (!sys->status) {
+        /* the forces stay: where a mark changes, the law's two forms agree */
+        sys->status = tribo_accept(sys->contacts, seen.v, sys->feq);
+        add_forces(sys, seen.v, acceleration, power);
+    }
+    return sys->status;
+}
+
+/* What the steppers of GSL take besides accelerations and power; sys->v has the velocities for the driver. */
+static void complete(tribo_system *sys, const double *y, double *dydt)
+{
+    const double *u = y + sys->ndof;
+    memcpy(dydt, u, sys->ndof * sizeof *dydt);
+    if (sys->direction.identity && !sys->base_harmonics) {
+        memcpy(sys->v, u, sys->ncontact * sizeof *sys->v);
+    }
+}
+
+int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
 {
     const size_t n = sys->ndof;
-    memcpy(dydt, y + n, n * sizeof *dydt);
-    tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, dydt + n);
-    double power = 0.0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        power -= sys->tally[i] * sys->f[i] * sys->v[i];
-    }
-    dydt[2 * n] = power;
+    complete(sys, y, dydt);
+    return tribo_system_begin_rates(sys, t, y, dydt + n, dydt + 2 * n);
 }
 
 static int right_hand_side(double t, const double y[], double dydt[], void *params)
 {
     tribo_system *sys = params;
-    sys->evaluations++;
+    const size_t n = sys->ndof;
     if (sys->massless.count) {
+        sys->evaluations++;
         sys->status = tribo_system_check_mass(sys, "an integrator");
         return GSL_EBADFUNC;
     }
-    tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
-    sys->status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
-    if (sys->status) {
+    complete(sys, y, dydt);
+    if (tribo_system_rates(sys, t, y, dydt + n, dydt + 2 * n)) {
         /* a step that is too long may overflow, and a shorter one not */
         return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
     }
-    add_forces(sys, y, dydt);
     return GSL_SUCCESS;
-}
-
-int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
-{
-    int law;
-    tribo_get_law(sys->contacts, &law);
-    if (law != TRIBO_QUINN_REVERSAL) {
-        right_hand_side(t, y, dydt, sys);
-        return sys->status;
-    }
-    sys->evaluations++;
-    tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
-    sys->status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, sys->f);
-    if (!sys->status) {
-        /* the forces stay: where a mark changes, the law's two forms agree */
-        sys->status = tribo_accept(sys->contacts, sys->v, sys->feq);
-        add_forces(sys, y, dydt);
-    }
-    return sys->status;
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- states */

@@ -10,6 +10,9 @@
 /* As in the core: entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
 #define ASYMMETRY 1e-10
 
+/* So few rows are multiplied with sooner entry by entry. */
+#define FEW_ROWS 4
+
 void tribo_matrix_free(struct matrix *a)
 {
     free(a->first);
@@ -83,6 +86,19 @@ static int speed_up(struct matrix *a)
     return done;
 }
 
+/* With what speeds up products. */
+static int finish(struct matrix *a)
+{
+    if (!speed_up(a)) {
+        return 0;
+    }
+    a->identity = a->rows == a->cols && a->diagonals == 1 && a->offset[0] == 0;
+    for (size_t i = 0; a->identity && i < a->rows; i++) {
+        a->identity = a->fast[i] == 1.0;
+    }
+    return 1;
+}
+
 int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries)
 {
     size_t count = 0;
@@ -102,7 +118,7 @@ int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const do
         }
         a->first[i + 1] = k;
     }
-    return speed_up(a);
+    return finish(a);
 }
 
 int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
@@ -115,7 +131,7 @@ int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
         a->col[i] = i;
         a->val[i] = entries ? entries[i] : 1.0;
     }
-    return speed_up(a);
+    return finish(a);
 }
 
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done)
@@ -141,7 +157,7 @@ int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
     memcpy(a->first, from->first, (from->rows + 1) * sizeof *a->first);
     memcpy(a->col, from->col, entries * sizeof *a->col);
     memcpy(a->val, from->val, entries * sizeof *a->val);
-    return speed_up(a);
+    return finish(a);
 }
 
 int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b)
@@ -160,7 +176,7 @@ int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, d
         }
         to->first[i + 1] = count;
     }
-    return speed_up(to);
+    return finish(to);
 }
 
 /* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
@@ -202,7 +218,7 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
     free(by_col);
     free(by_row);
     free(start);
-    return done && speed_up(a);
+    return done && finish(a);
 }
 
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
@@ -251,18 +267,80 @@ int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
     return done;
 }
 
-/* y += factor A x, one full diagonal after the other. */
-TRIBO_SIMD static void add_diagonals(const struct matrix *a, double factor, const double *x, double *y)
+/* y [rows] += factor times rows `begin` and following of A x, all of whose diagonals lie inside the matrix: three diagonals at a
+ * time, so that y is passed over as seldom as can be, but in the order of one after the other. */
+TRIBO_SIMD static void add_inner_rows(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
+                                      double *restrict y)
 {
-    for (size_t d = 0; d < a->diagonals; d++) {
-        const ptrdiff_t shift = a->offset[d];
-        const size_t begin = shift < 0 ? (size_t)-shift : 0;
-        const size_t room = (size_t)((ptrdiff_t)a->cols - shift), end = room < a->rows ? room : a->rows;
-        const double *restrict val = a->fast + d * a->rows + begin, *restrict from = x + (size_t)((ptrdiff_t)begin + shift);
-        double *restrict to = y + begin;
-        for (size_t i = 0; i < end - begin; i++) {
-            to[i] += factor * val[i] * from[i];
+    const double *restrict val = a->fast + begin, *restrict at = x + begin;
+    size_t d = 0;
+    for (; d + 3 <= a->diagonals; d += 3) {
+        const double *restrict u = val + d * a->rows, *restrict v = u + a->rows, *restrict w = v + a->rows;
+        const double *restrict p = at + a->offset[d], *restrict q = at + a->offset[d + 1], *restrict r = at + a->offset[d + 2];
+        for (size_t i = 0; i < rows; i++) {
+            y[i] = ((y[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
         }
+    }
+    for (; d < a->diagonals; d++) {
+        const double *restrict u = val + d * a->rows, *restrict p = at + a->offset[d];
+        for (size_t i = 0; i < rows; i++) {
+            y[i] += factor * u[i] * p[i];
+        }
+    }
+}
+
+/* The first row, and the one behind the last, all of whose diagonals lie inside the matrix. */
+static size_t inner_begin(const struct matrix *a)
+{
+    return a->offset[0] < 0 ? (size_t)-a->offset[0] : 0;
+}
+
+static size_t inner_end(const struct matrix *a)
+{
+    const ptrdiff_t last = a->offset[a->diagonals - 1], room = (ptrdiff_t)a->cols - last;
+    return room < 0 ? 0 : (size_t)room < a->rows ? (size_t)room : a->rows;
+}
+
+static size_t between(size_t i, size_t least, size_t most)
+{
+    return i < least ? least : i > most ? most : i;
+}
+
+/* The same entry by entry. */
+static void add_outer_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
+{
+    for (size_t i = begin; i < end; i++, y++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            *y += factor * a->val[k] * x[a->col[k]];
+        }
+    }
+}
+
+static void add_banded_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
+{
+    const size_t first = between(inner_begin(a), begin, end), last = between(inner_end(a), first, end);
+    add_outer_rows(a, begin, first, factor, x, y);
+    add_inner_rows(a, first, last - first, factor, x, y + (first - begin));
+    add_outer_rows(a, last, end, factor, x, y + (last - begin));
+}
+
+static double dense_dot(size_t n, const double *restrict val, const double *restrict x)
+{
+    double sum = 0.0;
+    for (size_t j = 0; j < n; j++) {
+        sum += val[j] * x[j];
+    }
+    return sum;
+}
+
+void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
+{
+    if (a->diagonals) {
+        (end - begin > FEW_ROWS ? add_banded_rows : add_outer_rows)(a, begin, end, factor, x, y);
+        return;
+    }
+    for (size_t i = begin; i < end; i++) {
+        y[i - begin] += factor * (a->fast ? dense_dot(a->cols, a->fast + i * a->cols, x) : tribo_matrix_row_dot(a, i, x));
     }
 }
 
@@ -275,24 +353,30 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
     }
 }
 
-void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *restrict x, double *restrict y)
+void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
-    if (a->diagonals) {
-        add_diagonals(a, factor, x, y);
-    } else if (a->fast) {
-        for (size_t i = 0; i < a->rows; i++) {
-            const double *val = a->fast + i * a->cols;
-            double sum = 0.0;
-            for (size_t j = 0; j < a->cols; j++) {
-                sum += val[j] * x[j];
-            }
-            y[i] += factor * sum;
-        }
-    } else {
-        for (size_t i = 0; i < a->rows; i++) {
-            y[i] += factor * tribo_matrix_row_dot(a, i, x);
-        }
+    for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
+        const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
+        tribo_matrix_add_rows(a, i, end, factor, x, y + i);
     }
+}
+
+void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
+{
+    for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
+        const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
+        memset(y + i, 0, (end - i) * sizeof *y);
+        tribo_matrix_add_rows(a, i, end, 1.0, x, y + i);
+    }
+}
+
+const double *tribo_matrix_image(const struct matrix *a, const double *x, double *room)
+{
+    if (a->identity) {
+        return x;
+    }
+    tribo_matrix_multiply(a, x, room);
+    return room;
 }
 
 /* y [3][rows] = A x for three vectors. */
@@ -319,9 +403,8 @@ void tribo_matrix_multiply_all(const struct matrix *a, size_t count, const doubl
     for (; k + 3 <= count; k += 3) {
         multiply_three(a, x + k * a->cols, y + k * a->rows);
     }
-    memset(y + k * a->rows, 0, (count - k) * a->rows * sizeof *y);
     for (; k < count; k++) {
-        tribo_matrix_multiply_add(a, 1.0, x + k * a->cols, y + k * a->rows);
+        tribo_matrix_multiply(a, x + k * a->cols, y + k * a->rows);
     }
 }
 
@@ -447,6 +530,7 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
 
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
+    a->identity = 0;
     for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             a->val[k] *= factor[i];

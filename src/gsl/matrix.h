@@ -14,6 +14,7 @@ struct matrix {
     size_t diagonals; /* number of diagonals in `fast`, 0 if it holds no diagonals */
     ptrdiff_t *offset;
     double *fast; /* [diagonals][rows] or [rows][cols] or NULL */
+    int identity; /* multiplying with it changes nothing */
 };
 
 /* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */
@@ -43,6 +44,18 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
     }
     return sum;
 }
+
+/* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
+enum { MATRIX_BLOCK = 128 };
+
+/* y [end - begin] += factor times rows begin to end - 1 of A x. */
+void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y);
+
+/* y = A x. */
+void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
+
+/* A x, which is x itself or stands in room [rows]. */
+const double *tribo_matrix_image(const struct matrix *a, const double *x, double *room);
 
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);

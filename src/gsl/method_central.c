@@ -1,19 +1,22 @@
 /* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
- * 2/omega_max. Damping acts on the velocity of half a step before. */
+ * 2/omega_max. Damping acts on the velocity of half a step before. Where contacts share no body, bodies_alone.c takes the
+ * steps. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bodies_alone.h"
 #include "spectrum.h"
 #include "step_form.h"
 #include "../common/real.h"
 
 struct central {
     struct step_form common;
+    struct bodies_alone alone;
+    double *next;        /* [ndof] room for u of the next step */
     double energy, last; /* dissipated up to u; the step before, 0: u is the velocity at t */
     double stable;       /* a step found to be stable; 0: none */
-    double *aside;       /* [ncontact] */
 };
 
 static void destroy(tribo_driver *drv)
@@ -21,7 +24,8 @@ static void destroy(tribo_driver *drv)
     struct central *x = drv->own;
     if (x) {
         tribo_step_form_free(&x->common);
-        free(x->aside);
+        tribo_bodies_free(&x->alone);
+        free(x->next);
         free(x);
     }
 }
@@ -31,88 +35,127 @@ static int create(tribo_driver *drv)
     struct central *x = calloc(1, sizeof *x);
     drv->own = x;
     if (x) {
-        x->aside = calloc(drv->sys->ncontact + 1, sizeof *x->aside);
+        x->next = calloc(drv->sys->ndof, sizeof *x->next);
     }
-    if (!x || !x->aside || !tribo_step_form_create(&x->common, drv->sys)) {
+    if (!x || !x->next || !tribo_step_form_create(&x->common, drv->sys) || !tribo_bodies_create(&x->alone, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     return TRIBO_OK;
 }
 
-/* Takes u, the velocity at the time from, to the one at the time to: forces at t and q, over the time between. Adds to the
- * energy. */
-static int kick(tribo_driver *drv, double from, double t, double to, const double *y, double *u, double *energy)
+/* What u, the velocity at the time from, becomes at the time to without friction: forces at t and q, over the time between. */
+static void kick_freely(struct step_form *s, tribo_system *sys, const struct body_step *k)
+{
+    const double time = k->to - k->from;
+    tribo_system_set_time(sys, k->t);
+    memset(s->a, 0, sys->ndof * sizeof *s->a);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, k->q, s->a);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, k->u, s->a);
+    }
+    for (size_t i = 0; i < sys->ndof; i++) {
+        k->u_to[i] = k->u[i] + time * s->a[i];
+    }
+}
+
+/* The same with friction. Adds to the energy. */
+static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
 {
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     tribo_system *sys = drv->sys;
-    const size_t n = sys->ndof;
-    const double time = to - from;
-    tribo_step_form_begin(s, sys, from, u);
-    tribo_system_set_time(sys, t);
-    memset(s->a, 0, n * sizeof *s->a);
-    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y, s->a);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, u, s->a);
-    }
+    const double time = k->to - k->from;
+    tribo_step_form_begin(s, sys, k->from, k->u);
+    kick_freely(s, sys, k);
     sys->evaluations++;
-    for (size_t i = 0; i < n; i++) {
-        u[i] += time * s->a[i];
-    }
-    tribo_step_form_find_base(s, sys, to);
-    tribo_step_form_relative(s, sys, u, s->end);
-    tribo_step_form_set_limits(sys, t);
+    tribo_step_form_find_base(s, sys, k->to);
+    tribo_step_form_relative(s, sys, k->u_to, s->end);
+    tribo_step_form_set_limits(sys, k->t);
     const int status = tribo_step_form_force(s, sys->contacts, time);
     if (status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_step_form_grew(drv, t);
+        return tribo_step_form_grew(drv, k->t);
     }
     if (status) {
-        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(sys->contacts));
+        return tribo_driver_fail(drv, status, "at t = %.17g: %s", k->t, tribo_message(sys->contacts));
     }
-    tribo_matrix_multiply_add(&sys->response, time, s->f, u);
+    tribo_matrix_multiply_add(&sys->response, time, s->f, k->u_to);
     tribo_get_slip(sys->contacts, s->mode);
-    tribo_system_snap(sys, s->mode, s->base, u);
-    tribo_step_form_relative(s, sys, u, s->end);
+    tribo_system_snap(sys, s->mode, s->base, k->u_to);
+    tribo_step_form_relative(s, sys, k->u_to, s->end);
     *energy += time * tribo_step_form_power(sys, s->f, s->v, s->end);
-    s->goes_on = 1;
     return TRIBO_OK;
 }
 
-/* Velocities and energy of y, from half a step back to t: for those who look. */
+/* Velocities and energy of y, from half a step back to t: for those who look. The next step goes on from where it would have. */
 static int synchronise(tribo_driver *drv, double t, double *y)
 {
     struct central *x = drv->own;
     struct step_form *s = &x->common;
-    const size_t n = drv->sys->ndof, bytes = drv->sys->ncontact * sizeof *s->end;
-    memcpy(y + n, s->u, n * sizeof *y);
+    const size_t n = drv->sys->ndof;
+    const struct body_step half = {.from = t - 0.5 * x->last, .t = t, .to = t, .q = y, .u = s->u, .u_to = y + n};
     y[2 * n] = x->energy;
-    memcpy(x->aside, s->end, bytes);
-    const int status = kick(drv, t - 0.5 * x->last, t, t, y, y + n, y + 2 * n);
-    memcpy(s->end, x->aside, bytes);
+    const int status = kick(drv, &half, y + 2 * n);
+    if (s->goes_on) {
+        tribo_step_form_turn(s);
+    }
     return status;
 }
 
-static int central_step(tribo_driver *drv, double t, double next, double *y)
+static void drift(size_t n, double h, const double *q, const double *u, double *q_to)
+{
+    for (size_t i = 0; i < n; i++) {
+        q_to[i] = q[i] + h * u[i];
+    }
+}
+
+/* A step of all contacts together. */
+static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
 {
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
+    const int status = kick(drv, k, &x->energy);
+    s->goes_on = 1;
+    if (!status) {
+        drift(n, k->h, k->q, k->u_to, k->q_to);
+        memcpy(y + n, k->u_to, n * sizeof *y);
+        y[2 * n] = x->energy;
+    }
+    return status ? status : tribo_driver_check(drv, y);
+}
+
+/* The same where each contact has a body of its own. y gets positions and energy; velocities are in u until somebody looks. */
+static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
+{
+    struct central *x = drv->own;
+    double energy = x->energy;
+    x->common.goes_on = 0;
+    drv->sys->evaluations++;
+    if (!tribo_bodies_step(&x->alone, drv->sys, k, &energy) || !isfinite(energy)) {
+        return tribo_step_form_grew(drv, k->t);
+    }
+    drv->rested = x->alone.skipped;
+    y[2 * drv->sys->ndof] = x->energy = energy;
+    return TRIBO_OK;
+}
+
+static int central_step(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
     const double h = next - t;
-    const int status = kick(drv, t - 0.5 * x->last, t, t + 0.5 * h, y, s->u, &x->energy);
+    const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, h, from, s->u, y, x->next};
+    const int same = x->alone.revision == tribo_system_revision(drv->sys);
+    const int alone = same ? x->alone.fits : tribo_bodies_begin(&x->alone, drv->sys);
+    const int status = alone ? step_alone(drv, &k, y) : step_all(drv, &k, y);
     if (status) {
         return status;
     }
-    for (size_t i = 0; i < n; i++) {
-        y[i] += h * s->u[i];
-    }
+    x->next = s->u;
+    s->u = k.u_to;
     x->last = h;
-    if (drv->seen) {
-        return synchronise(drv, next, y);
-    }
-    memcpy(y + n, s->u, n * sizeof *y);
-    y[2 * n] = x->energy;
-    return TRIBO_OK;
+    return drv->seen ? synchronise(drv, next, y) : TRIBO_OK;
 }
 
 /* Refuses steps with which the motion would grow without bound: steps of h are stable while h^2 AK + 2 h AC has no eigenvalue of
@@ -148,6 +191,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
+    const double begin = *t;
     int status = check_step(drv, lesser(drv->dt, t1 - *t));
     if (status) {
         return status;
@@ -158,7 +202,11 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         x->last = 0.0;
         s->goes_on = 0;
     }
+    tribo_bodies_begin(&x->alone, drv->sys);
     status = tribo_driver_fixed_steps(drv, t, t1, y, central_step);
+    if (status && *t > begin && !drv->seen) {
+        memcpy(drv->state + n, s->u, n * sizeof *y);
+    }
     return status || drv->seen ? status : synchronise(drv, t1, y);
 }
 

@@ -283,10 +283,10 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
 
 static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
 {
-    for (size_t d = 0; sys->massless.count && d < sys->ndof; d++) {
+    for (size_t d = 0; d < sys->ndof; d++) {
         y[sys->ndof + d] = has_mass(sys, d) ? y[sys->ndof + d] : 0.0;
     }
-    if (sys->massless.count && !m->common.goes_on) {
+    if (!m->common.goes_on) {
         tribo_get_limit(sys->contacts, m->limit);
         tribo_elastic_enter(sys, m->limit, m->work, m->spring, y);
     }
@@ -341,14 +341,15 @@ static void end_elastic(struct moreau *m, const tribo_system *sys, double *y)
     }
 }
 
-static int moreau_step(tribo_driver *drv, double t, double next, double *y)
+static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct moreau *m = drv->own;
     struct step_form *s = &m->common;
     tribo_system *sys = drv->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     const double h = next - t;
-    double *du = s->a, *u = y + n;
+    double *du = s->a;
+    const double *u = from + n;
     /* steps of equal length differ by the rounding of time only */
     if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
         const int status = prepare(m, sys, h);
@@ -356,13 +357,18 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
         }
     }
-    begin_elastic(m, sys, y);
+    if (sys->massless.count) {
+        memcpy(y, from, (2 * n + 1) * sizeof *y);
+        begin_elastic(m, sys, y);
+        from = y;
+        u = from + n;
+    }
     tribo_step_form_begin(s, sys, t, u);
     if (!s->goes_on) {
         find_load(m, sys, t);
     }
     for (size_t i = 0; i < n; i++) {
-        s->u[i] = y[i] + 0.5 * h * u[i];
+        s->u[i] = from[i] + 0.5 * h * u[i];
         du[i] = 0.5 * h * m->load[i];
     }
     find_load(m, sys, next);
@@ -403,12 +409,12 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_relative(s, sys, s->u, s->end);
     s->goes_on = 1;
     for (size_t i = 0; i < n; i++) {
-        y[i] += 0.5 * h * (u[i] + s->u[i]);
-        u[i] = s->u[i];
+        y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
+        y[n + i] = s->u[i];
     }
-    y[2 * n] += h * tribo_step_form_power(sys, s->f, s->v, s->end);
+    y[2 * n] = from[2 * n] + h * tribo_step_form_power(sys, s->f, s->v, s->end);
     end_elastic(m, sys, y);
-    return TRIBO_OK;
+    return tribo_driver_check(drv, y);
 }
 
 static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)

@@ -7,7 +7,8 @@
 #include "../common/simd.h"
 
 struct rk4 {
-    double *k, *sum, *stage; /* [dimension] slope, weighted sum of slopes, state of a stage */
+    double *k, *sum, *stage; /* [dimension] slope, weighted sum of slopes, state of a stage; of the slope of q, which is the
+                                velocity, k has no copy */
 };
 
 static void destroy(tribo_driver *drv)
@@ -32,39 +33,60 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-TRIBO_SIMD static void add_stage(size_t n, const double *restrict y, double h, const double *restrict k, double weight,
-                                 double *restrict sum, double *restrict stage)
+/* The first stage goes on from y by the slope k, with which the sum begins. */
+TRIBO_SIMD static void first_stage(size_t n, const double *restrict y, double h, const double *restrict k, double *restrict sum,
+                                   double *restrict stage)
 {
     for (size_t j = 0; j < n; j++) {
         stage[j] = y[j] + h * k[j];
-        sum[j] += weight * k[j];
+        sum[j] = k[j];
     }
 }
 
-TRIBO_SIMD static void finish(size_t n, double h, const double *restrict k, const double *restrict sum, double *restrict y)
+TRIBO_SIMD static void next_stage(size_t n, const double *restrict y, double h, const double *restrict k, double *restrict sum,
+                                  double *restrict stage)
 {
     for (size_t j = 0; j < n; j++) {
-        y[j] += h * (sum[j] + k[j]);
+        stage[j] = y[j] + h * k[j];
+        sum[j] += 2.0 * k[j];
     }
 }
 
-static int step(tribo_driver *drv, double t, double next, double *y)
+TRIBO_SIMD static void finish(size_t n, double h, const double *restrict k, const double *restrict sum,
+                              const double *restrict from, double *restrict y)
 {
-    const double h = next - t, node[] = {0.5, 0.5, 1.0}, weight[] = {1.0, 2.0, 2.0};
+    for (size_t j = 0; j < n; j++) {
+        y[j] = from[j] + h * (sum[j] + k[j]);
+    }
+}
+
+/* Accelerations and power at a stage, into k behind the place of velocities. */
+static int evaluate(tribo_driver *drv, double t, const double *y)
+{
     const struct rk4 *r = drv->own;
-    const gsl_odeiv2_system *ode = &drv->sys->odeiv2;
-    if (tribo_system_begin_step(drv->sys, t, y, r->k)) {
+    const size_t n = drv->sys->ndof;
+    return tribo_system_rates(drv->sys, t, y, r->k + n, r->k + 2 * n);
+}
+
+static int step(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    const struct rk4 *r = drv->own;
+    const size_t n = drv->sys->ndof;
+    const double h = next - t, node[] = {0.5 * h, 0.5 * h, h};
+    if (tribo_system_begin_rates(drv->sys, t, from, r->k + n, r->k + 2 * n)) {
         return tribo_driver_explain(drv, t, h);
     }
-    memset(r->sum, 0, ode->dimension * sizeof *r->sum);
     for (int i = 0; i < 3; i++) {
-        add_stage(ode->dimension, y, node[i] * h, r->k, weight[i], r->sum, r->stage);
-        if (ode->function(t + node[i] * h, r->stage, r->k, ode->params)) {
+        /* positions first: their slope is the velocity of the stage that ends here */
+        (i ? next_stage : first_stage)(n, from, node[i], i ? r->stage + n : from + n, r->sum, r->stage);
+        (i ? next_stage : first_stage)(n + 1, from + n, node[i], r->k + n, r->sum + n, r->stage + n);
+        if (evaluate(drv, t + node[i], r->stage)) {
             return tribo_driver_explain(drv, t, h);
         }
     }
-    finish(ode->dimension, h / 6.0, r->k, r->sum, y);
-    return TRIBO_OK;
+    finish(n, h / 6.0, r->stage + n, r->sum, from, y);
+    finish(n + 1, h / 6.0, r->k + n, r->sum + n, from + n, y + n);
+    return tribo_driver_check(drv, y);
 }
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)

@@ -36,16 +36,23 @@ void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
 
 void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys, const double *u, double *v)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        v[i] = -s->base[i];
+    tribo_matrix_multiply(&sys->direction, u, v);
+    for (size_t i = 0; sys->base_harmonics && i < sys->ncontact; i++) {
+        v[i] -= s->base[i];
     }
-    tribo_matrix_multiply_add(&sys->direction, 1.0, u, v);
+}
+
+void tribo_step_form_turn(struct step_form *s)
+{
+    double *v = s->v;
+    s->v = s->end;
+    s->end = v;
 }
 
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u)
 {
     if (s->goes_on && sys->massless.count == 0) {
-        memcpy(s->v, s->end, sys->ncontact * sizeof *s->v);
+        tribo_step_form_turn(s);
     } else {
         tribo_step_form_find_base(s, sys, t);
         tribo_step_form_relative(s, sys, u, s->v);

@@ -24,6 +24,9 @@ void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
 /* v = J u - base. */
 void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys, const double *u, double *v);
 
+/* v and end take each other's place. */
+void tribo_step_form_turn(struct step_form *s);
+
 /* v = the velocity that a step begins with, at t. What has no mass may begin with another one than it ended with. */
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u);
 

@@ -145,7 +145,11 @@ void tribo_system_snap(const tribo_system *sys, const signed char *loose, const 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
 
-/* dydt with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
+/* q'' with friction, [ndof], and the power that friction dissipates. Returns a tribo status. */
+int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
+
+/* The same, and dydt, with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
+int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
 
 /* to [ndof] += factor M x. */

@@ -70,7 +70,7 @@ static void run(tribo_system *sys, const char *method, double most)
     put_one(tribo_driver_advance(drv, &t, 3.0, y));
     put(3, sums);
     put(n, y);
-    for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_FREEDOM; which++) {
+    for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_RESTED; which++) {
         size_t count = 0;
         put_one(tribo_driver_count(drv, which, &count));
         put_size(count);

@@ -264,7 +264,7 @@ contains
     call compare('advance', stat)
     call compare('what an observer no longer sees', sees%sums)
     call compare('advance: y', y)
-    do which = TRIBO_COUNT_STEPS, TRIBO_COUNT_FREEDOM
+    do which = TRIBO_COUNT_STEPS, TRIBO_COUNT_RESTED
       count = 0
       call drv%count(which, count, stat)
       call compare('count', stat)

@@ -224,7 +224,7 @@ TEST(other_errors)
     assert_status(tribo_driver_count(NULL, TRIBO_COUNT_STEPS, &count), TRIBO_ERR_NULL);
     assert_status(tribo_driver_count(drv, TRIBO_COUNT_STEPS, NULL), TRIBO_ERR_NULL);
     assert_status(tribo_driver_count(drv, TRIBO_COUNT_STUCK, &count), TRIBO_ERR_RANGE);
-    assert_status(tribo_driver_count(drv, TRIBO_COUNT_FREEDOM + 1, &count), TRIBO_ERR_RANGE);
+    assert_status(tribo_driver_count(drv, TRIBO_COUNT_RESTED + 1, &count), TRIBO_ERR_RANGE);
     assert_status(tribo_driver_set_observer(NULL, see, NULL), TRIBO_ERR_NULL);
     ck_assert(stained(&count, sizeof count));
     ck_assert_uint_gt(strlen(tribo_driver_message(NULL)), 0);

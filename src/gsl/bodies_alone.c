@@ -1,0 +1,329 @@
+#include "bodies_alone.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../common/real.h"
+#include "../common/simd.h"
+
+/* ----------------------------------------------------------------------------------------------------------------- life */
+
+/* The only entry of contact i in J that is not 0; 0 if there are none, or more. */
+static int find_body(const struct matrix *j, size_t i, size_t *body, double *turn)
+{
+    size_t count = 0;
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        if (j->val[k] != 0.0) {
+            *body = j->col[k];
+            *turn = j->val[k];
+            count++;
+        }
+    }
+    return count == 1;
+}
+
+/* Whether each contact has a body of its own, on which alone its force acts. single [ndof] is workspace: all 1. */
+static int find_bodies(struct bodies_alone *b, const tribo_system *sys, unsigned char *single)
+{
+    const struct matrix *response = &sys->response;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (!find_body(&sys->direction, i, &b->body[i], &b->turn[i]) || !single[b->body[i]]) {
+            return 0;
+        }
+        const size_t d = b->body[i];
+        const double mobility = tribo_matrix_get(response, d, i);
+        b->mass[d] = sys->tally[i] * b->turn[i] / mobility;
+        single[d] = 0;
+        if (!(b->mass[d] > 0.0) || !isfinite(b->mass[d]) || fabs(mobility) < DBL_MIN) {
+            return 0;
+        }
+    }
+    return response->first[response->rows] == sys->ncontact;
+}
+
+/* The blocks in which matrix a has entries in rows of block k, found beyond those marked already: to, or NULL only to count. */
+static size_t find_around(const struct matrix *a, size_t k, size_t *mark, size_t *to)
+{
+    size_t count = 0;
+    const size_t end = (k + 1) * MATRIX_BLOCK;
+    for (size_t i = k * MATRIX_BLOCK; i < end && i < a->rows; i++) {
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            const size_t block = a->col[e] / MATRIX_BLOCK;
+            if (mark[block] != k + 1) {
+                mark[block] = k + 1;
+                if (to) {
+                    to[count] = block;
+                }
+                count++;
+            }
+        }
+    }
+    return count;
+}
+
+/* The map of the blocks: counted first, then written. mark [2 blocks] is workspace, all 0. */
+static int find_map(struct bodies_alone *b, const tribo_system *sys, size_t *mark)
+{
+    for (size_t k = 0; k < b->blocks; k++) {
+        b->first[k + 1] =
+            b->first[k] + 1 + find_around(&sys->stiffness, k, mark, NULL) + find_around(&sys->damping, k, mark, NULL);
+    }
+    b->around = malloc((b->first[b->blocks] + 1) * sizeof *b->around);
+    for (size_t k = 0; b->around && k < b->blocks; k++) {
+        size_t *to = b->around + b->first[k];
+        *to++ = k;
+        to += find_around(&sys->stiffness, k, mark + b->blocks, to);
+        find_around(&sys->damping, k, mark + b->blocks, to);
+    }
+    return b->around != NULL;
+}
+
+/* How many blocks there are. */
+static size_t blocks_of(size_t n)
+{
+    return (n + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
+}
+
+static int allocate(struct bodies_alone *b, size_t n, size_t c)
+{
+    b->blocks = blocks_of(n);
+    b->body = malloc((c + 1) * sizeof *b->body);
+    b->mass = calloc(5 * n + 2 * c + 1, sizeof *b->mass);
+    b->first = calloc(b->blocks + 1, sizeof *b->first);
+    b->driven = calloc(4 * b->blocks + 1, 1);
+    if (!b->body || !b->mass || !b->first || !b->driven) {
+        return 0;
+    }
+    b->brake = b->mass + n;
+    b->before = b->brake + n;
+    b->after = b->before + n;
+    b->load = b->after + n;
+    b->turn = b->load + n;
+    b->room = b->turn + c;
+    b->stirred = b->driven + b->blocks;
+    b->stirs = b->stirred + b->blocks;
+    b->loaded = b->stirs + b->blocks;
+    return 1;
+}
+
+void tribo_bodies_free(struct bodies_alone *b)
+{
+    free(b->body);
+    free(b->mass);
+    free(b->first);
+    free(b->around);
+    free(b->driven);
+    memset(b, 0, sizeof *b);
+}
+
+int tribo_bodies_create(struct bodies_alone *b, const tribo_system *sys)
+{
+    const size_t n = sys->ndof;
+    memset(b, 0, sizeof *b);
+    unsigned char *single = malloc(n);
+    size_t *mark = calloc(2 * blocks_of(n), sizeof *mark);
+    int done = single && mark && allocate(b, n, sys->ncontact);
+    if (done) {
+        memset(single, 1, n);
+        if (!find_bodies(b, sys, single)) {
+            tribo_bodies_free(b);
+        } else {
+            done = find_map(b, sys, mark);
+        }
+    }
+    free(single);
+    free(mark);
+    return done;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- settings */
+
+/* Whether Coulomb's law of scalar contacts with one limit is all that there is. */
+static int plain_contacts(struct bodies_alone *b, const tribo_system *sys)
+{
+    size_t planar = 0;
+    tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
+    tribo_get_static(sys->contacts, b->room, NULL);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        planar += b->room[i] > 1.0;
+    }
+    return !planar;
+}
+
+static void take_limits(struct bodies_alone *b, const tribo_system *sys)
+{
+    tribo_get_limit(sys->contacts, b->room);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t d = b->body[i];
+        b->brake[d] = product(fabs(tribo_matrix_get(&sys->response, d, i)), lesser(b->room[i], TRIBO_FAR));
+    }
+}
+
+/* Blocks on which something acts that changes with time, or moves; and those with a load. */
+static void find_driven(struct bodies_alone *b, const tribo_system *sys)
+{
+    memset(b->driven, tribo_system_limits_vary(sys), b->blocks);
+    memset(b->loaded, 0, b->blocks);
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *h = &sys->harmonic[s];
+        for (size_t k = 0; k < h->count; k++) {
+            const size_t d = h->drives == DRIVES_LOAD ? h->index[k] : b->body[h->index[k]];
+            b->driven[d / MATRIX_BLOCK] |= h->drives == DRIVES_BASE || h->omega != 0.0;
+            b->loaded[d / MATRIX_BLOCK] |= h->drives == DRIVES_LOAD;
+        }
+    }
+    for (size_t s = 0; s < sys->tables; s++) {
+        for (size_t d = 0; d < sys->ndof; d++) {
+            b->driven[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
+            b->loaded[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
+        }
+    }
+}
+
+int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
+{
+    b->goes_on = 0;
+    b->revision = tribo_system_revision(sys);
+    b->fits = b->body && plain_contacts(b, sys);
+    if (b->fits) {
+        memset(b->stirred, 1, b->blocks);
+        memset(b->load, 0, sys->ndof * sizeof *b->load);
+        find_driven(b, sys);
+        take_limits(b, sys);
+    }
+    return b->fits;
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- steps */
+
+static void find_bases(struct bodies_alone *b, tribo_system *sys, double t, double *velocity)
+{
+    tribo_system_set_time(sys, t);
+    memset(b->room, 0, sys->ncontact * sizeof *b->room);
+    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, b->room);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        velocity[b->body[i]] = b->room[i] / b->turn[i];
+    }
+}
+
+static void find_loads(struct bodies_alone *b, tribo_system *sys)
+{
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *h = &sys->harmonic[s];
+        for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
+            b->load[h->index[k]] = 0.0;
+        }
+    }
+    if (sys->tables) {
+        memset(b->load, 0, sys->ndof * sizeof *b->load);
+    }
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, b->load);
+}
+
+/* All that acts from outside, at the times of the step. */
+static void prepare(struct bodies_alone *b, tribo_system *sys, const struct body_step *s)
+{
+    if (sys->base_harmonics) {
+        double *first = b->before;
+        b->before = b->after;
+        b->after = first;
+        if (!b->goes_on) {
+            find_bases(b, sys, s->from, b->before);
+        }
+        find_bases(b, sys, s->to, b->after);
+    }
+    b->goes_on = 1;
+    tribo_system_set_time(sys, s->t);
+    find_loads(b, sys);
+    if (tribo_system_limits_vary(sys)) {
+        take_limits(b, sys);
+    }
+}
+
+enum { STIRS = 1, GROWS = 2 };
+
+/* n degrees of freedom, from the first of those that all arrays begin with. A contact whose body would come no farther than its
+ * force can bring it back rests at the end. work: the accelerations without friction, which become what friction does. */
+TRIBO_SIMD static int move(size_t n, double time, double h, const double *restrict mass, const double *restrict brake,
+                           const double *restrict before, const double *restrict after, const double *restrict q,
+                           const double *restrict u, double *restrict q_to, double *restrict u_to, double *restrict work)
+{
+    int64_t stirs = 0, grows = 0; /* as wide as what is compared */
+    for (size_t i = 0; i < n; i++) {
+        const double most = time * brake[i], free = u[i] + time * work[i], v = free - after[i];
+        const double change = clamp(-v, -most, most);
+        const int rests = fabs(v) < most;
+        const double end = (rests ? after[i] : free) + (rests ? 0.0 : change); /* no choice of sums: that makes loops fast */
+        const double place = q[i] + h * end;
+        work[i] = mass[i] * change * ((u[i] - before[i]) + (end - after[i]));
+        u_to[i] = end;
+        q_to[i] = place;
+        stirs |= fabs(u[i]) + fabs(end) > 0.0 ? -1 : 0;
+        grows |= fabs(end) + fabs(place) <= DBL_MAX ? 0 : -1;
+    }
+    return (stirs ? STIRS : 0) | (grows ? GROWS : 0);
+}
+
+TRIBO_SIMD static double sum_of(size_t n, double *x)
+{
+    for (; n > 1; n -= n / 2) {
+        const size_t half = n - n / 2;
+        double *restrict to = x;
+        const double *restrict from = x + half;
+        for (size_t i = 0; i < n / 2; i++) {
+            to[i] += from[i];
+        }
+    }
+    return x[0];
+}
+
+/* Whether anything around block k has moved, or something changes with time. */
+static int awake(const struct bodies_alone *b, size_t k)
+{
+    int any = b->driven[k];
+    for (size_t e = b->first[k]; !any && e < b->first[k + 1]; e++) {
+        any = b->stirred[b->around[e]];
+    }
+    return any;
+}
+
+/* The step of the degrees of freedom from i on; returns STIRS, GROWS. */
+static int step_block(const struct bodies_alone *b, const tribo_system *sys, const struct body_step *s, size_t i, double *energy)
+{
+    static const double nothing[MATRIX_BLOCK];
+    double work[MATRIX_BLOCK];
+    const size_t n = sys->ndof - i < MATRIX_BLOCK ? sys->ndof - i : MATRIX_BLOCK;
+    const double *before = sys->base_harmonics ? b->before + i : nothing, *after = sys->base_harmonics ? b->after + i : nothing;
+    memcpy(work, b->loaded[i / MATRIX_BLOCK] ? b->load + i : nothing, n * sizeof *work);
+    tribo_matrix_add_rows(&sys->stiffness, i, i + n, -1.0, s->q, work);
+    if (sys->damping.rows) {
+        tribo_matrix_add_rows(&sys->damping, i, i + n, -1.0, s->u, work);
+    }
+    const int did = move(n, s->to - s->from, s->h, b->mass + i, b->brake + i, before, after, s->q + i, s->u + i, s->q_to + i,
+                         s->u_to + i, work);
+    *energy -= 0.5 * sum_of(n, work);
+    return did;
+}
+
+int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct body_step *s, double *energy)
+{
+    int all = 0;
+    prepare(b, sys, s);
+    for (size_t k = 0, i = 0; k < b->blocks; k++, i += MATRIX_BLOCK) {
+        b->stirs[k] = 0;
+        if (awake(b, k)) {
+            const int did = step_block(b, sys, s, i, energy);
+            b->stirs[k] = did & STIRS;
+            all |= did;
+        } else {
+            b->skipped += sys->ndof - i < MATRIX_BLOCK ? sys->ndof - i : MATRIX_BLOCK;
+        }
+    }
+    unsigned char *last = b->stirred;
+    b->stirred = b->stirs;
+    b->stirs = last;
+    return !(all & GROWS);
+}

@@ -1,0 +1,48 @@
+/* Steps of central differences where contacts share no body: each acts on one degree of freedom of its own, so that a step needs
+ * no solver, and goes block by block of degrees of freedom through everything that is to be done. Blocks at rest are left out.
+ *
+ * A block in which all velocities were exactly 0 before the last step and after it, on which no load depends on time, and around
+ * which the same holds of all blocks that pull at it, is where it was; the next step would do with the same numbers what the last
+ * one did. So it waits until a block around it stirs, and the motion is the same to the last bit. */
+#ifndef TRIBO_BODIES_ALONE_H
+#define TRIBO_BODIES_ALONE_H
+
+#include "system.h"
+
+struct bodies_alone {
+    size_t *body;                   /* [ncontact] degree of freedom; NULL: contacts share bodies */
+    double *turn;                   /* [ncontact] J_i there */
+    double *mass;                   /* [ndof] times how often the energy counts the contact; 0 without contact */
+    double *brake;                  /* [ndof] by what the contact can slow it down in a unit of time: |B| limit */
+    double *before, *after;         /* [ndof] velocities of the bases at both ends of a step, 0 where there are none */
+    double *load;                   /* [ndof] accelerations */
+    double *room;                   /* [ncontact] */
+    size_t blocks, skipped;         /* degrees of freedom left out, step by step, so far */
+    size_t *first, *around;         /* blocks around[first[k]] to around[first[k + 1] - 1] pull at block k */
+    unsigned char *driven;          /* [blocks] load, base or limits depend on time: never at rest */
+    unsigned char *loaded;          /* [blocks] there is a load */
+    unsigned char *stirred, *stirs; /* [blocks] something moved in the last step, in this one */
+    int goes_on;                    /* after is what the next step begins with */
+    int fits;                       /* the settings are such that steps can be taken */
+    size_t revision;                /* of the system */
+};
+
+/* A step: velocities u at the time from become those at to, by the forces at t and q, and q moves on with them for a time
+ * of h. */
+struct body_step {
+    double from, t, to, h;
+    const double *q, *u;
+    double *q_to, *u_to; /* [ndof] which hold what the step before last left there, if that did go on */
+};
+
+/* 1, or 0 if out of memory. What failed may be freed too. */
+int tribo_bodies_create(struct bodies_alone *b, const tribo_system *sys);
+void tribo_bodies_free(struct bodies_alone *b);
+
+/* Whether steps can be taken with the settings as they are; all blocks are awake then, and what steps go on from is forgotten. */
+int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys);
+
+/* Adds what friction dissipates to the energy. 0 if the motion is no longer finite, else 1. */
+int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct body_step *s, double *energy);
+
+#endif

@@ -1,0 +1,198 @@
+/* Method "central/fixed" goes its own way where contacts share no body, and leaves out what is at rest: the motion is the one of
+ * contacts that are solved for together, which a contact that is open ties into one group. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "run.h"
+
+/* Masses of 1 in a row between springs of 1, each on a contact but every `bare`-th; the ends are tied to the ground. */
+struct row {
+    size_t n, bare; /* 0: all are on contacts */
+    int damped, tied;
+};
+
+enum { PLAIN, LOADED, DAMPED, BELTS, SWINGING, LIMIT_TABLE, RELEASED, SETTINGS };
+
+static const double knots[] = {0.0, 3.0, 4.0, 5.0};
+
+static gsl_spmatrix *band(size_t n, double diagonal, double beside)
+{
+    gsl_spmatrix *a = gsl_spmatrix_alloc(n, n);
+    for (size_t i = 0; i < n; i++) {
+        gsl_spmatrix_set(a, i, i, diagonal);
+        if (i > 0 && beside < 0.0) {
+            gsl_spmatrix_set(a, i - 1, i, beside);
+            gsl_spmatrix_set(a, i, i - 1, beside);
+        }
+    }
+    return a;
+}
+
+static int has_contact(const struct row *r, size_t i)
+{
+    return !r->bare || i % r->bare != 0;
+}
+
+static size_t contacts_of(const struct row *r)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < r->n; i++) {
+        count += (size_t)has_contact(r, i);
+    }
+    return count;
+}
+
+/* Contacts are numbered from the last mass to the first, and see the velocity with a factor of -2. */
+static tribo_system *row_create(const struct row *r)
+{
+    const size_t c = contacts_of(r);
+    gsl_spmatrix *m = band(r->n, 1.0, 0.0), *k = band(r->n, 2.0, -1.0), *d = band(r->n, 0.2, -0.1);
+    gsl_spmatrix *j = gsl_spmatrix_alloc(c + (size_t)r->tied, r->n);
+    for (size_t i = 0, at = c; i < r->n; i++) {
+        if (has_contact(r, i)) {
+            gsl_spmatrix_set(j, --at, i, -2.0);
+        }
+    }
+    if (r->tied) {
+        gsl_spmatrix_set(j, c, 0, 1.0);
+        if (r->n > 1) {
+            gsl_spmatrix_set(j, c, 1, -1.0);
+        }
+    }
+    tribo_system *sys;
+    char message[200];
+    const int status = tribo_system_linear_sparse(&sys, m, r->damped ? d : NULL, k, j, 0, message, sizeof message);
+    require(!status, "%s", message);
+    gsl_spmatrix_free(m);
+    gsl_spmatrix_free(k);
+    gsl_spmatrix_free(d);
+    gsl_spmatrix_free(j);
+    return sys;
+}
+
+/* What acts, by setting, on what number of contacts; x has room. */
+static void act(tribo_system *sys, const struct row *r, int setting, double *x)
+{
+    const size_t c = tribo_system_ncontact(sys), solid = contacts_of(r);
+    memset(x, 0, 4 * (c + r->n) * sizeof *x);
+    for (size_t i = 0; i < solid; i++) {
+        x[i] = 0.1 + 0.01 * (double)(i % 7);
+    }
+    assert_ok(tribo_set_limit(tribo_system_context(sys), x));
+    if (setting == SWINGING) {
+        for (size_t i = 0; i < solid; i++) {
+            x[i] *= i % 3 ? 0.0 : 0.8;
+        }
+        assert_ok(tribo_system_add_limit(sys, 1.3, x, NULL));
+    }
+    for (size_t k = 0; setting == LIMIT_TABLE && k < 4; k++) {
+        for (size_t i = 0; i < solid; i++) {
+            x[k * c + i] = 0.05 * (double)(k + 1);
+        }
+        x[k * c + solid] = 0.0;
+    }
+    if (setting == LIMIT_TABLE) {
+        assert_ok(tribo_system_set_limit_table(sys, 4, knots, x));
+    }
+    memset(x, 0, 4 * (c + r->n) * sizeof *x);
+    if (setting == BELTS) {
+        x[2] = 0.7;
+        x[solid - 1] = -0.5;
+        assert_ok(tribo_system_add_base_motion(sys, 0.0, x, NULL));
+        x[2] = 0.0;
+        assert_ok(tribo_system_add_base_motion(sys, 0.9, x, NULL));
+        memset(x, 0, c * sizeof *x);
+    }
+    x[0] = 2.0;
+    assert_ok(tribo_system_add_load(sys, 0.8, x, NULL));
+    if (setting == LOADED) {
+        const double value[] = {0.0, 0.0, 3.0, 0.0};
+        x[0] = 0.0;
+        x[r->n * 51 / 100] = 1.0;
+        assert_ok(tribo_system_add_load_table(sys, 4, knots, value, x));
+        x[r->n * 51 / 100] = 0.0;
+        x[r->n - 1] = 0.05;
+        assert_ok(tribo_system_add_load(sys, 0.0, x, NULL));
+    }
+}
+
+static int seen(double t, const double *y, int event, void *data)
+{
+    (void)t, (void)event;
+    *(double *)data += y[0] * y[0];
+    return 0;
+}
+
+/* From springs that strain the contacts a little, in three advances; watched: by an observer. */
+static double *motion(const struct row *r, int setting, int watched, size_t *rested)
+{
+    tribo_system *sys = row_create(r);
+    const size_t n = r->n, c = tribo_system_ncontact(sys);
+    double *y = calloc(2 * n + 2, sizeof *y), *x = malloc((4 * (c + n) + 1) * sizeof *x), t = 0.0;
+    act(sys, r, setting, x);
+    for (size_t i = 0; i < n; i++) {
+        y[i] = 0.01 * (double)((i * 37) % 11) * (double)(has_contact(r, i));
+    }
+    y[n + n / 4] = 0.8;
+    tribo_driver *drv = driver_create(sys, "central/fixed", 0.1, 0.0);
+    assert_ok(tribo_driver_set_observer(drv, watched ? seen : NULL, &y[2 * n + 1]));
+    driver_advance(drv, &t, 10.0, y);
+    driver_advance(drv, &t, 20.05, y);
+    if (setting == RELEASED) { /* what held does not hold any more */
+        memset(x, 0, c * sizeof *x);
+        assert_ok(tribo_set_limit(tribo_system_context(sys), x));
+    }
+    driver_advance(drv, &t, 30.0, y);
+    *rested = driver_count(drv, TRIBO_COUNT_RESTED);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    free(x);
+    return y;
+}
+
+static const struct row rows[] = {{1, 0, 0, 0}, {2, 0, 0, 0}, {5, 0, 0, 0}, {131, 4, 0, 0}, {400, 3, 0, 0}, {1500, 0, 0, 0}};
+
+TEST(as_solved_for_together)
+{
+    struct row r = rows[_i / SETTINGS % (int)COUNT(rows)];
+    const int setting = _i % SETTINGS, watched = _i / SETTINGS >= (int)COUNT(rows);
+    size_t rested, none;
+    if (r.n < 5 && setting == BELTS) {
+        return;
+    }
+    r.damped = setting == DAMPED;
+    double *alone = motion(&r, setting, watched, &rested);
+    r.tied = 1;
+    double *tied = motion(&r, setting, watched, &none);
+    assert_all_close(alone, tied, 2 * r.n + 1, 1e-12);
+    assert_close(alone[2 * r.n + 1], tied[2 * r.n + 1], 1e-12 * tied[2 * r.n + 1]);
+    ck_assert_uint_eq(none, 0);
+    require(r.n < 1500 || setting == SWINGING || setting == LIMIT_TABLE || rested > 0, "n = %zu, setting %d: none at rest", r.n,
+            setting);
+    free(alone);
+    free(tied);
+}
+
+/* Of the paper's chain a load moves 1%: its blocks are all that steps look at, from beginning to end, and the few beside them. */
+TEST(steps_cost_what_moves)
+{
+    const size_t n = 100000;
+    const double dt = 0.9 / (double)n;
+    double t = 0.0, *y = calloc(2 * n + 1, sizeof *y);
+    tribo_system *sys;
+    assert_ok(tribo_system_chain(&sys, n, 1.0, 0.01, 100.0));
+    tribo_driver *drv = driver_create(sys, "central/fixed", dt, 0.0);
+    driver_advance(drv, &t, 2000.0 * dt, y);
+    size_t moved = 0;
+    for (size_t i = 0; i < n; i++) {
+        moved += y[i] != 0.0;
+    }
+    const double rested = (double)driver_count(drv, TRIBO_COUNT_RESTED) / (double)driver_count(drv, TRIBO_COUNT_STEPS);
+    require(moved > n / 200 && moved < n / 50, "%zu blocks have moved", moved);
+    require(rested > 0.98 * (double)n, "%g of %zu blocks at rest, a step", rested, n);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    free(y);
+}
+
+TEST_MAIN("bodies_alone", {as_solved_for_together, 2 * (int)COUNT(rows) * SETTINGS}, {steps_cost_what_moves, 1})
