@@ -9,19 +9,23 @@
 
 #include "breakaway.h"
 #include "hidden.h"
+#include "step_band.h"
 #include "step_form.h"
 
 /* For steps of length h: A = I + h/2 AC + h^2/4 AK in GSL's band format, factorized; A^-1 B; and the contacts that see it. */
 struct moreau {
     struct step_form common;
-    double h; /* 0: nothing is prepared */
+    double h;              /* 0: nothing is prepared */
+    struct step_band held; /* where the system allows it: then the rest is made when it is first needed */
+    int whole;             /* the rest is made */
     size_t below, above;
     double *band;
     unsigned int *pivot;
     double *response;         /* [ncontact][ndof] */
     double *limit;            /* [ncontact] */
     double *ratio, *velocity; /* [ncontact] of static limits */
-    size_t statics;           /* revision of the system's contacts that these came from; 0: contacts have not got them */
+    size_t statics;           /* revision of the system's contacts that these came from */
+    int breaks, tell;         /* some limits are static; contacts have not got them yet */
     double *load;             /* [ndof] at the end of the step before */
     tribo_context *contacts;
     size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
@@ -33,6 +37,7 @@ static void destroy(tribo_driver *drv)
     if (m) {
         tribo_destroy(m->contacts);
         tribo_step_form_free(&m->common);
+        tribo_step_band_free(&m->held);
         free(m->limit);
         free(m->band);
         free(m->pivot);
@@ -76,6 +81,12 @@ static void solve(const struct moreau *m, size_t n, double *x)
     gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
 }
 
+static int singular(const tribo_system *sys, double h, size_t where)
+{
+    return tribo_system_fail(sys, TRIBO_ERR_INDEFINITE,
+                             "the matrix of a step of length %g is singular at degree of freedom %zu", h, where);
+}
+
 static int factorize(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t n = sys->ndof;
@@ -107,8 +118,7 @@ static int factorize(struct moreau *m, const tribo_system *sys, double h)
     gsl_linalg_LU_band_decomp(n, m->below, m->above, &a.matrix, &pivot);
     for (size_t i = 0; i < n; i++) {
         if (m->band[i * width + middle] == 0.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_INDEFINITE,
-                                     "the matrix of a step of length %g is singular at degree of freedom %zu", h, i);
+            return singular(sys, h, i);
         }
     }
     return TRIBO_OK;
@@ -175,18 +185,17 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = tribo_revision(sys->contacts);
-    m->statics = 0;
+    m->tell = 1;
     const int status =
         planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
     m->contacts = status ? NULL : m->contacts;
     return !status;
 }
 
-/* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B. */
-static int prepare(struct moreau *m, const tribo_system *sys, double h)
+/* The factor, A^-1 B, and a context with the operator J A^-1 B. */
+static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    m->h = 0.0;
     int status = factorize(m, sys, h);
     if (status) {
         return status;
@@ -207,12 +216,27 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
     }
     status = set_operator(m, sys, r, h);
     free(r);
-    if (status) {
-        return status;
+    m->whole = !status;
+    return status;
+}
+
+/* Prepares steps of length h. */
+static int prepare(struct moreau *m, const tribo_system *sys, double h)
+{
+    size_t where = 0;
+    m->h = 0.0;
+    m->whole = 0;
+    m->held.n = 0;
+    int status = planar_of(sys->contacts) ? TRIBO_OK : tribo_step_band_create(&m->held, sys, h, &where);
+    status = status == TRIBO_ERR_INDEFINITE ? singular(sys, h, where)
+             : status                       ? tribo_system_fail(sys, status, "out of memory for the matrix of a step")
+             : m->held.n                    ? TRIBO_OK
+                                            : prepare_whole(m, sys, h);
+    if (!status) {
+        m->h = h;
+        m->common.revision = sys->revision;
     }
-    m->h = h;
-    m->common.revision = sys->revision;
-    return TRIBO_OK;
+    return status;
 }
 
 static void find_load(struct moreau *m, tribo_system *sys, double t)
@@ -226,30 +250,32 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_revision(sys->contacts);
     tribo_get_limit(sys->contacts, m->limit);
-    tribo_set_limit(m->contacts, m->limit);
     if (m->statics != revision) {
-        tribo_get_static(sys->contacts, m->ratio, m->velocity);
-        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
         m->statics = revision;
+        m->breaks = 0;
+        m->tell = 1;
+        tribo_get_static(sys->contacts, m->ratio, m->velocity);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            m->breaks |= m->ratio[i] > 1.0;
+        }
     }
 }
 
-static int moreau_step(tribo_driver *drv, double t, double next, double *y)
+static void give_limits(struct moreau *m, const tribo_system *sys)
 {
-    struct moreau *m = drv->own;
-    struct step_form *s = &m->common;
-    tribo_system *sys = drv->sys;
-    const size_t n = sys->ndof, c = sys->ncontact;
-    const double h = next - t;
-    double *du = s->a, *u = y + n;
-    /* steps of equal length differ by the rounding of time only */
-    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
-        const int status = prepare(m, sys, h);
-        if (status) {
-            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
-        }
+    tribo_set_limit(m->contacts, m->limit);
+    if (m->tell) {
+        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
+        m->tell = 0;
     }
-    tribo_step_form_begin(s, sys, t, u);
+}
+
+/* What loads and structure do to the velocities in a step, but for the inverse of A; s->u is where half of a step leads to. */
+static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *y, double *du)
+{
+    struct step_form *s = &m->common;
+    const size_t n = sys->ndof;
+    const double h = next - t, *u = y + n;
     if (!s->goes_on) {
         find_load(m, sys, t);
     }
@@ -266,27 +292,82 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
         tribo_matrix_multiply_add(&sys->damping, -h, u, du);
     }
     sys->evaluations++;
+}
+
+/* The forces of the step, which contacts slide, and the velocity s->u at its end: from the operator that contacts see. */
+static int respond_whole(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    struct step_form *s = &m->common;
+    const size_t n = sys->ndof;
     solve(m, n, du);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = u[i] + du[i];
     }
-    tribo_step_form_find_base(s, sys, next);
     tribo_step_form_relative(s, sys, s->u, s->end);
-    tribo_step_form_set_limits(sys, t + 0.5 * h);
-    take_limits(m, sys);
+    give_limits(m, sys);
     const int status = tribo_step_form_force(s, m->contacts, h);
-    if (status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_step_form_grew(drv, t);
-    }
     if (status) {
-        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(m->contacts));
+        return status;
     }
-    for (size_t i = 0; i < c; i++) {
+    for (size_t i = 0; i < sys->ncontact; i++) {
         for (size_t d = 0; d < n; d++) {
             s->u[d] += h * s->f[i] * m->response[i * n + d];
         }
     }
     tribo_get_slip(m->contacts, s->mode);
+    return TRIBO_OK;
+}
+
+/* The same in the band; 0 if that is not the way, or has not led to the end. */
+static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    struct step_form *s = &m->common;
+    if (!m->held.n || m->breaks || !tribo_step_band_solve(&m->held, h, m->limit, s->base, u, du, s->f)) {
+        return 0;
+    }
+    for (size_t i = 0; i < sys->ndof; i++) {
+        s->u[i] = u[i] + du[i];
+    }
+    memcpy(s->mode, m->held.at, sys->ncontact);
+    return 1;
+}
+
+static int respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    if (respond_in_band(m, sys, h, u, du)) {
+        return tribo_dense_finite(m->common.f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
+    }
+    const int status = m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
+    return status ? status : respond_whole(m, sys, h, u, du);
+}
+
+static int moreau_step(tribo_driver *drv, double t, double next, double *y)
+{
+    struct moreau *m = drv->own;
+    struct step_form *s = &m->common;
+    tribo_system *sys = drv->sys;
+    const size_t n = sys->ndof;
+    const double h = next - t;
+    double *u = y + n;
+    /* steps of equal length differ by the rounding of time only */
+    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
+        const int status = prepare(m, sys, h);
+        if (status) {
+            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+        }
+    }
+    tribo_step_form_begin(s, sys, t, u);
+    find_push(m, sys, t, next, y, s->a);
+    tribo_step_form_find_base(s, sys, next);
+    tribo_step_form_set_limits(sys, t + 0.5 * h);
+    take_limits(m, sys);
+    const int status = respond(m, sys, h, u, s->a);
+    if (status == TRIBO_ERR_NOT_FINITE) {
+        return tribo_step_form_grew(drv, t);
+    }
+    if (status) {
+        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(m->whole ? m->contacts : sys->contacts));
+    }
     tribo_system_snap(sys, s->mode, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
     s->goes_on = 1;
