@@ -5,17 +5,14 @@
 
 #include <gsl/gsl_spmatrix.h>
 
+#include "degrees.h"
 #include "options.h"
 
 /* A structure as finite-element programs hand it over. */
 struct structure {
     size_t ndof;
     gsl_spmatrix *mass, *stiffness;
-    struct degree {
-        double at[3];
-        int direction;          /* 1, 2, 3 for x, y, z */
-        size_t row, node, line; /* as in the file */
-    } * dof;                    /* [ndof] in the order of the rows */
+    struct degree *dof; /* [ndof] in the order of the rows */
 };
 
 /* Reads matrices and degrees of freedom; ends the program, naming file, line and value, if anything is wrong with them. */
