@@ -11,14 +11,14 @@ echo
 echo "$figure: relative error of D"
 awk -F, -v laws="$laws" '
     FNR == 1 { file++; next }
-    { dt[FNR] = $1; error[FNR, file] = $3; rows = FNR }
+    { dt[FNR] = $1; error[FNR, file] = $3; if (FNR > rows) rows = FNR }
     END {
         n = split(laws, law, " ")
         printf "%12s", "dt"
         for (i = 1; i <= n; i++) printf "%17s", law[i]
         for (r = 2; r <= rows; r++) {
             printf "\n%12.4g", dt[r]
-            for (i = 1; i <= n; i++) printf "%17.2e", error[r, i]
+            for (i = 1; i <= n; i++) printf "%17s", (r, i) in error ? sprintf("%.2e", error[r, i]) : ""
         }
         printf "\n"
     }' "$@"

@@ -37,6 +37,9 @@
 !>   TRBGLW(IH, LAW, IERR)                                                             LAW
 !>   TRBLIM(IH, N, FMUN, IERR)                       FMUN(N) limits mu*N >= 0
 !>   TRBNLD(IH, N, FMU, FN, IERR)                    FMU(N) >= 0, FN(N) normal loads   the limits FMU*max(FN, 0)
+!>   TRBSTA(IH, N, RATIO, VSTR, IERR)                RATIO(N) >= 1 static limit to limit; VSTR(N) > 0: falls with the speed, or
+!>                                                   VSTR(1) = 0: drops at once, VSTR(2) and on are not read
+!>   TRBGST(IH, N, RATIO, VSTR, IERR)                                                  RATIO(N), VSTR(N), 0 if it drops at once
 !>   TRBPLN(IH, NPL, IFIRST, IERR)                   contacts IFIRST(NPL) and the next of each are the two directions of one
 !>                                                   planar contact; NPL 0: none are
 !>   TRBLM1(IH, FMUN, IERR)                          FMUN one for all
@@ -67,6 +70,7 @@
 !>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
 !>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
 !>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of the last TRBBTN
+!>   TRBLPR(IH, N, DLIM, DF, IERR)                   DLIM(N): change of the limits     DF(N): that of the forces of the last TRBBTN
 !>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
 !>   TRBSTM(IH, N, DT, V, VFREE, F, IERR)            DT, V(N) at its start, VFREE(N)       F(N): the same to second order
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
@@ -418,6 +422,37 @@ subroutine trbnld(ih, n, fmu, fn, ierr)
   if (ierr == TRIBO_OK) ierr = c_set_normal_load(ctx, fmu, fn)
 end subroutine trbnld
 
+subroutine trbsta(ih, n, ratio, vstr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: ratio(*), vstr(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+  logical :: drops
+
+  call find(ih, ctx, ierr, n)
+  if (ierr /= TRIBO_OK) return
+  drops = n < 1
+  if (.not. drops) drops = abs(vstr(1)) <= 0
+  if (drops) then
+    ierr = c_set_static(ctx, ratio)
+  else
+    ierr = c_set_static(ctx, ratio, vstr)
+  end if
+end subroutine trbsta
+
+subroutine trbgst(ih, n, ratio, vstr, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(inout) :: ratio(*), vstr(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_get_static(ctx, ratio, vstr)
+end subroutine trbgst
 subroutine trbpln(ih, npl, ifirst, ierr)
   use tribo_fixed
   implicit none
@@ -682,6 +717,19 @@ subroutine trbtpr(ih, n, dv, da, df, ierr)
   call find(ih, ctx, ierr, n)
   if (ierr == TRIBO_OK) ierr = c_tangent_product(ctx, dv, da, df)
 end subroutine trbtpr
+
+subroutine trblpr(ih, n, dlim, df, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: dlim(*)
+  real(dp), intent(inout) :: df(*)
+  integer, intent(out) :: ierr
+  type(c_ptr) :: ctx
+
+  call find(ih, ctx, ierr, n)
+  if (ierr == TRIBO_OK) ierr = c_limit_product(ctx, dlim, df)
+end subroutine trblpr
 
 subroutine trbstf(ih, n, dt, vfree, f, ierr)
   use tribo_fixed

@@ -61,6 +61,7 @@ module tribo_contexts
     procedure :: set_normal_load
     procedure :: set_planar
     procedure :: get_limit
+    procedure :: set_static, get_static
     procedure, private :: set_epsilon_each, set_epsilon_all
     generic :: set_epsilon => set_epsilon_each, set_epsilon_all
     procedure :: get_epsilon
@@ -70,7 +71,7 @@ module tribo_contexts
     procedure :: set_coupling, get_coupling
     procedure :: set_sharing, get_sharing
     procedure :: force, force_tangent
-    procedure :: balance, balance_tangent, tangent_product
+    procedure :: balance, balance_tangent, tangent_product, limit_product
     procedure :: step_force, step_force_mean
     procedure :: solve_box
     procedure :: accept
@@ -393,6 +394,37 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_normal_load
 
+  !> Static friction above kinetic: a contact at rest holds up to ratio*limit, ratio >= 1. Once it slides, its limit drops to
+  !> limit at once; with velocity > 0 (Stribeck) it is limit*(1 + (ratio - 1)*exp(-abs(v)/velocity)). Without ratio, or all 1:
+  !> rest makes no difference. tribo.h tells what that means in each law.
+  subroutine set_static(this, ratio, velocity, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in), optional, contiguous :: ratio(:), velocity(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (present(ratio)) call expect_size(w, 'ratio', ratio, w%n)
+    if (present(velocity)) call expect_size(w, 'velocity', velocity, w%n)
+    if (w%status == TRIBO_OK) w%status = c_set_static(w%ctx, ratio, velocity)
+    call finish(w, stat, errmsg)
+  end subroutine set_static
+
+  !> ratio is 1 where nothing was set, and velocity 0 where there is none.
+  subroutine get_static(this, ratio, velocity, stat, errmsg)
+    class(tribo_context), intent(in) :: this
+    real(dp), intent(inout), optional, contiguous :: ratio(:), velocity(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (present(ratio)) call expect_size(w, 'ratio', ratio, w%n)
+    if (present(velocity)) call expect_size(w, 'velocity', velocity, w%n)
+    if (w%status == TRIBO_OK) w%status = c_get_static(w%ctx, ratio, velocity)
+    call finish(w, stat, errmsg)
+  end subroutine get_static
   !> Planar contacts: contacts first(k) and first(k) + 1 become the two tangential directions of one, with limits as semi-axes; an
   !> array without elements: there are none.
   subroutine set_planar(this, first, stat, errmsg)
@@ -748,6 +780,23 @@ contains
     if (w%status == TRIBO_OK) w%status = c_tangent_product(w%ctx, dv, da, df)
     call finish(w, stat, errmsg)
   end subroutine tangent_product
+
+  !> The same for a change of limits, for hosts whose normal loads follow the motion: df = df_dlimit dlimit. Contacts with limit 0
+  !> are open and stay so.
+  subroutine limit_product(this, dlimit, df, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    real(dp), intent(in), contiguous :: dlimit(:)
+    real(dp), intent(inout) :: df(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    call expect_size(w, 'dlimit', dlimit, w%n)
+    call expect_size(w, 'df', df, w%n)
+    if (w%status == TRIBO_OK) w%status = c_limit_product(w%ctx, dlimit, df)
+    call finish(w, stat, errmsg)
+  end subroutine limit_product
 
   !> Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step dt,
   !> that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end(i) = 0 or f(i) =

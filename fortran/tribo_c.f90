@@ -262,6 +262,22 @@ module tribo_c
       integer(c_int) :: answer
     end function c_set_normal_load
 
+    function c_set_static(ctx, ratio, velocity) result(answer) bind(c,name='tribo_set_static')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in), optional :: ratio(*)
+      real(c_double), intent(in), optional :: velocity(*)
+      integer(c_int) :: answer
+    end function c_set_static
+
+    function c_get_static(ctx, ratio, velocity) result(answer) bind(c,name='tribo_get_static')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(inout), optional :: ratio(*)
+      real(c_double), intent(inout), optional :: velocity(*)
+      integer(c_int) :: answer
+    end function c_get_static
+
     function c_set_epsilon(ctx, epsilon) result(answer) bind(c,name='tribo_set_epsilon')
       import
       type(c_ptr), value :: ctx
@@ -426,6 +442,14 @@ module tribo_c
       real(c_double), intent(inout), optional :: df(*)
       integer(c_int) :: answer
     end function c_tangent_product
+
+    function c_limit_product(ctx, dlimit, df) result(answer) bind(c,name='tribo_limit_product')
+      import
+      type(c_ptr), value :: ctx
+      real(c_double), intent(in), optional :: dlimit(*)
+      real(c_double), intent(inout), optional :: df(*)
+      integer(c_int) :: answer
+    end function c_limit_product
 
     function c_step_force(ctx, dt, vfree, f) result(answer) bind(c,name='tribo_step_force')
       import

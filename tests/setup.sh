@@ -11,6 +11,9 @@ setup_has() {
     zlib1g-dev) echo '#include <zlib.h>' | gcc -E - ;;
     check) pkg-config --exists check ;;
     gnuplot-nox) command -v gnuplot ;;
+    petsc-dev | libpetsc-real-dev) pkg-config --exists 'PETSc >= 3.18' ;;
+    mpi-default-dev) command -v mpicc ;;
+    mpi-default-bin) command -v mpiexec ;;
     *) command -v "$1" ;;
     esac >/dev/null 2>&1 || dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null | grep -qx installed
 }

@@ -40,11 +40,22 @@ void *need_memory(size_t count, size_t size)
     return memory;
 }
 
+char *new_text(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    const int length = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    char *text = need_memory((size_t)length + 1, 1);
+    va_start(args, format);
+    vsnprintf(text, (size_t)length + 1, format, args);
+    va_end(args);
+    return text;
+}
+
 FILE *create_file(const char *folder, const char *name)
 {
-    const size_t length = strlen(folder) + strlen(name) + 2;
-    char *path = need_memory(length, 1);
-    snprintf(path, length, "%s/%s", folder, name);
+    char *path = new_text("%s/%s", folder, name);
     FILE *file = fopen(path, "w");
     if (!file) {
         die("cannot create %s: %s", path, strerror(errno));

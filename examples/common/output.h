@@ -21,6 +21,9 @@ void need(int status, const char *detail);
 /* malloc that ends the program instead of failing. */
 void *need_memory(size_t count, size_t size);
 
+/* printf into memory of its own. */
+char *new_text(const char *format, ...) PRINTF_LIKE(1);
+
 /* Creates folder/name; ends the program if it cannot. */
 FILE *create_file(const char *folder, const char *name);
 

@@ -4,34 +4,37 @@
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_complex_math.h>
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
+#include <gsl/gsl_sort_vector.h>
 
 #include "../common/output.h"
 
 /* What a mode answers to a harmonic force on it is that force by this. */
-static gsl_complex dynamic_stiffness(const struct damper *d, size_t k)
+static gsl_complex dynamic_stiffness(const struct damper *d, size_t k, double omega)
 {
-    return gsl_complex_rect(d->omega[k] * d->omega[k] - d->drive * d->drive, 2.0 * d->damping * d->omega[k] * d->drive);
+    return gsl_complex_rect(d->omega[k] * d->omega[k] - omega * omega, 2.0 * d->damping * d->omega[k] * omega);
 }
 
-double free_amplitude(const struct damper *d)
+double free_amplitude(const struct damper *d, double omega)
 {
     gsl_complex sum = GSL_COMPLEX_ZERO;
     for (size_t k = 0; k < d->modes; k++) {
         const gsl_complex force = gsl_complex_rect(d->force * d->load_shape[k] * d->load_shape[k], 0.0);
-        sum = gsl_complex_add(sum, gsl_complex_div(force, dynamic_stiffness(d, k)));
+        sum = gsl_complex_add(sum, gsl_complex_div(force, dynamic_stiffness(d, k, omega)));
     }
     return gsl_complex_abs(sum);
 }
 
-double free_norm(const struct damper *d)
+struct scale free_scale(const struct damper *d, double omega)
 {
-    double norm = 0.0;
+    struct scale s = {.amplitude = free_amplitude(d, omega)};
     for (size_t k = 0; k < d->modes; k++) {
-        const double q = d->force * fabs(d->load_shape[k]) / gsl_complex_abs(dynamic_stiffness(d, k));
-        norm = hypot(norm, hypot(d->omega[k], d->drive) * q);
+        const double q = d->force * fabs(d->load_shape[k]) / gsl_complex_abs(dynamic_stiffness(d, k, omega));
+        s.norm = hypot(s.norm, hypot(d->omega[k], omega) * q);
     }
-    return norm;
+    s.power = 0.5 * d->force * omega * s.amplitude;
+    return s;
 }
 
 /* Orthonormal motions of the modes that move no contact, as the last columns of *basis [modes][modes]; returns their number. */
@@ -65,7 +68,7 @@ static size_t held_motions(const struct damper *d, gsl_matrix **basis)
 }
 
 /* The dynamic stiffness and the load's shape in those motions. */
-static void reduce(const struct damper *d, const gsl_matrix *basis, gsl_matrix_complex *h, gsl_vector_complex *b)
+static void reduce(const struct damper *d, double omega, const gsl_matrix *basis, gsl_matrix_complex *h, gsl_vector_complex *b)
 {
     const size_t first = d->modes - b->size;
     for (size_t k = 0; k < d->modes; k++) {
@@ -75,14 +78,14 @@ static void reduce(const struct damper *d, const gsl_matrix *basis, gsl_matrix_c
             *at = gsl_complex_add_real(*at, mode * d->load_shape[k]);
             for (size_t j = 0; j < b->size; j++) {
                 at = gsl_matrix_complex_ptr(h, i, j);
-                *at = gsl_complex_add(*at,
-                                      gsl_complex_mul_real(dynamic_stiffness(d, k), mode * gsl_matrix_get(basis, k, first + j)));
+                *at = gsl_complex_add(
+                    *at, gsl_complex_mul_real(dynamic_stiffness(d, k, omega), mode * gsl_matrix_get(basis, k, first + j)));
             }
         }
     }
 }
 
-double stuck_amplitude(const struct damper *d)
+double stuck_amplitude(const struct damper *d, double omega)
 {
     gsl_matrix *basis;
     const size_t n = held_motions(d, &basis);
@@ -96,7 +99,7 @@ double stuck_amplitude(const struct damper *d)
         if (!h || !b || !s || !p) {
             die("out of memory for %zu modes", d->modes);
         }
-        reduce(d, basis, h, b);
+        reduce(d, omega, basis, h, b);
         const int failed = gsl_linalg_complex_LU_decomp(h, p, &sign) || gsl_linalg_complex_LU_solve(h, p, b, s);
         gsl_blas_zdotu(b, s, &x);
         amplitude = failed ? (double)NAN : d->force * gsl_complex_abs(x);
@@ -109,15 +112,53 @@ double stuck_amplitude(const struct damper *d)
     return amplitude;
 }
 
-struct optimum harmonic_balance(const struct damper *d)
+size_t stuck_frequencies(const struct damper *d, double *omega)
+{
+    gsl_matrix *basis;
+    const size_t n = held_motions(d, &basis);
+    if (n > 0) {
+        gsl_matrix *k = gsl_matrix_calloc(n, n);
+        gsl_eigen_symm_workspace *work = gsl_eigen_symm_alloc(n);
+        if (!k || !work) {
+            die("out of memory for %zu modes", d->modes);
+        }
+        for (size_t m = 0; m < d->modes; m++) {
+            gsl_vector_view held = gsl_matrix_row(basis, m);
+            gsl_vector_view shape = gsl_vector_subvector(&held.vector, d->modes - n, n);
+            gsl_blas_dsyr(CblasLower, d->omega[m] * d->omega[m], &shape.vector, k);
+        }
+        gsl_vector_view values = gsl_vector_view_array(omega, n);
+        need(gsl_eigen_symm(k, &values.vector, work), "modes with all contacts stuck");
+        gsl_sort_vector(&values.vector);
+        for (size_t i = 0; i < n; i++) {
+            omega[i] = sqrt(fmax(omega[i], 0.0));
+        }
+        gsl_matrix_free(k);
+        gsl_eigen_symm_free(work);
+    }
+    gsl_matrix_free(basis);
+    return n;
+}
+
+/* Whether all contacts have the limit that varies. */
+static int one_limit(const struct damper *d)
+{
+    int one = 1;
+    for (size_t c = 0; c < d->contacts; c++) {
+        one = one && isnan(d->limit[c]) && d->mu[c] == 1.0;
+    }
+    return one;
+}
+
+struct optimum harmonic_balance(const struct damper *d, double drive)
 {
     const double pi = acos(-1.0), none = (double)NAN;
     size_t driven = 0;
     double sum = 0.0;
     for (size_t k = 1; k < d->modes; k++) {
-        driven = fabs(d->omega[k] - d->drive) < fabs(d->omega[driven] - d->drive) ? k : driven;
+        driven = fabs(d->omega[k] - drive) < fabs(d->omega[driven] - drive) ? k : driven;
     }
-    if (fabs(d->omega[driven] / d->drive - 1.0) > 0.1 * d->damping) {
+    if (!one_limit(d) || fabs(d->omega[driven] / drive - 1.0) > 0.1 * d->damping) {
         return (struct optimum){none, none, none};
     }
     for (size_t i = 0; i < d->contacts; i++) {
@@ -125,5 +166,5 @@ struct optimum harmonic_balance(const struct damper *d)
     }
     const double shape = fabs(d->load_shape[driven]), load = d->force * shape, omega = d->omega[driven];
     const double modal = load / (4.0 * d->damping * omega * omega);
-    return (struct optimum){pi * load / (8.0 * sum), 0.5 * pi * load * modal / d->period, shape * modal};
+    return (struct optimum){pi * load / (8.0 * sum), 0.25 * drive * load * modal, shape * modal};
 }

@@ -1,32 +1,36 @@
 #ifndef EXAMPLES_OPTIONS_H
 #define EXAMPLES_OPTIONS_H
 
-#include <stddef.h>
+#include "contact.h"
+#include "numbers.h"
 
-enum { MAX_CONTACTS = 32, DEFAULT_MODES = 12 /* kept by default */ };
-
-/* A degree of freedom as the user names it: a node by its coordinates, and a direction (1, 2, 3 for x, y, z). */
-struct place {
-    double at[3];
-    int direction;
-    const char *text; /* for messages */
-};
+enum { DEFAULT_MODES = 12 /* kept by default */ };
 
 struct options {
-    const char *mass, *stiffness, *dofs, *out;
+    const char *mass, *stiffness, *dofs;
+    const char *out, *name;  /* folder of the tables, and how their names begin */
     const char *frequencies; /* NULL for none */
     size_t modes;            /* 0: the default, as far as there are so many */
     double damping;
-    struct place contact[MAX_CONTACTS], load;
+    struct contact contact[MAX_CONTACTS];
+    struct place load;
     size_t contacts;
-    double force, drive;
-    double limit_from, limit_to;
-    size_t limit_points; /* 1: limit_from alone */
+    double force;
+    struct range drive; /* Hz; from 0: the first natural frequency */
+    struct range limits;
+    int march;    /* find steady motions by marching */
+    size_t check; /* points to be found by marching as well */
     double step;
     int law;
+    size_t threads; /* 0: one a core */
 };
 
 /* Reads the command line; prints the help or ends the program with a message where that is due. */
 struct options read_options(int argc, char **argv);
+
+/* Whether a contact's limit follows the option --limits. */
+int limits_vary(const struct options *o);
+
+void print_help(void);
 
 #endif

@@ -6,12 +6,12 @@
 #include "lines.h"
 #include "matrix_file.h"
 
-struct structure read_structure(const struct options *o)
+struct structure read_structure(const char *mass, const char *stiffness, const char *dofs)
 {
     struct structure s = {0};
-    s.dof = read_degrees(o->dofs, &s.ndof);
-    s.mass = read_matrix(o->mass, s.ndof);
-    s.stiffness = read_matrix(o->stiffness, s.ndof);
+    s.dof = read_degrees(dofs, &s.ndof);
+    s.mass = read_matrix(mass, s.ndof);
+    s.stiffness = read_matrix(stiffness, s.ndof);
     return s;
 }
 
@@ -27,7 +27,7 @@ static double distance(const struct degree *d, const double *at)
     return hypot(hypot(d->at[0] - at[0], d->at[1] - at[1]), d->at[2] - at[2]);
 }
 
-size_t find_degree(const struct structure *s, const char *option, const struct place *p)
+size_t find_degree(const struct structure *s, const struct place *p)
 {
     const double origin[3] = {0.0, 0.0, 0.0};
     double size = 0.0;
@@ -38,20 +38,20 @@ size_t find_degree(const struct structure *s, const char *option, const struct p
     }
     const double *at = s->dof[nearest].at;
     if (!(distance(&s->dof[nearest], p->at) <= 1e-6 * size)) {
-        die("option %s %s: no free node is there; the nearest is at %g,%g,%g", option, p->text, at[0], at[1], at[2]);
+        die("%s: no free node is there; the nearest is at %g,%g,%g", p->origin, at[0], at[1], at[2]);
     }
     for (size_t i = 0; i < s->ndof; i++) {
         if (s->dof[i].direction != p->direction || distance(&s->dof[i], p->at) > 1e-6 * size) {
             continue;
         }
         if (found < s->ndof) {
-            die("option %s %s: two rows are there, %zu (node %zu) and %zu (node %zu)", option, p->text, s->dof[found].row,
-                s->dof[found].node, s->dof[i].row, s->dof[i].node);
+            die("%s: two rows are there, %zu (node %zu) and %zu (node %zu)", p->origin, s->dof[found].row, s->dof[found].node,
+                s->dof[i].row, s->dof[i].node);
         }
         found = i;
     }
     if (found == s->ndof) {
-        die("option %s %s: the node there cannot move along %c", option, p->text, "xyz"[p->direction - 1]);
+        die("%s: the node there cannot move along %c", p->origin, "xyz"[p->direction - 1]);
     }
     return found;
 }

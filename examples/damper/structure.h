@@ -5,8 +5,8 @@
 
 #include <gsl/gsl_spmatrix.h>
 
+#include "contact.h"
 #include "degrees.h"
-#include "options.h"
 
 /* A structure as finite-element programs hand it over. */
 struct structure {
@@ -16,11 +16,11 @@ struct structure {
 };
 
 /* Reads matrices and degrees of freedom; ends the program, naming file, line and value, if anything is wrong with them. */
-struct structure read_structure(const struct options *o);
+struct structure read_structure(const char *mass, const char *stiffness, const char *dofs);
 void free_structure(struct structure *s);
 
-/* The row of a place, which belongs to the option of that name; ends the program if the structure has none there. */
-size_t find_degree(const struct structure *s, const char *option, const struct place *p);
+/* The row of a place; ends the program if the structure has none there. */
+size_t find_degree(const struct structure *s, const struct place *p);
 
 /* Frequencies in Hz from a file, at most room of them, into hz; returns their number. */
 size_t read_frequencies(const char *path, double *hz, size_t room);

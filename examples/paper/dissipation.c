@@ -24,14 +24,15 @@ struct test_case {
     int cycle;            /* the one whose dissipation is taken */
     double epsilon;       /* in units of the step */
     int coarsest, finest; /* steps dt = 10^-(k/2), k = coarsest to finest */
+    int finest_further;   /* the finest of laws that are not the paper's */
     double exact;         /* for epsilon -> 0: event-driven integration; 2 alpha^3/3 for the rod */
 };
 
 static const struct test_case cases[] = {
-    {"fig7a", 0, 1.5, 0.5, 50, 2.0, 2, 10, 7.18924625072},
-    {"fig7b", 0, 2.0, 2.0, 50, 2.0, 2, 10, 1.763834207376},
-    {"fig9", 32, 0.25, 0.5, 4, 10.0 * 0.5, 3, 10, 0.0104949600025},
-    {"rod", 128, 0.25, 0.05, 4, 2.0, 5, 5, 2.0 * 0.25 * 0.25 * 0.25 / 3.0},
+    {"fig7a", 0, 1.5, 0.5, 50, 2.0, 2, 10, 9, 7.18924625072},
+    {"fig7b", 0, 2.0, 2.0, 50, 2.0, 2, 10, 10, 1.763834207376},
+    {"fig9", 32, 0.25, 0.5, 4, 10.0 * 0.5, 3, 10, 9, 0.0104949600025},
+    {"rod", 128, 0.25, 0.05, 4, 2.0, 5, 5, 5, 2.0 * 0.25 * 0.25 * 0.25 / 3.0},
 };
 
 static const struct test_case *find_case(const char *name)
@@ -54,6 +55,17 @@ static tribo_system *create_system(const struct test_case *c)
     return sys;
 }
 
+/* Whether a cycle ends as it began, but for rounding: then it is what all later ones are. */
+static int repeats(const double *y, const double *before, size_t dimension)
+{
+    for (size_t i = 0; i + 1 < dimension; i++) {
+        if (fabs(y[i] - before[i]) > 1e-14) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 /* Dissipation over the case's cycle, from rest, in steps of h. */
 static double dissipation(const struct test_case *c, int law, double period, double h)
 {
@@ -65,12 +77,12 @@ static double dissipation(const struct test_case *c, int law, double period, dou
     need(tribo_driver_create(&drv, sys, "rk4/fixed", h, 0.0, 0.0), tribo_message(contacts));
 
     const size_t dimension = tribo_system_dimension(sys);
-    double *y = need_memory(dimension, sizeof *y), t = 0.0, before = 0.0;
-    for (int k = 1; k <= c->cycle; k++) {
-        before = y[dimension - 1];
+    double *y = need_memory(2 * dimension, sizeof *y), *before = y + dimension, t = 0.0;
+    for (int k = 1; k <= c->cycle && !(k > 1 && repeats(y, before, dimension)); k++) {
+        memcpy(before, y, dimension * sizeof *y);
         need(tribo_driver_advance(drv, &t, k * period, y), tribo_driver_message(drv));
     }
-    const double d = y[dimension - 1] - before;
+    const double d = y[dimension - 1] - before[dimension - 1];
     free(y);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
@@ -100,9 +112,11 @@ static double fitted_order(const double *h, const double *error, size_t n)
 static size_t run_steps(const struct test_case *c, int law, FILE *table, FILE *values, double *h, double *error)
 {
     const double period = 2.0 * acos(-1.0) / c->omega;
+    const int paper = law == TRIBO_COULOMB || law == TRIBO_VELOCITY_LIMITED || law == TRIBO_QUINN;
+    const int finest = paper ? c->finest : c->finest_further;
     size_t n = 0;
     fprintf(table, "dt,D,relative error\n");
-    for (int k = c->coarsest; k <= c->finest; k++, n++) {
+    for (int k = c->coarsest; k <= finest; k++, n++) {
         h[n] = period / ceil(period * pow(10.0, 0.5 * k));
         const double d = dissipation(c, law, period, h[n]);
         error[n] = d / c->exact - 1.0;

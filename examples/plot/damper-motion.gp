@@ -26,13 +26,13 @@ do for [k = 1:2] {
     unset key
     side(text) = sprintf("set label 2 '%s' at graph -0.175, graph 0.5 center rotate", text)
     eval side('tip displacement, mm')
-    plot file(k) using 1:3 every 12 with lines linecolor '#000000'
+    plot file(k) using 1:3 every 2 with lines linecolor '#000000'
     unset title
     set tmargin at screen 0.65
     set bmargin at screen 0.30
     set ytics autofreq
     eval side('contact velocity, mm/s')
-    plot for [c = 1:3] file(k) using 1:(column(3 * c + 1)) every 12 with lines linestyle 10 + c
+    plot for [c = 1:3] file(k) using 1:(column(3 * c + 1)) every 2 with lines linestyle 10 + c
     set tmargin at screen 0.27
     set bmargin at screen 0.12
     set format x '%g'
@@ -44,9 +44,9 @@ do for [k = 1:2] {
     set ytics ('' 1, '' 2, '' 3)
     do for [c = 1:3] { set label 2 + c where(c) at graph -0.02, first c right textcolor rgb colour(c) }
     if (k == 1) { set key at screen 0.5, 0.015 center bottom horizontal } else { unset key }
-    plot for [c = 1:3] file(k) using 1:(column(3 * c + 3) == 0 ? 1 / 0 : c) every 6 \
+    plot for [c = 1:3] file(k) using 1:(column(3 * c + 3) == 0 ? 1 / 0 : c) \
              with lines linecolor '#c8c8c8' linewidth 3 title (c == 1 ? 'slips' : ''), \
-         for [c = 1:3] file(k) using 1:(column(3 * c + 3) == 0 ? c : 1 / 0) every 6 \
+         for [c = 1:3] file(k) using 1:(column(3 * c + 3) == 0 ? c : 1 / 0) \
              with lines linecolor rgb colour(c) linewidth 9, \
          1 / 0 with lines linecolor '#404040' linewidth 9 title 'sticks'
 }

@@ -187,7 +187,8 @@ TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
 /* Number of contacts. */
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 
-/* Law of all contacts; clears the reversal memory. Returns TRIBO_ERR_RANGE for a number that is no law. */
+/* Law of all contacts; clears the reversal memory. Returns TRIBO_ERR_RANGE for a number that is no law, TRIBO_ERR_UNSUPPORTED for
+ * one that knows no stick where limits drop at once (tribo_set_static). */
 TRIBO_API int tribo_set_law(tribo_context *ctx, int law);
 TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
 
@@ -200,6 +201,34 @@ TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);
 /* The limits that normal loads give: limit = mu max(load, 0). mu [n] in, finite and >= 0; load [n] in, finite: where it is 0 or
  * negative the contact has lifted off, and is open. Returns as tribo_set_limit; limits beyond 1e300 are cut to it. */
 TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *load);
+
+/* Static friction above kinetic: a contact at rest holds up to ratio*limit; once it slides, its limit is
+ *     limit                                                         without velocities: it drops at once;
+ *     N(|v|) = limit (1 + (ratio - 1) exp(-|v|/velocity))           with them (Stribeck): it falls with the speed.
+ * ratio     [n] in, or NULL   static limit over limit, finite and >= 1; NULL, or all 1: rest makes no difference
+ * velocity  [n] in, or NULL   > 0
+ *
+ * A limit that drops at once. Contacts near stick (|v| <= epsilon; COULOMB: v = 0) go by ratio*limit in the place of limit, and
+ * the others by limit. tribo_balance finds the forces, and those near stick whose |f_eq| is above ratio*limit break away: they go
+ * by limit from there on, all of them at the same time, and the forces are found again, until none breaks away. So contacts only
+ * leave, their order does not matter, and where several answers are possible this is the one. What has broken away may yet be
+ * held by the others, with |f| <= limit. A contact whose load just reaches its static limit holds; it counts as sliding in
+ * tribo_get_slip. In the partition coupling nothing is found again: each contact goes by its own f_eq, and so it does in
+ * tribo_force. Forces jump at |v| = epsilon, so that integrators are of first order there. VELOCITY_LIMITED and SMOOTH know no
+ * stick, and need velocities.
+ *
+ * A limit that falls with the speed. N(|v|) takes the place of limit in every law and coupling; forces are as continuous in v as
+ * they were.
+ *
+ * TRIBO_REAL_MAX_RATE is that of static limits, and so is the epsilon of tribo_set_epsilon_step. TRIBO_COUNT_SOLVES counts each
+ * time that forces of an island are found. tribo_solve_box knows no limits, and so no static ones.
+ * Returns TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (a ratio below 1), TRIBO_ERR_NOT_POSITIVE (velocity), TRIBO_ERR_UNSUPPORTED (a
+ * law without stick needs velocities; tribo_set_law returns it too. A ratio above 1 in a context with planar contacts;
+ * tribo_set_planar returns it too. tribo_step_force_mean returns it for static limits); on error all stays as it was. */
+TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
+
+/* ratio, velocity [n] out, each or NULL: 1 where nothing was set, and velocity 0 where there is none. */
+TRIBO_API int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity);
 
 /* Velocity scale of the regularized laws. epsilon [n] in, > 0, in units of v. */
 TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
@@ -230,7 +259,8 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  * Groups with planar contacts (contacts of any kind that R or a planar contact joins) are solved in ordinary digits, and their R
  * is kept as a matrix: TRIBO_ERR_UNSUPPORTED for more than 2048 directions in one, from here or from tribo_set_operator_....
  * first [count] in. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_DUPLICATE (a direction of two contacts),
- * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling), TRIBO_ERR_MEMORY; on error all stays as it was. */
+ * TRIBO_ERR_UNSUPPORTED (also: not in the partition coupling, and not beside static limits, tribo_set_static),
+ * TRIBO_ERR_MEMORY; on error all stays as it was. */
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 
 /* The operator R of z'' = R f + a. On error the old one stays. That of the context of a tribo_system is the system's, and cannot
@@ -328,8 +358,20 @@ TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const d
  * Returns TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another balance or setting since. */
 TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 
+/* The same for a change of limits, for hosts whose normal loads follow the motion: df = df_dlimit dlimit, with all that the other
+ * contacts make of it; where epsilon follows the limit (tribo_set_epsilon_step), that takes part. One-sided at a kink, also where
+ * the limits of the two directions of a planar contact are equal and change differently. Directions with limit 0 are open and
+ * stay so: their dlimit counts as 0.
+ * dlimit  [n] in
+ * df      [n] out
+ * Returns what tribo_tangent_product returns, and TRIBO_ERR_UNSUPPORTED with static limits (tribo_set_static). */
+TRIBO_API int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df);
+
 /* Coulomb's law over one time step, for integrators with fixed steps; needs no epsilon. The force, constant over the step,
  * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
+ * With static limits (tribo_set_static) a contact sticks if it can: v_end is found with |f| <= ratio*limit; contacts that slide
+ * then go by limit, or by N(|v_end|), all of them at the same time, and v_end is found again, until all others stick. Of first
+ * order in dt, since contacts break away, and their limits fall, from the beginning of a step on.
  * dt     in       step, > 0
  * vfree  [n] in   relative velocity that the step would end with without friction
  * f      [n] out  friction force, |f| <= limit; of a planar contact f = -limit^2 v_end/|limit v_end|, or v_end = 0
@@ -341,7 +383,7 @@ TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfre
  *                    w/|limit w| with w = v + v_end, unless they turn back by more than a right angle
  *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until
  *                    then and the other way after: f is the mean of that, and tribo_get_slip tells the direction of the end
- * All others are as there. It costs up to two solutions.
+ * All others are as there, and so are all of them with static limits (tribo_set_static). It costs up to two solutions.
  * v  [n] in  relative velocity at the start of the step */
 TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
 

@@ -174,10 +174,13 @@ typedef struct tribo_driver tribo_driver;
  *               "event": high-order steps between events, with the tolerances; any system
  *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt
  *               that is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule
- *               (Moreau and Jean). Second order, but for contacts that reverse without sticking, and central with damping:
- *               there first order
+ *               (Moreau and Jean). Second order, with planar contacts as tribo_step_force_mean; but for scalar contacts
+ *               that reverse without sticking, and central with damping: there first order
  *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
+ *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at
+ *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
+ *               more than rounding. All methods with steps are of first order then.
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL
@@ -234,8 +237,8 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * dimensions.
  * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
- * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables), TRIBO_ERR_NO_CONVERGENCE, and what
- * tribo_driver_advance returns. */
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits, tribo_set_static),
+ * TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary

@@ -1,4 +1,4 @@
-# Removes the files of the last installation from this build folder, and its include and cmake folders where they become empty.
+# Removes the files of the last installation from this build folder, and its own folders where they become empty.
 if(NOT EXISTS "${MANIFEST}")
   message(FATAL_ERROR "Nothing to uninstall: there is no ${MANIFEST}")
 endif()
@@ -8,7 +8,7 @@ foreach(file IN LISTS files)
   message(STATUS "Removing: ${file}")
   file(REMOVE "${file}")
   get_filename_component(folder "${file}" DIRECTORY)
-  while(folder MATCHES "/(include|cmake)/tribo(/|$)")
+  while(folder MATCHES "/(include|cmake|share)/tribo(/|$)")
     file(GLOB left "${folder}/*")
     if(left OR NOT IS_DIRECTORY "${folder}")
       break()

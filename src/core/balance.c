@@ -97,7 +97,7 @@ static double relaxation(const tribo_context *ctx, size_t i, const double *v)
 }
 
 /* f_eq = f + kappa - (R f + a + diag(R) kappa)/R_ii, with f as the solver finds it. */
-static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
+static int solve_bounded(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
     const size_t *member = p->member;
     for (size_t e = 0; e < p->count; e++) {
@@ -118,7 +118,29 @@ static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *
     return status;
 }
 
-static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *a)
+/* The limits by which near contacts go, each by its own f_eq. */
+static void limit_near(const tribo_context *ctx, const struct box_qp *p, const double *v)
+{
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->member[p->near[e]];
+        tribo_find_limits(ctx, i, 1, v + i, ctx->last.feq + i, ctx->follow.now + i);
+    }
+}
+
+/* Where limits are static, until nobody breaks away any more. */
+static int solve_consistent(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
+{
+    int status;
+    if (ctx->set.breaking) {
+        tribo_hold(ctx, p);
+    }
+    do {
+        status = solve_bounded(ctx, p, v, a);
+    } while (!status && ctx->set.breaking && tribo_break_away(ctx, p, 0.0));
+    return status;
+}
+
+static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v, const double *a)
 {
     const size_t *member = p->member;
     const struct work before = p->work;
@@ -133,10 +155,13 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *a
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         const double off = fabs(quotient(p->gradient[k], ctx->op->diagonal[i]));
-        ctx->last.residual = greater(ctx->last.residual, quotient(off, greater(ctx->set.limit[i], DBL_MIN)));
+        ctx->last.residual = greater(ctx->last.residual, quotient(off, greater(ctx->follow.contacts.limit[i], DBL_MIN)));
         ctx->last.feq[i] = p->x[k];
     }
     ctx->last.rank += p->sets->rank;
+    if (ctx->set.breaking) {
+        limit_near(ctx, p, v);
+    }
     if (consistent) {
         return TRIBO_OK;
     }
@@ -170,7 +195,7 @@ static void feq_of_others(tribo_context *ctx, const double *a)
         }
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            if (!(ctx->memory.solved[g] && ctx->last.did.of[i] == STORED) && ctx->set.limit[i] > 0.0) {
+            if (!(ctx->memory.solved[g] && ctx->last.did.of[i] == STORED) && ctx->follow.contacts.limit[i] > 0.0) {
                 ctx->last.feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
             }
         }
@@ -193,7 +218,7 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
             tribo_memory_expect(ctx->op, &ctx->memory, ctx->memory.solved_list[k + 2]);
         }
         struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[k]);
-        const int one = ctx->set.coupling == TRIBO_PARTITION ? solve_partition(ctx, p, a) : solve_consistent(ctx, p, v, a);
+        const int one = ctx->set.coupling == TRIBO_PARTITION ? solve_partition(ctx, p, v, a) : solve_consistent(ctx, p, v, a);
         if (one == TRIBO_ERR_NO_CONVERGENCE) {
             return one;
         }

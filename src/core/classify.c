@@ -62,7 +62,7 @@ static inline void find_feq(tribo_context *ctx, size_t k, size_t i, size_t n, co
 {
     feq_alone(n, ctx->op->diagonal + i, a + i, ctx->last.feq + i);
     if (ctx->follow.chunk[k].least == 0.0) {
-        no_feq_if_open(n, ctx->set.limit + i, ctx->last.feq + i);
+        no_feq_if_open(n, ctx->follow.contacts.limit + i, ctx->last.feq + i);
     }
 }
 
@@ -153,7 +153,7 @@ static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t e
     double room[TRIBO_CHUNK];
     for (size_t n; (n = tribo_next_near(did, &i, end)) > 0; i += n) {
         const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
-        find_near(n, v + i, band, ctx->set.limit + i, did + i);
+        find_near(n, v + i, band, ctx->follow.contacts.limit + i, did + i);
     }
 }
 
@@ -211,6 +211,10 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
         if (wanted || (asked && ctx->set.law->uses_feq)) {
             find_feq(ctx, k, i, n, a);
         }
+        if (ctx->set.breaking) {
+            const int known = asked && ctx->set.law->uses_feq;
+            tribo_find_limits(ctx, i, n, v + i, known ? ctx->last.feq + i : NULL, ctx->follow.now + i);
+        }
         if (asked) {
             const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
             ctx->set.law->force(&c, n, v + i, ctx->last.feq + i, ctx->last.f + i);
@@ -223,7 +227,7 @@ static void forces_of_slips(const tribo_context *ctx, size_t k, size_t i, size_t
 {
     const signed char *did = ctx->last.did.of;
     if (ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest) {
-        force_of_slips(n, did + i, ctx->set.limit + i, f + i);
+        force_of_slips(n, did + i, ctx->follow.contacts.limit + i, f + i);
     } else {
         force_of_alike_slips(n, did + i, ctx->follow.chunk[k].largest, f + i);
     }

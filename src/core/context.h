@@ -50,6 +50,9 @@ struct deeds {
 /* What is known of the modes of the last call: nothing, or they follow from forces and limits, or they are written down. */
 enum { NO_MODES, MODES_IN_FORCES, MODES_WRITTEN };
 
+/* How a contact lets go: at the limit by which it slides; or at a static one, which then drops at once, or falls with speed. */
+enum { NEVER, DROPS, FALLS };
+
 /* What the caller set. */
 struct settings {
     const struct law *law;
@@ -57,14 +60,19 @@ struct settings {
     double step, lambda_dt; /* tribo_set_epsilon_step; step 0: epsilon was given */
     double *limit;          /* [n] */
     double *width, *rate;   /* [n] see law.h; of an epsilon that follows the operator, what follows from that */
+    int breaking;           /* DROPS or FALLS: limits are those of static.c; NEVER: the following is not read */
+    double *ratio;          /* [n] static limit to limit */
+    double *stribeck;       /* [n] FALLS: velocity scale */
 };
 
 /* What follows from settings and operator. */
 struct following {
-    struct contacts contacts;       /* all of them, as laws see them; of far limits with what is cut: */
-    double *cut_limit, *cut_factor; /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
-    double largest, steepest;       /* limit; and factor, or 1 */
-    struct chunk *chunk;            /* [chunks] */
+    struct contacts contacts;        /* all of them, as laws see them; of far limits with what is cut: */
+    double *cut_limit, *cut_factor;  /* [n] limits as the solver takes them, and widths or rates, whichever multiply them */
+    double *hold, *hold_width, *now; /* [n] with static limits: these; epsilon; the limits of the last call. cut_limit, cut_factor
+                                        are then the limits by which contacts slide, and rates */
+    double largest, steepest;        /* limit; and factor, or 1 */
+    struct chunk *chunk;             /* [chunks] */
 };
 
 /* What the last call found. */
@@ -183,11 +191,48 @@ size_t tribo_next_near(const signed char *did, size_t *i, size_t end);
 /* The forces of all contacts, f [n], while limits are those of the balance; or of one. */
 void tribo_forces(const tribo_context *ctx, double *f);
 
+/* The steepest that the law of contact i relaxes by: with its static limit, if it has one. */
+static inline double tribo_steepest_slope(const tribo_context *ctx, size_t i)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    return ctx->set.breaking ? c->rate[i] * ctx->follow.hold[i] : tribo_slope_of(c, i);
+}
+
 static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 {
     const int did = ctx->last.did.of[i];
-    return did == STORED ? ctx->last.f[i] : did == FORTH ? -ctx->set.limit[i] : ctx->set.limit[i];
+    const double limit = ctx->follow.contacts.limit[i];
+    return did == STORED ? ctx->last.f[i] : did == FORTH ? -limit : limit;
 }
+
+/* static.c: what follows from settings and operator where limits are static. */
+void tribo_refresh_static(tribo_context *ctx);
+
+/* Whether a law can do without stick what breaking wants of it; a status. */
+int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
+
+/* For what knows no static limits: fails if there are any. who: "... knows no". */
+int tribo_refuse_static(const tribo_context *ctx, const char *who);
+
+/* limit [n] = the limits of contacts i, i + 1, ... at v by these f_eq; NULL: those near stick hold. Where limits are static. */
+void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit);
+
+/* d(limit)/dv; 0 without a Stribeck velocity. */
+double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
+
+/* The law's derivatives for contacts i, i + 1, ..., of which c is a view. */
+void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
+                        const double *feq, struct tangent *d);
+
+/* The near contacts of a problem hold, for now. */
+void tribo_hold(const tribo_context *ctx, const struct box_qp *p);
+
+/* Those that the solution cannot hold, by their f_eq, have the limit by which they slide from here on, at the end of a step of
+ * dt or (0) from rest. Returns how many. */
+size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
+
+/* The same for contacts in no group, from their forces with static limits; these become right. */
+void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
 /* queries.c: writes modes down, before limits change. */
 void tribo_write_modes(tribo_context *ctx);
@@ -255,10 +300,32 @@ int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const doub
 void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a);
 struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g);
 
+/* What changes about all contacts, [n] each, or NULL for nothing. */
+struct change {
+    const double *v, *a, *limit;
+};
+
+static inline double tribo_entry(const double *x, size_t i)
+{
+    return x ? x[i] : 0.0;
+}
+
+/* An open contact stays open. */
+static inline double tribo_limit_change(const tribo_context *ctx, const struct change *d, size_t i)
+{
+    return ctx->set.limit[i] > 0.0 ? tribo_entry(d->limit, i) : 0.0;
+}
+
+/* The same in parts of the limit. */
+static inline double tribo_limit_growth(const tribo_context *ctx, const struct change *d, size_t i)
+{
+    return ctx->set.limit[i] > 0.0 ? quotient(tribo_entry(d->limit, i), ctx->set.limit[i]) : 0.0;
+}
+
 /* planar_tangent.c: the derivatives of a cluster's forces at the last tribo_balance_tangent. */
 void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a);
 void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da);
-void tribo_planar_product(tribo_context *ctx, const double *dv, const double *da, double *df);
+void tribo_planar_product(tribo_context *ctx, const struct change *d, double *df);
 
 /* balance.c: what calls that find forces have in common. Begins one: nothing is solved yet. */
 void tribo_begin_call(tribo_context *ctx);

@@ -89,14 +89,19 @@ static void evaluate(const tribo_context *ctx, const double *v, const double *fe
         double used[TRIBO_CHUNK];
         struct tangent d[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
-        const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+        double limit[TRIBO_CHUNK];
+        struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
         used_feq(ctx, i, n, v, feq, used);
         cut_all(n, used);
+        if (ctx->set.breaking) {
+            tribo_find_limits(ctx, i, n, v + i, used, limit);
+            c.limit = c.bound = limit;
+        }
         if (f) {
             ctx->set.law->force(&c, n, v + i, used, f + i);
         }
         if (df_dv || df_dfeq || df_dlimit) {
-            ctx->set.law->tangent(&c, n, v + i, used, d);
+            tribo_law_tangents(ctx, &c, i, n, v + i, used, d);
             hand_out(n, d, df_dv ? df_dv + i : NULL, df_dfeq ? df_dfeq + i : NULL, df_dlimit ? df_dlimit + i : NULL);
         }
     }
@@ -136,6 +141,15 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
+static double limit_near(const tribo_context *ctx, size_t i, double v, double feq)
+{
+    double limit = ctx->set.limit[i];
+    if (ctx->set.breaking) {
+        tribo_find_limits(ctx, i, 1, &v, &feq, &limit);
+    }
+    return limit;
+}
+
 int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
 {
     if (!ctx) {
@@ -156,7 +170,7 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
         }
         if (fabs(v[i]) > tribo_epsilon_of(&ctx->follow.contacts, i)) {
             ctx->moving[i] = 1;
-        } else if (fabs(feq[i]) <= ctx->set.limit[i]) {
+        } else if (fabs(feq[i]) <= limit_near(ctx, i, v[i], feq[i])) {
             ctx->moving[i] = 0;
         }
         ctx->count.marks += ctx->moving[i] != before;

@@ -20,6 +20,7 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->set.rate = malloc(m * sizeof *ctx->set.rate);
     ctx->follow.cut_limit = malloc(m * sizeof *ctx->follow.cut_limit);
     ctx->follow.cut_factor = malloc(m * sizeof *ctx->follow.cut_factor);
+    ctx->set.ratio = malloc(5 * m * sizeof *ctx->set.ratio);
     ctx->moving = calloc(m, sizeof *ctx->moving);
     ctx->last.feq = calloc(m, sizeof *ctx->last.feq);
     ctx->last.f = calloc(m, sizeof *ctx->last.f);
@@ -28,13 +29,19 @@ static int allocate(tribo_context *ctx, size_t n)
     ctx->last.did.of = calloc(m + tribo_chunks(m), 1);
     ctx->spare.of = calloc(m + tribo_chunks(m), 1);
     ctx->last.tangent = malloc(m * sizeof *ctx->last.tangent);
+    if (ctx->set.ratio) {
+        ctx->set.stribeck = ctx->set.ratio + m;
+        ctx->follow.hold = ctx->set.ratio + 2 * m;
+        ctx->follow.hold_width = ctx->set.ratio + 3 * m;
+        ctx->follow.now = ctx->set.ratio + 4 * m;
+    }
     if (ctx->last.did.of && ctx->spare.of) {
         ctx->last.did.stored = (unsigned char *)(ctx->last.did.of + m);
         ctx->spare.stored = (unsigned char *)(ctx->spare.of + m);
     }
     return ctx->message && ctx->follow.chunk && ctx->last.did.of && ctx->spare.of && ctx->set.limit && ctx->set.width &&
-           ctx->set.rate && ctx->follow.cut_limit && ctx->follow.cut_factor && ctx->moving && ctx->last.feq && ctx->last.f &&
-           ctx->last.v && ctx->last.tangent;
+           ctx->set.rate && ctx->set.ratio && ctx->follow.cut_limit && ctx->follow.cut_factor && ctx->moving && ctx->last.feq &&
+           ctx->last.f && ctx->last.v && ctx->last.tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -97,7 +104,12 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     memcpy(c->follow.chunk, ctx->follow.chunk, tribo_chunks(n) * sizeof *c->follow.chunk);
     memcpy(c->last.did.of, ctx->last.did.of, n);
     memcpy(c->last.did.stored, ctx->last.did.stored, tribo_chunks(n));
+    if (ctx->set.breaking) {
+        tribo_copy(c->set.ratio, ctx->set.ratio, n);
+        tribo_copy(c->set.stribeck, ctx->set.stribeck, n);
+    }
     tribo_refresh_limits(c);
+    tribo_copy(c->follow.now, ctx->follow.now, ctx->set.breaking ? n : 0);
     c->revision = ctx->revision;
     *copy = c;
     return TRIBO_OK;
@@ -116,6 +128,7 @@ void tribo_destroy(tribo_context *ctx)
     free(ctx->set.limit);
     free(ctx->set.width);
     free(ctx->set.rate);
+    free(ctx->set.ratio);
     free(ctx->follow.cut_limit);
     free(ctx->follow.cut_factor);
     free(ctx->moving);

@@ -1,4 +1,5 @@
 /* Life of planar contacts: clusters are made whenever operator or contacts change. */
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,14 +36,14 @@ void tribo_planar_release(struct planar *planar)
 
 int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t n)
 {
-    enum { VECTORS = 7 };
+    enum { VECTORS = 6 };
     *plane = (struct plane){0};
     if (!planar) {
         return 1;
     }
     plane->near = malloc((planar->largest + 1) * sizeof *plane->near);
     plane->y = calloc(VECTORS * (n + 1), sizeof *plane->y);
-    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->zero, &plane->df, &plane->other};
+    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->df, &plane->other};
     for (size_t k = 1; plane->y && k < VECTORS; k++) {
         *vector[k] = plane->y + k * (n + 1);
     }
@@ -299,6 +300,11 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     struct plane plane;
     int status = check_first(ctx, count, first, owner);
     free(owner);
+    if (!status && count) {
+        char who[64];
+        snprintf(who, sizeof who, "planar contact %zu knows no", first[0]);
+        status = tribo_refuse_static(ctx, who);
+    }
     status = status ? status : tribo_planar_prepare(ctx, count, first, ctx->op, &ctx->memory, &planar, &plane);
     if (!status) {
         tribo_write_modes(ctx);

@@ -41,11 +41,11 @@ struct planar {
 /* What a context keeps from call to call, and its workspace. */
 struct plane {
     struct disc_qp problem;
-    size_t *near;                     /* [largest] places of the directions in the problem */
-    double *y;                        /* [n] what was found, in parts of limits */
-    double *v, *a;                    /* [n] of the last tribo_balance_tangent */
-    double *unit, *zero, *df, *other; /* [n] workspace; the first two are zero between calls */
-    size_t solved;                    /* clusters, in the last call */
+    size_t *near;              /* [largest] places of the directions in the problem */
+    double *y;                 /* [n] what was found, in parts of limits */
+    double *v, *a;             /* [n] of the last tribo_balance_tangent */
+    double *unit, *df, *other; /* [n] workspace; the first is zero between calls */
+    size_t solved;             /* clusters, in the last call */
 };
 
 /* Of a cluster with more directions than this no matrix is kept. */

@@ -44,7 +44,7 @@ double tribo_planar_carried(const struct law *law, double speed, double *slope)
 {
     const double one = 1.0, two = 2.0, none = 0.0;
     const unsigned char moving = 0;
-    const struct contacts c = {&one, &one, &one, &two, &moving, 0};
+    const struct contacts c = {&one, &one, &one, &two, &moving, 0, 0};
     double f = -1.0;
     struct tangent d = {0.0, 0.0, 0.0};
     if (!law->uses_feq) {

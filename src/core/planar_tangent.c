@@ -1,5 +1,5 @@
-/* How the forces of a cluster follow velocities and accelerations: the contacts near stick stay in their places, and Newton's
- * equations along what these leave them say how they stay balanced. */
+/* How the forces of a cluster follow velocities, accelerations and limits: the contacts near stick stay in their places, and
+ * Newton's equations along what these leave them say how they stay balanced. */
 #include "context.h"
 
 void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a)
@@ -21,52 +21,82 @@ static void resume(tribo_context *ctx, const struct cluster *g)
     }
 }
 
-/* df of a planar contact that is not near stick. */
-static void slide_product(const tribo_context *ctx, size_t i, const double *dv, double *df)
+/* How the units of a planar contact follow its limits: part of either direction, and epsilon, as a part of itself. */
+struct units_change {
+    double part[2], epsilon;
+};
+
+static struct units_change change_units(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
 {
-    const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, ctx->plane.v + i);
-    double slope;
+    const double *limit = ctx->set.limit + i, dlimit[2] = {tribo_limit_change(ctx, d, i), tribo_limit_change(ctx, d, i + 1)};
+    const size_t far = s->part[0] == 1.0 && tribo_epsilon_of(&ctx->follow.contacts, i) == s->epsilon ? 0 : 1;
+    struct units_change u = {{0.0, 0.0}, 0.0};
+    for (size_t k = 0; k < 2 && !s->open; k++) {
+        u.part[k] = k == far ? 0.0 : quotient(dlimit[k] - product(s->part[k], dlimit[far]), limit[far]);
+    }
+    u.epsilon = s->open || !ctx->follow.contacts.follows ? 0.0 : tribo_limit_growth(ctx, d, i + far);
+    return u;
+}
+
+/* df of a planar contact that is not near stick. */
+static void slide_product(const tribo_context *ctx, size_t i, const struct change *d, double *df)
+{
+    const double *v = ctx->plane.v + i;
+    const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v);
+    const struct units_change u = change_units(ctx, i, &s, d);
+    double slope, dx[2];
     const double carried = tribo_planar_carried(ctx->set.law, s.speed, &slope);
-    const double dx[2] = {product(s.part[0], dv[i]), product(s.part[1], dv[i + 1])};
+    for (size_t k = 0; k < 2; k++) {
+        dx[k] = product(s.part[k], tribo_entry(d->v, i + k)) + product(u.part[k], v[k]);
+    }
     const double along = s.n[0] * dx[0] + s.n[1] * dx[1];
     for (size_t k = 0; k < 2; k++) {
         const double turn = s.length > 0.0 ? carried * quotient(dx[k] - s.n[k] * along, s.length) : 0.0;
-        const double grow = slope * quotient(s.length > 0.0 ? s.n[k] * along : dx[k], s.epsilon);
-        df[i + k] = s.open ? 0.0 : product(ctx->set.limit[i + k], turn + grow);
+        const double grow =
+            slope * (quotient(s.length > 0.0 ? s.n[k] * along : dx[k], s.epsilon) - product(product(s.speed, u.epsilon), s.n[k]));
+        const double own = product(carried * s.n[k], tribo_limit_change(ctx, d, i + k));
+        df[i + k] = s.open ? 0.0 : product(ctx->set.limit[i + k], turn + grow) + own;
     }
 }
 
-/* df of all contacts of a cluster that are not near stick, and 0 of the others. */
-static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const double *dv, double *df)
+/* df of all contacts of a cluster that are not near stick, and of the others what their limits make of it. */
+static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
     const size_t *member = ctx->planar->member + g->member;
+    const struct disc_qp *p = &ctx->plane.problem;
     for (size_t k = 0; k < g->size; k++) {
         const size_t i = member[k];
         if (ctx->planar->role[i] == ROLE_FIRST) {
-            slide_product(ctx, i, dv, df);
+            slide_product(ctx, i, d, df);
         } else if (ctx->planar->role[i] == ROLE_SCALAR) {
-            df[i] = product(ctx->last.tangent[i].dv, dv[i]);
+            const struct tangent *law = &ctx->last.tangent[i];
+            df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i));
         }
     }
-    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
-        df[member[ctx->plane.near[e]]] = 0.0;
+    for (size_t e = 0; e < p->size; e++) {
+        const size_t i = member[ctx->plane.near[e]];
+        df[i] = product(p->y[e], tribo_limit_change(ctx, d, i));
     }
 }
 
-/* How the shift of direction e of the problem follows v. */
-static double shift_rate(const tribo_context *ctx, const size_t *member, size_t e)
+/* How the shift of direction e of the problem changes. */
+static double shift_change(const tribo_context *ctx, const size_t *member, size_t e, const struct change *d)
 {
     const struct contacts *c = &ctx->follow.contacts;
     const size_t i = member[ctx->plane.near[e]];
+    const double dv = tribo_entry(d->v, i), shift = ctx->plane.problem.shift[e];
     if (!ctx->set.law->relaxes) {
         return 0.0;
     }
     if (ctx->planar->role[i] == ROLE_SCALAR) {
-        return 2.0 * quotient(1.0, tribo_epsilon_of(c, i));
+        const double epsilon = c->follows ? tribo_limit_growth(ctx, d, i) : 0.0;
+        return product(2.0 * quotient(1.0, tribo_epsilon_of(c, i)), dv) - product(shift, epsilon);
     }
     const size_t second = ctx->planar->role[i] == ROLE_SECOND;
     const struct slide s = tribo_planar_slide(c, i - second, ctx->plane.v + i - second);
-    return 2.0 * quotient(s.part[second], s.epsilon);
+    const struct units_change u = change_units(ctx, i - second, &s, d);
+    const double dx = product(s.part[second], dv) + product(u.part[second], ctx->plane.v[i]);
+    return 2.0 * quotient(dx, s.epsilon) - product(shift, u.epsilon);
 }
 
 /* y of the contacts near stick goes with their shift; dshift [size]. */
@@ -77,20 +107,34 @@ static void drag_all(const struct disc_qp *p, const double *dshift, double *dy)
     }
 }
 
-/* rhs [size] = the gradient that df, da and shifts leave to balance; dy: what shifts drag along. */
-static void find_rhs(const tribo_context *ctx, const struct cluster *g, const double *da, const double *df, const double *dshift,
-                     const double *dy, double *rhs)
+/* What presses on direction e of the problem, as its limit and those that shifts are parts of change. */
+static double press_change(const tribo_context *ctx, const struct cluster *g, size_t e, const struct change *d)
+{
+    const struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    const size_t n = p->size, first = p->wide[e] ? e : e - 1, i = member[near[e]];
+    double sum = product(tribo_limit_growth(ctx, d, i), p->gradient[e]);
+    for (size_t j = first; j < first + p->wide[first]; j++) {
+        sum += product(p->s[e * n + j] * p->shift[j], tribo_limit_growth(ctx, d, member[near[j]]));
+    }
+    return sum;
+}
+
+/* rhs [size] = the gradient that df, changes and shifts leave to balance; dy: what shifts drag along. */
+static void find_rhs(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *df,
+                     const double *dshift, const double *dy, double *rhs)
 {
     const struct disc_qp *p = &ctx->plane.problem;
     const struct unit u = tribo_planar_units(ctx, g);
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near, n = p->size;
     for (size_t e = 0; e < n; e++) {
         const double *row = ctx->planar->r + g->r + near[e] * g->size;
-        double sum = cut(da[member[near[e]]]);
+        double sum = cut(tribo_entry(d->a, member[near[e]]));
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[member[j]]);
         }
         rhs[e] = ctx->follow.contacts.bound[member[near[e]]] / u.force * quotient(quotient(cut(sum), u.r), u.force);
+        rhs[e] += d->limit ? press_change(ctx, g, e, d) : 0.0;
         for (size_t j = 0; j < n; j++) {
             rhs[e] += p->s[e * n + j] * dy[j];
         }
@@ -106,20 +150,20 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const do
 
 /* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit.
  * before: the former, df: what becomes of them. */
-static void reverse(const tribo_context *ctx, const struct cluster *g, const double *dv, const double *da, const double *before,
-                    double *df)
+static void reverse(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *before, double *df)
 {
     const size_t *member = ctx->planar->member + g->member;
     for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
         const size_t k = ctx->plane.near[e], i = member[k];
         const double *row = ctx->planar->r + g->r + k * g->size;
-        const struct tangent *d = &ctx->last.tangent[i];
-        double sum = divisible(da[i], row[k]);
+        const struct tangent *law = &ctx->last.tangent[i];
+        double sum = divisible(tribo_entry(d->a, i), row[k]);
         for (size_t j = 0; j < g->size; j++) {
             sum += j == k ? 0.0 : product(row[j], before[member[j]]);
         }
         if (ctx->planar->role[i] == ROLE_SCALAR) {
-            df[i] = product(d->dv, dv[i]) - product(d->dfeq, quotient(cut(sum), row[k]));
+            df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i)) -
+                    product(law->dfeq, quotient(cut(sum), row[k]));
         }
     }
 }
@@ -127,29 +171,29 @@ static void reverse(const tribo_context *ctx, const struct cluster *g, const dou
 /* Lenses that move faster with v have the derivatives of these. */
 #define STEEPEST 1e150
 
-/* df of a cluster that was resumed. dv, da, df [n] */
-static void cluster_product(tribo_context *ctx, const struct cluster *g, const double *dv, const double *da, double *df)
+/* df [n] of a cluster that was resumed. */
+static void cluster_product(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
     double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
-    products_of_slips(ctx, g, dv, df);
+    products_of_slips(ctx, g, d, df);
     for (size_t e = 0; e < p->size; e++) {
-        dshift[e] = clamp(product(shift_rate(ctx, member, e), dv[member[near[e]]]), -STEEPEST, STEEPEST);
+        dshift[e] = clamp(shift_change(ctx, member, e, d), -STEEPEST, STEEPEST);
     }
     drag_all(p, dshift, dy);
-    find_rhs(ctx, g, da, df, dshift, dy, rhs);
+    find_rhs(ctx, g, d, df, dshift, dy, rhs);
     if (p->size) {
         tribo_disc_follow(p, rhs, move);
     }
     for (size_t e = 0; e < p->size; e++) {
-        df[member[near[e]]] = product(ctx->follow.contacts.bound[member[near[e]]], dy[e] + move[e]);
+        df[member[near[e]]] += product(ctx->follow.contacts.bound[member[near[e]]], dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
         for (size_t k = 0; k < g->size; k++) {
             ctx->plane.other[member[k]] = df[member[k]];
         }
-        reverse(ctx, g, dv, da, ctx->plane.other, df);
+        reverse(ctx, g, d, ctx->plane.other, df);
     }
 }
 
@@ -163,7 +207,8 @@ static void write_column(const tribo_context *ctx, const struct cluster *g, size
 
 void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da)
 {
-    double *unit = ctx->plane.unit, *zero = ctx->plane.zero, *df = ctx->plane.df;
+    double *unit = ctx->plane.unit, *df = ctx->plane.df;
+    const struct change by_v = {unit, NULL, NULL}, by_a = {NULL, unit, NULL};
     for (size_t q = 0; q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         resume(ctx, g);
@@ -171,11 +216,11 @@ void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da)
             const size_t i = ctx->planar->member[g->member + k];
             unit[i] = 1.0;
             if (df_dv) {
-                cluster_product(ctx, g, unit, zero, df);
+                cluster_product(ctx, g, &by_v, df);
                 write_column(ctx, g, i, df, df_dv);
             }
             if (df_da) {
-                cluster_product(ctx, g, zero, unit, df);
+                cluster_product(ctx, g, &by_a, df);
                 write_column(ctx, g, i, df, df_da);
             }
             unit[i] = 0.0;
@@ -183,11 +228,11 @@ void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da)
     }
 }
 
-void tribo_planar_product(tribo_context *ctx, const double *dv, const double *da, double *df)
+void tribo_planar_product(tribo_context *ctx, const struct change *d, double *df)
 {
     for (size_t q = 0; q < ctx->planar->clusters; q++) {
         const struct cluster *g = &ctx->planar->cluster[q];
         resume(ctx, g);
-        cluster_product(ctx, g, dv ? dv : ctx->plane.zero, da ? da : ctx->plane.zero, df);
+        cluster_product(ctx, g, d, df);
     }
 }

@@ -38,7 +38,8 @@ void tribo_write_modes(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.did.stored[k] != NONE_STORED || ctx->follow.chunk[k].least == 0.0) {
-            find_modes(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->set.limit + i, ctx->last.holds, ctx->last.did.of + i);
+            find_modes(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds,
+                       ctx->last.did.of + i);
             ctx->last.did.stored[k] = SOME_STORED;
             ctx->last.did.all_stored = 0;
         }
@@ -65,7 +66,7 @@ int tribo_get_slip(const tribo_context *ctx, signed char *mode)
         memcpy(mode, ctx->last.did.of, ctx->n);
     }
     if (ctx->last.modes == MODES_IN_FORCES) {
-        find_modes(ctx->n, ctx->last.f, ctx->set.limit, ctx->last.holds, mode);
+        find_modes(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, mode);
         if (ctx->planar) {
             tribo_planar_slips(ctx, mode);
         }
@@ -77,11 +78,11 @@ static size_t count_stuck(const tribo_context *ctx)
 {
     size_t stuck = 0;
     for (size_t i = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i++) {
-        stuck += mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->set.limit[i], ctx->last.holds) == 0;
+        stuck += mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
     }
     for (size_t k = 0; ctx->planar && ctx->last.modes == MODES_IN_FORCES && k < ctx->planar->count; k++) {
         for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-            stuck -= mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->set.limit[i], ctx->last.holds) == 0;
+            stuck -= mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
             stuck += tribo_planar_slip(ctx, k) == 0;
         }
     }
@@ -125,8 +126,8 @@ static double max_rate(const tribo_context *ctx)
 {
     double rate = 0.0;
     for (size_t i = 0; i < ctx->n; i++) {
-        if (ctx->set.limit[i] > 0.0 && !(ctx->planar && ctx->planar->role[i] != ROLE_SCALAR)) {
-            rate = greater(rate, product(tribo_slope_of(&ctx->follow.contacts, i), ctx->op->diagonal[i]));
+        if (ctx->follow.contacts.limit[i] > 0.0 && !(ctx->planar && ctx->planar->role[i] != ROLE_SCALAR)) {
+            rate = greater(rate, product(tribo_steepest_slope(ctx, i), ctx->op->diagonal[i]));
         }
     }
     for (size_t k = 0; ctx->planar && k < ctx->planar->count; k++) {

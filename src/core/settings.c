@@ -91,12 +91,16 @@ void tribo_refresh_limits(tribo_context *ctx)
 {
     const int follows = epsilon_follows(ctx);
     ctx->follow.largest = 0.0;
+    ctx->follow.contacts =
+        (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows, follows};
+    if (ctx->set.breaking) {
+        tribo_refresh_static(ctx);
+    }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
         ctx->follow.largest = greater(ctx->follow.largest, ctx->follow.chunk[k].largest);
         ctx->follow.chunk[k].band = band_of(&ctx->follow.chunk[k], follows);
     }
-    ctx->follow.contacts = (struct contacts){ctx->set.limit, ctx->set.limit, ctx->set.width, ctx->set.rate, ctx->moving, follows};
-    if (ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
+    if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);
     }
     ctx->last.linearized = 0;
@@ -121,6 +125,10 @@ int tribo_set_law(tribo_context *ctx, int law)
     const struct law *l = tribo_law(law);
     if (!l) {
         return tribo_fail(ctx, TRIBO_ERR_RANGE, "law = %d is none of the %d laws", law, tribo_law_count());
+    }
+    const int status = tribo_check_breaking(ctx, l, ctx->set.breaking, ctx->set.ratio);
+    if (status) {
+        return status;
     }
     ctx->set.law = l;
     ctx->last.linearized = 0;
@@ -353,5 +361,66 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "sharing is NULL");
     }
     *sharing = ctx->set.sharing;
+    return TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ static limits */
+
+/* Where a ratio is above 1, or n. */
+static int check_static(const tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
+{
+    int status = tribo_check_finite(ctx, "ratio", ratio, ctx->n);
+    status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
+    *above = ctx->n;
+    for (size_t i = 0; !status && i < ctx->n; i++) {
+        if (ratio[i] < 1.0) {
+            return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g is below 1", i, ratio[i]);
+        }
+        *above = *above == ctx->n && ratio[i] > 1.0 ? i : *above;
+    }
+    return status;
+}
+
+int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    size_t above = ctx->n;
+    int status = ratio ? check_static(ctx, ratio, velocity, &above) : TRIBO_OK;
+    const int breaking = above == ctx->n ? NEVER : velocity ? FALLS : DROPS;
+    status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
+    if (status) {
+        return status;
+    }
+    if (breaking && ctx->planar) {
+        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                          "ratio[%zu] = %g: there are no static limits beside planar contacts, and contact %zu is one", above,
+                          ratio[above], ctx->planar->first[0]);
+    }
+    tribo_write_modes(ctx);
+    ctx->set.breaking = breaking;
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->set.ratio[i] = breaking ? ratio[i] : 1.0;
+        ctx->set.stribeck[i] = breaking == FALLS ? velocity[i] : 0.0;
+    }
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        tribo_take_limits(tribo_chunk_size(ctx, i), ctx->set.limit + i, ctx->follow.now + i, &ctx->follow.chunk[k]);
+    }
+    tribo_refresh_limits(ctx);
+    return TRIBO_OK;
+}
+
+int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    for (size_t i = 0; ratio && i < ctx->n; i++) {
+        ratio[i] = ctx->set.breaking ? ctx->set.ratio[i] : 1.0;
+    }
+    for (size_t i = 0; velocity && i < ctx->n; i++) {
+        velocity[i] = ctx->set.breaking == FALLS ? ctx->set.stribeck[i] : 0.0;
+    }
     return TRIBO_OK;
 }

@@ -23,9 +23,11 @@ static inline double lower_of(const struct bounds *b, size_t i)
 /* A call: its bounds, and how hard a contact is pulled, which is scale v. */
 struct call {
     struct bounds b;
-    double scale;
+    double dt, scale;
     const double *v;
     const size_t *group_of;
+    int all;       /* contacts take part, whatever friction can do against the pull */
+    int breaks;    /* limits are static */
     int estimates; /* the pull tells something, and what limits can do against it is found from the sums of R's rows first */
 };
 
@@ -125,7 +127,7 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
         const double lo = lower_of(&c->b, i), hi = c->b.upper[i];
-        if (lo < hi && (c->b.lower || within_reach(ctx, p, k, c, &l))) {
+        if (lo < hi && (c->all || within_reach(ctx, p, k, c, &l))) {
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
@@ -138,10 +140,30 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
     return p;
 }
 
-/* Solves for the contacts of a group that take part; there are some. */
-static int solve_for(tribo_context *ctx, struct box_qp *p, const struct bounds *b)
+/* Where limits are static: which contacts of a group break away. Returns how many, with their new bounds. */
+static size_t let_go(tribo_context *ctx, struct box_qp *p, double dt)
 {
-    const int status = tribo_solve_group(ctx, p);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t k = p->near[e], i = p->member[k];
+        ctx->last.feq[i] = cut(p->x[k] - quotient(p->gradient[k], ctx->op->diagonal[i]));
+    }
+    const size_t broken = tribo_break_away(ctx, p, dt);
+    for (size_t e = 0; broken && e < p->count; e++) {
+        const size_t k = p->near[e];
+        p->hi[k] = ctx->follow.now[p->member[k]];
+        p->lo[k] = -p->hi[k];
+    }
+    return broken;
+}
+
+/* Solves for the contacts of a group that take part; there are some. */
+static int solve_for(tribo_context *ctx, struct box_qp *p, const struct call *c)
+{
+    const struct bounds *b = &c->b;
+    int status;
+    do {
+        status = tribo_solve_group(ctx, p);
+    } while (!status && c->breaks && let_go(ctx, p, c->dt));
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
         ctx->last.f[i] = clamp(p->x[k], lower_of(b, i), b->upper[i]);
@@ -166,7 +188,7 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
         m->solved[g] = p && p->count > 0;
         if (m->solved[g]) {
             m->solved_list[m->nsolved++] = g;
-            status = solve_for(ctx, p, &c->b);
+            status = solve_for(ctx, p, c);
         }
     }
     return status;
@@ -175,10 +197,14 @@ static int solve_candidates(tribo_context *ctx, const struct call *c)
 /* Solves for all contacts, but for clusters. */
 static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
-    const int estimates = !b.lower && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
-    const struct call c = {b, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, group_of, estimates};
+    const int breaks = !b.lower && ctx->set.breaking, all = b.lower || breaks;
+    const int estimates = !all && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
+    const struct call c = {b, dt, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, group_of, all, breaks, estimates};
     tribo_store_all(ctx);
     box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
+    if (breaks) {
+        tribo_break_alone(ctx, dt, v);
+    }
     if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
@@ -225,7 +251,8 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
         return status;
     }
     tribo_begin_call(ctx);
-    const struct bounds b = {NULL, ctx->set.limit};
+    tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->set.breaking ? ctx->n : 0);
+    const struct bounds b = {NULL, ctx->follow.contacts.limit};
     status = ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;

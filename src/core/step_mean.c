@@ -111,6 +111,16 @@ static void look_at_all(tribo_context *ctx, struct step *s)
     }
 }
 
+/* Whether a contact that came in sliding does not go on that way. */
+TRIBO_SIMD static int any_slip_ends(size_t n, const double *restrict v, const double *restrict f, const double *restrict limit)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t i = 0; i < n; i++) {
+        any |= ((v[i] != 0.0) & (f[i] != sliding(v[i], limit[i]))) ? -1 : 0;
+    }
+    return any != 0;
+}
+
 /* Forces do not tell the slip of contacts that reverse. */
 static void write_slips(tribo_context *ctx, const struct step *s)
 {
@@ -127,7 +137,9 @@ static int solve_both(tribo_context *ctx, struct step *s, double *f)
         return status;
     }
     ctx->last.holds = 1.0;
-    look_at_all(ctx, s);
+    if (ctx->planar || any_slip_ends(ctx->n, s->v, ctx->last.f, ctx->set.limit)) {
+        look_at_all(ctx, s);
+    }
     if (!s->changes) {
         tribo_copy(f, ctx->last.f, ctx->n);
     } else {
@@ -145,14 +157,16 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     }
     int status = tribo_check_step(ctx, dt, vfree, f);
     status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
-    if (status) {
-        return status;
+    if (status || ctx->set.breaking) {
+        return status ? status : tribo_step_force(ctx, dt, vfree, f);
     }
     struct step s = {dt, v, vfree, ctx->spare.of, ctx->last.v, ctx->last.feq, ctx->plane.v, 0};
     tribo_begin_call(ctx);
     status = solve_both(ctx, &s, f);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;
+    }
+    if (!status && (s.changes || ctx->planar)) {
         write_slips(ctx, &s);
     }
     return status;

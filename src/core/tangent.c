@@ -1,12 +1,12 @@
-/* How the forces of coupled contacts follow velocities and accelerations. With the sets of contacts that the last balance found
- * this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or f_eq, stay
- * balanced, the others as their law or their bound tells. */
+/* How the forces of coupled contacts follow velocities, accelerations and limits. With the sets of contacts that the last
+ * balance found this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or
+ * f_eq, stay balanced, the others as their law or their bound tells. */
 #include "context.h"
 
 /* What every contact's law says at the last balance, which was at v. */
 static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
 {
-    ctx->set.law->tangent(&ctx->follow.contacts, ctx->n, v, ctx->last.feq, ctx->last.tangent);
+    tribo_law_tangents(ctx, &ctx->follow.contacts, 0, ctx->n, v, ctx->last.feq, ctx->last.tangent);
     tribo_copy(ctx->last.v, v, ctx->n);
     if (ctx->planar) {
         tribo_planar_linearize(ctx, v, a);
@@ -14,17 +14,28 @@ static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
     ctx->last.linearized = 1;
 }
 
-/* How the force of contact i, at place k, follows its own velocity where it is not balanced. */
-static double own_rate(const tribo_context *ctx, const struct box_qp *p, size_t k, size_t i)
+/* How kappa = slope v follows v. */
+static double relaxation_rate(const tribo_context *ctx, size_t i)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const double slope = tribo_slope_of(c, i);
+    return ctx->set.breaking ? slope + product(c->rate[i] * ctx->last.v[i], tribo_limit_rate(ctx, i, ctx->last.v[i])) : slope;
+}
+
+/* How the force of contact i, at place k, changes by itself where it is not balanced. */
+static double own_change(const tribo_context *ctx, const struct box_qp *p, size_t k, size_t i, double dv, double dlimit)
 {
     if (ctx->last.did.of[i] != STORED) {
-        return ctx->last.tangent[i].dv;
+        return product(ctx->last.tangent[i].dv, dv) + product(ctx->last.tangent[i].dlimit, dlimit);
     }
-    /* the bound of a relaxing law moves with v while it is not at the other limit */
-    const double slope = tribo_slope_of(&ctx->follow.contacts, i), kappa = slope * ctx->last.v[i];
-    const int moves =
-        ctx->set.law->relaxes && (p->at[k] == AT_UPPER ? kappa >= 0.0 : kappa <= 0.0) && 0.5 * fabs(kappa) < ctx->set.limit[i];
-    return moves ? -slope : 0.0;
+    /* the bound of a relaxing law moves with kappa while it is not at the other limit */
+    const struct contacts *c = &ctx->follow.contacts;
+    const double v = ctx->last.v[i], kappa = tribo_slope_of(c, i) * v;
+    const int side = p->at[k] == AT_UPPER ? 1 : -1, shifted = ctx->set.law->relaxes && side * kappa >= 0.0;
+    const int moves = shifted && 0.5 * fabs(kappa) < c->limit[i], across = shifted && !moves;
+    const double wider = dlimit + product(tribo_limit_rate(ctx, i, v), dv), change = (across ? -side : side) * wider;
+    const double turned = product(product(tribo_slope_rate_of(c, i), v), dlimit);
+    return moves ? change - product(relaxation_rate(ctx, i), dv) - turned : change;
 }
 
 /* df = R^-1 (-rhs) over the free contacts, the least in norm; df of the others is given, and rhs holds what they do not. */
@@ -53,9 +64,9 @@ static void follow_free(struct box_qp *p, size_t vectors, const double *rhs, dou
     }
 }
 
-/* df [size] of a group that was solved for, from dv and da [size], all by place. */
+/* df [size] of a group that was solved for, from dv and da [size], all by place; and from the limits that d changes. */
 static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vectors, const double *dv, const double *da,
-                          double *df)
+                          const struct change *d, double *df)
 {
     const int partition = ctx->set.coupling == TRIBO_PARTITION;
     p->far = 1; /* derivatives may be anything */
@@ -65,44 +76,49 @@ static void group_product(const tribo_context *ctx, struct box_qp *p, size_t vec
         const size_t i = member[k];
         const double r = ctx->op->diagonal[i], most = TRIBO_ROOM * tribo_most(p, k),
                      pull = TRIBO_ROOM * TRIBO_FAR * lesser(r, 1.0);
-        df[k] = p->at[k] == FREE ? 0.0 : clamp(product(own_rate(ctx, p, k, i), dv[k]), -most, most);
+        const double dlimit = tribo_limit_change(ctx, d, i);
+        df[k] = p->at[k] == FREE ? 0.0 : clamp(own_change(ctx, p, k, i, dv[k], dlimit), -most, most);
         rhs[k] = clamp(da[k], -pull, pull);
         if (!partition && ctx->set.law->relaxes) {
-            rhs[k] += r * clamp(product(tribo_slope_of(&ctx->follow.contacts, i), dv[k]), -most, most);
+            const double turned = product(product(tribo_slope_rate_of(&ctx->follow.contacts, i), ctx->last.v[i]), dlimit);
+            rhs[k] += r * clamp(product(relaxation_rate(ctx, i), dv[k]) + turned, -most, most);
         }
     }
     follow_free(p, vectors, rhs, df);
     if (partition) {
         for (size_t k = 0; k < size; k++) {
-            const struct tangent *d = &ctx->last.tangent[member[k]];
-            df[k] = p->at[k] == FREE ? d->dfeq * df[k] + product(d->dv, dv[k]) : df[k];
+            const struct tangent *law = &ctx->last.tangent[member[k]];
+            const double own = product(law->dv, dv[k]) + product(law->dlimit, tribo_limit_change(ctx, d, member[k]));
+            df[k] = p->at[k] == FREE ? law->dfeq * df[k] + own : df[k];
         }
     } else if (ctx->set.law->remembers) {
         /* the forces so far are those that f_eq balances; the law itself has another derivative where f_eq is beyond the limit */
         memcpy(p->step, df, size * sizeof *df);
         for (size_t k = 0; k < size; k++) {
             const size_t i = member[k];
-            const struct tangent *d = &ctx->last.tangent[i];
+            const struct tangent *law = &ctx->last.tangent[i];
             const double r = ctx->op->diagonal[i], sum = divisible(da[k], r) + tribo_row_others(p, k, p->step);
-            df[k] = product(d->dv, dv[k]) - (ctx->last.did.of[i] == STORED ? d->dfeq * quotient(sum, r) : 0.0);
+            const double own = product(law->dv, dv[k]) + product(law->dlimit, tribo_limit_change(ctx, d, i));
+            df[k] = own - (ctx->last.did.of[i] == STORED ? law->dfeq * quotient(sum, r) : 0.0);
         }
     }
 }
 
 /* Contacts for which nothing was solved. Where friction moves nothing, the force jumps as a changes its sign. */
-static double alone_product(const tribo_context *ctx, size_t i, double dv, double da)
+static double alone_product(const tribo_context *ctx, size_t i, double dv, double da, double dlimit)
 {
     const struct tangent *d = &ctx->last.tangent[i];
     const double r = ctx->op->diagonal[i];
     const int balanced = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
-    const int follows = balanced && ctx->set.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
-    return product(d->dv, dv) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
+    const int follows = balanced && ctx->follow.contacts.limit[i] > 0.0 && r > TRIBO_IMMOVABLE;
+    return product(d->dv, dv) + product(d->dlimit, dlimit) - (follows ? quotient(product(d->dfeq, da), r) : 0.0);
 }
 
 static void solved_columns(tribo_context *ctx, struct box_qp *p, double *df_dv, double *df_da)
 {
     const size_t *member = p->member, size = p->group->size;
     const size_t vectors = tribo_null_basis(p);
+    const struct change none = {NULL, NULL, NULL};
     double *zero = p->lo, *unit = p->hi, *df = p->gradient;
     memset(zero, 0, size * sizeof *zero);
     memset(unit, 0, size * sizeof *unit);
@@ -111,7 +127,7 @@ static void solved_columns(tribo_context *ctx, struct box_qp *p, double *df_dv, 
         for (int by_v = 0; by_v < 2; by_v++) {
             double *out = by_v ? df_dv : df_da;
             if (out) {
-                group_product(ctx, p, vectors, by_v ? unit : zero, by_v ? zero : unit, df);
+                group_product(ctx, p, vectors, by_v ? unit : zero, by_v ? zero : unit, &none, df);
                 for (size_t k = 0; k < size; k++) {
                     out[member[k] * ctx->n + member[c]] = df[k];
                 }
@@ -137,7 +153,7 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
                 out[k] = 0.0;
             }
             for (size_t i = 0; i < n; i++) {
-                out[i * n + i] = alone_product(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0);
+                out[i * n + i] = alone_product(ctx, i, by_v ? 1.0 : 0.0, by_v ? 0.0 : 1.0, 0.0);
             }
         }
     }
@@ -150,16 +166,9 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
     return TRIBO_OK;
 }
 
-int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df)
+/* df [n] of all contacts. */
+static int product_of(tribo_context *ctx, const struct change *d, double *df)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = dv ? tribo_check_finite(ctx, "dv", dv, ctx->n) : TRIBO_OK;
-    status = status || !da ? status : tribo_check_finite(ctx, "da", da, ctx->n);
-    if (status) {
-        return status;
-    }
     if (!df && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "df is NULL");
     }
@@ -167,22 +176,42 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
         return tribo_fail(ctx, TRIBO_ERR_STATE, "no tribo_balance_tangent since the last balance or change");
     }
     for (size_t i = 0; i < ctx->n; i++) {
-        df[i] = alone_product(ctx, i, dv ? dv[i] : 0.0, da ? da[i] : 0.0);
+        df[i] = alone_product(ctx, i, tribo_entry(d->v, i), tribo_entry(d->a, i), tribo_limit_change(ctx, d, i));
     }
     for (size_t g = 0; g < ctx->memory.nsolved; g++) {
         struct box_qp *p = tribo_collect(ctx, ctx->memory.solved_list[g]);
         const size_t *member = p->member, size = p->group->size;
         for (size_t k = 0; k < size; k++) {
-            p->lo[k] = dv ? dv[member[k]] : 0.0;
-            p->hi[k] = da ? da[member[k]] : 0.0;
+            p->lo[k] = tribo_entry(d->v, member[k]);
+            p->hi[k] = tribo_entry(d->a, member[k]);
         }
-        group_product(ctx, p, tribo_null_basis(p), p->lo, p->hi, p->gradient);
+        group_product(ctx, p, tribo_null_basis(p), p->lo, p->hi, d, p->gradient);
         for (size_t k = 0; k < size; k++) {
             df[member[k]] = p->gradient[k];
         }
     }
     if (ctx->planar) {
-        tribo_planar_product(ctx, dv, da, df);
+        tribo_planar_product(ctx, d, df);
     }
     return TRIBO_OK;
+}
+
+int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = dv ? tribo_check_finite(ctx, "dv", dv, ctx->n) : TRIBO_OK;
+    status = status || !da ? status : tribo_check_finite(ctx, "da", da, ctx->n);
+    return status ? status : product_of(ctx, &(struct change){dv, da, NULL}, df);
+}
+
+int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = tribo_check_finite(ctx, "dlimit", dlimit, ctx->n);
+    status = status ? status : tribo_refuse_static(ctx, "tribo_limit_product knows no");
+    return status ? status : product_of(ctx, &(struct change){NULL, NULL, dlimit}, df);
 }

@@ -1,3 +1,4 @@
+#include "driver.h"
 /* Integration in time: a method by name, and what is around it. */
 #include <float.h>
 #include <math.h>
@@ -6,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "shooting.h"
+#include "breakaway.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -147,7 +148,9 @@ void tribo_driver_destroy(tribo_driver *drv)
     if (!drv) {
         return;
     }
-    tribo_shooting_free(drv->shooting);
+    if (drv->shooting) {
+        drv->free_shooting(drv->shooting);
+    }
     drv->method->destroy(drv);
     free(drv->state);
     free(drv);
@@ -233,7 +236,7 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
         *value = drv->newton;
         return TRIBO_OK;
     case TRIBO_COUNT_FREEDOM:
-        *value = drv->shooting ? drv->shooting->freedom : 0;
+        *value = drv->freedom;
         return TRIBO_OK;
     default:
         return TRIBO_ERR_RANGE;
@@ -379,7 +382,7 @@ static int choose(const tribo_driver *drv)
     const tribo_system *sys = drv->sys;
     const struct choice *c = drv->own;
     const int refused = c->refused && c->revision == tribo_system_revision(sys);
-    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !refused ? EXACT : EVENT;
+    return sys->ndof <= 200 && !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !refused ? EXACT : EVENT;
 }
 
 /* Makes sure that there is the driver. The message of a failure is on the system's context. */

@@ -36,7 +36,9 @@ struct tribo_driver {
     double excess, backslip; /* largest so far; NaN for methods that do not know them */
     int (*seen)(double t, const double *y, int event, void *data);
     void *data;
-    struct shooting *shooting; /* of periodic motions, made when it is first needed */
+    struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting */
+    void (*free_shooting)(struct shooting *s);
+    size_t freedom; /* dimension of the family of the last one */
     char message[240];
 };
 

@@ -88,12 +88,10 @@ void tribo_events_guard_part(struct events *e, size_t i, struct guard guard)
 void tribo_events_guard_limit(struct events *e, size_t i, struct guard guard)
 {
     const struct stick_slip *m = &e->stick_slip;
-    const int keeps = m->slip[i] == 0 && !tribo_stick_slip_follows(m, i);
-    if (m->slip[i] == 2) {
-        guard.offset = -guard.offset;
-        guard.limit = -guard.limit;
-    }
-    guard.offset -= keeps ? fabs(m->force[i]) : 0.0;
+    const int keeps = m->slip[i] == 0 && tribo_stick_slip_follows(m, i) == 0.0;
+    const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
+    guard.limit *= times;
+    guard.offset = times * guard.offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
     guard.slides = 0;
     guard.side = 0.0;
     guard.allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];

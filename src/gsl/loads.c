@@ -286,6 +286,21 @@ double tribo_system_swing(const tribo_system *sys, size_t i)
     return sum;
 }
 
+void tribo_system_most_limits(const tribo_system *sys, double *most)
+{
+    if (!tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, most);
+        return;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        most[i] = sys->limits.knots ? 0.0 : sys->given_limit[i];
+        for (size_t k = 0; k < sys->limits.knots; k++) {
+            most[i] = greater(most[i], sys->limits.value[k * sys->ncontact + i]);
+        }
+        most[i] += tribo_system_swing(sys, i);
+    }
+}
+
 /* A limit of which so many derivatives are nothing but rounding is 0. */
 #define DERIVATIVES 9
 

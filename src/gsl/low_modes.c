@@ -264,23 +264,13 @@ static double separate(const struct model *m, size_t count, const double *phi, d
     return square > 0.0 ? sqrt(square) : 0.0;
 }
 
-/* J_i x. */
-static double displacement(const struct model *m, size_t i, const double *x)
-{
-    double sum = 0.0;
-    for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
-        sum += m->direction.val[k] * x[m->direction.col[k]];
-    }
-    return sum;
-}
-
 /* x [ndof] is what a steady force at contact i does. Takes out of it what the modes have, enters what the rest does at the
  * contacts into missing [ncontact][ncontact], and adds what is new in it to the motions. */
 static void add_static(const struct model *m, struct reduced *r, size_t i, double *x, double *mx, double *missing)
 {
     const double before = separate(m, m->nmode, r->phi, x, mx);
     for (size_t j = 0; j < m->ncontact; j++) {
-        missing[i * m->ncontact + j] = displacement(m, j, x);
+        missing[i * m->ncontact + j] = tribo_matrix_row_dot(&m->direction, j, x);
     }
     const double norm = m->statics ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
     if (norm > OWN * before) {
@@ -333,9 +323,11 @@ static void add_modes(const struct model *m, const struct shifted *s, const stru
     const size_t c = m->ncontact;
     for (size_t k = 0; k < m->nmode; k++) {
         for (size_t i = 0; i < c; i++) {
-            const double part = r->omega2[k] > 0.0 ? displacement(m, i, r->phi + k * m->ndof) / (r->omega2[k] + s->shift) : 0.0;
+            const double part = r->omega2[k] > 0.0
+                                    ? tribo_matrix_row_dot(&m->direction, i, r->phi + k * m->ndof) / (r->omega2[k] + s->shift)
+                                    : 0.0;
             for (size_t j = 0; j < c; j++) {
-                whole[i * c + j] += part * displacement(m, j, r->phi + k * m->ndof);
+                whole[i * c + j] += part * tribo_matrix_row_dot(&m->direction, j, r->phi + k * m->ndof);
             }
         }
     }

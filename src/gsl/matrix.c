@@ -266,6 +266,15 @@ TRIBO_SIMD static void add_diagonals(const struct matrix *a, double factor, cons
     }
 }
 
+void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            y[i] += fabs(a->val[k] * x[a->col[k]]);
+        }
+    }
+}
+
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *restrict x, double *restrict y)
 {
     if (a->diagonals) {
@@ -281,11 +290,7 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
         }
     } else {
         for (size_t i = 0; i < a->rows; i++) {
-            double sum = 0.0;
-            for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-                sum += a->val[k] * x[a->col[k]];
-            }
-            y[i] += factor * sum;
+            y[i] += factor * tribo_matrix_row_dot(a, i, x);
         }
     }
 }

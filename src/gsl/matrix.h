@@ -31,6 +31,19 @@ void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);
 
 void tribo_matrix_free(struct matrix *a);
 
+/* y += |A| |x|, entry by entry. */
+void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
+
+/* Row i of A times x. */
+static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, const double *x)
+{
+    double sum = 0.0;
+    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        sum += a->val[k] * x[a->col[k]];
+    }
+    return sum;
+}
+
 /* y += factor A x. */
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y);
 

@@ -63,7 +63,7 @@ static int kick(tribo_driver *drv, double from, double t, double to, const doubl
     tribo_step_form_find_base(s, sys, to);
     tribo_step_form_relative(s, sys, u, s->end);
     tribo_step_form_set_limits(sys, t);
-    const int status = tribo_step_force(sys->contacts, time, s->end, s->f);
+    const int status = tribo_step_form_force(s, sys->contacts, time);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }
@@ -162,4 +162,5 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
     return status || drv->seen ? status : synchronise(drv, t1, y);
 }
 
-const struct method tribo_method_central_fixed = {"central/fixed", WITHOUT_TOLERANCES, create, destroy, central_advance, NULL, NULL};
+const struct method tribo_method_central_fixed = {
+    "central/fixed", WITHOUT_TOLERANCES, create, destroy, central_advance, NULL, NULL};

@@ -21,13 +21,16 @@ struct event {
     struct events events;
     size_t order;
     double tolerance; /* relative */
-    double fastest;   /* bound on the frequencies of the motion */
+    double fastest;   /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
     double tau, length;              /* where go() was; that of the step, and what bounds hold for */
     double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
     double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
     double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
     size_t terms;                    /* so many rows of them are not zero */
+    double *slide;                   /* [order + 1][ncontact] limits to slide: these, unless they fall with the speed; */
+    size_t slide_terms;              /* so many rows */
+    double *fall, *part;             /* [order + 1][ncontact] room for such that fall, and exp(-|v|/velocity) */
     double *d;                       /* [order + 1] dissipated energy */
     double *size, *bend;             /* [ncontact] bounds of what is watched, and of its sixth derivative; */
     double *limit_size, *limit_bend; /* [ncontact] the same of limits */
@@ -67,15 +70,33 @@ static void add_harmonics(const struct event *e, enum drives drives, size_t k, d
     }
 }
 
-/* Coefficients of the limits, at the time that the harmonics have been expanded for. */
+/* Coefficients of the limits, at the time that the harmonics have been expanded for. Of such that fall with the speed each
+ * coefficient has to wait for the velocity's. */
 static void expand_limits(struct event *e)
 {
     const tribo_system *sys = e->sys;
     const size_t c = sys->ncontact;
+    const int falls = e->events.stick_slip.breakaway.falls;
+    e->slide = falls ? e->fall : e->limit;
+    e->slide_terms = falls ? e->order + 1 : e->terms;
     tribo_system_limits(sys, e->limit, e->limit + c);
-    for (size_t k = 2; k < e->terms; k++) {
+    for (size_t k = 2; k < e->slide_terms; k++) {
         memset(e->limit + k * c, 0, c * sizeof *e->limit);
         add_harmonics(e, DRIVES_LIMIT, k, 1.0, e->limit + k * c);
+    }
+}
+
+/* The k-th coefficients of limits that fall with the speed, for contacts that slide. */
+static void expand_falling(struct event *e, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    for (size_t i = 0; i < c; i++) {
+        double *part = e->part + i;
+        if (m->slip[i] == 1 || m->slip[i] == -1) {
+            part[k * c] = tribo_breakaway_part(&m->breakaway, i, m->slip[i], k, c, e->watch + i, part);
+            e->fall[k * c + i] = tribo_breakaway_series(&m->breakaway, i, k, c, e->terms, e->limit + i, part);
+        }
     }
 }
 
@@ -84,10 +105,23 @@ static void expand_limits(struct event *e)
 static void given_forces(struct event *e, size_t k)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    const double *limit = e->limit + k * e->sys->ncontact;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
         const int keeps = k == 0 && m->slip[i] == 0 && !m->holds[i];
-        e->given[i] = keeps ? m->force[i] : tribo_stick_slip_follows(m, i) * limit[i];
+        const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact, side = tribo_stick_slip_follows(m, i);
+        e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
+    }
+}
+
+/* The k-th coefficients of the contacts' velocities. */
+static void find_velocities(const struct event *e, size_t k, double *v)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    memset(v, 0, c * sizeof *v);
+    add_harmonics(e, DRIVES_BASE, k, -1.0, v);
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
+    for (size_t i = 0; k == 0 && i < c; i++) {
+        v[i] = m->rested[i] ? 0.0 : v[i];
     }
 }
 
@@ -98,6 +132,7 @@ static int expand_forces(struct event *e, size_t k)
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
     const double *q = e->q + k * n, *u = e->u + k * n;
+    const int given = k < e->slide_terms;
     double *acc = e->acceleration, *watch = e->watch + k * c;
     memset(acc, 0, n * sizeof *acc);
     add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
@@ -106,7 +141,11 @@ static int expand_forces(struct event *e, size_t k)
         tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
     }
     tribo_system_tables(sys, (int)k, 1.0, acc);
-    if (k < e->terms) {
+    find_velocities(e, k, watch);
+    if (m->breakaway.falls) {
+        expand_falling(e, k);
+    }
+    if (given) {
         given_forces(e, k);
         tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
     }
@@ -121,13 +160,10 @@ static int expand_forces(struct event *e, size_t k)
         return tribo_system_fail(sys, status, "%s", tribo_message(e->events.stick_slip.hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
-    memset(watch, 0, c * sizeof *watch);
-    add_harmonics(e, DRIVES_BASE, k, -1.0, watch);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, u, watch);
     for (size_t i = 0; i < c; i++) {
-        const double force = k == 0 ? m->force[i] : e->held[i] + (k < e->terms ? e->given[i] : 0.0);
-        const double v = k == 0 && m->rested[i] ? 0.0 : watch[i];
-        watch[i] = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : v;
+        if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
+            watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
+        }
     }
     /* contacts at rest must not creep by what rounding leaves in acc */
     return tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
@@ -141,8 +177,8 @@ static void expand_energy(struct event *e)
     const size_t c = sys->ncontact;
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
-        for (size_t j = 0; j <= k && j < e->terms; j++) {
-            const double *limit = e->limit + j * c, *v = e->watch + (k - j) * c;
+        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
             for (size_t i = 0; i < c; i++) {
                 power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
             }
@@ -183,6 +219,11 @@ static double wanted(const tribo_driver *drv, double size)
     return greater(drv->abstol + drv->reltol * size, DBL_EPSILON * size);
 }
 
+static double fastest(const struct event *e)
+{
+    return e->fastest + e->events.stick_slip.breakaway.steepest;
+}
+
 /* The step on which the last two terms of everything stay below the tolerance. */
 static double step_length(const struct event *e)
 {
@@ -190,15 +231,16 @@ static double step_length(const struct event *e)
     const tribo_driver *drv = e->drv;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
     const double q = wanted(drv, tribo_largest(e->q, n)), u = wanted(drv, tribo_largest(e->u, n)), d = wanted(drv, fabs(e->d[0]));
-    const double most = e->fastest > 0.0 ? 0.5 * (double)(e->order + 1) / e->fastest : HUGE_VAL;
+    const double most = fastest(e) > 0.0 ? 0.5 * (double)(e->order + 1) / fastest(e) : HUGE_VAL;
     double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
             /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
-            const double rise = m->limit_rate[i] != 0.0 ? fabs(m->limit_rate[i]) * lesser(most, DBL_MAX) : 0.0;
-            const double force = e->tolerance * (m->limit[i] + m->swing[i] + rise);
-            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? force : u;
+            const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
+            const double force = e->tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
+            const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : u;
             term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
             term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
@@ -295,7 +337,7 @@ static double parts_of_velocity(const struct event *e, size_t i, double h)
  * limit that only follows a table has its zeros at knots, where steps end. */
 static int limit_tells(const struct stick_slip *m, size_t i, int varies)
 {
-    const int keeps = m->slip[i] == 0 && !m->holds[i] && !tribo_stick_slip_follows(m, i);
+    const int keeps = m->slip[i] == 0 && !m->holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
     return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
 }
 
@@ -308,6 +350,7 @@ static void set_guards(struct event *e)
     find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
     find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
     for (size_t i = 0; i < m->contacts; i++) {
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct guard g = {.output = e->watch + i};
         if (m->slip[i] == 1 || m->slip[i] == -1) {
             tribo_events_guard_slip(&e->events, i, g);
@@ -315,12 +358,12 @@ static void set_guards(struct event *e)
             e->size[i] = parts_of_velocity(e, i, h);
             tribo_events_guard_part(&e->events, i, g);
         }
-        g.limit = varies;
-        g.offset = varies ? 0.0 : m->limit[i];
-        if (m->holds[i] && e->size[i] >= 2.0 * e->limit[i] - e->limit_size[i]) {
+        g.limit = varies ? ratio : 0.0;
+        g.offset = (varies ? 0.0 : ratio * e->limit[i]) + tribo_stick_slip_slack(m, i);
+        if (m->holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
             tribo_events_guard_stick(&e->events, i, g);
         } else if (limit_tells(m, i, varies)) {
-            tribo_events_guard_limit(&e->events, i, g);
+            tribo_events_guard_limit(&e->events, i, (struct guard){.limit = 1.0});
         }
     }
 }
@@ -361,7 +404,7 @@ static int create(tribo_driver *drv)
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
-    double *work = malloc((terms * (2 * n + 2 * c + 1) + n + 8 * c + 1) * sizeof *work);
+    double *work = malloc((terms * (2 * n + 4 * c + 1) + n + 8 * c + 1) * sizeof *work);
     if (!work) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
@@ -371,7 +414,9 @@ static int create(tribo_driver *drv)
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
     e->limit = e->watch + terms * c;
-    e->d = e->limit + terms * c;
+    e->fall = e->limit + terms * c;
+    e->part = e->fall + terms * c;
+    e->d = e->part + terms * c;
     e->acceleration = e->d + terms;
     e->base = e->acceleration + n;
     e->a = e->base + c;
@@ -437,7 +482,7 @@ static int begin(void *motion, double t, const double *y, double *reach)
     const double length = step_length(e);
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
-    e->length = e->fastest > 0.0 ? greater(*reach, lesser(length, 1.0 / e->fastest)) : *reach;
+    e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
     set_guards(e);
     return TRIBO_OK;
 }

@@ -119,8 +119,8 @@ static void bound_guard(const struct exact *x, struct guard *g)
         tribo_modal_motion_output_bounds(&x->motion, g->output, &g->size, &g->bend);
     }
     if (g->limit != 0.0) {
-        g->size += x->events.stick_slip.swing[g->contact];
-        g->bend += tribo_modal_motion_limit_bend(&x->motion, g->contact);
+        g->size += fabs(g->limit) * x->events.stick_slip.swing[g->contact];
+        g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
     }
     g->size += fabs(g->offset) + fabs(g->start) + fabs(g->ramp) * x->motion.longest;
 }
@@ -161,10 +161,11 @@ static void add_guards(struct exact *x, const struct output *w, int of_velocity,
         tribo_events_guard_slip(&x->events, i, g);
     } else {
         bound_guard(x, &g);
-        g.limit = m->swing[i] > 0.0;
-        g.offset = steady_limit(x, i);
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
+        g.limit = m->swing[i] > 0.0 ? ratio : 0.0;
+        g.offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
         /* nothing to guard if it is far from the limit for the whole phase */
-        if (g.size >= g.offset - m->swing[i]) {
+        if (g.size >= g.offset - ratio * m->swing[i]) {
             tribo_events_guard_stick(&x->events, i, g);
         }
     }
@@ -285,6 +286,11 @@ static int open_events(tribo_driver *drv, struct events **events)
     if (sys->tables || sys->limits.knots) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
                                  "method exact takes harmonic loads and limits only; method event takes tables too");
+    }
+    if (tribo_system_falls(sys)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                 "method exact takes static limits that drop at once; method event takes such that fall with "
+                                 "the speed too");
     }
     if (x->revision != sys->revision) {
         drop_helds(x);

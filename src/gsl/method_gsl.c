@@ -89,7 +89,7 @@ static void find_cap(struct adaptive *a, const tribo_system *sys, size_t i, doub
 /* What the contacts ask of velocities and steps, with the limits that they have. */
 static void find_bands(struct adaptive *a, tribo_system *sys)
 {
-    double *limit = a->rate, most = 0.0, fastest = 0.0, bound;
+    double *limit = a->rate, *ratio = sys->feq, most = 0.0, fastest = 0.0, bound;
     int law;
     tribo_get_law(sys->contacts, &law);
     tribo_get_limit(sys->contacts, limit);
@@ -98,7 +98,9 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     for (size_t d = 0; d < sys->ndof; d++) {
         a->cap[d] = HUGE_VAL;
     }
+    tribo_get_static(sys->contacts, ratio, NULL);
     for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] *= ratio[i];
         most = greater(most, limit[i]);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -285,7 +287,8 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     return status;
 }
 
-#define ADAPTIVE(id) const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id, NULL};
+#define ADAPTIVE(id)                                                                                                             \
+    const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id, NULL};
 ADAPTIVE(rk2)
 ADAPTIVE(rk4)
 ADAPTIVE(rkf45)

@@ -1,4 +1,4 @@
-/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law at the end of the step, the mean of the
+/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law over the step, the mean of the
  * loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for
  * any dt. */
 #include <math.h>
@@ -7,6 +7,7 @@
 
 #include <gsl/gsl_linalg.h>
 
+#include "breakaway.h"
 #include "hidden.h"
 #include "step_form.h"
 
@@ -18,11 +19,13 @@ struct moreau {
     size_t below, above;
     double *band;
     unsigned int *pivot;
-    struct cholesky sparse; /* of an unsolved system's */
-    double *response;       /* [ncontact][ndof], or NULL: then a step takes a second solve */
-    double *push;           /* [ndof] for that */
-    double *limit;          /* [ncontact] */
-    double *load;           /* [ndof] at the end of the step before */
+    struct cholesky sparse;   /* of an unsolved system's */
+    double *response;         /* [ncontact][ndof], or NULL: then a step takes a second solve */
+    double *push;             /* [ndof] for that */
+    double *limit;            /* [ncontact] */
+    double *ratio, *velocity; /* [ncontact] of static limits */
+    size_t statics;           /* revision of the system's contacts that these came from; 0: contacts have not got them */
+    double *load;             /* [ndof] at the end of the step before */
     tribo_context *contacts;
     size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
 };
@@ -49,13 +52,15 @@ static int create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (m) {
-        m->limit = calloc(c + n + 1, sizeof *m->limit);
+        m->limit = calloc(3 * c + n + 1, sizeof *m->limit);
         m->push = calloc(n, sizeof *m->push);
     }
     if (!m || !m->limit || !m->push || !tribo_step_form_create(&m->common, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
-    m->load = m->limit + c;
+    m->ratio = m->limit + c;
+    m->velocity = m->limit + 2 * c;
+    m->load = m->limit + 3 * c;
     return TRIBO_OK;
 }
 
@@ -208,6 +213,7 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = tribo_revision(sys->contacts);
+    m->statics = 0;
     const int status =
         planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
     m->contacts = status ? NULL : m->contacts;
@@ -232,9 +238,7 @@ static void find_operator(struct moreau *m, const tribo_system *sys, const struc
         }
         solve(m, n, x);
         for (size_t i = 0; i < c; i++) {
-            for (size_t k = direction->first[i]; k < direction->first[i + 1]; k++) {
-                r[i * c + j] += direction->val[k] * x[direction->col[k]];
-            }
+            r[i * c + j] = tribo_matrix_row_dot(direction, i, x);
         }
         for (size_t k = direction->first[j]; k < direction->first[j + 1]; k++) {
             own[k] = x[direction->col[k]];
@@ -299,6 +303,18 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
+static void take_limits(struct moreau *m, const tribo_system *sys)
+{
+    const size_t revision = tribo_revision(sys->contacts);
+    tribo_get_limit(sys->contacts, m->limit);
+    tribo_set_limit(m->contacts, m->limit);
+    if (m->statics != revision) {
+        tribo_get_static(sys->contacts, m->ratio, m->velocity);
+        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
+        m->statics = revision;
+    }
+}
+
 static int moreau_step(tribo_driver *drv, double t, double next, double *y)
 {
     struct moreau *m = drv->own;
@@ -338,9 +354,8 @@ static int moreau_step(tribo_driver *drv, double t, double next, double *y)
     tribo_step_form_find_base(s, sys, next);
     tribo_step_form_relative(s, sys, s->u, s->end);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
-    tribo_get_limit(sys->contacts, m->limit);
-    tribo_set_limit(m->contacts, m->limit);
-    const int status = tribo_step_force(m->contacts, h, s->end, s->f);
+    take_limits(m, sys);
+    const int status = tribo_step_form_force(s, m->contacts, h);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }

@@ -84,12 +84,7 @@ static double limit_work(const struct modal_motion *x, size_t i, const struct ou
 /* The work of steady forces: their size times the distance slid, J dq, */
 static double steady_work(const struct modal_motion *x, size_t i)
 {
-    const struct matrix *j = &x->sys->direction;
-    double way = 0.0;
-    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-        way += j->val[e] * x->dq[j->col[e]];
-    }
-    return x->sys->tally[i] * x->steady[i] * way;
+    return x->sys->tally[i] * x->steady[i] * tribo_matrix_row_dot(&x->sys->direction, i, x->dq);
 }
 
 /* minus the way of the belts. */

@@ -55,6 +55,13 @@ int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics)
     return 1;
 }
 
+/* How many times a harmonic is in what happens: those of limits as many times as the force of their contact follows it. */
+static double side_of(const struct modal_motion *x, size_t s)
+{
+    const size_t contact = x->h->forcing[s].contact;
+    return contact < x->sys->ncontact ? tribo_stick_slip_follows(x->contacts, contact) : 1.0;
+}
+
 /* ------------------------------------------------------------------------------------------------------------------- later on */
 
 /* Adds what a resonant harmonic does to an exponent, from nothing at t0 on: z' = lambda z - (i/nu) Re(g e^{i Omega t}). */
@@ -221,8 +228,9 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
         *size += w->size[p] * x->growth[p];
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        *size += w->wave[s];
-        *bend += w->wave_bend[s];
+        const double side = fabs(side_of(x, s));
+        *size += side * w->wave[s];
+        *bend += side * w->wave_bend[s];
     }
 }
 
@@ -296,11 +304,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
 /* J_i q, less what harmonics of the base have moved it by. */
 static double offset(const tribo_system *sys, size_t i, const double *q)
 {
-    const struct matrix *j = &sys->direction;
-    double sum = 0.0;
-    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-        sum += j->val[e] * q[j->col[e]];
-    }
+    double sum = tribo_matrix_row_dot(&sys->direction, i, q);
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *w = &sys->harmonic[s];
         for (size_t e = 0; w->drives == DRIVES_BASE && w->omega != 0.0 && e < w->count; e++) {
@@ -353,7 +357,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
-        const double side = f->contact < sys->ncontact ? tribo_stick_slip_follows(x->contacts, f->contact) : 1.0;
+        const double side = side_of(x, s);
         x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
         x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
     }

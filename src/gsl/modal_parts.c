@@ -66,12 +66,7 @@ size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
 
 double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k)
 {
-    const struct matrix *j = &b->sys->direction;
-    double shape = 0.0;
-    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-        shape += j->val[e] * b->phi[k * b->n + j->col[e]];
-    }
-    return shape;
+    return tribo_matrix_row_dot(&b->sys->direction, i, b->phi + k * b->n);
 }
 
 void tribo_modal_react(const struct modal_build *b, double *force, double *f)

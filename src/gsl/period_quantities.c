@@ -183,16 +183,6 @@ static double way_of_base(const tribo_system *sys, const struct way *x)
     return way;
 }
 
-/* J_i times what is in its row. */
-static double of_contact(const tribo_system *sys, size_t i, const double *x)
-{
-    double sum = 0.0;
-    for (size_t k = sys->direction.first[i]; k < sys->direction.first[i + 1]; k++) {
-        sum += sys->direction.val[k] * x[sys->direction.col[k]];
-    }
-    return sum;
-}
-
 /* The work of what harmonics add to the limit of contact i. */
 static int add_swing(struct replay *r, const struct way *steady, const double *end, double *work, double *limit)
 {
@@ -227,7 +217,9 @@ static int add_energy(struct replay *r, double tau, const double *end)
             const struct way x = {i, r->map->t + r->elapsed, tau, NULL, 0.0};
             double work = 0.0, limit = m->limit[i];
             status = m->swing[i] > 0.0 ? add_swing(r, &x, end, &work, &limit) : TRIBO_OK;
-            work += limit * (of_contact(sys, i, end) - of_contact(sys, i, r->map->x) + way_of_base(sys, &x));
+            const double way =
+                tribo_matrix_row_dot(&sys->direction, i, end) - tribo_matrix_row_dot(&sys->direction, i, r->map->x);
+            work += limit * (way + way_of_base(sys, &x));
             r->sum[i] += sys->tally[i] * m->slip[i] * work;
         }
     }

@@ -47,6 +47,20 @@ static int check_loads(tribo_driver *drv, double period)
     return TRIBO_OK;
 }
 
+/* Derivatives of motions know no jump of forces where a contact breaks away, and none that follow the speed. */
+static int check_static(tribo_driver *drv)
+{
+    double *ratio = drv->sys->feq;
+    tribo_get_static(drv->sys->contacts, ratio, NULL);
+    for (size_t i = 0; i < drv->sys->ncontact; i++) {
+        if (ratio[i] > 1.0) {
+            return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                     "periodic motions are found without static limits, and ratio[%zu] = %g", i, ratio[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
 static int check_state(tribo_driver *drv, double t, const double *y)
 {
     const int status = y ? tribo_system_check_state(drv->sys, t, y) : TRIBO_ERR_NULL;
@@ -61,10 +75,12 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     int status = drv->method->open ? check_state(drv, t, y) : unsupported(drv);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
+    status = status ? status : check_static(drv);
     if (status) {
         return status;
     }
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
+    drv->free_shooting = tribo_shooting_free;
     return drv->shooting ? tribo_shooting_find(drv->shooting, t, period, y)
                          : tribo_driver_fail(drv, TRIBO_ERR_MEMORY,
                                              "out of memory for periodic motions of %zu degrees of freedom", drv->sys->ndof);

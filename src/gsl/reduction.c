@@ -41,11 +41,7 @@ static void find_shapes(const struct model *m, const struct reduced *r, double *
 {
     for (size_t k = 0; k < r->count; k++) {
         for (size_t i = 0; i < m->ncontact; i++) {
-            double sum = 0.0;
-            for (size_t e = m->direction.first[i]; e < m->direction.first[i + 1]; e++) {
-                sum += m->direction.val[e] * r->phi[k * m->ndof + m->direction.col[e]];
-            }
-            shapes[i * r->count + k] = sum;
+            shapes[i * r->count + k] = tribo_matrix_row_dot(&m->direction, i, r->phi + k * m->ndof);
         }
     }
 }

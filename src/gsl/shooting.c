@@ -281,7 +281,7 @@ static int find_family(struct shooting *s, double *move)
     const size_t n = s->map.n;
     whole_derivative(s);
     set_matrix(s, s->b, 0.0, s->a);
-    s->freedom = 0;
+    s->map.drv->freedom = 0;
     if (tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
         return TRIBO_OK;
     }
@@ -289,7 +289,7 @@ static int find_family(struct shooting *s, double *move)
     for (size_t i = 0; i < n; i++) {
         s->step[i] = tribo_dot(s->a + i * n, move, n);
     }
-    if (!tribo_least_norm_solve(s->a, n, FREE, s->step, &s->freedom)) {
+    if (!tribo_least_norm_solve(s->a, n, FREE, s->step, &s->map.drv->freedom)) {
         return no_memory(s);
     }
     tribo_add(move, -1.0, s->step, n);
@@ -303,7 +303,7 @@ static int approach_guess(struct shooting *s)
     const int any = s->map.odd && length(s->guess, n) > 0.0;
     tribo_add(s->guess, -1.0, s->best.x, n);
     int status = find_family(s, s->guess);
-    if (status || !any || s->freedom == 0 || length(s->guess, n) < MEANT * s->best.size) {
+    if (status || !any || s->map.drv->freedom == 0 || length(s->guess, n) < MEANT * s->best.size) {
         return status;
     }
     tribo_period_map_choose(&s->map, 0);

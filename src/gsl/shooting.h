@@ -20,7 +20,6 @@ struct shooting {
     double *re, *im;      /* [n] multipliers of the last motion found */
     int found;
     size_t revision; /* of the system then */
-    size_t freedom;  /* dimension of its family */
 };
 
 /* NULL if out of memory. */

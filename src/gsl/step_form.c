@@ -52,6 +52,16 @@ void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, con
     }
 }
 
+int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h)
+{
+    size_t planar;
+    const int status = tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar);
+    if (status) {
+        return status;
+    }
+    return planar ? tribo_step_force_mean(contacts, h, s->v, s->end, s->f) : tribo_step_force(contacts, h, s->end, s->f);
+}
+
 double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after)
 {
     double sum = 0.0;

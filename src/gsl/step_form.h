@@ -1,4 +1,4 @@
-/* What the two methods in step form share: Coulomb's law over a step (tribo_step_force). No epsilon, contacts at rest stay at
+/* What the two methods in step form share: Coulomb's law over a step. No epsilon, contacts at rest stay at
  * rest exactly, and the energy that friction dissipates is that of the discrete motion, -h f'(v + v_end)/2 a step. */
 #ifndef TRIBO_STEP_FORM_H
 #define TRIBO_STEP_FORM_H
@@ -26,6 +26,10 @@ void tribo_step_form_relative(const struct step_form *s, const tribo_system *sys
 
 /* v = the velocity that a step begins with, at t. */
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u);
+
+/* f over a step of h, from v and end. Where contacts are planar, the mean over the step; else that which stops contacts where
+ * they reverse: with the mean, light bodies between heavy ones come out worse. */
+int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h);
 
 /* The power that f dissipates at the mean of two velocities. */
 double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after);

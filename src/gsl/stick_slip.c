@@ -6,9 +6,9 @@
  *         contacts at rest slide if their force is at the limit and their acceleration is more than rounding
  *         if none does, but some are just at their limit: solve for a moment later, and contacts at their limit then slide
  *         if still none does: of the forces that hold all at rest, the one most beyond its limit makes its contact slide
+ *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on
  *     until none begins to slide
  *     an independent set of those at rest holds: it keeps all of them where they are */
-#include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"
 
@@ -52,7 +52,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->at = malloc(c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
-    if (status || !work || !m->slip || !m->at || !m->last) {
+    const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
+    if (status || !work || !m->slip || !m->at || !m->last || !statics) {
         tribo_stick_slip_free(m);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stick and slip of %zu contacts", sys->ncontact);
     }
@@ -77,6 +78,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->uncoupled = islands == sys->ncontact;
     /* a contact that has reached its limit stays there while others take over */
     tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
+    tribo_set_static(m->box, NULL, NULL);
+    tribo_set_static(m->hold, NULL, NULL);
     tribo_set_law(m->hold, TRIBO_COULOMB);
     tribo_set_coupling(m->hold, TRIBO_PARTITION);
     return TRIBO_OK;
@@ -86,6 +89,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
 {
     tribo_destroy(m->box);
     tribo_destroy(m->hold);
+    tribo_breakaway_free(&m->breakaway);
     free(m->limit);
     free(m->slip);
     free(m->at);
@@ -94,16 +98,6 @@ void tribo_stick_slip_free(struct stick_slip *m)
 }
 
 /* ---------------------------------------------------------------------------------------------------------- rounding */
-
-/* y += |a| |x| */
-static void add_sizes(const struct matrix *a, const double *x, double *y)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            y[i] += fabs(a->val[k] * x[a->col[k]]);
-        }
-    }
-}
 
 /* y += amplitudes of the order-th derivatives of loads, or of b. */
 static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
@@ -122,7 +116,7 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
 {
     memset(m->noise, 0, sys->ncontact * sizeof *m->noise);
     add_amplitudes(sys, DRIVES_BASE, 0, m->noise);
-    add_sizes(&sys->direction, y + sys->ndof, m->noise);
+    tribo_matrix_add_sizes(&sys->direction, y + sys->ndof, m->noise);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->noise[i] = VELOCITY_NOISE * greater(m->noise[i], m->seen[i]);
         m->seen[i] = 0.0;
@@ -143,141 +137,41 @@ static void find_gains(struct stick_slip *m, const tribo_system *sys, const doub
         m->size[d] = fabs(m->size[d]);
     }
     add_amplitudes(sys, DRIVES_LOAD, 0, m->size);
-    add_sizes(&sys->stiffness, y, m->size);
+    tribo_matrix_add_sizes(&sys->stiffness, y, m->size);
     if (sys->damping.rows) {
-        add_sizes(&sys->damping, y + sys->ndof, m->size);
+        tribo_matrix_add_sizes(&sys->damping, y + sys->ndof, m->size);
     }
-    add_sizes(&sys->response, m->force, m->size);
+    tribo_matrix_add_sizes(&sys->response, m->force, m->size);
     memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
     add_amplitudes(sys, DRIVES_BASE, 1, m->gain);
-    add_sizes(&sys->direction, m->size, m->gain);
+    tribo_matrix_add_sizes(&sys->direction, m->size, m->gain);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->gain[i] *= NOISE * m->doubt;
         m->allowance[i] = m->diagonal[i] > 0.0 ? ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
-        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
+        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
         m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
     }
 }
 
-/* -------------------------------------------------------------------------------------------------- contacts that hold */
-
-int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
-{
-    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        f[i] = m->holds[i] ? -a[i] / m->diagonal[i] : 0.0;
-    }
-    return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
-}
-
-/* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
- * there. */
-static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t rest)
-{
-    struct constraints c;
-    for (size_t p = 0; p < rest; p++) {
-        const signed char tied = m->tied[m->at[p]];
-        m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
-    }
-    const int done = tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
-    for (size_t k = done ? c.rank : rest; k < rest; k++) {
-        m->holds[m->at[c.order[k]]] = 0;
-    }
-    tribo_constraints_free(&c);
-    return done;
-}
-
-/* Which of the contacts at rest hold. */
-static int find_holds(struct stick_slip *m, const tribo_system *sys)
-{
-    const size_t c = sys->ncontact;
-    size_t rest = 0, changes = 0;
-    for (size_t i = 0; i < c; i++) {
-        const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
-        changes += now != m->before[i];
-        m->before[i] = now;
-        m->at[rest] = i;
-        rest += m->slip[i] == 0 && m->diagonal[i] > 0.0;
-    }
-    if (changes == 0 && !m->fresh) {
-        return TRIBO_OK;
-    }
-    m->fresh = 0;
-    for (size_t i = 0; i < c; i++) {
-        m->holds[i] = m->slip[i] == 0 && m->diagonal[i] > 0.0;
-    }
-    m->dependents = 0;
-    if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
-    }
-    for (size_t i = 0; i < c; i++) {
-        m->dependents += m->slip[i] == 0 && !m->holds[i];
-        m->loose[i] = !m->holds[i];
-        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
-    }
-    return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
-}
-
-/* 1 if J x - base is more than the rounding of x for a contact that holds. */
-static int moves(struct stick_slip *m, const tribo_system *sys, const double *base, const double *x)
-{
-    const struct matrix *j = &sys->direction;
-    for (size_t i = 0; i < m->contacts; i++) {
-        double sum = -base[i], size = fabs(base[i]);
-        for (size_t k = m->holds[i] ? j->first[i] : j->first[i + 1]; k < j->first[i + 1]; k++) {
-            sum += j->val[k] * x[j->col[k]];
-            size += fabs(j->val[k] * x[j->col[k]]);
-        }
-        if (m->holds[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
-/* x -= B_I R_II^-1 (J_I x - base), twice, since the first time leaves rounding of what it takes away. */
-int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
-{
-    for (int pass = 0; pass < 2; pass++) {
-        for (size_t i = 0; i < m->contacts; i++) {
-            m->lo[i] = -base[i];
-        }
-        tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->lo);
-        const int status = tribo_stick_slip_balance(m, m->lo, m->f);
-        if (status) {
-            return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
-        }
-        tribo_matrix_multiply_add(&sys->response, 1.0, m->f, x);
-    }
-    return TRIBO_OK;
-}
-
-/* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
-int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
-{
-    tribo_system_snap(sys, m->loose, base, x);
-    if (m->simple || !moves(m, sys, base, x)) {
-        return TRIBO_OK;
-    }
-    const int status = tribo_stick_slip_project(m, sys, base, x);
-    if (!status) {
-        tribo_system_snap(sys, m->loose, base, x);
-    }
-    return status;
-}
-
 /* ------------------------------------------------------------------------------------------------------ who is at rest */
 
-int tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
+double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
 {
     if (m->slip[i] == 0) {
-        return m->holds[i] || !m->tied[i] ? 0 : m->force[i] > 0.0 ? 1 : -1;
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
+        return m->holds[i] || !m->tied[i] ? 0.0 : m->force[i] > 0.0 ? ratio : -ratio;
     }
-    return m->slip[i] == 2 ? 0 : -m->slip[i];
+    return m->slip[i] == 2 ? 0.0 : -m->slip[i];
 }
 
 int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
 {
     return m->base_moves && m->slip[i] == 0 && !m->holds[i];
+}
+
+double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
+{
+    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0;
 }
 
 double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
@@ -303,7 +197,7 @@ static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i
 /* Brings limits, and with them which contacts are open, up to the time set. */
 static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    if (tribo_system_limits_vary(sys)) {
+    if (tribo_system_limits_vary(sys) || m->breakaway.some) {
         tribo_system_limits(sys, m->limit, m->limit_rate);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -315,6 +209,7 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
         }
         m->limit[i] = greater(m->limit[i], 0.0);
     }
+    tribo_breakaway_take(&m->breakaway, sys->ncontact, m->limit, m->limit_rate);
 }
 
 /* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
@@ -323,7 +218,7 @@ static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y
 {
     int status = TRIBO_OK;
     for (size_t found = 1; !status && found;) {
-        status = find_holds(m, sys);
+        status = tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
         found = 0;
         for (size_t i = 0; !status && i < sys->ncontact; i++) {
@@ -362,7 +257,7 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
 static int find_forces(struct stick_slip *m, tribo_system *sys)
 {
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double limit = m->slip[i] == 2 ? 0.0 : m->limit[i];
+        const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
         m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
         m->hi[i] = m->slip[i] == 1 ? -limit : limit;
     }
@@ -380,6 +275,13 @@ static void contact_accelerations(const tribo_system *sys, const double *acceler
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
+/* A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
+static void let_go(struct stick_slip *m, size_t i, signed char direction)
+{
+    m->slip[i] = tribo_breakaway_lets_go(&m->breakaway, i) ? 0 : direction;
+    m->tied[i] = 0;
+}
+
 /* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
  * than rounding, slides. */
 static int breaks_away(struct stick_slip *m, size_t i, signed char direction, double acceleration)
@@ -387,8 +289,7 @@ static int breaks_away(struct stick_slip *m, size_t i, signed char direction, do
     if (direction * acceleration <= m->gain[i]) {
         return 0;
     }
-    m->slip[i] = direction;
-    m->tied[i] = 0;
+    let_go(m, i, direction);
     return 1;
 }
 
@@ -405,7 +306,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     *ties = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->tied[i] = 0;
-        close += m->slip[i] == 0 && fabs(m->force[i]) >= (1.0 - CLOSE) * m->limit[i];
+        close += m->slip[i] == 0 && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
     }
     if (close == 0) {
         return 0;
@@ -413,8 +314,8 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     find_gains(m, sys, y);
     contact_accelerations(sys, m->acceleration, 1, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double room = m->limit[i] - fabs(m->force[i]);
-        const double within = i == m->reached ? CLOSE * m->limit[i] : m->allowance[i] / ALLOWED;
+        const double room = m->stick[i] - fabs(m->force[i]);
+        const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / ALLOWED;
         if (m->slip[i] == 0 && room <= within) {
             const signed char direction = direction_of(m, i, m->force[i]);
             m->tied[i] = 1;
@@ -429,13 +330,36 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
 
 static double limit_ahead(const struct stick_slip *m, size_t i)
 {
-    return m->slip[i] == 2 ? 0.0 : greater(m->limit[i] + m->horizon * m->limit_rate[i], 0.0);
+    const double now = m->slip[i] ? m->limit[i] : m->stick[i], rate = m->slip[i] ? m->limit_rate[i] : m->stick_rate[i];
+    return m->slip[i] == 2 ? 0.0 : greater(now + m->horizon * rate, 0.0);
+}
+
+/* The limits of this instant, where there are static ones. */
+static void find_static(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    if (m->breakaway.some) {
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            m->v[i] = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        }
+        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->slip, m->v, m->limit, m->limit_rate);
+    }
+}
+
+/* How the limits of sliding contacts fall, as they gain speed. */
+static void find_falling(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    find_static(m, sys, y);
+    contact_accelerations(sys, m->acceleration, 1, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
+    }
 }
 
 static void set_bounds_ahead(struct stick_slip *m)
 {
     for (size_t i = 0; i < m->contacts; i++) {
-        const double limit = limit_ahead(m, i), now = m->limit[i], wider = WIDER * now;
+        const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
         if (m->slip[i] != 0) {
             m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
             continue;
@@ -460,6 +384,9 @@ static void find_rate(struct stick_slip *m, const tribo_system *sys, const doubl
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
     find_gains(m, sys, y);
+    if (m->breakaway.falls) {
+        find_falling(m, sys, y);
+    }
     find_rate(m, sys, y);
     contact_accelerations(sys, m->rate, 2, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -477,7 +404,8 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
         if (m->slip[i] == 0 && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
-            const int leaves = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
+            const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             *changes += (size_t)leaves;
             m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
         }
@@ -490,7 +418,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 /* f = the forces that hold all contacts at rest where they are, the others having theirs. */
 static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
-    int status = find_holds(m, sys);
+    int status = tribo_stick_slip_find_holds(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->v[i] = m->holds[i] ? 0.0 : m->force[i];
     }
@@ -510,20 +438,19 @@ static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *change
     size_t worst = sys->ncontact;
     double most = 1.0;
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        const double excess = fabs(m->f[i]) - m->limit[i];
+        const double excess = fabs(m->f[i]) - m->stick[i];
         if (m->tied[i] && m->holds[i] && excess > most * m->allowance[i]) {
             worst = i;
             most = excess / m->allowance[i];
         }
     }
     if (worst < sys->ncontact) {
-        m->slip[worst] = m->f[worst] > 0.0 ? -1 : 1;
-        m->tied[worst] = 0;
+        let_go(m, worst, m->f[worst] > 0.0 ? -1 : 1);
         *changes = 1;
         return status;
     }
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->limit[i], m->limit[i]) : m->force[i];
+        m->force[i] = m->holds[i] ? clamp(m->f[i], -m->stick[i], m->stick[i]) : m->force[i];
         m->excess[i] = m->holds[i] ? fabs(m->f[i] - m->force[i]) : 0.0;
     }
     memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
@@ -555,6 +482,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     find_noise(m, sys, y);
     update_limits(m, sys, y);
     int status = find_resting(m, sys, y);
+    find_static(m, sys, y);
     if (!status) {
         tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
         m->sized = 0;
@@ -573,13 +501,22 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         }
     }
     m->reached = m->contacts;
-    return status ? status : find_holds(m, sys);
+    if (m->breakaway.some && !status) {
+        find_gains(m, sys, y);
+    }
+    for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
+        m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
+    }
+    return status ? status : tribo_stick_slip_find_holds(m, sys);
 }
 
 int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
 {
     tribo_system_set_time(sys, t);
     tribo_system_limits(sys, m->limit, m->limit_rate);
+    tribo_breakaway_start(&m->breakaway, sys, m->rate, m->v);
+    m->stick = m->breakaway.some ? m->breakaway.stick : m->limit;
+    m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
     memset(m->base, 0, sys->ncontact * sizeof *m->base);
     tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
     find_noise(m, sys, y);
@@ -596,7 +533,7 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     for (size_t k = 0; k < sys->harmonics; k++) {
         m->base_moves |= sys->harmonic[k].drives == DRIVES_BASE && sys->harmonic[k].count > 0;
     }
-    const double most = tribo_system_fastest(sys);
+    const double most = tribo_system_fastest(sys) + m->breakaway.steepest;
     m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);
     return tribo_stick_slip_decide(m, sys, t, y);
 }

@@ -8,6 +8,7 @@
 #define TRIBO_STICK_SLIP_H
 
 #include "driver.h"
+#include "breakaway.h"
 #include "first_zero.h"
 
 struct stick_slip {
@@ -26,8 +27,10 @@ struct stick_slip {
     signed char *loose;    /* [ncontact] 1: it does not hold */
     size_t dependents;     /* how many rest by themselves */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
-    double *limit, *limit_rate; /* [ncontact] */
+    double *limit, *limit_rate; /* [ncontact] by which contacts slide, and its rate */
+    double *stick, *stick_rate; /* [ncontact] by which those at rest hold: these, unless there are static limits */
     double *swing;              /* [ncontact] by how much harmonics change the limit at most */
+    struct breakaway breakaway; /* of static limits */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *acceleration;       /* [ndof] and q'' */
     double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
@@ -60,6 +63,8 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
  * velocities in y. Sets slip, holds, force, acceleration and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
+/* Finds out which of the contacts at rest hold, as they are marked; a status. */
+int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 /* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
 
@@ -72,11 +77,16 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
 /* The same where J x - base is rounding: takes that out of x [ndof]. Returns a status. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
 
-/* How many times its limit the force of contact i is from here on: +1, -1, or 0 if it does not follow it. */
-int tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
+/* How many times its limit to slide the force of contact i is from here on: +1 or -1, at rest these times the ratio of static
+ * limits, or 0 if it does not follow it. */
+double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
 /* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
 int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i);
+
+/* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does not
+ * count. */
+double tribo_stick_slip_slack(const struct stick_slip *m, size_t i);
 
 /* v_i in a state, at the time that was last decided for. */
 double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);

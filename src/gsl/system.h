@@ -116,6 +116,9 @@ void tribo_system_put_limits(tribo_system *sys, double later);
 /* By how much harmonics change the limit of contact i at most; 0 for one that they leave alone. */
 double tribo_system_swing(const tribo_system *sys, size_t i);
 
+/* The largest limits that contacts ever have, most [ncontact]. */
+void tribo_system_most_limits(const tribo_system *sys, double *most);
+
 /* Limits are known to this part of what they are the sum of. */
 #define TRIBO_LIMIT_NOISE 4e-14
 

@@ -28,6 +28,8 @@ TRIBO_API int tribo_set_limit(tribo_context *ctx, const double *limit);
 TRIBO_API int tribo_set_limit_all(tribo_context *ctx, double limit);
 TRIBO_API int tribo_get_limit(const tribo_context *ctx, double *limit);
 TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *load);
+TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
+TRIBO_API int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity);
 TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
 TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
 TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);
@@ -52,6 +54,7 @@ TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
 TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
+TRIBO_API int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df);
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
 TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
 TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);

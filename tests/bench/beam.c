@@ -9,13 +9,9 @@
 #include "../../examples/common/output.h"
 #include "../../examples/damper/structure.h"
 
-static const struct options beam = {
-    .mass = BEAM_FILES "/M.mtx",
-    .stiffness = BEAM_FILES "/K.mtx",
-    .dofs = BEAM_FILES "/dofs.txt",
-    .contact = {{{200.0, 0.0, 5.0}, 3, "contact 1"}, {{300.0, 0.0, 5.0}, 3, "contact 2"}, {{400.0, 0.0, 5.0}, 3, "contact 3"}},
-    .load = {{400.0, 20.0, 5.0}, 3, "load"},
-};
+static const struct place contact_place[CONTACTS] = {
+    {{200.0, 0.0, 5.0}, 3, "contact 1"}, {{300.0, 0.0, 5.0}, 3, "contact 2"}, {{400.0, 0.0, 5.0}, 3, "contact 3"}};
+static const struct place load_place = {{400.0, 20.0, 5.0}, 3, "load"};
 static const double damping = 0.002, force = 0.1;
 
 /* ------------------------------------------------------------------------------------------------------------ structure */
@@ -112,12 +108,12 @@ tribo_system *beam_create(struct model *model)
 {
     *model = (struct model){.kind = BEAM, .n = MODES, .c = CONTACTS};
     gsl_set_error_handler_off(); /* as read_structure expects */
-    struct structure s = read_structure(&beam);
+    struct structure s = read_structure(BEAM_FILES "/M.mtx", BEAM_FILES "/K.mtx", BEAM_FILES "/dofs.txt");
     size_t row[CONTACTS];
     for (size_t c = 0; c < CONTACTS; c++) {
-        row[c] = find_degree(&s, "bench", &beam.contact[c]);
+        row[c] = find_degree(&s, &contact_place[c]);
     }
-    tribo_system *sys = reduce(&s, row, find_degree(&s, "bench", &beam.load), model);
+    tribo_system *sys = reduce(&s, row, find_degree(&s, &load_place), model);
     free_structure(&s);
     find_coordinates(&model->beam);
     double sum = 0.0;

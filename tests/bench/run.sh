@@ -1,7 +1,7 @@
 #!/bin/sh
 # Builds the bench, with SUNDIALS, Siconos and CHOLMOD where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev, g++,
 # libsuitesparse-dev), runs it, draws a picture a system, and prints tables: run times aimed at and measured, and the fastest method
-# for each error; then what a call of tribo_balance costs.
+# for each error; then what a call of tribo_balance costs, a step in the plane, and a steady motion (some minutes).
 # Arguments go to the bench: `sh tests/bench/run.sh --quick`. Everything is left in build/bench/results.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
@@ -12,7 +12,7 @@ setup gcc libc6-dev make cmake pkg-config libgsl-dev check gnuplot-nox
 build=build/bench results=$PWD/build/bench/results
 echo "== Building in $build"
 cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_FORTRAN=OFF -DTRIBO_BUILD_EXAMPLES=OFF -DTRIBO_BENCH_PEERS=ON
-cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance
+cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance bench_periodic bench_planar
 
 echo "== Running; tables and pictures go to $results"
 mkdir -p "$results/balance"
@@ -20,6 +20,8 @@ mkdir -p "$results/balance"
 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench --out "$results" "$@"
 case " $* " in *" --quick "*) quick=--quick ;; *) quick= ;; esac
 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out "$results/balance" $quick > "$results/balance/tables.txt"
+$build/tests/bench/bench_planar > "$results/planar.txt"
+$build/tests/bench/bench_periodic --out "$results" > "$results/periodic.txt"
 
 echo "== Drawing"
 for format in png svg; do
@@ -30,4 +32,4 @@ for format in png svg; do
 done
 
 awk -f tests/bench/tables.awk "$results"/*.csv | tee "$results/tables.txt"
-cat "$results/balance/tables.txt"
+cat "$results/balance/tables.txt" "$results/planar.txt" "$results/periodic.txt"

@@ -1,31 +1,4 @@
 !> Every error that a procedure of module tribo can answer: status, text, outputs left alone, context as it was.
-module errors_mass
-  use tribo
-  implicit none
-
-  !> A mass matrix that fails: at the given call it answers so, or accelerates what it should not by so much.
-  type, extends(tribo_mass) :: broken_mass
-    integer :: calls = 0, at = 0, answer = 0
-    real(dp) :: more = 0
-  contains
-    procedure :: apply
-  end type broken_mass
-
-contains
-
-  integer function apply(this, force, acceleration)
-    class(broken_mass), intent(inout) :: this
-    real(dp), intent(in) :: force(:)
-    real(dp), intent(inout) :: acceleration(:)
-    this%calls = this%calls + 1
-    acceleration = force
-    apply = 0
-    if (this%calls /= this%at) return
-    acceleration(1) = acceleration(1) + this%more
-    apply = this%answer
-  end function apply
-end module errors_mass
-
 program errors
   use, intrinsic :: ieee_arithmetic, only: ieee_positive_inf, ieee_quiet_nan, ieee_value
   use check, only: blank, blank_integer, expect_error, report, require, untouched
@@ -122,6 +95,10 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_limit(x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%set_static(x, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%get_static(x, y, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%set_epsilon(1.0_dp, stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%set_epsilon(step=1.0_dp, stat=stat, errmsg=msg)
@@ -159,6 +136,8 @@ contains
     call c%balance_tangent(x, x, y, z, q, p, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%tangent_product(x, x, y, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, none)
+    call c%limit_product(x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%solve_box(x, x, x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
@@ -262,6 +241,14 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'limit(2) = nan is not finite')
     call c%set_limit([1.0_dp, 1.0_dp, -0.5_dp], stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'limit(3) = -0.5 is negative')
+    call c%set_static([1.0_dp, 2.0_dp], stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'ratio has size 2, not 3')
+    call c%set_static([1.0_dp, 2.0_dp, 0.5_dp], stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'ratio(3) = 0.5 is below 1')
+    call c%set_static([1.0_dp, 2.0_dp, 2.0_dp], [1.0_dp, 0.0_dp, 1.0_dp], stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'velocity(2) = 0 is not positive')
+    call c%set_static([1.0_dp, 2.0_dp, 2.0_dp], [1.0_dp, 1.0_dp], stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'velocity has size 2, not 3')
     call c%set_limit(inf, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'limit = inf is not finite')
     call c%set_limit(-1.0_dp, stat, msg)
@@ -495,7 +482,15 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'dv(2) = nan is not finite')
     call c%tangent_product(da=bad, df=x(n:1:-1), stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'da(2) = nan is not finite')
+    call c%limit_product(v(:2), x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'dlimit has size 2, not 3')
+    call c%limit_product(v, x(:2), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'df has size 2, not 3')
+    call c%limit_product(bad, x(n:1:-1), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'dlimit(2) = nan is not finite')
     call c%balance(v, v)
+    call c%limit_product(v, x, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, 'no tribo_balance_tangent since the last balance or change')
     call c%tangent_product(v, v, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_STATE, 'no tribo_balance_tangent since the last balance or change')
 

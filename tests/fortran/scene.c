@@ -79,7 +79,7 @@ static void settings(const tribo_context *c)
 {
     size_t n = 0;
     int law = -1, coupling = -1, sharing = -1;
-    double x[N] = {0.0};
+    double x[N] = {0.0}, velocity[N] = {0.0};
     put_one(tribo_get_ncontact(c, &n));
     put_one((double)n);
     put_one(tribo_get_law(c, &law));
@@ -90,6 +90,9 @@ static void settings(const tribo_context *c)
     put_one(sharing);
     put_one(tribo_get_limit(c, x));
     put(N, x);
+    put_one(tribo_get_static(c, x, velocity));
+    put(N, x);
+    put(N, velocity);
     put_one(tribo_get_epsilon(c, x));
     put(N, x);
 }
@@ -136,6 +139,8 @@ static void forces(tribo_context *c)
         put_one(tribo_tangent_product(c, feq, NULL, x[1]));
         put_one(tribo_tangent_product(c, NULL, a, x[2]));
         put(3 * N, x[0]);
+        put_one(tribo_limit_product(c, a, x[0]));
+        put(N, x[0]);
         put_one(tribo_step_force(c, 0.125, v, f));
         put(N, f);
         queries(c);
@@ -202,6 +207,7 @@ void scene_play(void)
 {
     registry();
 
+    double ratio[N];
     tribo_context *c = NULL, *copy = NULL;
     put_one(tribo_create(&c, N));
     put_text(tribo_message(c));
@@ -231,6 +237,14 @@ void scene_play(void)
     put_one(tribo_set_epsilon_step(c, 0.01, 1.0));
     settings(c);
     forces(c);
+    for (size_t i = 0; i < N; i++) {
+        ratio[i] = 1.0 + 32.0 * scene_epsilon[i];
+    }
+    for (int falls = 0; falls < 2; falls++) {
+        put_one(tribo_set_static(c, ratio, falls ? scene_epsilon : NULL));
+        settings(c);
+        forces(c);
+    }
     put_one(tribo_set_epsilon_all(c, 0.03125));
     put_one(tribo_set_limit_all(c, 0.75));
     settings(c);

@@ -117,6 +117,8 @@ contains
         call require_finite([reshape(by_v, [n*n]), reshape(by_a, [n*n])], 'balance_tangent')
         call c%tangent_product(v, a, f)
         call require_finite(f, 'tangent_product')
+        call c%limit_product(a, f)
+        call require_finite(f, 'limit_product')
       end if
       call c%step_force(1e-3_dp, v, f)
       call require_finite(f, 'step_force')

@@ -144,6 +144,15 @@ pkgconfig) # <source> <language> <component>
     "$program"
     ;;
 
+tool) # The tool runs where it was installed to, and finds the libraries and its beam there.
+    tool=$WORK/elsewhere/bin/tribo-damper out=$WORK/tool
+    rm -rf "$out"
+    mkdir -p "$out"
+    "$tool" --help | grep -q -e '--contacts FILE'
+    "$tool" --read "$WORK/elsewhere/share/tribo/beam/beam.txt" --limits 0.02 --out "$out"
+    grep -q '^damper.free 11\.456' "$out/values-damper.txt"
+    ;;
+
 pages) # usual | elsewhere: installs as README.md says, into /usr/local as root or elsewhere, and follows the pages. The rest of the
     # environment is bare, as a newcomer's.
     mkdir -p "$WORK/clone"

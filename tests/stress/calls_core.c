@@ -2,9 +2,9 @@
  * the status is the one that its arguments ask for, outputs are untouched on error and settings as they were, forces are finite
  * and within their limits, and solve the problem that was asked.
  *
- * As a program of its own: test_stress_calls_core [-n <strings>] [-s <seed>] [<file>...] runs the strings in the files, and so many
- * random ones. With libFuzzer, in the root of the tree: clang -g -O1 -fsanitize=fuzzer,address,undefined -DTRIBO_FUZZER -Iinclude
- * tests/stress/calls_{core,settings,forces}.c $(find src/common src/core -name '*.c') -lm
+ * As a program of its own: test_stress_calls_core [-n <strings>] [-s <seed>] [<file>...] runs the strings in the files, and so
+ * many random ones. With libFuzzer, in the root of the tree: clang -g -O1 -fsanitize=fuzzer,address,undefined -DTRIBO_FUZZER
+ * -Iinclude tests/stress/calls_{core,settings,forces}.c $(find src/common src/core -name '*.c') -lm
  *   ./a.out /tmp/new tests/stress/corpus
  * New strings go to the first folder. */
 #include <float.h>
@@ -139,7 +139,7 @@ static void queries(struct slot *s, struct string *in)
     size_t count;
     double real;
     check(s, "count", tribo_get_count(s->c, which, &count),
-          which >= 0 && which <= TRIBO_COUNT_REUSED ? TRIBO_OK : TRIBO_ERR_RANGE);
+          which >= 0 && which <= TRIBO_COUNT_PLANAR ? TRIBO_OK : TRIBO_ERR_RANGE);
     const int want = which < 0 || which > TRIBO_REAL_MAX_STEP ? TRIBO_ERR_RANGE
                      : which != TRIBO_REAL_RESIDUAL           ? missing(s)
                                                               : TRIBO_OK;

@@ -253,6 +253,9 @@ void tangents(struct slot *s, struct string *in)
         }
         require(fabs(sum - df[i]) <= 1e-6 * size, "df %.17g, not %.17g", df[i], sum);
     }
+    require(tribo_limit_product(s->c, x[0], df) == TRIBO_OK, "limit product");
+    check_exceptions(wild);
+    check_finite(df, n, "df of limits");
 }
 
 void law(struct slot *s, struct string *in)

@@ -1,131 +1,12 @@
-/* friction_damper from outside: damaged files and wrong options, each of which must end it with status 1 and one line that names
+/* tribo-damper from outside: damaged files and wrong options, each of which must end it with status 1 and one line that names
  * file, line and value; and structures as small as can be. Works in the current folder. TRIBO_CASES: how many random damages of
  * each kind. */
-#define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "support.h"
-
-/* ---------------------------------------------------------------------------------------------------------- the program */
-
-#if defined(__SANITIZE_ADDRESS__)
-#define BOUND_MEMORY 0 /* it reserves terabytes */
-#else
-#define BOUND_MEMORY 1
-#endif
-enum { MOST_SECONDS = 60, MOST_MEGABYTES = 256, TEXT = 8192, MOST_WORDS = 64 };
-
-struct outcome {
-    int status; /* -1 if a signal ended it */
-    char out[TEXT], err[TEXT];
-};
-
-static void read_text(const char *path, char *text)
-{
-    FILE *file = fopen(path, "r");
-    require(file, "there is no %s", path);
-    text[fread(text, 1, TEXT - 1, file)] = '\0';
-    fclose(file);
-}
-
-static void write_bytes(const char *path, const char *bytes, size_t length)
-{
-    FILE *file = fopen(path, "w");
-    require(file && fwrite(bytes, 1, length, file) == length && fclose(file) == 0, "cannot write %s", path);
-}
-
-static void write_text(const char *path, const char *text)
-{
-    write_bytes(path, text, strlen(text));
-}
-
-/* In the child: a hang, or greed for memory, ends it by a signal or an error. */
-static void become(char *const *argument)
-{
-    const struct rlimit seconds = {MOST_SECONDS, MOST_SECONDS},
-                        bytes = {(rlim_t)MOST_MEGABYTES << 20, (rlim_t)MOST_MEGABYTES << 20};
-    setrlimit(RLIMIT_CPU, &seconds);
-    if (BOUND_MEMORY) {
-        setrlimit(RLIMIT_AS, &bytes);
-    }
-    if (freopen("out", "w", stdout) && freopen("err", "w", stderr)) {
-        execv(DAMPER, argument);
-    }
-    _exit(99);
-}
-
-/* Options are parted by single blanks. */
-static struct outcome run(const char *options)
-{
-    static struct outcome o;
-    static char text[TEXT];
-    char *argument[MOST_WORDS] = {"friction_damper"};
-    int count = 1, status;
-    snprintf(text, sizeof text, "%s", options);
-    for (char *word = text; word && count < MOST_WORDS - 1; count++) {
-        char *blank = strchr(word, ' ');
-        if (blank) {
-            *blank++ = '\0';
-        }
-        argument[count] = word;
-        word = blank;
-    }
-    const pid_t child = fork();
-    if (child == 0) {
-        become(argument);
-    }
-    require(child > 0 && waitpid(child, &status, 0) == child, "no child");
-    o.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    read_text("out", o.out);
-    read_text("err", o.err);
-    return o;
-}
-
-/* Status 1, and one line on stderr that prints. */
-static void assert_ends(const struct outcome *o, const char *what)
-{
-    const size_t length = strlen(o->err);
-    require(o->status == 1, "%s: status %d, %s", what, o->status, o->err);
-    require(strncmp(o->err, "friction_damper: ", 17) == 0 && strcspn(o->err, "\n") + 1 == length, "%s: %s", what, o->err);
-    for (size_t i = 0; i + 1 < length; i++) {
-        require(o->err[i] >= ' ' && o->err[i] <= '~', "%s: %s", what, o->err);
-    }
-}
-
-static void assert_refused(const char *options, const char *what, const char *part)
-{
-    const struct outcome o = run(options);
-    assert_ends(&o, what);
-    require(says(o.err, part), "%s: \"%s\" is not in %s", what, part, o.err);
-}
-
-static int has_no_number(const char *text)
-{
-    return says(text, " nan") || says(text, " -nan") || says(text, " inf") || says(text, " -inf");
-}
-
-/* Status 0, nothing on stderr, and no number that is none. */
-static struct outcome assert_runs(const char *options)
-{
-    const struct outcome o = run(options);
-    require(o.status == 0 && !*o.err, "%s: status %d, %s", options, o.status, o.err);
-    require(!has_no_number(o.out), "%s: %s", options, o.out);
-    return o;
-}
-
-static double value_of(const char *key)
-{
-    char text[TEXT];
-    read_text("values-damper.txt", text);
-    const char *at = strstr(text, key);
-    require(at && at[strlen(key)] == ' ', "no value %s", key);
-    return strtod(at + strlen(key), NULL);
-}
+#include "tool.h"
 
 /* ------------------------------------------------------------------------------------------------------------- structures */
 
@@ -357,7 +238,7 @@ static void damage_bytes(struct text *file, struct random *r)
         snprintf(what + length, sizeof what - length, "%s[%zu] = %d ", FILE_NAME[f], at, file[f].byte[at]);
     }
     write_files(file);
-    const struct outcome o = run(CHAIN);
+    const struct outcome o = run_tool(CHAIN);
     if (o.status) {
         assert_ends(&o, what);
     }
@@ -433,11 +314,18 @@ TEST(options)
         {"--modes", "0 -1 1.5 5 1e9 nan x 1e300 2x"},
         {"--damping", "0 -1 1 2 nan inf 0,1"},
         {"--force", "0 -1 nan inf 1N 1e999"},
-        {"--drive", "-1 nan inf 5Hz"},
-        {"--limits", "1 1:2 1:2:0 1:2:1.5 2:1:3 1:1:2 0:1:3 -1:1:3 nan:1:3 1:inf:3 1:2:3:4 1:2:1e300 :: 1;2;3"},
+        {"--drive", "-1 nan inf 5Hz 1:2 1:2:0 2:1:3 1:1:2 0:1:3 1:2:x"},
+        {"--limits", "0 1:2 1:2:0 1:2:1.5 2:1:3 1:1:2 0:1:3 -1:1:3 nan:1:3 1:inf:3 1:2:3:4 1:2:1e300 :: 1;2;3"},
         {"--step", "0 -1 1.1 nan 1/4"},
         {"--law", "quin quinnn 4"},
-        {"--contact", "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x"},
+        {"--contact",
+         "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x 2,0,0,xy 2,0,0,x:stiffness=5 "
+         "2,0,0,x:limit=-1 2,0,0,x:limit= 2,0,0,x:limit 2,0,0,x:load=1 2,0,0,x:mu=1:limit=1 2,0,0,x:mu=0 2,0,0,x:mu=1:load=0 "
+         "2,0,0,x:to=2,0,0 2,0,0,x:to=9,0,0 2,0,0,x:to=1,0 2,0,0,x:to=1,0,0,x 2,0,0,x:limit=1:foo"},
+        {"--method", "shoot Exact -1"},
+        {"--check", "-1 x 0.5"},
+        {"--threads", "0 -1 x"},
+        {"--name", "a/b"},
         {"--load", "2,0,0 2,0,0,w 2,0,0,y 2,0,0.1,x nan,0,0,x"},
     };
     write_chain();
@@ -451,7 +339,7 @@ TEST(options)
         }
     }
     /* what only the structure can tell: too much work, or nothing to work with */
-    assert_refused(CHAIN " --step 1e-300", "step", "--step");
+    assert_refused(CHAIN " --check 1 --step 1e-300", "step", "--step");
     assert_refused(CHAIN " --drive 1e-9", "drive", "1e-09 Hz");
     assert_refused(CHAIN " --drive 1e200", "drive", "without friction");
     assert_refused(CHAIN " --force 1e-300", "force", "--force");
@@ -462,18 +350,91 @@ TEST(options)
 }
 END_TEST
 
-/* Of a structure of one's own every part is asked for, and none is the beam's. */
-TEST(own_structure)
+/* Every part of a structure is asked for. */
+TEST(parts)
 {
     write_chain();
-    assert_refused("--mass M.mtx", "mass", " needs also --stiffness --dofs --contact --load;");
-    assert_refused("--stiffness K.mtx --load 4,0,0,x", "stiffness", " needs also --mass --dofs --contact;");
-    assert_refused("--dofs dofs.txt", "dofs", " needs also --mass --stiffness --contact --load;");
-    assert_refused(OWN " --contact 2,0,0,x", "load", " needs also --load;");
-    assert_refused(OWN " --load 2,0,0,x", "contact", " needs also --contact;");
+    assert_refused("--mass M.mtx", "mass", " missing: --stiffness --dofs --contact --load;");
+    assert_refused("--stiffness K.mtx --load 4,0,0,x", "stiffness", " missing: --mass --dofs --contact;");
+    assert_refused("--dofs dofs.txt", "dofs", " missing: --mass --stiffness --contact --load;");
+    assert_refused(OWN " --contact 2,0,0,x", "load", " missing: --load;");
+    assert_refused(OWN " --load 2,0,0,x", "contact", " missing: --contact;");
     const struct outcome o = assert_runs(OWN " --contact 2,0,0,x --load 4,0,0,x --limits 0.1:0.1:1");
-    require(!says(o.out, "given"), "the beam's frequencies: %s", o.out);
+    require(!says(o.out, "given"), "frequencies from nowhere: %s", o.out);
     require(says(o.out, "\n     4 "), "not all four modes: %s", o.out);
+}
+END_TEST
+
+/* Files of options and of contacts: what is wrong with them is told by file and line. */
+TEST(files_of_words)
+{
+    static const struct {
+        const char *text, *place;
+    } files[] = {{"modes 2\nnonsense 1\n", "o.txt:2: "},
+                 {"modes\n", "o.txt:1: "},
+                 {"modes 0\n", "o.txt:1: "},
+                 {"# nothing\n\ncontact 2,0,0,x limit=-1\n", "o.txt:3: "},
+                 {"contacts nowhere.txt\n", "nowhere.txt"},
+                 {"modes 2", "o.txt:1: "}},
+      contacts[] = {{"2,0,0,x\n3,0,0,x limit=1 mu=2\n", "c.txt:2: "},
+                    {"2,0,0,x\n\n3,0,0\n", "c.txt:3: "},
+                    {"2,0,0,x limit=\033[\n", "c.txt:1: "},
+                    {"7,0,0,x\n", "c.txt:1: "},
+                    {"# none\n", "c.txt: "},
+                    {"2,0,0,yz\n", "c.txt:1: "},
+                    {"2,0,0,x stiffness=3\n", "c.txt:1: "}};
+    write_chain();
+    for (size_t k = 0; k < COUNT(files); k++) {
+        write_text("o.txt", files[k].text);
+        assert_refused(CHAIN " --read o.txt", files[k].text, files[k].place);
+    }
+    for (size_t k = 0; k < COUNT(contacts); k++) {
+        write_text("c.txt", contacts[k].text);
+        assert_refused(OWN " --load 4,0,0,x --contacts c.txt", contacts[k].text, contacts[k].place);
+    }
+    assert_refused("--read", "no value", "--read");
+    assert_refused("--read nowhere.txt", "no file", "nowhere.txt");
+}
+END_TEST
+
+/* The same limit in all the ways to say it, and from a file. */
+TEST(same_limit)
+{
+    static const char *const way[] = {
+        "--contact 2,0,0,x:limit=0.1",           "--contact 2,0,0,x --limits 0.1",
+        "--contact 2,0,0,x:mu=0.5 --limits 0.2", "--contacts c.txt",
+        "--contact 2,0,0,x:mu=2:load=0.05",      "--read o.txt",
+    };
+    double first = 0.0;
+    write_chain();
+    write_text("c.txt", "# steel on steel\n2,0,0,x  mu=2 load=0.05 \r\n");
+    write_text("o.txt", "contact 2,0,0,x limit=0.1\n");
+    for (size_t k = 0; k < COUNT(way); k++) {
+        char line[TEXT], table[TEXT];
+        double limit, hz, amplitude;
+        snprintf(line, sizeof line, OWN " --load 4,0,0,x %s", way[k]);
+        assert_runs(line);
+        read_text("damper-curve.csv", table);
+        require(sscanf(strchr(table, '\n'), "%lf,%lf,%lf", &limit, &hz, &amplitude) == 3, "%s", table);
+        first = k ? first : amplitude;
+        require(amplitude > 0.0 && amplitude == first, "%s: %.17g, not %.17g", way[k], amplitude, first);
+    }
+    assert_refused(OWN " --load 4,0,0,x --contact 2,0,0,x:limit=0.1 --limits 0.1:1:3", "nothing varies", "--limits");
+}
+END_TEST
+
+/* A contact between two nodes: both ends move alike when it sticks. */
+TEST(between)
+{
+    write_chain();
+    assert_runs(OWN " --contact 2,0,0,x:to=3,0,0 --load 4,0,0,x --drive 0.7");
+    const double free_amplitude = value_of("damper.free.analytic"), held = value_of("damper.stuck.analytic");
+    assert_close(value_of("damper.free"), free_amplitude, 1e-9 * free_amplitude);
+    assert_close(value_of("damper.stuck"), held, 1e-9 * held);
+    /* three masses, the middle one of 4 kg, on springs of 200 N/m; at 0.7 Hz, hardly damped */
+    const double w2 = pow(2.0 * PI * 0.7, 2), top = 200.0 - 2.0 * w2, middle = 400.0 - 4.0 * w2, low = 400.0 - 2.0 * w2;
+    const double rest = middle - 200.0 * 200.0 / low;
+    assert_close(held, 1.0 / fabs(top - 200.0 * 200.0 / rest), 1e-2 * held);
 }
 END_TEST
 
@@ -488,8 +449,8 @@ TEST(one_mass)
     write_text("K.mtx", "%%MatrixMarket matrix coordinate integer general\n1 1 1\n1 1 200\n");
     write_text("dofs.txt", "1 1 2 0 0 0\n");
     const struct outcome o = assert_runs(OWN " --contact 0,0,0,y --load 0,0,0,y --force 3");
-    require(!says(o.out, "not steady"), "%s", o.out);
-    assert_close(value_of("damper.free"), free_amplitude, 1e-3 * free_amplitude);
+    require(!says(o.out, "not found"), "%s", o.out);
+    assert_close(value_of("damper.free"), free_amplitude, 1e-9 * free_amplitude);
     assert_close(value_of("damper.best.limit"), PI * force / 8.0, 5e-3 * force);
     assert_close(value_of("damper.best.amplitude"), 0.5 * free_amplitude, 1e-2 * free_amplitude);
     assert_exact(value_of("damper.stuck"), 0.0);
@@ -508,13 +469,14 @@ TEST(few)
                      modes, limits == 1 ? 0.05 : 0.2, limits);
             write_chain();
             const struct outcome o = assert_runs(line);
-            require(!says(o.out, "not steady"), "%s: %s", line, o.out);
+            require(!says(o.out, "not found"), "%s: %s", line, o.out);
             const double free_amplitude = value_of("damper.free.analytic"), held = value_of("damper.stuck.analytic");
-            assert_close(value_of("damper.free"), free_amplitude, 1e-3 * free_amplitude);
-            assert_close(value_of("damper.stuck"), held, 1e-3 * held + 1e-12 * free_amplitude);
+            assert_close(value_of("damper.free"), free_amplitude, 1e-9 * free_amplitude);
+            assert_close(value_of("damper.stuck"), held, 1e-9 * held + 1e-12 * free_amplitude);
         }
     }
 }
 END_TEST
 
-TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {own_structure, 1}, {one_mass, 1}, {few, 1})
+TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {parts, 1}, {files_of_words, 1}, {same_limit, 1},
+          {between, 1}, {one_mass, 1}, {few, 1})

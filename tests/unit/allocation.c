@@ -20,6 +20,7 @@ static void work(tribo_context *c, const struct problem *p)
     tribo_force_tangent(c, p->v, feq, f, square[0], square[1], NULL);
     tribo_balance_tangent(c, p->v, p->a, feq, f, square[0], square[1]);
     tribo_tangent_product(c, p->v, p->a, f);
+    tribo_limit_product(c, p->v, f);
     tribo_step_force(c, 0.1, p->v, f);
     tribo_step_force_mean(c, 0.1, p->a, p->v, f);
     tribo_solve_box(c, p->a, p->v, p->v, f);
@@ -109,6 +110,7 @@ TEST(hot_paths_of_a_sparse_group)
         assert_ok(tribo_set_coupling(c, k % 2));
         assert_ok(tribo_balance_tangent(c, p.v, p.a, f, f, NULL, NULL));
         assert_ok(tribo_tangent_product(c, p.v, p.a, f));
+        assert_ok(tribo_limit_product(c, p.v, f));
         assert_ok(tribo_step_force(c, 0.1, p.v, f));
     }
     require(memory_calls() == before, "%zu allocations", memory_calls() - before);

@@ -311,25 +311,15 @@ TEST(turned)
 
 #define STEP 1e-7
 
-static void forces_at(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
-{
-    double v[LARGEST], a[LARGEST];
-    for (size_t i = 0; i < p->n; i++) {
-        v[i] = p->v[i] + step * dv[i];
-        a[i] = p->a[i] + step * da[i];
-    }
-    assert_ok(tribo_balance(c, v, a, NULL, f));
-}
-
 /* Differences along (dv, da) where there is no kink; returns how many could be compared. */
 static size_t check_direction(tribo_context *c, const struct problem *p, const double *by_v, const double *by_a, const double *dv,
                               const double *da)
 {
     double f[LARGEST], before[LARGEST], after[LARGEST];
     size_t smooth = 0;
-    forces_at(c, p, 0.0, dv, da, f);
-    forces_at(c, p, -STEP, dv, da, before);
-    forces_at(c, p, STEP, dv, da, after);
+    problem_forces(c, p, 0.0, dv, da, f);
+    problem_forces(c, p, -STEP, dv, da, before);
+    problem_forces(c, p, STEP, dv, da, after);
     for (size_t i = 0; i < p->n; i++) {
         const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP;
         double want = 0.0, size = 1.0;
@@ -377,4 +367,56 @@ TEST(tangents)
     require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
 }
 
-TEST_MAIN("planar_coupled", {random_problems, 5}, {steps, 5}, {turned, 3}, {tangents, 3})
+/* Forces with limits that have gone by part of dlimit. */
+static void forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f)
+{
+    double limit[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        limit[i] = p->limit[i] + part * dlimit[i];
+    }
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_balance(c, p->v, p->a, NULL, f));
+}
+
+/* Discs stay discs, ellipses change their shape; lines stay lines. */
+static void change_limits(struct random *g, const struct scene *s, double *dlimit)
+{
+    for (size_t i = 0; i < s->p.n; i++) {
+        const int disc = i > 0 && s->wide[i] == 0 && s->p.limit[i] == s->p.limit[i - 1];
+        dlimit[i] = disc ? dlimit[i - 1] : s->p.limit[i] > 0.0 ? uniform(g, -1.0, 1.0) : 0.0;
+    }
+}
+
+/* Every law, and epsilon that is given or follows the limits. */
+TEST(limits)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), follows = _i / tribo_law_count();
+    size_t smooth = 0, all = 0;
+    for (int k = 0; k < 40; k++) {
+        const struct recipe recipe = recipe_regular(&g, 10);
+        const struct scene s = scene_create(&g, &recipe);
+        double dlimit[LARGEST], df[LARGEST], f[LARGEST], before[LARGEST], after[LARGEST];
+        tribo_context *c = scene_context(&s, law);
+        change_limits(&g, &s, dlimit);
+        if (follows) {
+            assert_ok(tribo_set_epsilon_step(c, 1.0, 2.0));
+        }
+        assert_ok(tribo_balance_tangent(c, s.p.v, s.p.a, NULL, f, NULL, NULL));
+        assert_ok(tribo_limit_product(c, dlimit, df));
+        forces_of_limits(c, &s.p, -STEP, dlimit, before);
+        forces_of_limits(c, &s.p, STEP, dlimit, after);
+        for (size_t i = 0; i < s.p.n; i++) {
+            const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP, size = 1.0 + fabs(df[i]);
+            if (fabs(forward - backward) < 1e-4 * size) {
+                assert_close(df[i], 0.5 * (forward + backward), 2e-5 * size);
+                smooth++;
+            }
+        }
+        all += s.p.n;
+        tribo_destroy(c);
+    }
+    require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
+}
+
+TEST_MAIN("planar_coupled", {random_problems, 5}, {steps, 5}, {turned, 3}, {tangents, 3}, {limits, 12})

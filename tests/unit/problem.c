@@ -115,6 +115,16 @@ double real_of(const tribo_context *c, int which)
     return value;
 }
 
+void problem_forces(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
+{
+    double v[LARGEST], a[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        v[i] = p->v[i] + step * dv[i];
+        a[i] = p->a[i] + step * da[i];
+    }
+    assert_ok(tribo_balance(c, v, a, NULL, f));
+}
+
 tribo_context *problem_chain(size_t n, size_t islands, int coupling)
 {
     const size_t all = n * islands;

@@ -31,6 +31,9 @@ struct recipe recipe_regular(struct random *g, size_t most);
 struct problem problem_create(struct random *g, const struct recipe *recipe);
 tribo_context *problem_context(const struct problem *p, int law, int coupling);
 
+/* f of the problem's v + step dv and a + step da. */
+void problem_forces(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f);
+
 /* A chain of n contacts between bodies of mass 1: tridiagonal R. */
 tribo_context *problem_chain(size_t n, size_t islands, int coupling);
 

@@ -13,26 +13,15 @@ struct tangent {
     double f[LARGEST], dv[LARGEST * LARGEST], da[LARGEST * LARGEST];
 };
 
-/* Forces and derivatives of f along (v, a) + STEP (dv, da). */
-static void forces_at(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f)
-{
-    double v[LARGEST], a[LARGEST];
-    for (size_t i = 0; i < p->n; i++) {
-        v[i] = p->v[i] + step * dv[i];
-        a[i] = p->a[i] + step * da[i];
-    }
-    assert_ok(tribo_balance(c, v, a, NULL, f));
-}
-
 /* How many of the components have no kink and no jump within the step; these are compared. */
 static size_t check_direction(tribo_context *c, const struct problem *p, const struct tangent *t, const double *dv,
                               const double *da)
 {
     double f[LARGEST], before[LARGEST], after[LARGEST];
     size_t smooth = 0;
-    forces_at(c, p, 0.0, dv, da, f);
-    forces_at(c, p, -STEP, dv, da, before);
-    forces_at(c, p, STEP, dv, da, after);
+    problem_forces(c, p, 0.0, dv, da, f);
+    problem_forces(c, p, -STEP, dv, da, before);
+    problem_forces(c, p, STEP, dv, da, after);
     assert_all_close(t->f, f, p->n, 1e-14);
     for (size_t i = 0; i < p->n; i++) {
         const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP;
@@ -51,8 +40,23 @@ static size_t check_direction(tribo_context *c, const struct problem *p, const s
     return smooth;
 }
 
+/* 0: no static limits; 1: such that drop at once, if the law knows stick; 2: such that fall with speed. */
+static void set_static(struct random *g, tribo_context *c, size_t n, int breaking)
+{
+    double ratio[LARGEST], velocity[LARGEST];
+    int law;
+    for (size_t i = 0; i < n; i++) {
+        ratio[i] = uniform(g, 1.0, 2.0);
+        velocity[i] = uniform(g, 0.5, 2.0);
+    }
+    assert_ok(tribo_get_law(c, &law));
+    if (breaking == 2 || (breaking == 1 && law != TRIBO_VELOCITY_LIMITED && law != TRIBO_SMOOTH)) {
+        assert_ok(tribo_set_static(c, ratio, breaking == 2 ? velocity : NULL));
+    }
+}
+
 /* Problems in which epsilon, limits and R are of the order of 1. Odd contacts have the reversal memory set. */
-static tribo_context *create(struct random *g, int law, int coupling, struct problem *p)
+static tribo_context *create(struct random *g, int law, int coupling, int breaking, struct problem *p)
 {
     struct recipe recipe = recipe_regular(g, 12);
     recipe.resting = law == TRIBO_COULOMB ? 0.5 : 0.0; /* at rest and saturated, the other laws have a kink */
@@ -63,18 +67,19 @@ static tribo_context *create(struct random *g, int law, int coupling, struct pro
         v[i] = i % 2 ? 9.0 : 0.0;
     }
     assert_ok(tribo_accept(c, v, none));
+    set_static(g, c, p->n, breaking);
     return c;
 }
 
 TEST(tangents)
 {
     struct random g = random_of(_i);
-    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2;
+    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2, breaking = _i / tribo_law_count() / 2 % 3;
     size_t smooth = 0, all = 0;
     for (int k = 0; k < 10; k++) {
         struct problem p;
         struct tangent t;
-        tribo_context *c = create(&g, law, coupling, &p);
+        tribo_context *c = create(&g, law, coupling, breaking, &p);
         assert_ok(tribo_balance_tangent(c, p.v, p.a, NULL, t.f, t.dv, t.da));
         for (int way = 0; way < 4; way++) {
             double dv[LARGEST], da[LARGEST];
@@ -106,7 +111,7 @@ TEST(optional_outputs)
     struct problem p;
     struct tangent all, one;
     double feq[LARGEST], feq_alone[LARGEST];
-    tribo_context *c = create(&g, TRIBO_QUINN_REVERSAL, _i % 2, &p);
+    tribo_context *c = create(&g, TRIBO_QUINN_REVERSAL, _i % 2, 0, &p);
     answer_apart(c, &p, feq, all.f, all.dv, all.da);
     answer_apart(c, &p, NULL, NULL, one.dv, NULL);
     answer_apart(c, &p, NULL, NULL, NULL, one.da);
@@ -200,6 +205,7 @@ TEST(product_of_tangents)
     const size_t n = p.n;
     double *dv = malloc(n * n * sizeof *dv), *da = malloc(n * n * sizeof *da), x[LARGEST], y[LARGEST], df[LARGEST];
     tribo_context *c = problem_context(&p, law, coupling);
+    set_static(&g, c, p.n, _i / tribo_law_count() / 2 % 3);
     assert_status(tribo_tangent_product(c, p.v, p.a, df), TRIBO_ERR_STATE);
     const int status = tribo_balance_tangent(c, p.v, p.a, NULL, NULL, dv, da);
     if (status != TRIBO_ERR_INCONSISTENT) {
@@ -229,5 +235,86 @@ TEST(product_of_tangents)
     free(da);
 }
 
-TEST_MAIN("tangents", {tangents, 24}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2}, {tangents_of_open_contacts, 1},
-          {product_of_tangents, 120})
+/* ------------------------------------------------------------------------------------------------------------ limits */
+
+/* Forces with limits that have gone by part of dlimit. */
+static void forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f)
+{
+    double limit[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        limit[i] = p->limit[i] + part * dlimit[i];
+    }
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_balance(c, p->v, p->a, NULL, f));
+}
+
+/* How many forces have no kink within the step; these are compared. */
+static size_t check_limits(tribo_context *c, const struct problem *p, const double *dlimit)
+{
+    double f[LARGEST], df[LARGEST], before[LARGEST], after[LARGEST];
+    size_t smooth = 0;
+    assert_ok(tribo_balance_tangent(c, p->v, p->a, NULL, f, NULL, NULL));
+    assert_ok(tribo_limit_product(c, dlimit, df));
+    forces_of_limits(c, p, -STEP, dlimit, before);
+    forces_of_limits(c, p, STEP, dlimit, after);
+    for (size_t i = 0; i < p->n; i++) {
+        const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP, size = 1.0 + fabs(df[i]);
+        if (fabs(forward - backward) < 2e-4 * size) {
+            assert_close(df[i], 0.5 * (forward + backward), 2e-6 * size);
+            smooth++;
+        }
+    }
+    return smooth;
+}
+
+/* Every law and coupling; epsilon that is given, and that follows the limits. */
+TEST(limits)
+{
+    struct random g = random_of(_i);
+    const int law = _i % tribo_law_count(), coupling = _i / tribo_law_count() % 2, follows = _i / tribo_law_count() / 2;
+    size_t smooth = 0, all = 0;
+    for (int k = 0; k < 20; k++) {
+        struct problem p;
+        double dlimit[LARGEST];
+        tribo_context *c = create(&g, law, coupling, 0, &p);
+        for (size_t i = 0; i < p.n; i++) {
+            dlimit[i] = p.limit[i] > 0.0 ? uniform(&g, -1.0, 1.0) : 0.0;
+        }
+        if (follows) {
+            assert_ok(tribo_set_epsilon_step(c, 1.0, 2.0));
+        }
+        smooth += check_limits(c, &p, dlimit);
+        all += p.n;
+        tribo_destroy(c);
+    }
+    ck_assert_uint_gt(smooth, all * 95 / 100);
+}
+
+/* Two masses pull at one rope: what one contact, which slides, carries more, the other, which holds, carries less. An open
+ * contact stays open; and the product tells what it has not been asked for. */
+TEST(limits_of_neighbours)
+{
+    const double r[] = {1.0, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0}, limit[] = {0.3, 2.0, 0.0}, v[] = {1.0, 0.0, 0.0};
+    const double a[] = {1.0, 1.0, 1.0}, one[] = {1.0, 0.0, 7.0};
+    double df[3];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 3));
+    assert_ok(tribo_set_epsilon_all(c, 0.1));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_status(tribo_limit_product(c, one, df), TRIBO_ERR_STATE);
+    assert_ok(tribo_balance_tangent(c, v, a, NULL, NULL, NULL, NULL));
+    assert_ok(tribo_limit_product(c, one, df));
+    assert_all_close(df, THREE(-1.0, 1.0, 0.0), 3, 1e-15);
+    assert_status(tribo_limit_product(c, THREE(0.0, NAN, 0.0), df), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_message(c), "dlimit[1] = nan");
+    assert_status(tribo_limit_product(c, NULL, df), TRIBO_ERR_NULL);
+    assert_status(tribo_limit_product(c, one, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_limit_product(NULL, one, df), TRIBO_ERR_NULL);
+    assert_ok(tribo_set_limit(c, limit));
+    assert_status(tribo_limit_product(c, one, df), TRIBO_ERR_STATE);
+    tribo_destroy(c);
+}
+
+TEST_MAIN("tangents", {tangents, 72}, {optional_outputs, 6}, {uncoupled, 60}, {immovable, 2}, {tangents_of_open_contacts, 1},
+          {product_of_tangents, 144}, {limits, 24}, {limits_of_neighbours, 1})

@@ -162,6 +162,8 @@ static void ask_forces(struct random *g, struct scene *s)
         draw(g, s, d[1]);
         assert_quiet(tribo_tangent_product(s->c, d[0], d[1], f));
         check_numbers(s, "product", f, s->n);
+        assert_quiet(tribo_limit_product(s->c, d[0], f));
+        check_numbers(s, "limit_product", f, s->n);
     }
     draw(g, s, feq);
     assert_quiet(tribo_force_tangent(s->c, v, feq, f, d[0], d[1], d[2]));

@@ -406,7 +406,8 @@ TEST(unsupported)
 {
     const double times[] = {0.0, 1.0}, values[] = {0.0, 1.0}, one = 1.0, limits[] = {1.0, 2.0}, two = 2.0;
     tribo_system *cases[3];
-    const char *const texts[] = {"takes harmonic loads and limits only", "takes harmonic loads and limits only", "critically damped"};
+    const char *const texts[] = {"takes harmonic loads and limits only", "takes harmonic loads and limits only",
+                                 "critically damped"};
     cases[0] = block(1.0, 1.0, 1.0);
     assert_ok(tribo_system_add_load_table(cases[0], 2, times, values, &one));
     cases[1] = block(1.0, 1.0, 1.0);

@@ -299,13 +299,7 @@ static tribo_system *swinging(int seed, int driven)
     const struct model m = model_create(&g, seed % 2);
     tribo_system *sys = model_system(&m, seed % 4 == 1, seed % 4 == 2 ? 4 : 0, 2e-4);
     double c[CONTACTS], s[CONTACTS];
-    for (int k = 0; k < 2; k++) {
-        for (size_t i = 0; i < CONTACTS; i++) {
-            c[i] = uniform(&g, -1.0, 1.0);
-            s[i] = uniform(&g, -1.0, 1.0);
-        }
-        assert_ok(tribo_system_add_limit(sys, k ? 1.7 : 0.6, c, s));
-    }
+    model_swing(sys, &g, c, s);
     assert_ok(tribo_system_add_base_motion(sys, 0.0, c, NULL));
     if (!driven) {
         tribo_system_destroy(sys);

@@ -88,3 +88,14 @@ double form(const double *a, const double *x, const double *y)
     }
     return sum;
 }
+
+void model_swing(tribo_system *sys, struct random *g, double *c, double *s)
+{
+    for (int k = 0; k < 2; k++) {
+        for (size_t i = 0; i < CONTACTS; i++) {
+            c[i] = uniform(g, -1.0, 1.0);
+            s[i] = uniform(g, -1.0, 1.0);
+        }
+        assert_ok(tribo_system_add_limit(sys, k ? 1.7 : 0.6, c, s));
+    }
+}

@@ -21,6 +21,9 @@ struct model model_create(struct random *g, int full);
 tribo_system *model_system(const struct model *m, int damped, size_t nmode, double epsilon);
 void model_finish(const struct model *m, tribo_system *sys, double epsilon);
 
+/* Adds two harmonics to the limits, which take some of them below 0; the amplitudes of the last are c and s [CONTACTS]. */
+void model_swing(tribo_system *sys, struct random *g, double *c, double *s);
+
 /* c = a b, a [rows][inner], b [inner][cols]; c = a' b, a [inner][rows]. */
 void multiply(size_t rows, size_t inner, size_t cols, const double *a, const double *b, double *c);
 void multiply_transposed(size_t rows, size_t inner, size_t cols, const double *a, const double *b, double *c);

@@ -251,8 +251,8 @@ TEST(belt)
     search_free(&shaken);
 }
 
-/* Limits that follow harmonics: even ones keep the symmetry of the motion, others do not; with lift-off, and on a belt that moves. The
- * motion comes back, as marching has it, and contacts dissipate what the state's energy says. */
+/* Limits that follow harmonics: even ones keep the symmetry of the motion, others do not; with lift-off, and on a belt that
+ * moves. The motion comes back, as marching has it, and contacts dissipate what the state's energy says. */
 TEST(swinging_limits)
 {
     static const struct {

@@ -1,4 +1,4 @@
-/* What friction_damper reads: Matrix Market, CalculiX's matrices, degrees of freedom and input, compressed or not; and what it
+/* What tribo-damper reads: Matrix Market, CalculiX's matrices, degrees of freedom and input, compressed or not; and what it
  * refuses, by file and line. Works in the current folder. */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>

@@ -11,11 +11,7 @@ static inline struct tangent coulomb_tangent(double v, double feq, double limit,
                                              unsigned char moving, double follows)
 {
     (void)epsilon, (void)slope, (void)moving, (void)follows;
-    if (v != 0.0) {
-        return (struct tangent){0.0, 0.0, -sign(v)};
-    }
-    const int held = fabs(feq) < limit;
-    return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
+    return v != 0.0 ? sliding_tangent(v) : held_tangent(feq, limit);
 }
 
 TRIBO_LAW_LOOPS(coulomb)

@@ -11,11 +11,7 @@ static inline struct tangent karnopp_tangent(double v, double feq, double limit,
                                              unsigned char moving, double follows)
 {
     (void)slope, (void)moving, (void)follows;
-    if (fabs(v) > epsilon) {
-        return (struct tangent){0.0, 0.0, -sign(v)};
-    }
-    const int held = fabs(feq) < limit;
-    return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
+    return fabs(v) > epsilon ? sliding_tangent(v) : held_tangent(feq, limit);
 }
 
 TRIBO_LAW_LOOPS(karnopp)

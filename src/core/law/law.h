@@ -22,6 +22,7 @@ struct contacts {
     const double *width, *rate;
     const unsigned char *moving; /* reversal memory */
     int follows;
+    int scales; /* epsilon goes with the caller's limit, also where it is in width (static limits) */
 };
 
 /* follows is a constant. */
@@ -43,7 +44,7 @@ static inline double tribo_rate(double epsilon)
 
 static inline struct contacts tribo_contacts_from(const struct contacts *c, size_t i)
 {
-    return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i, c->moving + i, c->follows};
+    return (struct contacts){c->limit + i, c->bound + i, c->width + i, c->rate + i, c->moving + i, c->follows, c->scales};
 }
 
 /* epsilon and slope of contact i, where follows is no constant: factors are chosen, not products, which might overflow where they
@@ -56,6 +57,12 @@ static inline double tribo_epsilon_of(const struct contacts *c, size_t i)
 static inline double tribo_slope_of(const struct contacts *c, size_t i)
 {
     return c->rate[i] * (!c->follows ? c->bound[i] : c->bound[i] > 0.0 ? 1.0 : 0.0);
+}
+
+/* How the slope follows the limit. */
+static inline double tribo_slope_rate_of(const struct contacts *c, size_t i)
+{
+    return c->follows ? 0.0 : c->rate[i];
 }
 
 struct tangent {
@@ -91,6 +98,18 @@ static inline double sliding(double v, double limit)
     return copysign(limit, -v);
 }
 
+/* How these forces change: of a contact that slides, and of one that carries clamp(feq, -limit, limit). */
+static inline struct tangent sliding_tangent(double v)
+{
+    return (struct tangent){0.0, 0.0, -sign(v)};
+}
+
+static inline struct tangent held_tangent(double feq, double limit)
+{
+    const int held = fabs(feq) < limit;
+    return (struct tangent){0.0, held ? 1.0 : 0.0, held ? 0.0 : sign(feq)};
+}
+
 /* Defines <name>_force_all and <name>_tangent_all from the law's functions of one contact, <name>_force and <name>_tangent. */
 #define TRIBO_LAW_LOOP(name, follows)                                                                                            \
     for (size_t i = 0; i < n; i++) {                                                                                             \
@@ -114,7 +133,7 @@ static inline double sliding(double v, double limit)
     {                                                                                                                            \
         for (size_t i = 0; i < n; i++) {                                                                                         \
             d[i] = name##_tangent(v[i], feq[i], c->limit[i], tribo_epsilon_of(c, i), tribo_slope_of(c, i), c->moving[i],         \
-                                  c->follows);                                                                                   \
+                                  c->scales);                                                                                    \
         }                                                                                                                        \
     }
 

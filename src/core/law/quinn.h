@@ -18,7 +18,7 @@ static inline struct tangent quinn_tangent(double v, double feq, double limit, d
 {
     (void)moving;
     if (fabs(v) > epsilon) {
-        return (struct tangent){0.0, 0.0, -sign(v)};
+        return sliding_tangent(v);
     }
     const double x = clamp(feq, -limit, limit) - slope * v;
     if (fabs(x) > limit) {

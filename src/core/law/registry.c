@@ -91,7 +91,7 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     const double bound = lesser(limit, TRIBO_FAR), read = needs_feq ? cut(feq) : 0.0;
     const double rate = lesser(tribo_rate(epsilon), TRIBO_FAR / greater(bound, 1.0));
     const unsigned char moving = 1;
-    const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0};
+    const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0, 0};
     struct tangent d;
     l->force(&c, 1, &v, &read, f);
     l->tangent(&c, 1, &v, &read, &d);

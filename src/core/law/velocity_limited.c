@@ -14,7 +14,7 @@ static inline struct tangent limited_tangent(double v, double feq, double limit,
 {
     (void)feq, (void)moving, (void)limit;
     if (fabs(v) > epsilon) {
-        return (struct tangent){0.0, 0.0, -sign(v)};
+        return sliding_tangent(v);
     }
     return (struct tangent){-0.5 * slope, 0.0, -(1.0 - follows) * quotient(v, epsilon)};
 }

@@ -59,14 +59,14 @@ static int out_of_memory(const tribo_context *ctx)
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contacts", ctx->n);
 }
 
-/* The new operator is right: it takes the old one's place, and its memory that of the old one's, if there is room for what it makes
- * of planar contacts. */
+/* The new operator is right: it takes the old one's place, and its memory that of the old one's, if there is room for what it
+ * makes of planar contacts. */
 static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 {
     struct planar *planar;
     struct plane plane;
-    const int status = tribo_planar_prepare(ctx, ctx->planar ? ctx->planar->count : 0, ctx->planar ? ctx->planar->first : NULL, op, m,
-                                            &planar, &plane);
+    const int status = tribo_planar_prepare(ctx, ctx->planar ? ctx->planar->count : 0, ctx->planar ? ctx->planar->first : NULL,
+                                            op, m, &planar, &plane);
     if (status) {
         tribo_operator_release(op);
         tribo_memory_free(m);

@@ -1,0 +1,32 @@
+#ifndef EXAMPLES_CONTACT_H
+#define EXAMPLES_CONTACT_H
+
+#include <stddef.h>
+
+enum { MAX_CONTACTS = 32 };
+
+/* A degree of freedom as the user names it: a node by its coordinates, and a direction (1, 2, 3 for x, y, z). */
+struct place {
+    double at[3];
+    int direction;
+    const char *origin; /* where it was given, for messages */
+};
+
+/* A contact between a node and the ground, or another node. */
+struct contact {
+    struct place at, to;
+    int between;  /* 0: to the ground, and there is no to */
+    double limit; /* NaN: it varies, and is mu times what it varies with */
+    double mu;
+};
+
+/* "X,Y,Z,DIR" */
+struct place read_place(const char *origin, const char *text);
+
+/* "X,Y,Z,DIR" and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE behind it, parted by colons or blanks. */
+struct contact read_contact(const char *origin, const char *text);
+
+/* One contact a line, from the file into contact [MAX_CONTACTS], of which count are there already; returns how many then are. */
+size_t read_contacts(const char *path, struct contact *contact, size_t count);
+
+#endif

@@ -1,0 +1,144 @@
+/* What chain.c and structure.c do, by the drivers of libtribo_gsl in one process; tests compare them.
+ *   single chain METHOD BLOCKS STEPS CYCLES ALPHA
+ *   single structure MASS STIFFNESS CONTACTS ROWS LOAD_ROW LOAD OMEGA DAMPING STEP STEPS EVERY
+ * Prints the same lines. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../common/output.h"
+#include "../damper/lines.h"
+#include "../damper/matrix_file.h"
+#include "tribo/tribo_gsl.h"
+
+enum { MAX_CONTACTS = 64 };
+
+static void chain(char **argument)
+{
+    const size_t n = (size_t)atol(argument[1]), cycles = (size_t)atol(argument[3]);
+    const double omega = 0.5, period = 2.0 * acos(-1.0) / omega, dt = period / atof(argument[2]);
+    tribo_system *sys;
+    tribo_driver *drv;
+    need(tribo_system_chain(&sys, n, 1.0, atof(argument[4]), omega), NULL);
+    tribo_context *contacts = tribo_system_context(sys);
+    need(tribo_set_epsilon_step(contacts, dt, 0.4), tribo_message(contacts));
+    need(tribo_driver_create(&drv, sys, argument[0], dt, 0.0, 0.0), tribo_message(contacts));
+    double *y = need_memory(2 * n + 1, sizeof *y), t = 0.0;
+    memset(y, 0, (2 * n + 1) * sizeof *y);
+    for (size_t k = 1; k <= cycles; k++) {
+        const double before = y[2 * n];
+        need(tribo_driver_advance(drv, &t, (double)k * period, y), tribo_driver_message(drv));
+        printf("cycle %zu dissipates %.13g\n", k, y[2 * n] - before);
+    }
+    free(y);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* Contacts "row other limit" a line as a matrix of directions. */
+static gsl_spmatrix *read_contacts(const char *path, size_t rows, double *limit, size_t *count)
+{
+    size_t row[MAX_CONTACTS][2];
+    struct lines l = open_lines(path);
+    for (*count = 0; next_data(&l); ++*count) {
+        if (*count == MAX_CONTACTS) {
+            die_at(&l, "more than %d contacts", (int)MAX_CONTACTS);
+        }
+        row[*count][0] = next_whole(&l, "row", 1, rows);
+        row[*count][1] = next_whole(&l, "other row", 0, rows);
+        limit[*count] = next_real(&l, "limit");
+        expect_end(&l);
+    }
+    close_lines(&l);
+    gsl_spmatrix *direction = gsl_spmatrix_alloc(*count, rows);
+    for (size_t i = 0; i < *count; i++) {
+        gsl_spmatrix_set(direction, i, row[i][0] - 1, 1.0);
+        if (row[i][1]) {
+            gsl_spmatrix_set(direction, i, row[i][1] - 1, -1.0);
+        }
+    }
+    return direction;
+}
+
+/* In all of its modes, where stiff ones leave no rounding in the forces of soft ones; with damping, as it is. */
+static tribo_system *read_system(char **file, size_t n, double damping)
+{
+    double limit[MAX_CONTACTS];
+    size_t contacts;
+    char message[200] = "";
+    tribo_system *sys;
+    gsl_spmatrix *mass = read_matrix(file[0], n), *stiffness = read_matrix(file[1], n), *damper = NULL,
+                 *direction = read_contacts(file[2], n, limit, &contacts);
+    if (damping > 0.0) {
+        damper = read_matrix(file[1], n);
+        gsl_spmatrix_scale(damper, damping);
+    }
+    need(tribo_system_linear_sparse(&sys, mass, damper, stiffness, direction, damper ? 0 : n, message, sizeof message), message);
+    need(tribo_set_limit(tribo_system_context(sys), limit), tribo_message(tribo_system_context(sys)));
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+    if (damper) {
+        gsl_spmatrix_free(damper);
+    }
+    return sys;
+}
+
+static void expand(const tribo_system *sys, int reduced, const double *from, double *to)
+{
+    if (reduced) {
+        need(tribo_system_expand(sys, from, to), NULL);
+    } else {
+        memcpy(to, from, tribo_system_ndof(sys) * sizeof *to);
+    }
+}
+
+static double norm(const double *x, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        sum += x[i] * x[i];
+    }
+    return sqrt(sum);
+}
+
+static void structure(char **argument)
+{
+    const size_t n = (size_t)atol(argument[3]), row = (size_t)atol(argument[4]) - 1;
+    const double load = atof(argument[5]), omega = atof(argument[6]), damping = atof(argument[7]), h = atof(argument[8]);
+    const long steps = atol(argument[9]), every = atol(argument[10]);
+    tribo_system *sys = read_system(argument, n, damping);
+    tribo_driver *drv;
+    double *pattern = need_memory(n, sizeof *pattern), *y = need_memory(2 * n + 1, sizeof *y), *q = need_memory(n, sizeof *q),
+           *u = need_memory(n, sizeof *u), t = 0.0;
+    memset(pattern, 0, n * sizeof *pattern);
+    memset(y, 0, (2 * n + 1) * sizeof *y);
+    pattern[row] = load;
+    need(tribo_system_add_load(sys, omega, NULL, pattern), tribo_message(tribo_system_context(sys)));
+    need(tribo_driver_create(&drv, sys, "moreau/fixed", h, 0.0, 0.0), tribo_message(tribo_system_context(sys)));
+    for (long k = every; k <= steps; k += every) {
+        need(tribo_driver_advance(drv, &t, (double)k * h, y), tribo_driver_message(drv));
+        expand(sys, damping == 0.0, y, q);
+        expand(sys, damping == 0.0, y + n, u);
+        printf("%.9g %.13g %.13g %.13g %.13g\n", t, q[row], norm(q, n), norm(u, n), y[2 * n]);
+    }
+    free(pattern);
+    free(q);
+    free(u);
+    free(y);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+int main(int argc, char **argv)
+{
+    program = "single";
+    if (argc == 7 && strcmp(argv[1], "chain") == 0) {
+        chain(argv + 2);
+    } else if (argc == 13 && strcmp(argv[1], "structure") == 0) {
+        structure(argv + 2);
+    } else {
+        die("see the head of single.c for arguments");
+    }
+    return 0;
+}

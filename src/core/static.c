@@ -1,0 +1,169 @@
+/* Static friction above kinetic: the limits by which contacts go are then found in every call, and stand in now.
+ *
+ * With a Stribeck velocity the limit is a continuous function N(|v|) of the speed, which takes the limit's place in every law.
+ * Without one it drops at once. Then contacts near stick have the static limit, the others the kinetic one, and
+ *
+ *     repeat
+ *         forces from the problem with bounds
+ *         those near stick whose f_eq is beyond the static limit have the kinetic one from here on
+ *     until there are none
+ *
+ * all of them together, so that the order of contacts does not matter. Limits only fall, so that this ends. A contact that has
+ * broken away and that the others now hold rests with less than the kinetic limit, as it may. */
+#include "context.h"
+
+/* N(|v|), and its derivative by |v|. */
+static double limit_at(const tribo_context *ctx, size_t i, double speed, double *rate)
+{
+    const double slide = ctx->follow.cut_limit[i], hold = ctx->follow.hold[i], scale = ctx->set.stribeck[i];
+    if (ctx->set.breaking != FALLS) {
+        *rate = 0.0;
+        return slide;
+    }
+    const double more = (hold - slide) * exp(-quotient(speed, scale));
+    *rate = quotient(-more, scale);
+    return slide + more;
+}
+
+double tribo_limit_rate(const tribo_context *ctx, size_t i, double v)
+{
+    double rate = 0.0;
+    if (ctx->set.breaking) {
+        limit_at(ctx, i, fabs(v), &rate);
+    }
+    return copysign(1.0, v) * rate;
+}
+
+static int near_stick(const tribo_context *ctx, size_t i, double v)
+{
+    return fabs(v) <= (ctx->set.law->sticks_in_band ? ctx->follow.hold_width[i] : 0.0);
+}
+
+void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit)
+{
+    double ignored;
+    for (size_t k = 0; k < n; k++) {
+        const double hold = ctx->follow.hold[i + k];
+        const int holds = ctx->set.breaking == DROPS && near_stick(ctx, i + k, v[k]) && !(feq && fabs(feq[k]) > hold);
+        limit[k] = holds ? hold : limit_at(ctx, i + k, fabs(v[k]), &ignored);
+    }
+}
+
+void tribo_hold(const tribo_context *ctx, const struct box_qp *p)
+{
+    for (size_t e = 0; ctx->set.breaking == DROPS && e < p->count; e++) {
+        const size_t i = p->member[p->near[e]];
+        ctx->follow.now[i] = ctx->follow.hold[i];
+    }
+}
+
+/* Whether the contact at place k is pulled at by more than its static limit, and rounding. */
+static int breaks(const tribo_context *ctx, const struct box_qp *p, size_t k)
+{
+    const size_t i = p->member[k];
+    const double hold = ctx->follow.hold[i], doubt = quotient(tribo_box_tolerance(p, k), ctx->op->diagonal[i]);
+    return p->at[k] != FREE && ctx->follow.now[i] == hold && fabs(ctx->last.feq[i]) - hold > doubt + 4.0 * DBL_EPSILON * hold;
+}
+
+size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt)
+{
+    size_t broken = 0;
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t k = p->near[e], i = p->member[k];
+        double rate;
+        if (breaks(ctx, p, k)) {
+            ctx->follow.now[i] = limit_at(ctx, i, product(dt, fabs(p->gradient[k])), &rate);
+            broken += ctx->follow.now[i] < ctx->follow.hold[i];
+        }
+    }
+    ctx->last.rank -= broken ? p->sets->rank : 0; /* they will be solved for once more */
+    return broken;
+}
+
+void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree)
+{
+    for (size_t i = 0; i < ctx->n; i++) {
+        const double hold = ctx->follow.hold[i], held = product(ctx->op->diagonal[i] * dt, hold), beyond = fabs(vfree[i]) - held;
+        double rate;
+        if ((!ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE) && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
+            ctx->follow.now[i] = limit_at(ctx, i, beyond, &rate);
+            ctx->last.f[i] = copysign(ctx->follow.now[i], -vfree[i]);
+        }
+    }
+}
+
+/* What a law says of a given limit becomes what it says of the caller's, and of v on which that limit depends. */
+void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
+                        const double *feq, struct tangent *d)
+{
+    ctx->set.law->tangent(c, n, v, feq, d);
+    for (size_t k = 0; ctx->set.breaking && k < n; k++) {
+        struct contacts one = tribo_contacts_from(c, k);
+        struct tangent fixed;
+        one.scales = 0;
+        ctx->set.law->tangent(&one, 1, v + k, feq + k, &fixed);
+        d[k].dv += product(fixed.dlimit, tribo_limit_rate(ctx, i + k, v[k]));
+        d[k].dlimit *= one.bound[0] > 0.0 ? quotient(one.bound[0], ctx->follow.cut_limit[i + k]) : 1.0;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------------- settings */
+
+/* Limits to slide and to stick, as far as the solver tells them apart. */
+static void find_both_limits(tribo_context *ctx)
+{
+    for (size_t i = 0; i < ctx->n; i++) {
+        ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
+        ctx->follow.hold[i] = product(ctx->set.ratio[i], ctx->set.limit[i]);
+    }
+    for (size_t g = 0; g < ctx->op->groups; g++) {
+        const struct box_qp *p = tribo_problem(ctx, g);
+        for (size_t k = 0; k < p->group->size; k++) {
+            const size_t i = p->member[k];
+            ctx->follow.cut_limit[i] = lesser(ctx->follow.cut_limit[i], tribo_most(p, k));
+            ctx->follow.hold[i] = lesser(ctx->follow.hold[i], tribo_most(p, k));
+        }
+    }
+}
+
+void tribo_refresh_static(tribo_context *ctx)
+{
+    struct contacts *c = &ctx->follow.contacts;
+    double *rate = ctx->follow.cut_factor;
+    find_both_limits(ctx);
+    for (size_t i = 0; i < ctx->n; i++) {
+        const double hold = ctx->follow.hold[i];
+        ctx->follow.hold_width[i] = c->follows ? greater(product(c->width[i], hold), DBL_MIN) : c->width[i];
+        rate[i] = c->follows ? quotient(c->rate[i], greater(hold, DBL_MIN)) : c->rate[i];
+        rate[i] = lesser(rate[i], 2.0 * TRIBO_FAR / greater(hold, 1.0));
+    }
+    tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
+    const double *now = ctx->follow.now;
+    *c = (struct contacts){now, now, ctx->follow.hold_width, rate, ctx->moving, 0, c->scales};
+    for (size_t i = 0; i < ctx->n; i++) {
+        struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
+        chunk->largest = i % TRIBO_CHUNK ? greater(chunk->largest, now[i]) : now[i];
+    }
+}
+
+int tribo_refuse_static(const tribo_context *ctx, const char *who)
+{
+    for (size_t i = 0; ctx->set.breaking && i < ctx->n; i++) {
+        if (ctx->set.ratio[i] > 1.0) {
+            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "%s static limits, and ratio[%zu] = %g", who, i, ctx->set.ratio[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int breaking, const double *ratio)
+{
+    for (size_t i = 0; breaking == DROPS && !law->uses_feq && i < ctx->n; i++) {
+        if (ratio[i] > 1.0) {
+            return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                              "ratio[%zu] = %g needs a velocity by which the limit falls: law %s has no stick", i, ratio[i],
+                              law->name);
+        }
+    }
+    return TRIBO_OK;
+}

@@ -1,0 +1,109 @@
+/* Which of the contacts at rest hold: an independent set of them keeps all of them where they are. */
+#include "constraint.h"
+#include "stick_slip.h"
+
+#include <float.h>
+#include <math.h>
+
+int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
+{
+    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
+        f[i] = m->holds[i] ? -a[i] / m->diagonal[i] : 0.0;
+    }
+    return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
+}
+
+/* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
+ * there. */
+static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t rest)
+{
+    struct constraints c;
+    for (size_t p = 0; p < rest; p++) {
+        const signed char tied = m->tied[m->at[p]];
+        m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
+    }
+    const int done = tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
+    for (size_t k = done ? c.rank : rest; k < rest; k++) {
+        m->holds[m->at[c.order[k]]] = 0;
+    }
+    tribo_constraints_free(&c);
+    return done;
+}
+
+int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    size_t rest = 0, changes = 0;
+    for (size_t i = 0; i < c; i++) {
+        const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
+        changes += now != m->before[i];
+        m->before[i] = now;
+        m->at[rest] = i;
+        rest += m->slip[i] == 0 && m->diagonal[i] > 0.0;
+    }
+    if (changes == 0 && !m->fresh) {
+        return TRIBO_OK;
+    }
+    m->fresh = 0;
+    for (size_t i = 0; i < c; i++) {
+        m->holds[i] = m->slip[i] == 0 && m->diagonal[i] > 0.0;
+    }
+    m->dependents = 0;
+    if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+    }
+    for (size_t i = 0; i < c; i++) {
+        m->dependents += m->slip[i] == 0 && !m->holds[i];
+        m->loose[i] = !m->holds[i];
+        m->lo[i] = m->holds[i] ? 1.0 : 0.0;
+    }
+    return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
+}
+
+/* 1 if J x - base is more than the rounding of x for a contact that holds. */
+static int moves(struct stick_slip *m, const tribo_system *sys, const double *base, const double *x)
+{
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; i < m->contacts; i++) {
+        double sum = -base[i], size = fabs(base[i]);
+        for (size_t k = m->holds[i] ? j->first[i] : j->first[i + 1]; k < j->first[i + 1]; k++) {
+            sum += j->val[k] * x[j->col[k]];
+            size += fabs(j->val[k] * x[j->col[k]]);
+        }
+        if (m->holds[i] && fabs(sum) > 4.0 * DBL_EPSILON * size) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* x -= B_I R_II^-1 (J_I x - base), twice, since the first time leaves rounding of what it takes away. */
+int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
+{
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t i = 0; i < m->contacts; i++) {
+            m->lo[i] = -base[i];
+        }
+        tribo_matrix_multiply_add(&sys->direction, 1.0, x, m->lo);
+        const int status = tribo_stick_slip_balance(m, m->lo, m->f);
+        if (status) {
+            return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+        }
+        tribo_matrix_multiply_add(&sys->response, 1.0, m->f, x);
+    }
+    return TRIBO_OK;
+}
+
+/* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
+int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
+{
+    tribo_system_snap(sys, m->loose, base, x);
+    if (m->simple || !moves(m, sys, base, x)) {
+        return TRIBO_OK;
+    }
+    const int status = tribo_stick_slip_project(m, sys, base, x);
+    if (!status) {
+        tribo_system_snap(sys, m->loose, base, x);
+    }
+    return status;
+}
