@@ -102,6 +102,7 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
 {
     int status = check_parameters(sys, m, dt, abstol, reltol);
     status = status ? status : check_planar(sys, m);
+    status = status || m == &tribo_method_moreau_fixed ? status : tribo_system_check_solved(sys, m->name);
     if (status) {
         return status;
     }

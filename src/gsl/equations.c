@@ -42,8 +42,11 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 {
     tribo_system *sys = params;
     sys->evaluations++;
-    tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
-    sys->status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
+    sys->status = tribo_system_check_solved(sys, "the right-hand side");
+    if (!sys->status) {
+        tribo_system_free_motion(sys, t, y, dydt + sys->ndof, sys->v, sys->a);
+        sys->status = tribo_balance(sys->contacts, sys->v, sys->a, NULL, sys->f);
+    }
     if (sys->status) {
         /* a step that is too long may overflow, and a shorter one not */
         return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
@@ -79,7 +82,8 @@ static int contacts_at(tribo_system *sys, double t, const double *y)
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    const int status = tribo_system_check_state(sys, t, y);
+    int status = tribo_system_check_state(sys, t, y);
+    status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
     if (!status) {
         tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
     }
@@ -155,6 +159,7 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->contacts = NULL;
     to->revision = sys->revision;
     to->given = sys->given;
+    to->unsolved = sys->unsolved;
     memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
     memcpy(to->put_limit, sys->put_limit, sys->ncontact * sizeof *to->put_limit);
     memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);

@@ -82,6 +82,10 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     tribo_system *sys = params;
     const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
     sys->jacobians++;
+    sys->status = tribo_system_check_solved(sys, "the Jacobian");
+    if (sys->status) {
+        return GSL_EBADFUNC;
+    }
     if (!sys->dense && !create_dense(sys)) {
         sys->status = tribo_set_message(sys->contacts, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
         return GSL_EBADFUNC;

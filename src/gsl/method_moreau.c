@@ -12,7 +12,8 @@
 #include "step_band.h"
 #include "step_form.h"
 
-/* For steps of length h: A = I + h/2 AC + h^2/4 AK in GSL's band format, factorized; A^-1 B; and the contacts that see it. */
+/* For steps of length h: A = I + h/2 AC + h^2/4 AK in GSL's band format, or M + h/2 C + h^2/4 K of an unsolved system, factorized;
+ * A^-1 B; and the contacts that see it. */
 struct moreau {
     struct step_form common;
     double h;              /* 0: nothing is prepared */
@@ -21,7 +22,9 @@ struct moreau {
     size_t below, above;
     double *band;
     unsigned int *pivot;
-    double *response;         /* [ncontact][ndof] */
+    struct cholesky sparse;   /* of an unsolved system's */
+    double *response;         /* [ncontact][ndof], or NULL: then a step takes a second solve */
+    double *push;             /* [ndof] for that */
     double *limit;            /* [ncontact] */
     double *ratio, *velocity; /* [ncontact] of static limits */
     size_t statics;           /* revision of the system's contacts that these came from */
@@ -42,6 +45,8 @@ static void destroy(tribo_driver *drv)
         free(m->band);
         free(m->pivot);
         free(m->response);
+        free(m->push);
+        tribo_cholesky_free(&m->sparse);
         free(m);
     }
 }
@@ -53,8 +58,9 @@ static int create(tribo_driver *drv)
     drv->own = m;
     if (m) {
         m->limit = calloc(3 * c + n + 1, sizeof *m->limit);
+        m->push = calloc(n, sizeof *m->push);
     }
-    if (!m || !m->limit || !tribo_step_form_create(&m->common, drv->sys)) {
+    if (!m || !m->limit || !m->push || !tribo_step_form_create(&m->common, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
     }
     m->ratio = m->limit + c;
@@ -75,6 +81,10 @@ static void widen(const struct matrix *a, size_t *below, size_t *above)
 
 static void solve(const struct moreau *m, size_t n, double *x)
 {
+    if (m->sparse.n) {
+        tribo_cholesky_solve(&m->sparse, 1, x);
+        return;
+    }
     gsl_matrix_view a = gsl_matrix_view_array(m->band, n, 2 * m->below + m->above + 1);
     gsl_vector_view b = gsl_vector_view_array(x, n);
     const gsl_vector_uint pivot = {n, 1, m->pivot, NULL, 0};
@@ -85,6 +95,33 @@ static int singular(const tribo_system *sys, double h, size_t where)
 {
     return tribo_system_fail(sys, TRIBO_ERR_INDEFINITE,
                              "the matrix of a step of length %g is singular at degree of freedom %zu", h, where);
+}
+
+static int no_memory(const tribo_system *sys)
+{
+    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step");
+}
+
+static int factorize_unsolved(struct moreau *m, const tribo_system *sys, double h)
+{
+    struct matrix viscous = {0}, a = {0};
+    size_t where = 0;
+    double pivot;
+    tribo_cholesky_free(&m->sparse);
+    const int damped = sys->damping.rows > 0;
+    if ((damped && !tribo_matrix_sum(&viscous, 1.0, &sys->mass, 0.5 * h, &sys->damping)) ||
+        !tribo_matrix_sum(&a, 1.0, damped ? &viscous : &sys->mass, 0.25 * h * h, &sys->stiffness)) {
+        tribo_matrix_free(&viscous);
+        return no_memory(sys);
+    }
+    tribo_matrix_free(&viscous);
+    const int status = tribo_cholesky_create(&m->sparse, &a, &where, &pivot);
+    tribo_matrix_free(&a);
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_system_fail(
+                     sys, status, "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where)
+           : status ? no_memory(sys)
+                    : TRIBO_OK;
 }
 
 static int factorize(struct moreau *m, const tribo_system *sys, double h)
@@ -99,7 +136,7 @@ static int factorize(struct moreau *m, const tribo_system *sys, double h)
     m->band = calloc(n * width, sizeof *m->band);
     m->pivot = malloc(n * sizeof *m->pivot);
     if (!m->band || !m->pivot) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step");
+        return no_memory(sys);
     }
     const struct matrix *part[] = {&sys->stiffness, &sys->damping};
     const double factor[] = {0.25 * h * h, 0.5 * h};
@@ -125,7 +162,7 @@ static int factorize(struct moreau *m, const tribo_system *sys, double h)
 }
 
 /* A is diagonal: the operator is that of the bodies one by one. */
-static int set_bodies(struct moreau *m, const tribo_system *sys)
+static int set_bodies(struct moreau *m, const tribo_system *sys, const double *own)
 {
     const struct matrix *j = &sys->direction;
     double *inverse = calloc(sys->ndof, sizeof *inverse);
@@ -135,7 +172,7 @@ static int set_bodies(struct moreau *m, const tribo_system *sys)
     for (size_t i = 0; i < j->rows; i++) {
         for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
             const size_t d = j->col[k];
-            inverse[d] = j->val[k] != 0.0 ? m->response[i * sys->ndof + d] / j->val[k] : inverse[d];
+            inverse[d] = j->val[k] != 0.0 ? own[k] / j->val[k] : inverse[d];
         }
     }
     const int status = tribo_set_operator_mass(m->contacts, sys->ndof, inverse, j->first, j->col, j->val);
@@ -143,20 +180,21 @@ static int set_bodies(struct moreau *m, const tribo_system *sys)
     return status ? tribo_system_fail(sys, status, "in a step, %s", tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-/* The operator is r, unless that hides bodies. */
-static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, double h)
+/* The operator is r, unless that hides bodies; own as in hidden.h. */
+static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, const double *own, double h)
 {
     struct hidden where;
-    switch (tribo_hidden(&sys->direction, &sys->mass, m->response, r, &where)) {
+    switch (tribo_hidden(&sys->direction, &sys->mass, own, r, &where)) {
     case 0:
         break;
     case 1:
-        return m->below || m->above
+        return m->below || m->above || m->sparse.n
                    ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                        "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
-                                       "of %g: take central/fixed, event or exact",
-                                       where.contact, where.spread, h)
-                   : set_bodies(m, sys);
+                                       "of %g: %s",
+                                       where.contact, where.spread, h,
+                                       m->sparse.n ? "reduce the system" : "take central/fixed, event or exact")
+                   : set_bodies(m, sys, own);
     default:
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
@@ -192,32 +230,76 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     return !status;
 }
 
+/* A^-1 B is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
+static int keeps_response(const struct moreau *m, const tribo_system *sys)
+{
+    return !m->sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->sparse.sparse) / 5;
+}
+
+/* r [ncontact][ncontact] = J A^-1 B, and own as in hidden.h; x [ndof] is workspace. b = B'. */
+static void find_operator(struct moreau *m, const tribo_system *sys, const struct matrix *b, double *x, double *r, double *own)
+{
+    const size_t n = sys->ndof, c = sys->ncontact;
+    const struct matrix *direction = &sys->direction;
+    for (size_t j = 0; j < c; j++) {
+        memset(x, 0, n * sizeof *x);
+        for (size_t k = b->first[j]; k < b->first[j + 1]; k++) {
+            x[b->col[k]] = b->val[k];
+        }
+        solve(m, n, x);
+        for (size_t i = 0; i < c; i++) {
+            r[i * c + j] = tribo_matrix_row_dot(direction, i, x);
+        }
+        for (size_t k = direction->first[j]; k < direction->first[j + 1]; k++) {
+            own[k] = x[direction->col[k]];
+        }
+        if (m->response) {
+            memcpy(m->response + j * n, x, n * sizeof *x);
+        }
+    }
+}
+
 /* The factor, A^-1 B, and a context with the operator J A^-1 B. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
-    const size_t n = sys->ndof, c = sys->ncontact;
-    int status = factorize(m, sys, h);
+    const size_t c = sys->ncontact;
+    struct matrix b = {0};
+    int status = sys->unsolved ? factorize_unsolved(m, sys, h) : factorize(m, sys, h);
     if (status) {
         return status;
     }
+    const int keeps = keeps_response(m, sys);
     free(m->response);
-    m->response = tribo_matrix_transpose_to_dense(&sys->response);
-    double *r = calloc(c * c + 1, sizeof *r);
-    if (!m->response || !r || !make_contacts(m, sys)) {
-        free(r);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
+    double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
+    if (r && own && (m->response || !keeps) && make_contacts(m, sys) && tribo_matrix_transpose(&b, &sys->response)) {
+        find_operator(m, sys, &b, m->push, r, own);
+        status = set_operator(m, sys, r, own, h);
+    } else {
+        status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
-    for (size_t j = 0; j < c; j++) {
-        double *column = m->response + j * n;
-        solve(m, n, column);
-        for (size_t i = 0; i < c; i++) {
-            r[i * c + j] = tribo_matrix_row_dot(&sys->direction, i, column);
-        }
-    }
-    status = set_operator(m, sys, r, h);
+    tribo_matrix_free(&b);
     free(r);
+    free(own);
     m->whole = !status;
     return status;
+}
+
+/* u += h A^-1 B f. */
+static void push(struct moreau *m, const tribo_system *sys, double h, const double *f, double *u)
+{
+    const size_t n = sys->ndof;
+    for (size_t i = 0; m->response && i < sys->ncontact; i++) {
+        for (size_t d = 0; d < n; d++) {
+            u[d] += h * f[i] * m->response[i * n + d];
+        }
+    }
+    if (!m->response) {
+        memset(m->push, 0, n * sizeof *m->push);
+        tribo_matrix_multiply_add(&sys->response, h, f, m->push);
+        solve(m, n, m->push);
+        tribo_add(u, 1.0, m->push, n);
+    }
 }
 
 /* Prepares steps of length h. */
@@ -229,7 +311,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
     m->held.n = 0;
     int status = planar_of(sys->contacts) ? TRIBO_OK : tribo_step_band_create(&m->held, sys, h, &where);
     status = status == TRIBO_ERR_INDEFINITE ? singular(sys, h, where)
-             : status                       ? tribo_system_fail(sys, status, "out of memory for the matrix of a step")
+             : status                       ? no_memory(sys)
              : m->held.n                    ? TRIBO_OK
                                             : prepare_whole(m, sys, h);
     if (!status) {
@@ -309,11 +391,7 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     if (status) {
         return status;
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        for (size_t d = 0; d < n; d++) {
-            s->u[d] += h * s->f[i] * m->response[i * n + d];
-        }
-    }
+    push(m, sys, h, s->f, s->u);
     tribo_get_slip(m->contacts, s->mode);
     return TRIBO_OK;
 }

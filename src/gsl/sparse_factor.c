@@ -144,6 +144,11 @@ void tribo_sparse_factor_free(struct sparse_factor *f)
     }
 }
 
+size_t tribo_sparse_factor_entries(const struct sparse_factor *f)
+{
+    return f->l->is_super ? f->l->xsize : f->l->nzmax;
+}
+
 int tribo_sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
 {
     const int done = solve(f, CHOLMOD_A, count, x);
@@ -237,6 +242,12 @@ int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_
 void tribo_sparse_factor_free(struct sparse_factor *factor)
 {
     (void)factor;
+}
+
+size_t tribo_sparse_factor_entries(const struct sparse_factor *factor)
+{
+    (void)factor;
+    return 0;
 }
 
 int tribo_sparse_factor_solve(struct sparse_factor *factor, size_t count, double *x)

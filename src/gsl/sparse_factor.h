@@ -17,6 +17,7 @@ int tribo_sparse_available(void);
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where);
 int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from); /* 1, or 0 if out of memory */
 void tribo_sparse_factor_free(struct sparse_factor *factor);
+size_t tribo_sparse_factor_entries(const struct sparse_factor *factor);
 
 /* count vectors x [count][n] = A^-1 x. 1, or 0 if out of memory, which does not happen to a single one. */
 int tribo_sparse_factor_solve(struct sparse_factor *factor, size_t count, double *x);

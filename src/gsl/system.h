@@ -55,6 +55,10 @@ struct tribo_system {
      * K and C to rounding of every entry. */
     struct matrix elastic, viscous;
 
+    /* The equations are M q'' = load - K q - C q' + J' f: stiffness, damping and response are K, C and J', loads are forces, and
+     * nobody has accelerations. */
+    int unsolved;
+
     struct matrix mass;     /* no rows: the identity, of reduced systems */
     struct cholesky factor; /* of it */
 
@@ -158,6 +162,9 @@ int tribo_system_fail(const tribo_system *sys, int status, const char *format, .
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
+
+/* TRIBO_ERR_UNSUPPORTED for an unsolved system, to which `what` cannot be done. */
+int tribo_system_check_solved(const tribo_system *sys, const char *what);
 
 /* Checks that t and y are finite. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
