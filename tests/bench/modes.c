@@ -1,6 +1,6 @@
 /* The lowest modes of a structure: what finding them takes, and how far frequencies are from others'.
- *   bench_modes mass stiffness dofs modes [frequencies in Hz]
- * Prints values by name; status 1 if a frequency is off by more than 1e-6 of itself. */
+ *   bench_modes mass stiffness dofs modes [frequencies in Hz [tolerance]]
+ * Prints values by name; status 1 if a frequency is off by more than the tolerance, 1e-6, of itself. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -49,7 +49,7 @@ int main(int argc, char **argv)
     gsl_set_error_handler_off(); /* as read_structure expects */
     const long modes = argc > 4 ? strtol(argv[4], NULL, 10) : 0;
     if (argc < 5 || modes < 1 || modes > MOST) {
-        die("usage: bench_modes mass stiffness dofs modes [frequencies], 1 to %d modes", MOST);
+        die("usage: bench_modes mass stiffness dofs modes [frequencies [tolerance]], 1 to %d modes", MOST);
     }
     double omega[MOST], begin = cpu_seconds();
     struct structure s = read_structure(argv[1], argv[2], argv[3]);
@@ -63,5 +63,5 @@ int main(int argc, char **argv)
     const double difference = argc > 5 ? compare(argv[5], (size_t)modes, omega) : 0.0;
     tribo_system_destroy(sys);
     free_structure(&s);
-    return !(difference <= SAME);
+    return !(difference <= (argc > 6 ? strtod(argv[6], NULL) : SAME));
 }
