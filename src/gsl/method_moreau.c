@@ -22,7 +22,8 @@ struct moreau {
     size_t below, above;
     double *band;
     unsigned int *pivot;
-    struct cholesky sparse;   /* of an unsolved system's */
+    struct cholesky sparse;   /* or of M A */
+    double *weight;           /* [ndof] M, if it is to be multiplied with before that solves; or NULL */
     double *response;         /* [ncontact][ndof], or NULL: then a step takes a second solve */
     double *push;             /* [ndof] for that */
     double *limit;            /* [ncontact] */
@@ -44,6 +45,7 @@ static void destroy(tribo_driver *drv)
         free(m->limit);
         free(m->band);
         free(m->pivot);
+        free(m->weight);
         free(m->response);
         free(m->push);
         tribo_cholesky_free(&m->sparse);
@@ -82,6 +84,9 @@ static void widen(const struct matrix *a, size_t *below, size_t *above)
 static void solve(const struct moreau *m, size_t n, double *x)
 {
     if (m->sparse.n) {
+        for (size_t i = 0; m->weight && i < n; i++) {
+            x[i] *= m->weight[i];
+        }
         tribo_cholesky_solve(&m->sparse, 1, x);
         return;
     }
@@ -102,21 +107,45 @@ static int no_memory(const tribo_system *sys)
     return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step");
 }
 
+/* a = M A, of which the rows of an unsolved system are, and those of others are weighed with diagonal masses. */
+static int sum_up(const tribo_system *sys, double h, struct matrix *a)
+{
+    struct matrix mass = {0}, viscous = {0};
+    const int damped = sys->damping.rows > 0;
+    int done = sys->unsolved || tribo_matrix_diagonal(&mass, sys->ndof, NULL);
+    const struct matrix *first = sys->unsolved ? &sys->mass : &mass;
+    done = done && (!damped || tribo_matrix_sum(&viscous, 1.0, first, 0.5 * h, &sys->damping)) &&
+           tribo_matrix_sum(a, 1.0, damped ? &viscous : first, 0.25 * h * h, &sys->stiffness);
+    tribo_matrix_free(&viscous);
+    tribo_matrix_free(&mass);
+    return done;
+}
+
+/* The sparse factor of M A. TRIBO_ERR_INDEFINITE, with the place, or TRIBO_ERR_NOT_SYMMETRIC if it has none. */
+static int factorize_sparsely(struct moreau *m, const tribo_system *sys, double h, size_t *where)
+{
+    struct matrix a = {0};
+    size_t i, j;
+    double pivot, x, y;
+    if (!sum_up(sys, h, &a)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    if (m->weight) {
+        tribo_matrix_scale_rows(&a, m->weight);
+    }
+    const int lopsided = m->weight && tribo_matrix_flaw(&a, 1, &i, &j, &x, &y); /* an unsolved system's has been looked at */
+    const int status = lopsided ? TRIBO_ERR_NOT_SYMMETRIC : tribo_cholesky_create(&m->sparse, &a, where, &pivot);
+    tribo_matrix_free(&a);
+    if (status) {
+        tribo_cholesky_free(&m->sparse);
+    }
+    return status;
+}
+
 static int factorize_unsolved(struct moreau *m, const tribo_system *sys, double h)
 {
-    struct matrix viscous = {0}, a = {0};
     size_t where = 0;
-    double pivot;
-    tribo_cholesky_free(&m->sparse);
-    const int damped = sys->damping.rows > 0;
-    if ((damped && !tribo_matrix_sum(&viscous, 1.0, &sys->mass, 0.5 * h, &sys->damping)) ||
-        !tribo_matrix_sum(&a, 1.0, damped ? &viscous : &sys->mass, 0.25 * h * h, &sys->stiffness)) {
-        tribo_matrix_free(&viscous);
-        return no_memory(sys);
-    }
-    tribo_matrix_free(&viscous);
-    const int status = tribo_cholesky_create(&m->sparse, &a, &where, &pivot);
-    tribo_matrix_free(&a);
+    const int status = factorize_sparsely(m, sys, h, &where);
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_system_fail(
                      sys, status, "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where)
@@ -124,15 +153,31 @@ static int factorize_unsolved(struct moreau *m, const tribo_system *sys, double 
                     : TRIBO_OK;
 }
 
-static int factorize(struct moreau *m, const tribo_system *sys, double h)
+/* A band that holds far more than there is gives way to a sparse factor, where masses are diagonal. */
+static int suits_sparse(const struct moreau *m, const tribo_system *sys)
 {
-    const size_t n = sys->ndof;
-    m->below = m->above = 0;
-    widen(&sys->stiffness, &m->below, &m->above);
-    widen(&sys->damping, &m->below, &m->above);
-    const size_t width = 2 * m->below + m->above + 1, middle = m->below + m->above;
-    free(m->band);
-    free(m->pivot);
+    const size_t n = sys->ndof, width = 2 * m->below + m->above + 1;
+    return tribo_sparse_available() && sys->mass.rows && tribo_matrix_is_diagonal(&sys->mass) &&
+           width > 16 * (sys->stiffness.first[n] / n + 1);
+}
+
+/* TRIBO_OK also if there is no such factor: then m->sparse.n is 0. */
+static int try_sparse(struct moreau *m, const tribo_system *sys, double h)
+{
+    size_t where;
+    m->weight = malloc(sys->ndof * sizeof *m->weight);
+    if (!m->weight) {
+        return no_memory(sys);
+    }
+    for (size_t i = 0; i < sys->ndof; i++) {
+        m->weight[i] = tribo_matrix_get(&sys->mass, i, i);
+    }
+    return factorize_sparsely(m, sys, h, &where) == TRIBO_ERR_MEMORY ? no_memory(sys) : TRIBO_OK;
+}
+
+static int factorize_band(struct moreau *m, const tribo_system *sys, double h)
+{
+    const size_t n = sys->ndof, width = 2 * m->below + m->above + 1, middle = m->below + m->above;
     m->band = calloc(n * width, sizeof *m->band);
     m->pivot = malloc(n * sizeof *m->pivot);
     if (!m->band || !m->pivot) {
@@ -159,6 +204,24 @@ static int factorize(struct moreau *m, const tribo_system *sys, double h)
         }
     }
     return TRIBO_OK;
+}
+
+static int factorize(struct moreau *m, const tribo_system *sys, double h)
+{
+    free(m->band);
+    free(m->pivot);
+    free(m->weight);
+    tribo_cholesky_free(&m->sparse);
+    m->band = m->weight = NULL;
+    m->pivot = NULL;
+    m->below = m->above = 0;
+    if (sys->unsolved) {
+        return factorize_unsolved(m, sys, h);
+    }
+    widen(&sys->stiffness, &m->below, &m->above);
+    widen(&sys->damping, &m->below, &m->above);
+    const int status = suits_sparse(m, sys) ? try_sparse(m, sys, h) : TRIBO_OK;
+    return status || m->sparse.n ? status : factorize_band(m, sys, h);
 }
 
 /* A is diagonal: the operator is that of the bodies one by one. */
@@ -193,7 +256,7 @@ static int set_operator(struct moreau *m, const tribo_system *sys, const double 
                                        "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
                                        "of %g: %s",
                                        where.contact, where.spread, h,
-                                       m->sparse.n ? "reduce the system" : "take central/fixed, event or exact")
+                                       sys->unsolved ? "reduce the system" : "take central/fixed, event or exact")
                    : set_bodies(m, sys, own);
     default:
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
@@ -264,7 +327,7 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
     struct matrix b = {0};
-    int status = sys->unsolved ? factorize_unsolved(m, sys, h) : factorize(m, sys, h);
+    int status = factorize(m, sys, h);
     if (status) {
         return status;
     }

@@ -32,8 +32,9 @@ struct inertia {
     double growth;   /* the largest sum of |L_ik|^2 |D_k| beside |size_i|: E_ij is rounding of growth sqrt(|size_i size_j|) */
 };
 
-/* size [n] in: what the diagonal of A has come out of. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED, or
- * TRIBO_ERR_INDEFINITE: a pivot is zero. */
-int tribo_sparse_inertia(const struct matrix *a, const double *size, struct inertia *found);
+/* like      in  the factor of a matrix with the same places of entries, which saves the search for an order, or NULL
+ * size [n]  in  what the diagonal of A has come out of
+ * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED, or TRIBO_ERR_INDEFINITE: a pivot is zero, or no number. */
+int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, const double *size, struct inertia *found);
 
 #endif

@@ -243,6 +243,143 @@ TEST(many_contacts)
 }
 END_TEST
 
+/* Whether the library has been built with CHOLMOD. */
+static int has_sparse(void)
+{
+    const struct grid g = {1, 3001, 1};
+    struct matrices x = matrices_of(&g, 1);
+    tribo_system *sys = create(&x);
+    tribo_system_destroy(sys);
+    return sys != NULL;
+}
+
+/* ---------------------------------------------------------------------------------------------------- beside reduction */
+
+/* The contact in a square in steps of moreau/fixed, as it is or reduced; the second contact is the load and stays open. */
+static int follow_contact(size_t modes, size_t steps, double *place, double *energy)
+{
+    const struct grid g = {60, 60, 1};
+    struct matrices x = matrices_of(&g, 2);
+    const double h = 0.25, limit[2] = {0.2, 0.0};
+    const size_t n = x.n, contact = 20 * 60 + 20, load = 30 * 60 + 30;
+    char text[200] = "";
+    double *force = calloc(n, sizeof *force), *y = calloc(2 * n + 1, sizeof *y), *full = calloc(n, sizeof *full), t = 0.0;
+    gsl_spmatrix_set(x.direction, 0, contact, 1.0);
+    gsl_spmatrix_set(x.direction, 1, load, 1.0);
+    force[load] = 1.0;
+    tribo_system *sys = NULL;
+    const int status = modes ? tribo_system_reduced(&sys, x.mass, x.stiffness, x.direction, modes, 1, text, sizeof text)
+                             : tribo_system_linear_sparse(&sys, x.mass, NULL, x.stiffness, x.direction, 0, text, sizeof text);
+    free_matrices(&x);
+    require(status == TRIBO_OK || status == TRIBO_ERR_UNSUPPORTED, "%s", text);
+    if (!status) {
+        assert_ok(tribo_system_add_load(sys, 0.05, NULL, force));
+        assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+        tribo_driver *drv = driver_create(sys, "moreau/fixed", h, 0.0);
+        for (size_t k = 0; k < steps; k++) {
+            driver_advance(drv, &t, h * (double)(k + 1), y);
+            if (modes) {
+                assert_ok(tribo_system_expand(sys, y, full));
+            }
+            place[k] = modes ? full[contact] : y[contact];
+        }
+        *energy = y[tribo_system_dimension(sys) - 1];
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    free(force);
+    free(y);
+    free(full);
+    return status == TRIBO_OK;
+}
+
+/* What is not reduced moves as what is reduced to modes and static responses, the better the more modes. */
+TEST(reduced_alike)
+{
+    enum { STEPS = 800 };
+    static double whole[STEPS], few[STEPS], many[STEPS];
+    double dissipated[3], size = 0.0, off[2] = {0.0, 0.0};
+    if (!follow_contact(0, STEPS, whole, &dissipated[0]) || !follow_contact(10, STEPS, few, &dissipated[1]) ||
+        !follow_contact(120, STEPS, many, &dissipated[2])) {
+        return;
+    }
+    for (size_t k = 0; k < STEPS; k++) {
+        size = fmax(size, fabs(whole[k]));
+        off[0] = fmax(off[0], fabs(few[k] - whole[k]));
+        off[1] = fmax(off[1], fabs(many[k] - whole[k]));
+    }
+    require(dissipated[0] > 0.01, "nothing slipped: %g", dissipated[0]);
+    require(off[1] < 0.1 * size && off[1] < 0.5 * off[0], "off by %g and %g of %g", off[0], off[1], size);
+    assert_close(dissipated[2], dissipated[0], 0.1 * dissipated[0]);
+}
+END_TEST
+
+/* ------------------------------------------------------------------------------------------------------ diagonal masses */
+
+/* The corner of a square with masses of its own at each place, numbered row by row or in strides, which makes a wide band. */
+static double numbered(const char *method, size_t stride, double lopsided, double *energy)
+{
+    enum { SIDE = 60, N = SIDE * SIDE };
+    const struct grid g = {SIDE, SIDE, 1};
+    struct matrices x = matrices_of(&g, 1);
+    gsl_spmatrix *k = gsl_spmatrix_alloc(N, N), *m = gsl_spmatrix_alloc(N, N), *c = gsl_spmatrix_alloc(N, N);
+    double *force = calloc(N, sizeof *force), *y = calloc(2 * N + 1, sizeof *y), t = 0.0;
+    for (size_t e = 0; e < x.stiffness->nz; e++) {
+        const size_t i = (size_t)x.stiffness->i[e], j = (size_t)x.stiffness->p[e];
+        gsl_spmatrix_set(k, i * stride % N, j * stride % N, x.stiffness->data[e]);
+        gsl_spmatrix_set(c, i * stride % N, j * stride % N, 0.01 * x.stiffness->data[e] * (i < j ? 1.0 + lopsided : 1.0));
+    }
+    for (size_t i = 0; i < N; i++) {
+        gsl_spmatrix_set(m, i * stride % N, i * stride % N, 1.0 + (double)(i % 3));
+    }
+    gsl_spmatrix_set(x.direction, 0, 0, 1.0);
+    force[stride] = 1.0;
+    tribo_system *sys;
+    char text[200] = "";
+    assert_ok(tribo_system_linear_sparse(&sys, m, c, k, x.direction, 0, text, sizeof text));
+    const double limit = 0.2;
+    assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
+    assert_ok(tribo_system_add_load(sys, 0.5, NULL, force));
+    tribo_driver *drv = driver_create(sys, method, 0.1, 0.0);
+    driver_advance(drv, &t, 20.0, y);
+    *energy = y[2 * N];
+    const double corner = y[0];
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    free_matrices(&x);
+    gsl_spmatrix_free(k);
+    gsl_spmatrix_free(m);
+    gsl_spmatrix_free(c);
+    free(force);
+    free(y);
+    return corner;
+}
+
+/* How degrees of freedom are numbered changes neither the motion nor what it takes. */
+TEST(numbering)
+{
+    static const char *const method[] = {"central/fixed", "moreau/fixed"};
+    double one, other;
+    if (_i == 1 && !has_sparse()) {
+        return;
+    }
+    assert_close(numbered(method[_i], 1567, 0.0, &other), numbered(method[_i], 1, 0.0, &one), 1e-11);
+    require(one > 0.05, "nothing slipped: %g", one);
+    assert_close(other, one, 1e-11);
+}
+END_TEST
+
+/* Damping that is not symmetric has a band only. */
+TEST(lopsided)
+{
+    double none, one;
+    const double symmetric = numbered("moreau/fixed", 1, 1e-9, &none), other = numbered("moreau/fixed", 1, 0.5, &one);
+    require(fabs(symmetric - other) > 1e-9, "damping did nothing: %.12g", other);
+    assert_close(numbered("central/fixed", 1, 0.5, &none), other, 2e-2 * fabs(other));
+    assert_close(none, one, 2e-2 * one);
+}
+END_TEST
+
 /* ------------------------------------------------------------------------------------------------------------ refusals */
 
 /* What takes accelerations is refused by name, and the state stays. */
@@ -315,4 +452,5 @@ TEST(matrices)
 }
 END_TEST
 
-TEST_MAIN("whole", {one_shape, 1}, {chains_alike, 2}, {many_contacts, 1}, {refused, 1}, {matrices, 1})
+TEST_MAIN("whole", {one_shape, 1}, {chains_alike, 2}, {many_contacts, 1}, {reduced_alike, 1}, {numbering, 2}, {lopsided, 1},
+          {refused, 1}, {matrices, 1})
