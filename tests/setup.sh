@@ -8,6 +8,7 @@ setup_has() {
     libc6-dev) echo '#include <math.h>' | gcc -E - ;;
     libgsl-dev) pkg-config --exists 'gsl >= 2.7' ;;
     libsuitesparse-dev) echo '#include <suitesparse/cholmod.h>' | gcc -E - ;;
+    zlib1g-dev) echo '#include <zlib.h>' | gcc -E - ;;
     check) pkg-config --exists check ;;
     gnuplot-nox) command -v gnuplot ;;
     petsc-dev | libpetsc-real-dev) pkg-config --exists 'PETSc >= 3.18' ;;

@@ -1,6 +1,5 @@
 #include "lines.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -11,16 +10,12 @@ static const char BLANK[] = " \t\r\n";
 
 struct lines open_lines(const char *path)
 {
-    struct lines l = {.path = path, .file = fopen(path, "r")};
-    if (!l.file) {
-        die("cannot open %s: %s", path, strerror(errno));
-    }
-    return l;
+    return (struct lines){.path = path, .source = open_source(path)};
 }
 
 void close_lines(struct lines *l)
 {
-    fclose(l->file);
+    close_source(l->source);
 }
 
 void die_at(const struct lines *l, const char *format, ...)
@@ -33,19 +28,20 @@ void die_at(const struct lines *l, const char *format, ...)
     die("%s:%zu: %s", l->path, l->line, text);
 }
 
-/* Byte by byte, since fgets hides what follows a zero byte. A last line that does not end may be cut within a number. */
+/* A last line that does not end may be cut within a number. */
 int next_line(struct lines *l)
 {
+    const char *error;
     size_t length = 0;
-    int c = getc(l->file);
-    if (c == EOF && !ferror(l->file)) {
+    int c = next_byte(l->source, &error);
+    if (c < 0 && !error) {
         return 0;
     }
-    for (l->line++; c != '\n'; c = getc(l->file)) {
-        if (ferror(l->file)) {
-            die_at(l, "cannot be read: %s", strerror(errno));
+    for (l->line++; c != '\n'; c = next_byte(l->source, &error)) {
+        if (error) {
+            die_at(l, "cannot be read: %s", error);
         }
-        if (c == EOF) {
+        if (c < 0) {
             die_at(l, "the file ends within this line: is it cut off? If it is whole, end the line");
         }
         if (c == '\0') {
@@ -96,10 +92,10 @@ double next_real(struct lines *l, const char *what)
 {
     const size_t length = next_word(l);
     char *end;
-    const double value = strtod(l->at, &end);
     if (length == 0) {
         die_at(l, "the line ends before %s", what);
     }
+    const double value = strtod(l->at, &end);
     if (end != l->at + length || !isfinite(value)) {
         const struct shown word = shown(l->at, length);
         die_at(l, "%s \"%s\" is no finite number", what, word.text);
@@ -117,6 +113,13 @@ size_t next_whole(struct lines *l, const char *what, size_t least, size_t most)
         die_at(l, "%s \"%s\" is no whole number from %zu to %zu", what, word.text, least, most);
     }
     return (size_t)value;
+}
+
+void part_at(struct lines *l, char separator)
+{
+    for (char *c = l->text + (l->at - l->text); (c = strchr(c, separator)) != NULL;) {
+        *c = ' ';
+    }
 }
 
 void expect_end(struct lines *l)

@@ -2,14 +2,14 @@
 #define EXAMPLES_LINES_H
 
 #include <stddef.h>
-#include <stdio.h>
 
 #include "../common/output.h"
+#include "source.h"
 
 /* A text file that is read line by line. Whatever is wrong with it ends the program, with file, line and value. */
 struct lines {
     const char *path;
-    FILE *file;
+    struct source *source;
     size_t line;     /* counted from 1 */
     char text[1025]; /* the line, as long as Matrix Market allows */
     char *at;        /* what of it has not been read yet */
@@ -27,6 +27,9 @@ int next_data(struct lines *l);
 /* The next word of the line as a number, or as a whole one from least to most; what it is, for the message. */
 double next_real(struct lines *l, const char *what);
 size_t next_whole(struct lines *l, const char *what, size_t least, size_t most);
+
+/* What is left of the line gets blanks for that character. */
+void part_at(struct lines *l, char separator);
 
 /* The line must have been read to its end. */
 void expect_end(struct lines *l);

@@ -1,60 +1,15 @@
 #include "structure.h"
 
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 
 #include "lines.h"
-#include "matrix_market.h"
-
-/* One line; rows may come in any order. */
-static struct degree read_degree(struct lines *l)
-{
-    struct degree d = {.line = l->line};
-    d.row = next_whole(l, "row", 1, INT_MAX);
-    d.node = next_whole(l, "node", 0, INT_MAX);
-    d.direction = (int)next_whole(l, "direction", 1, 3);
-    for (int i = 0; i < 3; i++) {
-        d.at[i] = next_real(l, (const char *[]){"coordinate x", "coordinate y", "coordinate z"}[i]);
-    }
-    expect_end(l);
-    return d;
-}
-
-static int compare_rows(const void *a, const void *b)
-{
-    const struct degree *x = a, *y = b;
-    return x->row != y->row ? (x->row < y->row ? -1 : 1) : (x->line > y->line) - (x->line < y->line);
-}
-
-static void read_degrees(struct structure *s, const char *path)
-{
-    struct lines l = open_lines(path);
-    size_t room = 0;
-    while (next_data(&l)) {
-        s->dof = need_room(s->dof, s->ndof, &room, sizeof *s->dof);
-        s->dof[s->ndof++] = read_degree(&l);
-    }
-    close_lines(&l);
-    if (s->ndof == 0) {
-        die("%s: there is no degree of freedom in it", path);
-    }
-    qsort(s->dof, s->ndof, sizeof *s->dof, compare_rows);
-    for (size_t i = 0; i < s->ndof; i++) {
-        const struct degree *d = &s->dof[i];
-        if (d->row <= i) {
-            die("%s:%zu: row %zu has been given in line %zu", path, d->line, d->row, d[-1].line);
-        }
-        if (d->row > i + 1) {
-            die("%s:%zu: row %zu, but there is no row %zu", path, d->line, d->row, i + 1);
-        }
-    }
-}
+#include "matrix_file.h"
 
 struct structure read_structure(const char *mass, const char *stiffness, const char *dofs)
 {
     struct structure s = {0};
-    read_degrees(&s, dofs);
+    s.dof = read_degrees(dofs, &s.ndof);
     s.mass = read_matrix(mass, s.ndof);
     s.stiffness = read_matrix(stiffness, s.ndof);
     return s;

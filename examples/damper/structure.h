@@ -6,16 +6,13 @@
 #include <gsl/gsl_spmatrix.h>
 
 #include "contact.h"
+#include "degrees.h"
 
 /* A structure as finite-element programs hand it over. */
 struct structure {
     size_t ndof;
     gsl_spmatrix *mass, *stiffness;
-    struct degree {
-        double at[3];
-        int direction;          /* 1, 2, 3 for x, y, z */
-        size_t row, node, line; /* as in the file */
-    } * dof;                    /* [ndof] in the order of the rows */
+    struct degree *dof; /* [ndof] in the order of the rows */
 };
 
 /* Reads matrices and degrees of freedom; ends the program, naming file, line and value, if anything is wrong with them. */

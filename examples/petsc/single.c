@@ -8,7 +8,7 @@
 
 #include "../common/output.h"
 #include "../damper/lines.h"
-#include "../damper/matrix_market.h"
+#include "../damper/matrix_file.h"
 #include "tribo/tribo_gsl.h"
 
 enum { MAX_CONTACTS = 64 };

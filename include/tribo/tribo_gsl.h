@@ -74,7 +74,10 @@ TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t nconta
                                   const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 
 /* The same from sparse matrices (any GSL format; ones that hold only one triangle of a symmetric matrix must be completed first).
- * Without reduction a mass matrix that is not diagonal makes the system dense.
+ * Without reduction a mass matrix that is not diagonal makes the system dense. With more than 3000 degrees of freedom the matrices
+ * stay sparse, damping must be symmetric, and the system has no accelerations: driver moreau/fixed takes it through time, with a
+ * sparse factor (CHOLMOD) of M + dt/2 C + dt^2/4 K, and whatever needs accelerations is TRIBO_ERR_UNSUPPORTED: other drivers,
+ * tribo_system_contacts, tribo_system_accept, tribo_system_odeiv2.
  *
  * From 200 degrees of freedom on, of which at most a quarter are modes wanted, the modes come from Lanczos' method and sparse
  * factors (CHOLMOD; a library built without it refuses more than 3000 degrees of freedom, TRIBO_ERR_UNSUPPORTED). Repeated
@@ -209,8 +212,9 @@ typedef struct tribo_driver tribo_driver;
  *               is off, relative, by less than 1e-2 at tolerance 1e-4, and at 1e-8 by less than 1e-6 (msbdf 2e-6, rk2imp
  *               5e-6, rk1imp 4e-4), for oscillator and belt, epsilon 1e-2 to 1e-4. Contacts with Coulomb's law itself chatter
  *               about v = 0 in very short steps.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY; the
- * message is on the system's context. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY,
+ * TRIBO_ERR_UNSUPPORTED (planar contacts, or no accelerations: the method cannot do such systems); the message is on the system's
+ * context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
 

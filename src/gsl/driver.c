@@ -133,6 +133,7 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     int status = check_parameters(sys, m, dt, abstol, reltol);
     status = status ? status : check_contacts(sys, m);
     status = status ? status : check_mass(sys, m);
+    status = status || m == &tribo_method_moreau_fixed ? status : tribo_system_check_solved(sys, m->name);
     if (status) {
         return status;
     }

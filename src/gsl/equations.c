@@ -121,9 +121,8 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 {
     tribo_system *sys = params;
     const size_t n = sys->ndof;
-    if (sys->massless.count) {
-        sys->evaluations++;
-        sys->status = tribo_system_check_mass(sys, "an integrator");
+    sys->status = tribo_system_check_rates(sys, "the right-hand side");
+    if (sys->status) {
         return GSL_EBADFUNC;
     }
     complete(sys, y, dydt);
@@ -139,7 +138,8 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 /* v and a of a state, after checking it. */
 static int contacts_at(tribo_system *sys, double t, const double *y)
 {
-    const int status = tribo_system_check_state(sys, t, y);
+    int status = tribo_system_check_state(sys, t, y);
+    status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
     if (!status) {
         tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
     }
@@ -246,6 +246,7 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->contacts = NULL;
     to->revision = sys->revision;
     to->given = sys->given;
+    to->unsolved = sys->unsolved;
     memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
     memcpy(to->put_limit, sys->put_limit, sys->ncontact * sizeof *to->put_limit);
     memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);

@@ -16,11 +16,11 @@
 #define APART 1e3
 
 /* How much more the body that gives way most in contact i does than the one that does least. */
-static double spread_of(const struct matrix *j, const double *x, size_t i)
+static double spread_of(const struct matrix *j, const double *own, size_t i)
 {
     double least = HUGE_VAL, most = 0.0;
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        const double share = fabs(product(j->val[k], x[i * j->cols + j->col[k]]));
+        const double share = fabs(product(j->val[k], own[k]));
         if (share > 0.0) {
             least = lesser(least, share);
             most = greater(most, share);
@@ -86,13 +86,13 @@ static size_t rank_of(const struct matrix *direction, const struct matrix *mass)
     return rank;
 }
 
-int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *x, const double *r,
+int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *own, const double *r,
                  struct hidden *where)
 {
     const size_t n = direction->rows;
     where->spread = 1.0;
     for (size_t i = 0; i < n; i++) {
-        const double spread = spread_of(direction, x, i);
+        const double spread = spread_of(direction, own, i);
         if (spread > where->spread) {
             *where = (struct hidden){i, spread};
         }

@@ -82,8 +82,8 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     tribo_system *sys = params;
     const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
     sys->jacobians++;
-    if (sys->massless.count) {
-        sys->status = tribo_system_check_mass(sys, "an integrator");
+    sys->status = tribo_system_check_rates(sys, "the Jacobian");
+    if (sys->status) {
         return GSL_EBADFUNC;
     }
     if (!sys->dense && !create_dense(sys)) {

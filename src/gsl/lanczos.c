@@ -84,12 +84,16 @@ static void separate(struct lanczos *l, size_t j, size_t count)
     }
 }
 
-/* The j-th vector of w becomes any that forces make. */
-static void draw(struct lanczos *l, size_t j)
+/* The j-th vector of w, and those that follow, become any that forces make, with nothing of the basis. 0 if out of memory, which
+ * does not happen to a single one. */
+static int draw(struct lanczos *l, size_t j, size_t count)
 {
-    scatter(l, l->w + j * l->n);
-    tribo_cholesky_solve(l->shifted, 1, l->w + j * l->n);
-    tribo_matrix_multiply_all(l->mass, 1, l->w + j * l->n, l->mw + j * l->n);
+    for (size_t k = j; k < j + count; k++) {
+        scatter(l, l->w + k * l->n);
+    }
+    const int done = tribo_cholesky_solve(l->shifted, count, l->w + j * l->n);
+    separate(l, j, count);
+    return done;
 }
 
 /* Takes out of the j-th vector of w what it has of those before it, which are the last of the basis; if little remains, of all
@@ -124,8 +128,7 @@ static void append(struct lanczos *l, size_t j)
             l->size++;
             return;
         }
-        draw(l, j);
-        separate(l, j, 1);
+        draw(l, j, 1);
     }
     l->complete = 1;
 }
@@ -249,13 +252,10 @@ static int converge(struct lanczos *l, size_t target)
 }
 
 /* The modes found stay; the search goes on from vectors that have nothing to do with them. */
-static void start_anew(struct lanczos *l)
+static int start_anew(struct lanczos *l)
 {
     compress(l, count_found(l));
-    for (size_t j = 0; j < BLOCK; j++) {
-        draw(l, j);
-    }
-    separate(l, 0, BLOCK);
+    return draw(l, 0, BLOCK) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 /* -----------------------------------------------------------------------------------------------------------------
@@ -281,8 +281,9 @@ static int find_gap(struct lanczos *l, size_t wanted, double *between)
 }
 
 /* How many modes have omega^2 < sigma, and the growth of the factor that shows it. */
-static int count_modes(const struct matrix *k, const struct matrix *m, double sigma, struct inertia *found)
+static int count_modes(const struct lanczos *l, const struct matrix *k, double sigma, struct inertia *found)
 {
+    const struct matrix *m = l->mass;
     struct matrix shifted;
     double *size = malloc((k->rows + 1) * sizeof *size);
     int status = size && tribo_matrix_sum(&shifted, 1.0, k, -sigma, m) ? TRIBO_OK : TRIBO_ERR_MEMORY;
@@ -290,7 +291,7 @@ static int count_modes(const struct matrix *k, const struct matrix *m, double si
         for (size_t i = 0; i < k->rows; i++) {
             size[i] = tribo_matrix_get(k, i, i) + fabs(sigma) * tribo_matrix_get(m, i, i);
         }
-        status = tribo_sparse_inertia(&shifted, size, found);
+        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, size, found);
         tribo_matrix_free(&shifted);
     }
     free(size);
@@ -314,10 +315,8 @@ static int complete(struct lanczos *l, double theta, size_t count)
         if (count + 2 * BLOCK > l->room && l->room < l->n) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
-        if (search) {
-            start_anew(l);
-        }
-        const int status = converge(l, count);
+        int status = search ? start_anew(l) : TRIBO_OK;
+        status = status ? status : converge(l, count);
         if (status) {
             return status;
         }
@@ -356,8 +355,8 @@ static int find(struct lanczos *l, const struct matrix *k, double shift, size_t 
 {
     double theta;
     struct inertia below = {0, 0.0};
-    start_anew(l);
-    int status = converge(l, wanted);
+    int status = start_anew(l);
+    status = status ? status : converge(l, wanted);
     if (!status && count_found(l) < wanted) {
         found->count = count_found(l);
         return TRIBO_ERR_SIZE;
@@ -367,7 +366,7 @@ static int find(struct lanczos *l, const struct matrix *k, double shift, size_t 
         return status;
     }
     found->above = 1.0 / theta - shift;
-    status = count_modes(k, l->mass, found->above, &below);
+    status = count_modes(l, k, found->above, &below);
     found->growth = below.growth;
     status = status ? status : complete(l, theta, below.negative);
     return status ? status : take(l, below.negative, found);

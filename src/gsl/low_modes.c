@@ -29,8 +29,9 @@
 /* Contacts whose displacements depend on each other make a flexibility that is singular but for this part. */
 #define RIDGE 1e-12
 
-/* Contacts whose responses are solved for at a time. */
+/* Contacts whose responses are solved for at a time, and modes that are checked at a time. */
 #define BATCH 16
+#define CHECKED 6
 
 /* K + shift M. */
 struct shifted {
@@ -201,39 +202,65 @@ static int find_densely(const struct model *m, const struct cholesky *mass, stru
     return modes_failed(m, status, &doubt);
 }
 
-/* Norm in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi. work [ndof]. */
-static double residual(const struct model *m, const struct shifted *s, double omega2, const double *phi, double *work)
+/* Norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi, change [count], for modes from first on. work [2 count][ndof]. 0 if
+ * out of memory. */
+static int find_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, size_t first, size_t count,
+                          double *work, double *change)
 {
     const size_t n = m->ndof;
-    memset(work, 0, 2 * n * sizeof *work);
-    tribo_matrix_multiply_add(&m->mass, omega2 + s->shift, phi, work);
-    tribo_cholesky_solve(&s->factor, 1, work);
-    tribo_add(work, -1.0, phi, n);
-    tribo_matrix_multiply_add(&m->mass, 1.0, work, work + n);
-    return sqrt(fabs(tribo_dot(work, work + n, n)));
+    const double *phi = r->phi + first * n;
+    double *mass = work + count * n;
+    tribo_matrix_multiply_all(&m->mass, count, phi, work);
+    if (!tribo_cholesky_solve(&s->factor, count, work)) {
+        return 0;
+    }
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < n; i++) {
+            work[k * n + i] = (r->omega2[first + k] + s->shift) * work[k * n + i] - phi[k * n + i];
+        }
+    }
+    tribo_matrix_multiply_all(&m->mass, count, work, mass);
+    for (size_t k = 0; k < count; k++) {
+        change[k] = sqrt(fabs(tribo_dot(work + k * n, mass + k * n, n)));
+    }
+    return 1;
 }
 
-/* Each mode is one, and none lies where modes were counted. */
-static int check_modes(const struct model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
+/* No mode lies where modes were counted. work [ndof]. */
+static int check_gap(const struct model *m, const struct low_modes *low, const struct reduced *r, double *work)
 {
     const double *last = r->phi + (r->count - 1) * m->ndof;
-    double *work = malloc(2 * m->ndof * sizeof *work);
-    int status = work ? TRIBO_OK : tribo_model_no_memory(m);
-    if (!status) {
-        tribo_matrix_roots(&m->stiffness, work);
-        const double noise = low->growth * tribo_matrix_noise(&m->stiffness, work, last, last);
-        if (!(r->omega2[r->count - 1] + noise < low->above)) {
-            status = search_failed(m, TRIBO_ERR_NO_CONVERGENCE, low);
+    tribo_matrix_roots(&m->stiffness, work);
+    const double noise = low->growth * tribo_matrix_noise(&m->stiffness, work, last, last);
+    return r->omega2[r->count - 1] + noise < low->above ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
+}
+
+/* Each mode is one. work [2 CHECKED][ndof]. */
+static int check_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, double *work)
+{
+    for (size_t first = 0; first < r->count; first += CHECKED) {
+        const size_t count = r->count - first < CHECKED ? r->count - first : CHECKED;
+        double change[CHECKED];
+        if (!find_residuals(m, s, r, first, count, work, change)) {
+            return TRIBO_ERR_MEMORY;
+        }
+        for (size_t k = 0; k < count; k++) {
+            const double omega2 = r->omega2[first + k];
+            if (!(change[k] * (omega2 + s->shift) <= SAME * omega2 + SAME_SHIFT * s->shift)) {
+                return TRIBO_ERR_NO_CONVERGENCE;
+            }
         }
     }
-    for (size_t k = 0; !status && k < r->count; k++) {
-        const double change = residual(m, s, r->omega2[k], r->phi + k * m->ndof, work);
-        if (!(change * (r->omega2[k] + s->shift) <= SAME * r->omega2[k] + SAME_SHIFT * s->shift)) {
-            status = search_failed(m, TRIBO_ERR_NO_CONVERGENCE, low);
-        }
-    }
+    return TRIBO_OK;
+}
+
+static int check_modes(const struct model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
+{
+    double *work = malloc(2 * CHECKED * m->ndof * sizeof *work);
+    int status = work ? check_gap(m, low, r, work) : TRIBO_ERR_MEMORY;
+    status = status ? status : check_residuals(m, s, r, work);
     free(work);
-    return status;
+    return search_failed(m, status, low);
 }
 
 static int find_sparsely(const struct model *m, const struct shifted *s, struct reduced *r)

@@ -371,6 +371,17 @@ static int build(struct model *m, struct massless *w, int (*build_massive)(struc
     return status;
 }
 
+/* Without accelerations nobody knows what follows statically. */
+static int check_size(const struct model *m, const struct massless *w)
+{
+    return m->ndof <= DENSE_MOST || tribo_matrix_is_diagonal(&m->mass)
+               ? TRIBO_OK
+               : tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                                  "%zu of %zu degrees of freedom have no mass: with a mass matrix that is not diagonal %d may be "
+                                  "all",
+                                  w->count, m->ndof, DENSE_MOST);
+}
+
 int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)
 {
     struct massless w = {0};
@@ -378,7 +389,8 @@ int tribo_model_build_massless(struct model *m, int (*build_massive)(struct mode
     if (status || w.count == 0 || w.count == m->ndof) {
         status = status ? status : build_massive(m, sys);
     } else {
-        status = check_damping(m, &w);
+        status = check_size(m, &w);
+        status = status ? status : check_damping(m, &w);
         status = status ? status : find_statics(m, &w);
         status = status ? status : build(m, &w, build_massive, sys);
     }

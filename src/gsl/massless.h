@@ -26,6 +26,11 @@ static inline int tribo_massless_touches(const struct massless *m, size_t i)
     return m->count && m->compliance[i] > 0.0;
 }
 
+static inline int tribo_has_mass(const struct massless *m, size_t d)
+{
+    return m->count == 0 || !m->is[d];
+}
+
 /* x [ndof]: w = follow q, what follows from q if contacts have no force. */
 void tribo_massless_follow(const struct massless *m, double *x);
 

@@ -558,6 +558,12 @@ double tribo_matrix_get(const struct matrix *a, size_t i, size_t j)
     return lo < a->first[i + 1] && a->col[lo] == j ? a->val[lo] : 0.0;
 }
 
+/* What entry (i, j) is to be seen beside: its own size, or that of the diagonal. */
+static double size_at(const struct matrix *a, size_t i, size_t j, double own)
+{
+    return greater(own, sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j))));
+}
+
 int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *column, double *value, double *mirror)
 {
     for (size_t i = 0; i < a->rows; i++) {
@@ -570,8 +576,7 @@ int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t
             if (!isfinite(*value)) {
                 return 1;
             }
-            const double size = symmetric ? sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j))) : 0.0;
-            if (symmetric && fabs(*value - *mirror) > ASYMMETRY * greater(size, greater(fabs(*value), fabs(*mirror)))) {
+            if (*value != *mirror && fabs(*value - *mirror) > ASYMMETRY * size_at(a, i, j, greater(fabs(*value), fabs(*mirror)))) {
                 return 1;
             }
         }

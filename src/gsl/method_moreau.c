@@ -5,28 +5,30 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_linalg.h>
-
 #include "breakaway.h"
 #include "elastic.h"
 #include "hidden.h"
+#include "step_band.h"
 #include "step_form.h"
+#include "step_matrix.h"
 
-/* For steps of length h: A = I + h/2 AC + h^2/4 AK in GSL's band format, factorized; A^-1 B; and the contacts that see it.
+/* For steps of length h: the matrix A, A^-1 B, and the contacts that see it.
  *
  * What has no mass starts each step without velocity, and what it ends it with is twice the mean; its rows of A are K. Elastic
  * contacts have in every step the mean of their forces at both ends, of which the later is within the limit, and slides by what J
  * moves over the step: half the later force is what the contacts find, within half the limit. */
 struct moreau {
     struct step_form common;
-    double h; /* 0: nothing is prepared */
-    size_t below, above;
-    double *band;
-    unsigned int *pivot;
-    double *response;         /* [ncontact][ndof] */
+    double h;              /* 0: nothing is prepared */
+    struct step_band held; /* where the system allows it: then the rest is made when it is first needed */
+    int whole;             /* the rest is made */
+    struct step_matrix matrix;
+    double *response;         /* [ncontact][ndof], or NULL: then a step takes a second solve */
+    double *push;             /* [ndof] for that */
     double *limit;            /* [ncontact] */
     double *ratio, *velocity; /* [ncontact] of static limits */
-    size_t statics;           /* revision of the system's contacts that these came from; 0: contacts have not got them */
+    size_t statics;           /* revision of the system's contacts that these came from */
+    int breaks, tell;         /* some limits are static; contacts have not got them yet */
     double *load;             /* [ndof] at the end of the step before */
     double *spring, *rate;    /* [ncontact] forces of elastic contacts at the end of the step before; workspace */
     double *work;             /* [ndof] */
@@ -41,10 +43,10 @@ static void destroy(tribo_driver *drv)
     if (m) {
         tribo_destroy(m->contacts);
         tribo_step_form_free(&m->common);
+        tribo_step_band_free(&m->held);
+        tribo_step_matrix_free(&m->matrix);
         free(m->limit);
         free(m->loose);
-        free(m->band);
-        free(m->pivot);
         free(m->response);
         free(m);
     }
@@ -56,7 +58,7 @@ static int create(tribo_driver *drv)
     struct moreau *m = calloc(1, sizeof *m);
     drv->own = m;
     if (m) {
-        m->limit = calloc(5 * c + 2 * n + 1, sizeof *m->limit);
+        m->limit = calloc(5 * c + 3 * n + 1, sizeof *m->limit);
         m->loose = malloc(c + 1);
     }
     if (!m || !m->limit || !m->loose || !tribo_step_form_create(&m->common, drv->sys)) {
@@ -68,82 +70,12 @@ static int create(tribo_driver *drv)
     m->rate = m->limit + 4 * c;
     m->load = m->limit + 5 * c;
     m->work = m->load + n;
-    return TRIBO_OK;
-}
-
-static void widen(const struct matrix *a, size_t *below, size_t *above)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            *below = i > a->col[k] && i - a->col[k] > *below ? i - a->col[k] : *below;
-            *above = a->col[k] > i && a->col[k] - i > *above ? a->col[k] - i : *above;
-        }
-    }
-}
-
-static void solve(const struct moreau *m, size_t n, double *x)
-{
-    gsl_matrix_view a = gsl_matrix_view_array(m->band, n, 2 * m->below + m->above + 1);
-    gsl_vector_view b = gsl_vector_view_array(x, n);
-    const gsl_vector_uint pivot = {n, 1, m->pivot, NULL, 0};
-    gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
-}
-
-static int has_mass(const tribo_system *sys, size_t d)
-{
-    return sys->massless.count == 0 || !sys->massless.is[d];
-}
-
-/* Adds factor a to the band, rows of what has mass or of what has none. */
-static void add_band(struct moreau *m, const tribo_system *sys, const struct matrix *a, double factor, int with_mass)
-{
-    const size_t width = 2 * m->below + m->above + 1, middle = m->below + m->above;
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1] && has_mass(sys, i) == with_mass; k++) {
-            m->band[a->col[k] * width + middle + i - a->col[k]] += factor * a->val[k];
-        }
-    }
-}
-
-static int factorize(struct moreau *m, const tribo_system *sys, double h)
-{
-    const size_t n = sys->ndof;
-    m->below = m->above = 0;
-    widen(&sys->stiffness, &m->below, &m->above);
-    widen(&sys->damping, &m->below, &m->above);
-    if (sys->massless.count) {
-        widen(&sys->elastic, &m->below, &m->above);
-    }
-    const size_t width = 2 * m->below + m->above + 1, middle = m->below + m->above;
-    free(m->band);
-    free(m->pivot);
-    m->band = calloc(n * width, sizeof *m->band);
-    m->pivot = malloc(n * sizeof *m->pivot);
-    if (!m->band || !m->pivot) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrix of a step");
-    }
-    for (size_t i = 0; i < n; i++) {
-        m->band[i * width + middle] = has_mass(sys, i) ? 1.0 : 0.0;
-    }
-    add_band(m, sys, &sys->stiffness, 0.25 * h * h, 1);
-    add_band(m, sys, &sys->damping, 0.5 * h, 1);
-    if (sys->massless.count) {
-        add_band(m, sys, &sys->elastic, 1.0, 0);
-    }
-    gsl_matrix_view a = gsl_matrix_view_array(m->band, n, width);
-    gsl_vector_uint pivot = {n, 1, m->pivot, NULL, 0};
-    gsl_linalg_LU_band_decomp(n, m->below, m->above, &a.matrix, &pivot);
-    for (size_t i = 0; i < n; i++) {
-        if (m->band[i * width + middle] == 0.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_INDEFINITE,
-                                     "the matrix of a step of length %g is singular at degree of freedom %zu", h, i);
-        }
-    }
+    m->push = m->work + n;
     return TRIBO_OK;
 }
 
 /* A is diagonal: the operator is that of the bodies one by one. */
-static int set_bodies(struct moreau *m, const tribo_system *sys)
+static int set_bodies(struct moreau *m, const tribo_system *sys, const double *own)
 {
     const struct matrix *j = &sys->direction;
     double *inverse = calloc(sys->ndof, sizeof *inverse);
@@ -153,7 +85,7 @@ static int set_bodies(struct moreau *m, const tribo_system *sys)
     for (size_t i = 0; i < j->rows; i++) {
         for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
             const size_t d = j->col[k];
-            inverse[d] = j->val[k] != 0.0 ? m->response[i * sys->ndof + d] / j->val[k] : inverse[d];
+            inverse[d] = j->val[k] != 0.0 ? own[k] / j->val[k] : inverse[d];
         }
     }
     const int status = tribo_set_operator_mass(m->contacts, sys->ndof, inverse, j->first, j->col, j->val);
@@ -161,20 +93,21 @@ static int set_bodies(struct moreau *m, const tribo_system *sys)
     return status ? tribo_system_fail(sys, status, "in a step, %s", tribo_message(m->contacts)) : TRIBO_OK;
 }
 
-/* The operator is r, unless that hides bodies. */
-static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, double h)
+/* The operator is r, unless that hides bodies; own as in hidden.h. */
+static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, const double *own, double h)
 {
     struct hidden where;
-    switch (tribo_hidden(&sys->direction, &sys->mass, m->response, r, &where)) {
+    switch (tribo_hidden(&sys->direction, &sys->mass, own, r, &where)) {
     case 0:
         break;
     case 1:
-        return m->below || m->above
+        return !tribo_step_matrix_is_diagonal(&m->matrix)
                    ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                        "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
-                                       "of %g: take central/fixed, event or exact",
-                                       where.contact, where.spread, h)
-                   : set_bodies(m, sys);
+                                       "of %g: %s",
+                                       where.contact, where.spread, h,
+                                       sys->unsolved ? "reduce the system" : "take central/fixed, event or exact")
+                   : set_bodies(m, sys, own);
     default:
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
@@ -203,58 +136,113 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     tribo_destroy(m->contacts);
     m->contacts = NULL;
     m->settings = tribo_revision(sys->contacts);
-    m->statics = 0;
+    m->tell = 1;
     const int status =
         planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
     m->contacts = status ? NULL : m->contacts;
     return !status;
 }
 
-/* Forces of elastic contacts pull at what has no mass. */
-static void pull_massless(const tribo_system *sys, double h, double *columns)
+/* A^-1 B is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
+static int keeps_response(const struct moreau *m, const tribo_system *sys)
+{
+    return !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
+}
+
+/* The force of contact i pulls at what has no mass. */
+static void pull_massless(const tribo_system *sys, double h, size_t i, double *x)
 {
     const struct matrix *j = &sys->direction;
-    for (size_t i = 0; i < j->rows; i++) {
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            if (!has_mass(sys, j->col[k])) {
-                columns[i * j->cols + j->col[k]] = 4.0 / (h * h) * j->val[k];
-            }
+    for (size_t k = j->first[i]; sys->massless.count && k < j->first[i + 1]; k++) {
+        x[j->col[k]] = tribo_has_mass(&sys->massless, j->col[k]) ? x[j->col[k]] : 4.0 / (h * h) * j->val[k];
+    }
+}
+
+/* r [ncontact][ncontact] = J A^-1 B, and own as in hidden.h; b = B'. */
+static void find_operator(struct moreau *m, const tribo_system *sys, double h, const struct matrix *b, double *r, double *own)
+{
+    const size_t n = sys->ndof, c = sys->ncontact;
+    const struct matrix *direction = &sys->direction;
+    double *x = m->push;
+    for (size_t j = 0; j < c; j++) {
+        memset(x, 0, n * sizeof *x);
+        for (size_t k = b->first[j]; k < b->first[j + 1]; k++) {
+            x[b->col[k]] = b->val[k];
+        }
+        pull_massless(sys, h, j, x);
+        tribo_step_matrix_solve(&m->matrix, n, x);
+        for (size_t i = 0; i < c; i++) {
+            r[i * c + j] = tribo_matrix_row_dot(direction, i, x);
+        }
+        for (size_t k = direction->first[j]; k < direction->first[j + 1]; k++) {
+            own[k] = x[direction->col[k]];
+        }
+        if (m->response) {
+            memcpy(m->response + j * n, x, n * sizeof *x);
         }
     }
 }
 
-/* Prepares steps of length h: the factor, A^-1 B, and a context with the operator J A^-1 B. */
-static int prepare(struct moreau *m, const tribo_system *sys, double h)
+/* The factor, A^-1 B, and a context with the operator J A^-1 B. */
+static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
-    const size_t n = sys->ndof, c = sys->ncontact;
-    m->h = 0.0;
-    int status = factorize(m, sys, h);
+    const size_t c = sys->ncontact;
+    struct matrix b = {0};
+    int status = tribo_step_matrix_factorize(&m->matrix, sys, h);
     if (status) {
         return status;
     }
+    const int keeps = keeps_response(m, sys);
     free(m->response);
-    m->response = tribo_matrix_transpose_to_dense(&sys->response);
-    double *r = calloc(c * c + 1, sizeof *r);
-    if (!m->response || !r || !make_contacts(m, sys)) {
-        free(r);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
+    double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
+    if (r && own && (m->response || !keeps) && make_contacts(m, sys) && tribo_matrix_transpose(&b, &sys->response)) {
+        find_operator(m, sys, h, &b, r, own);
+        status = set_operator(m, sys, r, own, h);
+    } else {
+        status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     }
-    pull_massless(sys, h, m->response);
-    for (size_t j = 0; j < c; j++) {
-        double *column = m->response + j * n;
-        solve(m, n, column);
-        for (size_t i = 0; i < c; i++) {
-            r[i * c + j] = tribo_matrix_row_dot(&sys->direction, i, column);
+    tribo_matrix_free(&b);
+    free(r);
+    free(own);
+    m->whole = !status;
+    return status;
+}
+
+/* u += h A^-1 B f. */
+static void push(struct moreau *m, const tribo_system *sys, double h, const double *f, double *u)
+{
+    const size_t n = sys->ndof;
+    for (size_t i = 0; m->response && i < sys->ncontact; i++) {
+        for (size_t d = 0; d < n; d++) {
+            u[d] += h * f[i] * m->response[i * n + d];
         }
     }
-    status = set_operator(m, sys, r, h);
-    free(r);
-    if (status) {
-        return status;
+    if (!m->response) {
+        memset(m->push, 0, n * sizeof *m->push);
+        tribo_matrix_multiply_add(&sys->response, h, f, m->push);
+        tribo_step_matrix_solve(&m->matrix, n, m->push);
+        tribo_add(u, 1.0, m->push, n);
     }
-    m->h = h;
-    m->common.revision = sys->revision;
-    return TRIBO_OK;
+}
+
+/* Prepares steps of length h. */
+static int prepare(struct moreau *m, const tribo_system *sys, double h)
+{
+    size_t where = 0;
+    m->h = 0.0;
+    m->whole = 0;
+    m->held.n = 0;
+    int status = planar_of(sys->contacts) ? TRIBO_OK : tribo_step_band_create(&m->held, sys, h, &where);
+    status = status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_singular(sys, h, where)
+             : status                       ? tribo_step_matrix_no_memory(sys)
+             : m->held.n                    ? TRIBO_OK
+                                            : prepare_whole(m, sys, h);
+    if (!status) {
+        m->h = h;
+        m->common.revision = sys->revision;
+    }
+    return status;
 }
 
 static void find_load(struct moreau *m, tribo_system *sys, double t)
@@ -271,11 +259,23 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->limit[i] *= tribo_massless_touches(&sys->massless, i) ? 0.5 : 1.0;
     }
-    tribo_set_limit(m->contacts, m->limit);
     if (m->statics != revision) {
-        tribo_get_static(sys->contacts, m->ratio, m->velocity);
-        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
         m->statics = revision;
+        m->breaks = 0;
+        m->tell = 1;
+        tribo_get_static(sys->contacts, m->ratio, m->velocity);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            m->breaks |= m->ratio[i] > 1.0;
+        }
+    }
+}
+
+static void give_limits(struct moreau *m, const tribo_system *sys)
+{
+    tribo_set_limit(m->contacts, m->limit);
+    if (m->tell) {
+        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
+        m->tell = 0;
     }
 }
 
@@ -284,7 +284,7 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
 static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
 {
     for (size_t d = 0; d < sys->ndof; d++) {
-        y[sys->ndof + d] = has_mass(sys, d) ? y[sys->ndof + d] : 0.0;
+        y[sys->ndof + d] = tribo_has_mass(&sys->massless, d) ? y[sys->ndof + d] : 0.0;
     }
     if (!m->common.goes_on) {
         tribo_get_limit(sys->contacts, m->limit);
@@ -300,7 +300,7 @@ static void follow_statically(struct moreau *m, const tribo_system *sys, double 
         tribo_matrix_multiply_add(&sys->elastic, -4.0 / h, q, m->work);
     }
     for (size_t d = 0; sys->massless.count && d < sys->ndof; d++) {
-        du[d] = has_mass(sys, d) ? du[d] : m->work[d];
+        du[d] = tribo_has_mass(&sys->massless, d) ? du[d] : m->work[d];
     }
 }
 
@@ -341,29 +341,14 @@ static void end_elastic(struct moreau *m, const tribo_system *sys, double *y)
     }
 }
 
-static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
+/* ------------------------------------------------------------------------------------------------------------ a step */
+
+/* What loads and structure do to the velocities in a step, but for the inverse of A; s->u is where half of a step leads to. */
+static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *du)
 {
-    struct moreau *m = drv->own;
     struct step_form *s = &m->common;
-    tribo_system *sys = drv->sys;
-    const size_t n = sys->ndof, c = sys->ncontact;
-    const double h = next - t;
-    double *du = s->a;
-    const double *u = from + n;
-    /* steps of equal length differ by the rounding of time only */
-    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
-        const int status = prepare(m, sys, h);
-        if (status) {
-            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
-        }
-    }
-    if (sys->massless.count) {
-        memcpy(y, from, (2 * n + 1) * sizeof *y);
-        begin_elastic(m, sys, y);
-        from = y;
-        u = from + n;
-    }
-    tribo_step_form_begin(s, sys, t, u);
+    const size_t n = sys->ndof;
+    const double h = next - t, *u = from + n;
     if (!s->goes_on) {
         find_load(m, sys, t);
     }
@@ -381,30 +366,89 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     }
     follow_statically(m, sys, h, s->u, du);
     sys->evaluations++;
-    solve(m, n, du);
+}
+
+/* The forces of the step, which contacts slide, and the velocity s->u at its end: from the operator that contacts see. */
+static int respond_whole(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    struct step_form *s = &m->common;
+    const size_t n = sys->ndof;
+    tribo_step_matrix_solve(&m->matrix, n, du);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = u[i] + du[i];
     }
     keep_half(m, sys, h, s->u);
-    tribo_step_form_find_base(s, sys, next);
     tribo_step_form_relative(s, sys, s->u, s->end);
     take_both_ends(s, sys);
+    give_limits(m, sys);
+    const int status = tribo_step_form_force(s, m->contacts, h);
+    if (status) {
+        return status;
+    }
+    push(m, sys, h, s->f, s->u);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        s->f[i] *= tribo_massless_touches(&sys->massless, i) ? 2.0 : 1.0;
+    }
+    note_slip(m, sys);
+    return TRIBO_OK;
+}
+
+/* The same in the band; 0 if that is not the way, or has not led to the end. */
+static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    struct step_form *s = &m->common;
+    if (!m->held.n || m->breaks || !tribo_step_band_solve(&m->held, h, m->limit, s->base, u, du, s->f)) {
+        return 0;
+    }
+    for (size_t i = 0; i < sys->ndof; i++) {
+        s->u[i] = u[i] + du[i];
+    }
+    memcpy(s->mode, m->held.at, sys->ncontact);
+    memcpy(m->loose, m->held.at, sys->ncontact);
+    return 1;
+}
+
+static int respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    if (respond_in_band(m, sys, h, u, du)) {
+        return tribo_dense_finite(m->common.f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
+    }
+    const int status = m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
+    return status ? status : respond_whole(m, sys, h, u, du);
+}
+
+static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    struct moreau *m = drv->own;
+    struct step_form *s = &m->common;
+    tribo_system *sys = drv->sys;
+    const size_t n = sys->ndof;
+    const double h = next - t, *u = from + n;
+    /* steps of equal length differ by the rounding of time only */
+    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
+        const int status = prepare(m, sys, h);
+        if (status) {
+            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+        }
+    }
+    if (sys->massless.count) {
+        memcpy(y, from, (2 * n + 1) * sizeof *y);
+        begin_elastic(m, sys, y);
+        from = y;
+        u = from + n;
+    }
+    tribo_step_form_begin(s, sys, t, u);
+    find_push(m, sys, t, next, from, s->a);
+    tribo_step_form_find_base(s, sys, next);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
     take_limits(m, sys);
-    const int status = tribo_step_form_force(s, m->contacts, h);
+    const int status = respond(m, sys, h, u, s->a);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }
     if (status) {
-        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(m->contacts));
+        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(m->whole ? m->contacts : sys->contacts));
     }
-    for (size_t i = 0; i < c; i++) {
-        for (size_t d = 0; d < n; d++) {
-            s->u[d] += h * s->f[i] * m->response[i * n + d];
-        }
-        s->f[i] *= tribo_massless_touches(&sys->massless, i) ? 2.0 : 1.0;
-    }
-    note_slip(m, sys);
     tribo_system_snap(sys, m->loose, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
     s->goes_on = 1;

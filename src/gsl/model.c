@@ -50,12 +50,10 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c)
 }
 
 /* Whether R, of a system whose mass matrix is not diagonal, tells all that it should. */
-static int check_operator(const struct model *m, const tribo_system *sys, const double *r)
+static int check_operator(const struct model *m, const tribo_system *sys, const double *r, const double *own)
 {
     struct hidden where;
-    double *x = tribo_matrix_transpose_to_dense(&sys->response);
-    const int hidden = x ? tribo_hidden(&sys->direction, &sys->mass, x, r, &where) : -1;
-    free(x);
+    const int hidden = tribo_hidden(&sys->direction, &sys->mass, own, r, &where);
     if (hidden < 0) {
         return tribo_model_no_memory(m);
     }
@@ -66,22 +64,40 @@ static int check_operator(const struct model *m, const tribo_system *sys, const 
                   : TRIBO_OK;
 }
 
-int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z, size_t n)
+int tribo_model_give_operator(const struct model *m, tribo_system *sys, const double *r, const double *own)
 {
-    const size_t c = m->ncontact;
-    double *r = calloc(c * c + 1, sizeof *r);
-    if (!r) {
-        return tribo_model_no_memory(m);
-    }
-    if (c) {
-        gsl_matrix_view rv = gsl_matrix_view_array(r, c, c), zv = gsl_matrix_view_array(z, n, c);
-        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &zv.matrix, &zv.matrix, 0.0, &rv.matrix);
-    }
-    int status = m->nmode ? TRIBO_OK : check_operator(m, sys, r);
+    int status = own ? check_operator(m, sys, r, own) : TRIBO_OK;
     if (!status) {
         status = tribo_set_operator_dense(sys->contacts, r);
         status = status ? tribo_model_fail(m, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
     }
+    return status;
+}
+
+/* What forces of contacts do to the degrees of freedom that they touch: one number an entry of J. NULL if out of memory. */
+static double *own_responses(const tribo_system *sys)
+{
+    const struct matrix *j = &sys->direction;
+    double *own = malloc((j->first[j->rows] + 1) * sizeof *own);
+    for (size_t i = 0; own && i < j->rows; i++) {
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            own[k] = tribo_matrix_get(&sys->response, j->col[k], i);
+        }
+    }
+    return own;
+}
+
+int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z, size_t n)
+{
+    const size_t c = m->ncontact;
+    double *r = calloc(c * c + 1, sizeof *r), *own = m->nmode ? NULL : own_responses(sys);
+    int status = r && (own || m->nmode) ? TRIBO_OK : tribo_model_no_memory(m);
+    if (!status && c) {
+        gsl_matrix_view rv = gsl_matrix_view_array(r, c, c), zv = gsl_matrix_view_array(z, n, c);
+        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &zv.matrix, &zv.matrix, 0.0, &rv.matrix);
+    }
+    status = status ? status : tribo_model_give_operator(m, sys, r, own);
     free(r);
+    free(own);
     return status;
 }

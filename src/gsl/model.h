@@ -35,6 +35,9 @@ int tribo_model_build_massless(struct model *m, int (*build_massive)(struct mode
 /* Gives the context R = Z'Z, Z [n][ncontact], which is as symmetric and semidefinite as rounding lets it be. */
 int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z, size_t n);
 
+/* The same for R itself, with what tribo_hidden asks for, or NULL where no body is hidden. */
+int tribo_model_give_operator(const struct model *m, tribo_system *sys, const double *r, const double *own);
+
 /* reduction.c: the system of the lowest nmode modes. */
 int tribo_model_reduce(struct model *m, tribo_system **sys);
 

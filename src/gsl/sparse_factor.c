@@ -10,11 +10,18 @@
 
 #include <cholmod.h>
 
+#include "multifrontal.h"
+
+/* What solves take, kept from one to the next with as many vectors. */
+struct room {
+    cholmod_dense *solution, *work[2];
+};
+
 struct sparse_factor {
     cholmod_common common;
     cholmod_factor *l;
-    cholmod_dense *solution, *work[2]; /* kept from solve to solve */
-    double *column;                    /* [n] workspace */
+    struct room one, many;
+    double *column; /* [n] workspace */
 };
 
 int tribo_sparse_available(void)
@@ -46,12 +53,12 @@ static cholmod_sparse view_of(const struct matrix *a)
                             .packed = 1};
 }
 
-static void start(cholmod_common *common, int method)
+static void start(cholmod_common *common)
 {
     cholmod_l_start(common);
     common->print = 0;
-    common->supernodal = method;
-    common->final_ll = method == CHOLMOD_SUPERNODAL;
+    common->supernodal = CHOLMOD_SUPERNODAL;
+    common->final_ll = 1;
     common->nmethods = 1;
     common->method[0].ordering = CHOLMOD_AMD;
     common->postorder = 1;
@@ -79,10 +86,11 @@ static int solve(struct sparse_factor *f, int what, size_t count, double *x)
     const size_t n = f->l->n;
     cholmod_dense b = {
         .nrow = n, .ncol = count, .nzmax = n * count, .d = n, .x = x, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
-    if (!cholmod_l_solve2(what, f->l, &b, NULL, &f->solution, NULL, &f->work[0], &f->work[1], &f->common)) {
+    struct room *room = count == 1 ? &f->one : &f->many;
+    if (!cholmod_l_solve2(what, f->l, &b, NULL, &room->solution, NULL, &room->work[0], &room->work[1], &f->common)) {
         return 0;
     }
-    memcpy(x, f->solution->x, n * count * sizeof *x);
+    memcpy(x, room->solution->x, n * count * sizeof *x);
     return 1;
 }
 
@@ -99,7 +107,7 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
     if (!f) {
         return TRIBO_ERR_MEMORY;
     }
-    start(&f->common, CHOLMOD_SUPERNODAL);
+    start(&f->common);
     f->l = factorize(a, &f->common);
     int status = status_of(&f->common);
     status = status || (f->l && prepare(f)) ? status : TRIBO_ERR_MEMORY;
@@ -120,7 +128,7 @@ int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_
     }
     struct sparse_factor *f = calloc(1, sizeof *f);
     if (f) {
-        start(&f->common, CHOLMOD_SUPERNODAL);
+        start(&f->common);
         f->l = cholmod_l_copy_factor(from->l, &f->common);
     }
     if (!f || !f->l || !prepare(f)) {
@@ -131,23 +139,33 @@ int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_
     return 1;
 }
 
+static void free_room(struct room *room, cholmod_common *common)
+{
+    cholmod_l_free_dense(&room->solution, common);
+    cholmod_l_free_dense(&room->work[0], common);
+    cholmod_l_free_dense(&room->work[1], common);
+}
+
 void tribo_sparse_factor_free(struct sparse_factor *f)
 {
     if (f) {
         cholmod_l_free_factor(&f->l, &f->common);
-        cholmod_l_free_dense(&f->solution, &f->common);
-        cholmod_l_free_dense(&f->work[0], &f->common);
-        cholmod_l_free_dense(&f->work[1], &f->common);
+        free_room(&f->one, &f->common);
+        free_room(&f->many, &f->common);
         cholmod_l_finish(&f->common);
         free(f->column);
         free(f);
     }
 }
 
+size_t tribo_sparse_factor_entries(const struct sparse_factor *f)
+{
+    return f->l->is_super ? f->l->xsize : f->l->nzmax;
+}
+
 int tribo_sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
 {
-    const int done = solve(f, CHOLMOD_A, count, x);
-    return (count == 1 || prepare(f)) && done;
+    return solve(f, CHOLMOD_A, count, x);
 }
 
 /* One column after the other of x [n][cols]: first one part of the factor, then the other. */
@@ -175,40 +193,19 @@ void tribo_sparse_factor_half_solve_back(struct sparse_factor *f, double *x, siz
     solve_columns(f, CHOLMOD_Lt, CHOLMOD_Pt, x, cols);
 }
 
-/* Columns of L begin with D. sum [n] is workspace. */
-static struct inertia look_at(const cholmod_factor *l, const double *size, double *sum)
-{
-    const SuiteSparse_long *first = l->p, *row = l->i, *count = l->nz;
-    const double *x = l->x;
-    struct inertia found = {0, 0.0};
-    memset(sum, 0, l->n * sizeof *sum);
-    for (size_t k = 0; k < l->n; k++) {
-        const double d = x[first[k]];
-        found.negative += d < 0.0;
-        sum[k] += fabs(d);
-        for (SuiteSparse_long e = first[k] + 1; e < first[k] + count[k]; e++) {
-            sum[row[e]] += x[e] * x[e] * fabs(d);
-        }
-    }
-    for (size_t k = 0; k < l->n; k++) {
-        found.growth = greater(found.growth, sum[k] / fabs(size[given_row(l, k)]));
-    }
-    return found;
-}
-
-int tribo_sparse_inertia(const struct matrix *a, const double *size, struct inertia *found)
+int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, const double *size, struct inertia *found)
 {
     cholmod_common common;
-    start(&common, CHOLMOD_SIMPLICIAL);
-    cholmod_factor *l = factorize(a, &common);
-    double *sum = malloc((a->rows + 1) * sizeof *sum);
-    int status = l ? status_of(&common) : TRIBO_ERR_MEMORY;
-    status = status || sum ? status : TRIBO_ERR_MEMORY;
-    if (!status) {
-        *found = look_at(l, size, sum);
+    cholmod_sparse view = view_of(a);
+    start(&common);
+    cholmod_factor *own = like ? NULL : cholmod_l_analyze(&view, &common);
+    const cholmod_factor *l = like ? like->l : own;
+    int status = TRIBO_ERR_MEMORY;
+    if (l) {
+        const struct supernodes groups = {l->n, l->nsuper, l->Perm, l->super, l->pi, l->s};
+        status = tribo_multifrontal_inertia(a, &groups, size, found);
     }
-    free(sum);
-    cholmod_l_free_factor(&l, &common);
+    cholmod_l_free_factor(&own, &common);
     cholmod_l_finish(&common);
     return status;
 }
@@ -239,6 +236,12 @@ void tribo_sparse_factor_free(struct sparse_factor *factor)
     (void)factor;
 }
 
+size_t tribo_sparse_factor_entries(const struct sparse_factor *factor)
+{
+    (void)factor;
+    return 0;
+}
+
 int tribo_sparse_factor_solve(struct sparse_factor *factor, size_t count, double *x)
 {
     (void)factor;
@@ -261,8 +264,9 @@ void tribo_sparse_factor_half_solve_back(struct sparse_factor *factor, double *x
     (void)cols;
 }
 
-int tribo_sparse_inertia(const struct matrix *a, const double *size, struct inertia *found)
+int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, const double *size, struct inertia *found)
 {
+    (void)like;
     (void)a;
     (void)size;
     (void)found;

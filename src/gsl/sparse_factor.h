@@ -17,6 +17,7 @@ int tribo_sparse_available(void);
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where);
 int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from); /* 1, or 0 if out of memory */
 void tribo_sparse_factor_free(struct sparse_factor *factor);
+size_t tribo_sparse_factor_entries(const struct sparse_factor *factor);
 
 /* count vectors x [count][n] = A^-1 x. 1, or 0 if out of memory, which does not happen to a single one. */
 int tribo_sparse_factor_solve(struct sparse_factor *factor, size_t count, double *x);
@@ -31,8 +32,9 @@ struct inertia {
     double growth;   /* the largest sum of |L_ik|^2 |D_k| beside |size_i|: E_ij is rounding of growth sqrt(|size_i size_j|) */
 };
 
-/* size [n] in: what the diagonal of A has come out of. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED, or
- * TRIBO_ERR_INDEFINITE: a pivot is zero. */
-int tribo_sparse_inertia(const struct matrix *a, const double *size, struct inertia *found);
+/* like      in  the factor of a matrix with the same places of entries, which saves the search for an order, or NULL
+ * size [n]  in  what the diagonal of A has come out of
+ * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED, or TRIBO_ERR_INDEFINITE: a pivot is zero, or no number. */
+int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, const double *size, struct inertia *found);
 
 #endif

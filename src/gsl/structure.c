@@ -1,4 +1,5 @@
-/* Linear structures from their matrices: as they are if the mass matrix is diagonal, and solved for the accelerations if not. */
+/* Linear structures from their matrices: as they are if the mass matrix is diagonal, and solved for the accelerations if not,
+ * or left as they are where that would take too much. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,7 +29,7 @@ static int check(const struct model *m)
     return TRIBO_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- the two ways */
+/* --------------------------------------------------------------------------------------------------------------- the ways */
 
 /* The system owns the mass matrix and its factor from now on. */
 static void give_mass(struct model *m, tribo_system *sys, struct cholesky *c)
@@ -88,13 +89,6 @@ static int solve_matrix(const struct cholesky *c, const struct matrix *a, struct
 static int build_solved(struct model *m, tribo_system **sys)
 {
     struct cholesky c;
-    if (m->ndof > DENSE_MOST) {
-        return tribo_model_fail(
-            m, TRIBO_ERR_UNSUPPORTED,
-            "%zu degrees of freedom, of which %d may be solved for with a mass matrix that is not diagonal: make "
-            "it diagonal, or reduce the system to modes",
-            m->ndof, DENSE_MOST);
-    }
     int status = tribo_model_factorize(m, &c);
     if (status) {
         return status;
@@ -132,6 +126,75 @@ static int build_solved(struct model *m, tribo_system **sys)
     return status;
 }
 
+/* R = J M^-1 J', and what forces of contacts do to the degrees of freedom that they touch. x [ndof] is workspace. */
+static void find_operator(const struct matrix *j, const struct cholesky *mass, double *x, double *r, double *own)
+{
+    for (size_t i = 0; i < j->rows; i++) {
+        memset(x, 0, j->cols * sizeof *x);
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            x[j->col[k]] = j->val[k];
+        }
+        tribo_cholesky_solve(mass, 1, x);
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            own[k] = x[j->col[k]];
+        }
+        tribo_matrix_multiply_add(j, 1.0, x, r + i * j->rows);
+    }
+    for (size_t i = 0; i < j->rows; i++) {
+        for (size_t k = 0; k < i; k++) {
+            r[i * j->rows + k] = r[k * j->rows + i] = 0.5 * (r[i * j->rows + k] + r[k * j->rows + i]);
+        }
+    }
+}
+
+static int check_unsolved(const struct model *m)
+{
+    size_t i, j;
+    double x, y;
+    if (!tribo_sparse_available()) {
+        return tribo_model_too_large(m);
+    }
+    if (m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {
+        return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC,
+                                "damping[%zu][%zu] = %g, but damping[%zu][%zu] = %g: with more than %d degrees of freedom and a "
+                                "mass matrix that is not diagonal it must be symmetric",
+                                i, j, x, j, i, y, DENSE_MOST);
+    }
+    return TRIBO_OK;
+}
+
+/* The matrices stay as they are; the mass matrix has a factor only for as long as R takes. */
+static int build_unsolved(struct model *m, tribo_system **sys)
+{
+    struct cholesky c = {0};
+    struct matrix b = {0};
+    const size_t n = m->ndof, contacts = m->ncontact;
+    int status = check_unsolved(m);
+    status = status ? status : tribo_model_factorize(m, &c);
+    if (status) {
+        return status;
+    }
+    double *x = malloc(n * sizeof *x), *r = calloc(contacts * contacts + 1, sizeof *r),
+           *own = malloc((m->direction.first[contacts] + 1) * sizeof *own);
+    int done = x && r && own && tribo_matrix_transpose(&b, &m->direction);
+    if (done) {
+        find_operator(&m->direction, &c, x, r, own);
+        done = tribo_system_build(sys, n, contacts, &m->stiffness, &m->damping, &m->direction, &b) == TRIBO_OK;
+        m->stiffness = m->damping = m->direction = (struct matrix){0};
+    }
+    tribo_cholesky_free(&c);
+    status = done ? TRIBO_OK : tribo_model_no_memory(m);
+    if (!status) {
+        (*sys)->unsolved = 1;
+        give_mass(m, *sys, &c);
+        status = tribo_model_give_operator(m, *sys, r, own);
+    }
+    free(x);
+    free(r);
+    free(own);
+    return status;
+}
+
 void tribo_model_free(struct model *m)
 {
     tribo_matrix_free(&m->mass);
@@ -142,7 +205,9 @@ void tribo_model_free(struct model *m)
 
 static int build_massive(struct model *m, tribo_system **sys)
 {
-    return tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, sys) : build_solved(m, sys);
+    return tribo_matrix_is_diagonal(&m->mass) ? build_diagonal(m, sys)
+           : m->ndof <= DENSE_MOST            ? build_solved(m, sys)
+                                              : build_unsolved(m, sys);
 }
 
 int tribo_model_build(struct model *m, tribo_system **sys)

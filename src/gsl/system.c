@@ -28,6 +28,22 @@ int tribo_system_check_mass(const tribo_system *sys, const char *who)
                : TRIBO_OK;
 }
 
+int tribo_system_check_solved(const tribo_system *sys, const char *what)
+{
+    return sys->unsolved ? tribo_system_fail(
+                               sys, TRIBO_ERR_UNSUPPORTED,
+                               "%s needs accelerations: %zu degrees of freedom are more than the %d that are solved for with a "
+                               "mass matrix that is not diagonal; take moreau/fixed, or tribo_system_reduced",
+                               what, sys->ndof, DENSE_MOST)
+                         : TRIBO_OK;
+}
+
+int tribo_system_check_rates(const tribo_system *sys, const char *what)
+{
+    const int status = tribo_system_check_mass(sys, what);
+    return status ? status : tribo_system_check_solved(sys, what);
+}
+
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 {
     if (!isfinite(t)) {
@@ -112,6 +128,9 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         return;
     }
     memcpy(to, force, sys->ndof * sizeof *to);
+    if (sys->unsolved) {
+        return;
+    }
     const int diagonal = !sys->factor.factor && !sys->factor.sparse;
     if (!diagonal) {
         tribo_cholesky_solve(&sys->factor, 1, to);
@@ -142,14 +161,18 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
     return sum;
 }
 
+/* How much degree of freedom d gives way to contact i. */
+static double yield_of(const tribo_system *sys, size_t d, size_t i)
+{
+    return sys->unsolved ? 1.0 / tribo_matrix_get(&sys->mass, d, d) : fabs(tribo_matrix_get(&sys->response, d, i));
+}
+
 /* Which of its two degrees of freedom a contact at rest moves by rounding of the other: the second, but no heavy one by a light
  * one's. */
 static size_t follows(const tribo_system *sys, size_t i, size_t first)
 {
     const size_t *dof = sys->direction.col + first;
-    const double one = fabs(tribo_matrix_get(&sys->response, dof[0], i)),
-                 other = fabs(tribo_matrix_get(&sys->response, dof[1], i));
-    return other >= 1e-3 * one;
+    return yield_of(sys, dof[1], i) >= 1e-3 * yield_of(sys, dof[0], i);
 }
 
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)

@@ -56,6 +56,10 @@ struct tribo_system {
      * K and C to rounding of every entry. */
     struct matrix elastic, viscous;
 
+    /* The equations are M q'' = load - K q - C q' + J' f: stiffness, damping and response are K, C and J', loads are forces, and
+     * nobody has accelerations. */
+    int unsolved;
+
     struct matrix mass;     /* no rows: the identity, of reduced systems */
     struct cholesky factor; /* of it; degrees of freedom without mass count as if it were 1, and nothing accelerates them */
     struct massless massless;
@@ -170,6 +174,12 @@ int tribo_system_fail(const tribo_system *sys, int status, const char *format, .
 
 /* TRIBO_ERR_UNSUPPORTED, and what it says: `who` takes only systems with mass everywhere. TRIBO_OK if this is one. */
 int tribo_system_check_mass(const tribo_system *sys, const char *who);
+
+/* TRIBO_ERR_UNSUPPORTED for an unsolved system, to which `what` cannot be done. */
+int tribo_system_check_solved(const tribo_system *sys, const char *what);
+
+/* Either of them: what makes rates of states takes neither kind. */
+int tribo_system_check_rates(const tribo_system *sys, const char *what);
 
 /* Checks that t and y are finite. */
 int tribo_system_check_state(const tribo_system *sys, double t, const double *y);

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Builds the bench, with SUNDIALS, Siconos and CHOLMOD where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev, g++,
 # libsuitesparse-dev), runs it, draws a picture a system, and prints tables: run times aimed at and measured, and the fastest method
-# for each error; then what a call of tribo_balance costs, a step in the plane, and a steady motion (some minutes).
+# for each error; then what a call of tribo_balance costs, a step in the plane, a steady motion, and the modes
+# of large plates where CalculiX is installed, too (some minutes).
 # Arguments go to the bench: `sh tests/bench/run.sh --quick`. Everything is left in build/bench/results.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
@@ -17,13 +18,13 @@ case " $* " in *" --counts "*)
     ;;
 esac
 
-setup gcc libc6-dev make cmake pkg-config libgsl-dev check gnuplot-nox
+setup gcc libc6-dev make cmake pkg-config libgsl-dev libsuitesparse-dev zlib1g-dev check gnuplot-nox
 
 build=build/bench results=$PWD/build/bench/results
 echo "== Building in $build"
 cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_FORTRAN=OFF -DTRIBO_BUILD_EXAMPLES=OFF -DTRIBO_BENCH_PEERS=ON
 cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench bench_balance bench_periodic bench_planar \
-    bench_kernels
+    bench_kernels bench_modes bench_whole
 
 echo "== Running; tables and pictures go to $results"
 mkdir -p "$results/balance"
@@ -34,6 +35,7 @@ OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out 
 $build/tests/bench/bench_planar > "$results/planar.txt"
 $build/tests/bench/bench_kernels $quick > "$results/kernels.txt"
 $build/tests/bench/bench_periodic --out "$results" > "$results/periodic.txt"
+sh tests/bench/modes.sh $build "$results" $quick > "$results/modes.txt"
 
 echo "== Drawing"
 for format in png svg; do
@@ -44,4 +46,4 @@ for format in png svg; do
 done
 
 awk -f tests/bench/tables.awk "$results"/*.csv | tee "$results/tables.txt"
-cat "$results/balance/tables.txt" "$results/kernels.txt" "$results/planar.txt" "$results/periodic.txt"
+cat "$results/balance/tables.txt" "$results/kernels.txt" "$results/planar.txt" "$results/periodic.txt" "$results/modes.txt"

@@ -1,0 +1,111 @@
+#include "entries.h"
+
+#include <limits.h>
+#include <stdlib.h>
+
+struct entry read_entry(struct lines *l, size_t rows)
+{
+    struct entry e = {.line = l->line};
+    e.row = next_whole(l, "row", 1, rows);
+    e.column = next_whole(l, "column", 1, rows);
+    e.value = next_real(l, "value");
+    expect_end(l);
+    return e;
+}
+
+void add_entry(struct entries *all, const struct entry *e)
+{
+    all->entry = need_room(all->entry, all->count, &all->room, sizeof *all->entry);
+    all->entry[all->count++] = *e;
+}
+
+/* Moves the entries to `to`, those of the first row, or column, first, else in their order: a pass that takes time in proportion to
+ * their number. next [rows + 2] is workspace. */
+static void sort_pass(const struct entry *from, size_t count, size_t rows, int by_row, size_t *next, struct entry *to)
+{
+    for (size_t i = 0; i < rows + 2; i++) {
+        next[i] = 0;
+    }
+    for (size_t k = 0; k < count; k++) {
+        next[(by_row ? from[k].row : from[k].column) + 1]++;
+    }
+    for (size_t i = 1; i < rows + 2; i++) {
+        next[i] += next[i - 1];
+    }
+    for (size_t k = 0; k < count; k++) {
+        to[next[by_row ? from[k].row : from[k].column]++] = from[k];
+    }
+}
+
+static void sort_entries(struct entries *all, size_t rows)
+{
+    struct entry *other = need_memory(all->count, sizeof *other);
+    size_t *next = need_memory(rows + 2, sizeof *next);
+    sort_pass(all->entry, all->count, rows, 0, next, other);
+    sort_pass(other, all->count, rows, 1, next, all->entry);
+    free(other);
+    free(next);
+}
+
+static void refuse_doubles(const char *path, const struct entries *all)
+{
+    for (size_t k = 1; k < all->count; k++) {
+        const struct entry *e = &all->entry[k], *before = e - 1;
+        if (e->row == before->row && e->column == before->column) {
+            die("%s:%zu: row %zu, column %zu has been given in line %zu", path, e->line, e->row, e->column, before->line);
+        }
+    }
+}
+
+static int is_mirrored(const struct entry *e, int symmetric)
+{
+    return symmetric && e->row != e->column;
+}
+
+/* Where each row begins: first[row], counted from 0; first [rows + 1], zeros before. */
+static void count_rows(const struct entries *all, size_t rows, int symmetric, int *first)
+{
+    for (size_t k = 0; k < all->count; k++) {
+        const struct entry *e = &all->entry[k];
+        first[e->row] += e->value != 0.0;
+        first[e->column] += e->value != 0.0 && is_mirrored(e, symmetric);
+    }
+    for (size_t i = 1; i <= rows; i++) {
+        first[i] += first[i - 1];
+    }
+}
+
+/* Rows come one after the other, so that each gets its lower triangle first, and then what other rows mirror into it. */
+static void fill_rows(const struct entries *all, int symmetric, int *next, gsl_spmatrix *m)
+{
+    for (size_t k = 0; k < all->count; k++) {
+        const struct entry *e = &all->entry[k];
+        for (int mirrored = 0; e->value != 0.0 && mirrored <= is_mirrored(e, symmetric); mirrored++) {
+            const int at = next[(mirrored ? e->column : e->row) - 1]++;
+            m->i[at] = (int)(mirrored ? e->row : e->column) - 1;
+            m->data[at] = e->value;
+        }
+    }
+}
+
+gsl_spmatrix *make_matrix(const char *path, struct entries *all, size_t rows, int symmetric)
+{
+    sort_entries(all, rows);
+    refuse_doubles(path, all);
+    if (all->count > INT_MAX / 2) {
+        die("%s: %zu entries are more than a matrix of GSL may have", path, all->count);
+    }
+    gsl_spmatrix *m = gsl_spmatrix_alloc_nzmax(rows, rows, (symmetric ? 2 : 1) * all->count + 1, GSL_SPMATRIX_CSR);
+    int *next = need_memory(rows + 1, sizeof *next);
+    if (!m) {
+        die("%s: out of memory for %zu entries", path, all->count);
+    }
+    count_rows(all, rows, symmetric, next);
+    for (size_t i = 0; i <= rows; i++) {
+        m->p[i] = next[i];
+    }
+    m->nz = (size_t)next[rows];
+    fill_rows(all, symmetric, next, m);
+    free(next);
+    return m;
+}

@@ -1,0 +1,25 @@
+#include "matrix_file.h"
+
+#include <stdlib.h>
+
+#include "calculix.h"
+#include "matrix_market.h"
+
+static int is_calculix(const char *path)
+{
+    return is_named(path, ".sti") || is_named(path, ".mas");
+}
+
+gsl_spmatrix *read_matrix(const char *path, size_t rows)
+{
+    struct entries all = {0, 0, NULL};
+    int symmetric = 1;
+    if (is_calculix(path)) {
+        read_calculix_matrix(path, rows, &all);
+    } else {
+        symmetric = read_matrix_market(path, rows, &all);
+    }
+    gsl_spmatrix *matrix = make_matrix(path, &all, rows, symmetric);
+    free(all.entry);
+    return matrix;
+}
