@@ -247,6 +247,7 @@ TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, 
  * through its period once. The system must be as it was when the motion was found.
  * c             [2 ndof] in   a combination of displacements and velocities, c'[q, q']
  * least, most          out   its extremes
+ * at_least, at_most    out   a time in the period from t on at which it has them; where it stays there for long, any of that
  * k             in            a harmonic: cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
  * cosine, sine         out
  * energy        [ncontact] out   what each contact dissipates in a period
@@ -254,6 +255,8 @@ TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, 
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
  * TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in resonance with a mode that has next to no damping). */
 TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
+TRIBO_API int tribo_driver_period_extremes_at(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
+                                              double *at_most);
 TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
 TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
 TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);

@@ -210,6 +210,31 @@ TEST(open)
     search_free(&s);
 }
 
+/* Extremes are where the velocity is zero, at times of the period that was asked for; of a linear motion and of one that stops. */
+TEST(times_of_extremes)
+{
+    const double damping = 0.2, omega = 1.3, limit = _i / 2 ? 0.4 : 0.0, t = 40.0, c[] = {1.0, 0.0};
+    struct search s = oscillator_search(methods[_i % 2], damping, limit, 1.5, omega);
+    double y[3] = {0}, at[2], e[2], least, most, from = t;
+    find(&s, t, y);
+    assert_ok(tribo_driver_period_extremes(s.drv, c, &least, &most));
+    assert_ok(tribo_driver_period_extremes_at(s.drv, c, &e[0], &e[1], &at[0], &at[1]));
+    assert_exact(e[0], least);
+    assert_exact(e[1], most);
+    for (int i = 0; i < 2; i++) {
+        const int k = at[0] < at[1] ? i : 1 - i; /* the earlier one first */
+        require(at[k] >= t && at[k] <= t + s.period, "extreme %d at %g", k, at[k]);
+        driver_advance(s.drv, &from, at[k], y);
+        assert_close(y[0], e[k], 1e-9);
+        assert_close(y[1], 0.0, 1e-9);
+    }
+    if (limit == 0.0) {
+        const double turns = (omega * at[1] - atan2(damping * omega, 1.0 - omega * omega)) / (2.0 * PI);
+        assert_close(turns, round(turns), 1e-11);
+    }
+    search_free(&s);
+}
+
 /* A constant load moves the middle, and takes the symmetry away. */
 TEST(constant_load)
 {
@@ -486,5 +511,5 @@ TEST(other_methods)
 }
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
-          {stuck, 2}, {open, 2}, {constant_load, 2}, {swinging_limits, 8}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
+          {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
           {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2}, {other_methods, 5})
