@@ -223,6 +223,7 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
+ * event follows the motion in steps of an error of 1e-13, whatever the tolerances, which are for advance.
  * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
  * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be 1e-4 of
  * what the loads would do against stiffness or inertia alone, at least. That it comes back is seen by following it through the

@@ -35,6 +35,7 @@ struct events {
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
 
     struct company *company; /* NULL: nobody */
+    int sharp;               /* the motion is followed to rounding, whatever tolerances say */
 
     double credit, paid;            /* how many more events there may be, as of when */
     size_t suspect[TRIBO_SUSPECTS]; /* contacts of the events since credit was full */
