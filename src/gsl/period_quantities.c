@@ -62,7 +62,7 @@ static int replay(tribo_driver *drv, struct replay *r)
     const int status = tribo_period_map_replay(&s->map, s->best.y, &r->company);
     tribo_signal_free(&r->signal);
     tribo_signal_free(&r->slope);
-    return status;
+    return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 
 static int check_combination(tribo_driver *drv, const double *c)
