@@ -219,8 +219,8 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
 
 /* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact, event, and auto by
  * one of the two; others return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other
- * (in energy), and there is such a motion, as symmetric as its loads, wherever motions are bounded. With it, or with static limits
- * (such that drop at once), there may be none, or several, or none is found.
+ * (in energy), and there is such a motion, as symmetric as its loads, wherever motions are bounded. With it, or with static
+ * limits (such that drop at once), there may be none, or several, or none is found.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
@@ -235,13 +235,13 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * dimensions.
  * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
- * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits that fall with the speed),
- * TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits that fall with
+ * the speed), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary
- * part. Motions next to it, in which contacts that rest do so too, come closer by these factors a period. Contacts at rest forget:
- * multipliers of 0.
+ * part. Motions next to it, in which contacts that rest do so too, come closer by these factors a period. Contacts at rest
+ * forget: multipliers of 0.
  * re, im  [2 ndof] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);

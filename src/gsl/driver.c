@@ -484,4 +484,5 @@ static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
     return choose_and_delegate(drv, &(struct task){.t = &t, .period = period, .y = y, .finds = 1});
 }
 
-static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL, NULL, find_by_choice};
+static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL,
+                                        NULL,   find_by_choice};

@@ -15,9 +15,9 @@ struct replay {
     struct signal signal, slope; /* it, in the phase */
     double elapsed;              /* since the period began */
     struct extremes extremes;
-    double omega, re, im;        /* integral with e^{-i omega t} */
-    double *sum;                 /* [ncontact] */
-    double *row;                 /* [2 ndof] workspace */
+    double omega, re, im; /* integral with e^{-i omega t} */
+    double *sum;          /* [ncontact] */
+    double *row;          /* [2 ndof] workspace */
 };
 
 static int no_memory(const struct replay *r)

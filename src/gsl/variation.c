@@ -75,8 +75,8 @@ static int find_pull(struct variation *x, double side)
     return status;
 }
 
-/* Whether a static limit is what ends the phase, and then how its force depends on the state. Guards are what is left of the limit
- * with side times the force. */
+/* Whether a static limit is what ends the phase, and then how its force depends on the state. Guards are what is left of the
+ * limit with side times the force. */
 static int find_pulled(struct variation *x, const double *y)
 {
     const struct guard *g = x->events->met;

@@ -210,7 +210,8 @@ TEST(open)
     search_free(&s);
 }
 
-/* Extremes are where the velocity is zero, at times of the period that was asked for; of a linear motion and of one that stops. */
+/* Extremes are where the velocity is zero, at times of the period that was asked for; of a linear motion, and of one
+ * that stops. */
 TEST(times_of_extremes)
 {
     const double damping = 0.2, omega = 1.3, limit = _i / 2 ? 0.4 : 0.0, t = 40.0, c[] = {1.0, 0.0};
@@ -510,8 +511,8 @@ TEST(other_methods)
     search_free(&s);
 }
 
-/* Static limits that drop at once, and a belt that moves or swings: the motion is where marching leads to; multipliers are those of
- * differences, in which a contact that rests stays so. */
+/* Static limits that drop at once, and a belt that moves or swings: the motion is where marching leads to; multipliers are those
+ * of differences, in which a contact that rests stays so. */
 TEST(static_limit)
 {
     static const struct {
@@ -586,5 +587,6 @@ TEST(automatic)
 }
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
-          {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
-          {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12}, {falling_limit, 3}, {automatic, 1})
+          {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8}, {belt, 2}, {rigid_body, 2},
+          {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2},
+          {other_methods, 4}, {static_limit, 12}, {falling_limit, 3}, {automatic, 1})
