@@ -549,10 +549,11 @@ TEST(falling_limit)
 {
     const double ratio = 1.5, velocity = 0.3;
     struct search s = oscillator_search(methods[_i], 0.1, 0.5, 1.0, 0.5);
-    double y[3] = {0};
+    double y[3] = {0.25, 0.0, 0.0};
     assert_ok(tribo_set_static(tribo_system_context(s.sys), &ratio, &velocity));
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_driver_message(s.drv), "velocity[0] = 0.3");
+    assert_exact(y[0], 0.25);
     search_free(&s);
 }
 
