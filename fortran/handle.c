@@ -18,8 +18,8 @@
 #define PLACES ((uint32_t)1 << PLACE_BITS)
 
 struct place {
-    void *object;
-    void (*destroy)(void *);
+    void *object, *owner;
+    void (*destroy)(void *); /* of the owner */
     int64_t uses;
     uint32_t next; /* free place after this one; 0: none */
 };
@@ -103,7 +103,7 @@ static uint32_t take_place(struct table *t)
     return at(t, t->used) ? t->used++ : 0;
 }
 
-static int64_t add(struct table *t, void *object, void (*destroy)(void *))
+static int64_t add(struct table *t, void *object, void *owner, void (*destroy)(void *))
 {
     int64_t number = 0;
     lock();
@@ -111,6 +111,7 @@ static int64_t add(struct table *t, void *object, void (*destroy)(void *))
     if (i) {
         struct place *p = at(t, i);
         STORE(p->uses, p->uses + 1);
+        p->owner = owner;
         p->destroy = destroy;
         STORE(p->object, object);
         t->alive++;
@@ -122,7 +123,7 @@ static int64_t add(struct table *t, void *object, void (*destroy)(void *))
 
 static struct place take(int64_t number)
 {
-    struct place *p = find(number), taken = {NULL, NULL, 0, 0};
+    struct place *p = find(number), taken = {NULL, NULL, NULL, 0, 0};
     if (p) {
         struct table *t = table_of(number);
         taken = *p;
@@ -138,12 +139,17 @@ static struct place take(int64_t number)
 
 int64_t tribo_handle_add(void *object, void (*destroy)(void *))
 {
-    return add(&longs, object, destroy);
+    return add(&longs, object, object, destroy);
 }
 
 int64_t tribo_handle_add_short(void *object, void (*destroy)(void *))
 {
-    return -add(&shorts, object, destroy);
+    return -add(&shorts, object, object, destroy);
+}
+
+int64_t tribo_handle_add_part(void *object, void *owner, void (*destroy)(void *))
+{
+    return -add(&shorts, object, owner, destroy);
 }
 
 void *tribo_handle_find(int64_t number)
@@ -152,13 +158,19 @@ void *tribo_handle_find(int64_t number)
     return p ? LOAD(p->object) : NULL;
 }
 
+void *tribo_handle_owner(int64_t number)
+{
+    struct place *p = find(number);
+    return p && p->owner != LOAD(p->object) ? p->owner : NULL;
+}
+
 void tribo_handle_drop(int64_t number)
 {
     lock();
     const struct place taken = take(number);
     unlock();
     if (taken.object && taken.destroy) {
-        taken.destroy(taken.object);
+        taken.destroy(taken.owner);
     }
 }
 

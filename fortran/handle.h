@@ -16,6 +16,12 @@ TRIBO_API int64_t tribo_handle_add(void *object, void (*destroy)(void *));
 /* The same with a number from -INT32_MAX to -1, whose opposite fits an integer of four bytes. */
 TRIBO_API int64_t tribo_handle_add_short(void *object, void (*destroy)(void *));
 
+/* The same for an object that is part of another one, owner, which is what destroy releases. */
+TRIBO_API int64_t tribo_handle_add_part(void *object, void *owner, void (*destroy)(void *));
+
+/* The owner of the object of a number; NULL if it is no part of another one, or the number has none. */
+TRIBO_API TRIBO_PURE void *tribo_handle_owner(int64_t number);
+
 /* The object of a number, NULL if it has none; any number may be asked for. */
 TRIBO_API TRIBO_PURE void *tribo_handle_find(int64_t number);
 

@@ -538,6 +538,20 @@ module tribo_c
       integer(c_int64_t) :: answer
     end function c_handle_add_short
 
+    function c_handle_add_part(object, owner, destroy) result(answer) bind(c,name='tribo_handle_add_part')
+      import
+      type(c_ptr), value :: object
+      type(c_ptr), value :: owner
+      type(c_funptr), value :: destroy
+      integer(c_int64_t) :: answer
+    end function c_handle_add_part
+
+    pure function c_handle_owner(number) result(answer) bind(c,name='tribo_handle_owner')
+      import
+      integer(c_int64_t), intent(in), value :: number
+      type(c_ptr) :: answer
+    end function c_handle_owner
+
     pure function c_handle_find(number) result(answer) bind(c,name='tribo_handle_find')
       import
       integer(c_int64_t), intent(in), value :: number

@@ -74,7 +74,7 @@ module tribo_systems
     procedure :: real => driver_real
     procedure :: find_periodic
     procedure :: get_multipliers
-    procedure :: period_extremes, period_harmonic, period_dissipation, period_stick
+    procedure :: period_extremes, period_extremes_at, period_harmonic, period_dissipation, period_stick
     procedure :: set_observer
     procedure :: set_max_step
     procedure :: message => driver_message
@@ -866,21 +866,35 @@ contains
     real(dp), intent(inout) :: least, most
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
+    real(dp) :: times(2)
+
+    call this%period_extremes_at(c, least, most, times(1), times(2), stat, errmsg)
+  end subroutine period_extremes
+
+  !> The same and when it has them, from the t that was given to find_periodic on.
+  subroutine period_extremes_at(this, c, least, most, at_least, at_most, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    real(dp), intent(in) :: c(:)
+    real(dp), intent(inout) :: least, most, at_least, at_most
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    real(dp) :: low(1), high(1)
+    real(dp) :: low(1), high(1), at_low(1), at_high(1)
 
     call find_driver(this, w)
     call expect_size(w, 'c', c, w%dimension - 1)
     if (w%status == TRIBO_OK) then
-      w%status = c_driver_period_extremes(w%object, c, low, high)
+      w%status = c_driver_period_extremes_at(w%object, c, low, high, at_low, at_high)
       call keep_message(w)
     end if
     if (w%status == TRIBO_OK) then
       least = low(1)
       most = high(1)
+      at_least = at_low(1)
+      at_most = at_high(1)
     end if
     call finish(w, stat, errmsg)
-  end subroutine period_extremes
+  end subroutine period_extremes_at
 
   !> Its harmonic k >= 0, cosine*cos(k*2*pi*t/period) + sine*sin(k*2*pi*t/period).
   subroutine period_harmonic(this, c, k, cosine, sine, stat, errmsg)

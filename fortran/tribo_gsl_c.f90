@@ -318,6 +318,18 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_driver_period_extremes
 
+    function c_driver_period_extremes_at(drv, c, least, most, at_least, at_most) result(answer) &
+      bind(c,name='tribo_driver_period_extremes_at')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), intent(in), optional :: c(*)
+      real(c_double), intent(inout), optional :: least(*)
+      real(c_double), intent(inout), optional :: most(*)
+      real(c_double), intent(inout), optional :: at_least(*)
+      real(c_double), intent(inout), optional :: at_most(*)
+      integer(c_int) :: answer
+    end function c_driver_period_extremes_at
+
     function c_driver_period_harmonic(drv, c, k, cosine, sine) result(answer) bind(c,name='tribo_driver_period_harmonic')
       import
       type(c_ptr), value :: drv

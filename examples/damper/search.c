@@ -4,24 +4,23 @@
 
 #include "team.h"
 
-enum { INNER = 4 };
-
+/* Each time two more values, in the middles of the halves: the least of three and its neighbours are half as far apart, and what
+ * was the least of all is known. */
 double find_least(double low, double high, double part, evaluate *values, void *data)
 {
-    double a = log(low), b = log(high), limit[INNER], value[INNER], best = sqrt(low * high);
+    double a = log(low), b = log(high), best = sqrt(low * high), least;
+    values(data, &best, &least, 1);
     while (b - a > part && !interrupted()) {
-        const double step = (b - a) / (INNER + 1);
-        int least = 0;
-        for (int i = 0; i < INNER; i++) {
-            limit[i] = exp(a + (i + 1) * step);
+        const double quarter = 0.25 * (b - a), limit[] = {exp(a + quarter), exp(b - quarter)};
+        double value[2];
+        values(data, limit, value, 2);
+        const int side = value[0] < least && value[0] <= value[1] ? -1 : value[1] < least ? 1 : 0;
+        if (side) {
+            best = limit[side > 0];
+            least = value[side > 0];
         }
-        values(data, limit, value, INNER);
-        for (int i = 1; i < INNER; i++) {
-            least = value[i] < value[least] ? i : least;
-        }
-        best = limit[least];
-        a += least * step;
-        b = a + 2.0 * step;
+        a += (1 + side) * quarter;
+        b = a + 2.0 * quarter;
     }
     return best;
 }

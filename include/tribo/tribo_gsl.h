@@ -235,12 +235,14 @@ TRIBO_API const char *tribo_method_name(int method);
  * not known to two digits), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
-/* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact and event; others
- * return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other (in energy), and there
- * is such a motion, as symmetric as its loads, wherever motions are bounded. With it there may be none, or none is found.
+/* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact, event, and auto by
+ * one of the two; others return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other
+ * (in energy), and there is such a motion, as symmetric as its loads, wherever motions are bounded. With it, or with static
+ * limits (such that drop at once), there may be none, or several, or none is found.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
+ * event follows the motion in steps of an error of 1e-13, whatever the tolerances, which are for advance.
  * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
  * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be 1e-4 of
  * what the loads would do against stiffness or inertia alone, at least. That it comes back is seen by following it through the
@@ -251,12 +253,13 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * dimensions.
  * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
- * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits, tribo_set_static;
- * planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits that fall with
+ * the speed, or beside elastic contacts; planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary
- * part. Motions next to it come closer by these factors a period. Contacts at rest forget: multipliers of 0.
+ * part. Motions next to it, in which contacts that rest do so too, come closer by these factors a period. Contacts at rest
+ * forget: multipliers of 0.
  * re, im  [2 ndof] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
@@ -265,6 +268,7 @@ TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, 
  * through its period once. The system must be as it was when the motion was found.
  * c             [2 ndof] in   a combination of displacements and velocities, c'[q, q']
  * least, most          out   its extremes
+ * at_least, at_most    out   a time in the period from t on at which it has them; where it stays there for long, any of that
  * k             in            a harmonic: cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
  * cosine, sine         out
  * energy        [ncontact] out   what each contact dissipates in a period
@@ -272,6 +276,8 @@ TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, 
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
  * TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in resonance with a mode that has next to no damping). */
 TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
+TRIBO_API int tribo_driver_period_extremes_at(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
+                                              double *at_most);
 TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
 TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
 TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);

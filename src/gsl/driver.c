@@ -179,7 +179,7 @@ void tribo_driver_destroy(tribo_driver *drv)
     if (!drv) {
         return;
     }
-    if (drv->shooting) {
+    if (drv->shooting && drv->free_shooting) {
         drv->free_shooting(drv->shooting);
     }
     drv->method->destroy(drv);
@@ -463,8 +463,33 @@ static void destroy_choice(tribo_driver *drv)
     }
 }
 
-/* The advance by one of the two, which sees for itself whether it continues. */
-static int delegate(tribo_driver *drv, int which, double *t, double t1, double *y)
+/* What one of the two is to do: an advance to t1, or to find a periodic motion. */
+struct task {
+    double *t, t1, period, *y;
+    int finds;
+};
+
+static int carry_out(tribo_driver *inner, const struct task *x)
+{
+    return x->finds ? tribo_driver_find_periodic(inner, *x->t, x->period, x->y) : tribo_driver_advance(inner, x->t, x->t1, x->y);
+}
+
+/* Adds what inner has counted since it was what before says. Evaluations in an advance are counted by the caller. */
+static void add_counts(tribo_driver *drv, const tribo_driver *inner, const tribo_driver *before, int finds)
+{
+    drv->steps += inner->steps - before->steps;
+    drv->rejected += inner->rejected - before->rejected;
+    drv->events += inner->events - before->events;
+    drv->periods += inner->periods - before->periods;
+    drv->newton += inner->newton - before->newton;
+    drv->evaluations += finds ? inner->evaluations - before->evaluations : 0;
+    drv->freedom = inner->freedom;
+    drv->excess = greater(drv->excess, inner->excess);
+    drv->backslip = greater(drv->backslip, inner->backslip);
+}
+
+/* A task for one of the two, which sees for itself whether an advance continues. */
+static int delegate(tribo_driver *drv, int which, const struct task *x)
 {
     const struct choice *c = drv->own;
     int status = provide(drv, which);
@@ -472,35 +497,45 @@ static int delegate(tribo_driver *drv, int which, double *t, double t1, double *
         return tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_message(drv->sys->contacts));
     }
     tribo_driver *inner = c->inner[which];
-    const size_t steps = inner->steps, rejected = inner->rejected, events = inner->events;
+    const tribo_driver before = *inner;
     inner->seen = drv->seen;
     inner->data = drv->data;
-    status = tribo_driver_advance(inner, t, t1, y);
-    drv->steps += inner->steps - steps;
-    drv->rejected += inner->rejected - rejected;
-    drv->events += inner->events - events;
-    drv->excess = greater(drv->excess, inner->excess);
-    drv->backslip = greater(drv->backslip, inner->backslip);
-    const int kept = tribo_driver_keep(drv, *t, y), refused = which == EXACT && status == TRIBO_ERR_UNSUPPORTED;
-    if (status && !refused) {
+    status = carry_out(inner, x);
+    add_counts(drv, inner, &before, x->finds);
+    if (x->finds) {
+        drv->shooting = inner->shooting;
+    }
+    const int kept = x->finds ? TRIBO_OK : tribo_driver_keep(drv, *x->t, x->y);
+    if (status && !(which == EXACT && status == TRIBO_ERR_UNSUPPORTED)) {
         tribo_driver_fail(drv, status, "%s", inner->message);
     }
     return status ? status : kept;
 }
 
-static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)
+static int choose_and_delegate(tribo_driver *drv, const struct task *x)
 {
     struct choice *c = drv->own;
-    (void)continues;
     if (choose(drv) == EXACT) {
-        const int status = delegate(drv, EXACT, t, t1, y);
+        const int status = delegate(drv, EXACT, x);
         if (status != TRIBO_ERR_UNSUPPORTED) {
             return status;
         }
         c->refused = 1;
         c->revision = tribo_system_revision(drv->sys);
     }
-    return delegate(drv, EVENT, t, t1, y);
+    return delegate(drv, EVENT, x);
 }
 
-static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL, NULL};
+static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    (void)continues;
+    return choose_and_delegate(drv, &(struct task){.t = t, .t1 = t1, .y = y});
+}
+
+static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
+{
+    return choose_and_delegate(drv, &(struct task){.t = &t, .period = period, .y = y, .finds = 1});
+}
+
+static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL,
+                                        NULL,   find_by_choice};

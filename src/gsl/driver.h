@@ -20,6 +20,8 @@ struct method {
     const void *with; /* the method's own */
     /* Methods that are a loop over events (events.h): makes it ready and hands it out. Others: NULL. */
     int (*open)(tribo_driver *drv, struct events **events);
+    /* As tribo_driver_find_periodic, arguments being checked; NULL: the method cannot. */
+    int (*find_periodic)(tribo_driver *drv, double t, double period, double *y);
 };
 
 struct tribo_driver {
@@ -36,7 +38,7 @@ struct tribo_driver {
     double excess, backslip; /* largest so far; NaN for methods that do not know them */
     int (*seen)(double t, const double *y, int event, void *data);
     void *data;
-    struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting */
+    struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting; NULL: borrowed */
     void (*free_shooting)(struct shooting *s);
     size_t freedom; /* dimension of the family of the last one */
     size_t rested;  /* degrees of freedom left out, step by step */

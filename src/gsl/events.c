@@ -288,6 +288,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     memcpy(y, e->next, dimension * sizeof *y);
     *t = go_on(sys, *t, when, end);
+    e->met = event;
     status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
     if (status) {
         return status;

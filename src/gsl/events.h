@@ -35,6 +35,8 @@ struct events {
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
 
     struct company *company; /* NULL: nobody */
+    const struct guard *met; /* what ended the phase that ends; NULL: no event did */
+    int sharp;               /* the motion is followed to rounding, whatever tolerances say */
 
     double *lasted; /* [ncontact][5] how long the last phase did that began as contact i turned to this slip; 0: none yet */
     double *begun;  /* which of them this phase is; NULL if it began otherwise */
@@ -56,6 +58,9 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
 
 /* The advance of methods that have an open. */
 int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int continues);
+
+/* The find_periodic of methods that have an open. */
+int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest,
  * or two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or

@@ -211,4 +211,4 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
 }
 
 const struct method tribo_method_central_fixed = {
-    "central/fixed", WITHOUT_TOLERANCES, create, destroy, central_advance, NULL, NULL};
+    "central/fixed", WITHOUT_TOLERANCES, create, destroy, central_advance, NULL, NULL, NULL};

@@ -266,10 +266,27 @@ static int expand(struct event *e, double t, const double *y)
     return TRIBO_OK;
 }
 
-/* The error that a step may have in something of this size: not less than its rounding. */
-static double wanted(const tribo_driver *drv, double size)
+/* A motion that is to come back must not depend on where steps happen to end: followed so, their errors are this part of it. */
+#define SHARP 1e-13
+
+/* The largest value of a series, [order + 1][n], on a step of this length, by its terms. */
+static double size_on_step(const struct event *e, const double *series, size_t n, double length)
 {
-    return greater(drv->abstol + drv->reltol * size, DBL_EPSILON * size);
+    double size = 0.0, power = 1.0;
+    for (size_t k = 0; k <= e->order; k++) {
+        size = greater(size, power * tribo_largest(series + k * n, n));
+        power *= length;
+    }
+    return size;
+}
+
+/* The error that a step may have in a series, [order + 1][n]: not less than the rounding of its first term. */
+static double wanted(const struct event *e, const double *series, size_t n, double most)
+{
+    const tribo_driver *drv = e->drv;
+    const double size = tribo_largest(series, n), error = drv->abstol + drv->reltol * size;
+    const double sharp = e->events.sharp && most < HUGE_VAL ? SHARP * size_on_step(e, series, n, most) : 0.0;
+    return greater(sharp > 0.0 ? lesser(error, sharp) : error, DBL_EPSILON * size);
 }
 
 static double fastest(const struct event *e)
@@ -281,17 +298,17 @@ static double fastest(const struct event *e)
 static double step_length(const struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    const tribo_driver *drv = e->drv;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
-    const double q = wanted(drv, tribo_largest(e->q, n)), u = wanted(drv, tribo_largest(e->u, n)), d = wanted(drv, fabs(e->d[0]));
     const double most = fastest(e) > 0.0 ? 0.5 * (double)(e->order + 1) / fastest(e) : HUGE_VAL;
+    const double q = wanted(e, e->q, n, most), u = wanted(e, e->u, n, most), d = wanted(e, e->d, 1, most);
+    const double tolerance = e->events.sharp ? lesser(e->tolerance, SHARP) : e->tolerance;
     double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
         double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
         for (size_t i = 0; i < c; i++) {
             /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
             const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
-            const double force = e->tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
+            const double force = tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
             const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
             const double speed = m->plane ? lesser(u, m->plane->error[i]) : u;
             const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : speed;
@@ -575,7 +592,7 @@ static void state(void *motion, double tau, const double *from, double *to)
 static double planar_length(struct event *e, double most)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    const double error = wanted(e->drv, tribo_largest(e->u, e->sys->ndof));
+    const double error = wanted(e, e->u, e->sys->ndof, HUGE_VAL);
     tribo_planar_series_errors(&e->planar, m, m->plane->error);
     double h = lesser(step_length(e), fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most);
     while (!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) && h > 0.0) {
@@ -628,4 +645,5 @@ static int open_events(tribo_driver *drv, struct events **events)
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 
-const struct method tribo_method_event = {"event", WITH_TOLERANCES, create, destroy, tribo_events_method, NULL, open_events};
+const struct method tribo_method_event = {"event",     WITH_TOLERANCES,           create, destroy, tribo_events_method, NULL,
+                                          open_events, tribo_events_find_periodic};

@@ -315,4 +315,5 @@ static int open_events(tribo_driver *drv, struct events **events)
     return TRIBO_OK;
 }
 
-const struct method tribo_method_exact = {"exact", WITHOUT_TOLERANCES, create, destroy, tribo_events_method, NULL, open_events};
+const struct method tribo_method_exact = {"exact",     WITHOUT_TOLERANCES,        create, destroy, tribo_events_method, NULL,
+                                          open_events, tribo_events_find_periodic};

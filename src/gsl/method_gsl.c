@@ -288,7 +288,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
 }
 
 #define ADAPTIVE(id)                                                                                                             \
-    const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id, NULL};
+    const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id, NULL, NULL};
 ADAPTIVE(rk2)
 ADAPTIVE(rk4)
 ADAPTIVE(rkf45)

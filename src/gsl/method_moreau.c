@@ -469,4 +469,5 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
     return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step);
 }
 
-const struct method tribo_method_moreau_fixed = {"moreau/fixed", WITHOUT_TOLERANCES, create, destroy, moreau_advance, NULL, NULL};
+const struct method tribo_method_moreau_fixed = {
+    "moreau/fixed", WITHOUT_TOLERANCES, create, destroy, moreau_advance, NULL, NULL, NULL};

@@ -20,18 +20,38 @@ size_t tribo_modal_transition_room(const tribo_system *sys, size_t columns)
     return (8 * sys->ndof + 1) * columns;
 }
 
+/* amplitudes [modes][columns] += those of rows of v, displacements or velocities. */
+static void to_modes(const struct transition *x, const double *v, double *amplitudes)
+{
+    const struct modal *h = x->h;
+    double *rows = x->zr;
+    for (size_t i = 0; i < h->moving; i++) {
+        memcpy(rows + i * x->columns, v + h->dof[i] * x->columns, x->columns * sizeof *rows);
+    }
+    tribo_multiply_add(h->modes, h->moving, x->columns, 1.0, h->psi, rows, amplitudes);
+}
+
+/* Rows of v += those of amplitudes. */
+static void add_modes(const struct transition *x, const double *amplitudes, double *v)
+{
+    const struct modal *h = x->h;
+    double *rows = x->zr, *phi = x->zi;
+    tribo_transpose(h->modes, h->moving, h->phi, phi);
+    memset(rows, 0, h->moving * x->columns * sizeof *rows);
+    tribo_multiply_add(h->moving, h->modes, x->columns, 1.0, phi, amplitudes, rows);
+    for (size_t i = 0; i < h->moving; i++) {
+        tribo_add(v + h->dof[i] * x->columns, 1.0, rows + i * x->columns, x->columns);
+    }
+}
+
 /* Amplitudes that v has, and pulls of contacts that are held elsewhere. */
 static void split(const struct transition *x, const double *v)
 {
     const struct modal *h = x->h;
     const size_t n = x->sys->ndof, c = x->columns;
     memset(x->eta, 0, 3 * n * c * sizeof *x->eta);
-    for (size_t k = 0; k < h->modes; k++) {
-        for (size_t i = 0; i < h->moving; i++) {
-            tribo_add(x->eta + k * c, h->psi[k * h->moving + i], v + h->dof[i] * c, c);
-            tribo_add(x->rate + k * c, h->psi[k * h->moving + i], v + (n + h->dof[i]) * c, c);
-        }
-    }
+    to_modes(x, v, x->eta);
+    to_modes(x, v + n * c, x->rate);
     for (size_t o = h->sliding; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         tribo_contact_row(x->sys, out->contact, v, c, x->row);
@@ -178,11 +198,7 @@ void tribo_modal_transition(const struct modal *h, const tribo_system *sys, doub
         move_alone(&x);
     }
     memset(v + block, 0, block * sizeof *v);
-    for (size_t k = 0; k < h->modes; k++) {
-        tribo_add(x.eta + k * columns, -1.0, x.change + k * columns, columns);
-        for (size_t i = 0; i < h->moving; i++) {
-            tribo_add(v + h->dof[i] * columns, h->phi[k * h->moving + i], x.eta + k * columns, columns);
-            tribo_add(v + (n + h->dof[i]) * columns, h->phi[k * h->moving + i], x.rate + k * columns, columns);
-        }
-    }
+    tribo_add(x.eta, -1.0, x.change, h->modes * columns);
+    add_modes(&x, x.eta, v);
+    add_modes(&x, x.rate, v + block);
 }

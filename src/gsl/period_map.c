@@ -69,8 +69,10 @@ static int integrate(struct period_map *m, double t, double end, struct company 
     drv->seen = NULL;
     memcpy(drv->state, m->y, (m->n + 1) * sizeof *m->y);
     m->events->company = company;
+    m->events->sharp = 1;
     status = tribo_events_advance(m->events, drv, &t, end, m->y, 0);
     m->events->company = NULL;
+    m->events->sharp = 0;
     drv->seen = seen;
     drv->evaluations += m->sys->evaluations - evaluations;
     m->halves += m->odd ? 1 : 2;

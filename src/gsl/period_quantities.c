@@ -14,10 +14,10 @@ struct replay {
     const double *c;             /* [2 ndof] the combination asked for */
     struct signal signal, slope; /* it, in the phase */
     double elapsed;              /* since the period began */
-    double least, most;          /* extremes */
-    double omega, re, im;        /* integral with e^{-i omega t} */
-    double *sum;                 /* [ncontact] */
-    double *row;                 /* [2 ndof] workspace */
+    struct extremes extremes;
+    double omega, re, im; /* integral with e^{-i omega t} */
+    double *sum;          /* [ncontact] */
+    double *row;          /* [2 ndof] workspace */
 };
 
 static int no_memory(const struct replay *r)
@@ -62,7 +62,7 @@ static int replay(tribo_driver *drv, struct replay *r)
     const int status = tribo_period_map_replay(&s->map, s->best.y, &r->company);
     tribo_signal_free(&r->signal);
     tribo_signal_free(&r->slope);
-    return status;
+    return status && s->map.drv != drv ? tribo_driver_fail(drv, status, "%s", s->map.drv->message) : status;
 }
 
 static int check_combination(tribo_driver *drv, const double *c)
@@ -80,25 +80,39 @@ static int check_combination(tribo_driver *drv, const double *c)
 static int find_extremes(struct replay *r, double tau, const double *end)
 {
     const int status = set_signal(r, tau, end);
-    return status || tribo_signal_extremes(&r->signal, &r->slope, &r->least, &r->most) ? status : no_memory(r);
+    return status || tribo_signal_extremes(&r->signal, &r->slope, r->map->t + r->elapsed, &r->extremes) ? status : no_memory(r);
 }
 
-int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most)
+int tribo_driver_period_extremes_at(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
+                                    double *at_most)
 {
     if (!drv) {
         return TRIBO_ERR_NULL;
     }
-    if (!c || !least || !most) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !least ? "least" : "most");
+    if (!c || !least || !most || !at_least || !at_most) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL",
+                                 !c         ? "c"
+                                 : !least   ? "least"
+                                 : !most    ? "most"
+                                 : at_least ? "at_most"
+                                            : "at_least");
     }
-    struct replay r = {.phase = find_extremes, .c = c, .least = HUGE_VAL, .most = -HUGE_VAL};
+    struct replay r = {.phase = find_extremes, .c = c, .extremes = {HUGE_VAL, -HUGE_VAL, 0.0, 0.0}};
     int status = check_combination(drv, c);
     status = status ? status : replay(drv, &r);
     if (!status) {
-        *least = r.least;
-        *most = r.most;
+        *least = r.extremes.least;
+        *most = r.extremes.most;
+        *at_least = r.extremes.at_least;
+        *at_most = r.extremes.at_most;
     }
     return status;
+}
+
+int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most)
+{
+    double at_least, at_most;
+    return tribo_driver_period_extremes_at(drv, c, least, most, &at_least, &at_most);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- harmonics */

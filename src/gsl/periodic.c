@@ -1,4 +1,5 @@
 /* Periodic motions: what callers see of them. */
+#include "breakaway.h"
 #include "shooting.h"
 
 #include <math.h>
@@ -9,7 +10,7 @@
 
 static int unsupported(tribo_driver *drv)
 {
-    return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact or event",
+    return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s finds no periodic motions: take exact, event or auto",
                              drv->method->name);
 }
 
@@ -47,21 +48,34 @@ static int check_loads(tribo_driver *drv, double period)
     return TRIBO_OK;
 }
 
-/* Derivatives of motions know no jump of forces where a contact breaks away, and none that follow the speed. */
-static int check_static(tribo_driver *drv)
+/* Derivatives of motions know nothing of forces that follow the speed. */
+static int check_falling(tribo_driver *drv)
+{
+    return !tribo_system_falls(drv->sys)
+               ? TRIBO_OK
+               : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
+                                   "periodic motions are found with static limits that drop at once, and velocity[0] = %g: set "
+                                   "ratios without velocities",
+                                   drv->sys->feq[0]);
+}
+
+/* Nor of forces that jump beside springs without mass, */
+static int check_massless(tribo_driver *drv)
 {
     double *ratio = drv->sys->feq;
     tribo_get_static(drv->sys->contacts, ratio, NULL);
-    for (size_t i = 0; i < drv->sys->ncontact; i++) {
+    for (size_t i = 0; drv->sys->massless.count && i < drv->sys->ncontact; i++) {
         if (ratio[i] > 1.0) {
             return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                     "periodic motions are found without static limits, and ratio[%zu] = %g", i, ratio[i]);
+                                     "periodic motions are found without static limits where degrees of freedom have no mass, and "
+                                     "ratio[%zu] = %g",
+                                     i, ratio[i]);
         }
     }
     return TRIBO_OK;
 }
 
-/* Nor do they know that sliding forces turn. */
+/* nor that sliding forces turn. */
 static int check_planar(tribo_driver *drv)
 {
     const size_t planar = tribo_system_planar(drv->sys);
@@ -76,24 +90,27 @@ static int check_state(tribo_driver *drv, double t, const double *y)
     return status ? tribo_driver_fail(drv, status, "%s", y ? tribo_message(drv->sys->contacts) : "y is NULL") : TRIBO_OK;
 }
 
-int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y)
+int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y)
 {
-    if (!drv) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = drv->method->open ? check_state(drv, t, y) : unsupported(drv);
-    status = status ? status : check_period(drv, t, period);
-    status = status ? status : check_loads(drv, period);
-    status = status ? status : check_static(drv);
-    status = status ? status : check_planar(drv);
-    if (status) {
-        return status;
-    }
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     drv->free_shooting = tribo_shooting_free;
     return drv->shooting ? tribo_shooting_find(drv->shooting, t, period, y)
                          : tribo_driver_fail(drv, TRIBO_ERR_MEMORY,
                                              "out of memory for periodic motions of %zu degrees of freedom", drv->sys->ndof);
+}
+
+int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = drv->method->find_periodic ? check_state(drv, t, y) : unsupported(drv);
+    status = status ? status : check_period(drv, t, period);
+    status = status ? status : check_loads(drv, period);
+    status = status ? status : check_falling(drv);
+    status = status ? status : check_massless(drv);
+    status = status ? status : check_planar(drv);
+    return status ? status : drv->method->find_periodic(drv, t, period, y);
 }
 
 int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im)

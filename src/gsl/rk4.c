@@ -95,4 +95,4 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     return tribo_driver_fixed_steps(drv, t, t1, y, step);
 }
 
-const struct method tribo_method_rk4_fixed = {"rk4/fixed", WITHOUT_TOLERANCES, create, destroy, advance, NULL, NULL};
+const struct method tribo_method_rk4_fixed = {"rk4/fixed", WITHOUT_TOLERANCES, create, destroy, advance, NULL, NULL, NULL};

@@ -135,16 +135,22 @@ static int differentiate(const struct signal *s, struct signal *to)
     return 1;
 }
 
-static void look(const struct signal *s, double at, double *least, double *most)
+static void look(const struct signal *s, double at, double t, struct extremes *e)
 {
     double v[3];
     tribo_signal_at(s, at, v);
-    *least = lesser(*least, v[0]);
-    *most = greater(*most, v[0]);
+    if (v[0] < e->least) {
+        e->least = v[0];
+        e->at_least = t + at;
+    }
+    if (v[0] > e->most) {
+        e->most = v[0];
+        e->at_most = t + at;
+    }
 }
 
 /* From one turning point to the next: where the slope leaves the side on which it is. */
-int tribo_signal_extremes(const struct signal *s, struct signal *slope, double *least, double *most)
+int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t, struct extremes *e)
 {
     if (!differentiate(s, slope)) {
         return 0;
@@ -156,8 +162,8 @@ int tribo_signal_extremes(const struct signal *s, struct signal *slope, double *
     double v[3], when = 0.0;
     search.motion = &course;
     search.resolution = 1e-16 * s->tau;
-    look(s, 0.0, least, most);
-    look(s, s->tau, least, most);
+    look(s, 0.0, t, e);
+    look(s, s->tau, t, e);
     tribo_signal_at(slope, 0.0, v);
     course.side = v[0] > 0.0 || (v[0] == 0.0 && v[1] > 0.0) ? 1.0 : -1.0;
     for (int k = 0; met && k < MOST_TURNS && course.from < s->tau; k++) {
@@ -167,7 +173,7 @@ int tribo_signal_extremes(const struct signal *s, struct signal *slope, double *
         }
         course.from += met ? greater(when, search.resolution) : 0.0;
         course.side = -course.side;
-        look(s, lesser(course.from, s->tau), least, most);
+        look(s, lesser(course.from, s->tau), t, e);
     }
     return 1;
 }

@@ -21,8 +21,13 @@ void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double 
 /* to[3] = the value and its first two derivatives. */
 void tribo_signal_at(const struct signal *s, double at, double *to);
 
-/* Lowers *least and raises *most to what it has there. slope is workspace, freed by the caller. 1, or 0 if out of memory. */
-int tribo_signal_extremes(const struct signal *s, struct signal *slope, double *least, double *most);
+/* Of a signal in several pieces so far, and when. */
+struct extremes {
+    double least, most, at_least, at_most;
+};
+
+/* Takes into *e what a piece that begins at t has. slope is workspace, freed by the caller. 1, or 0 if out of memory. */
+int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t, struct extremes *e);
 
 /* *re + i *im += the integral of it times e^{-i omega s}. */
 void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im);

@@ -1,8 +1,12 @@
 #include "variation.h"
 #include "elastic.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Times at which contacts stop are one time if they differ by no more than this part. */
+#define TOGETHER 1e-6
 
 void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row)
 {
@@ -11,6 +15,80 @@ void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
         tribo_add(row, j->val[k], v + j->col[k] * columns, columns);
     }
+}
+
+/* x->f = the change of the forces that hold contacts by that of q'' without them. Returns a status. */
+static int change_of_holds(struct variation *x, const double *acceleration, int order)
+{
+    memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+    if (order) {
+        tribo_system_loads(x->sys, DRIVES_BASE, order, -1.0, x->a);
+    }
+    tribo_matrix_multiply_add(&x->sys->direction, 1.0, acceleration, x->a);
+    const int status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
+    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.hold)) : TRIBO_OK;
+}
+
+/* to [ndof] += the change of q'' by one of the state, q and u. */
+static void add_change(const tribo_system *sys, const double *q, const double *u, double *to)
+{
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, to);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, u, to);
+    }
+}
+
+/* x->rise, while the forces of contacts that do not hold follow their limits. */
+static int find_rise(struct variation *x, const double *y, double side)
+{
+    tribo_system *sys = x->sys;
+    const struct stick_slip *m = &x->events->stick_slip;
+    double *rate = x->column;
+    tribo_system_limits(sys, x->a, x->f);
+    const double limit_rate = x->f[x->pulled] * tribo_breakaway_ratio(&m->breakaway, x->pulled);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        x->f[i] *= tribo_stick_slip_follows(m, i);
+    }
+    memset(rate, 0, sys->ndof * sizeof *rate);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, rate);
+    add_change(sys, y + sys->ndof, x->acceleration, rate);
+    tribo_matrix_multiply_add(&sys->response, 1.0, x->f, rate);
+    const int status = change_of_holds(x, rate, 2);
+    x->rise = side * x->f[x->pulled] - limit_rate;
+    return status;
+}
+
+/* x->pull, of side times the force. */
+static int find_pull(struct variation *x, double side)
+{
+    const size_t n = x->sys->ndof;
+    double *state = x->column, *change = state + 2 * n;
+    int status = TRIBO_OK;
+    for (size_t j = 0; !status && j < x->columns; j++) {
+        for (size_t d = 0; d < 2 * n; d++) {
+            state[d] = x->v[d * x->columns + j];
+        }
+        memset(change, 0, n * sizeof *change);
+        add_change(x->sys, state, state + n, change);
+        status = change_of_holds(x, change, 0);
+        x->pull[j] = side * x->f[x->pulled];
+    }
+    return status;
+}
+
+/* Whether a static limit is what ends the phase, and then how its force depends on the state. Guards are what is left of the
+ * limit with side times the force. */
+static int find_pulled(struct variation *x, const double *y)
+{
+    const struct guard *g = x->events->met;
+    const struct stick_slip *m = &x->events->stick_slip;
+    x->pulled = x->sys->ncontact;
+    if (!g || g->slides || !m->holds[g->contact] || !tribo_breakaway_is_sudden(&m->breakaway, g->contact)) {
+        return TRIBO_OK;
+    }
+    x->pulled = g->contact;
+    const int status = find_rise(x, y, -g->side);
+    return status ? status : find_pull(x, -g->side);
 }
 
 static int phase_ends(struct company *company, double tau, double t, const double *y)
@@ -25,7 +103,8 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
     tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
     tribo_matrix_multiply_add(&sys->direction, 1.0, x->acceleration, x->slope);
-    return status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
+    status = status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
+    return status ? status : find_pulled(x, y);
 }
 
 /* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there; an elastic
@@ -37,13 +116,13 @@ static int stops(const struct variation *x, size_t i)
     return slid && now != before && now != 2 && before * x->slope[i] < 0.0;
 }
 
-/* u += jump of accelerations, dt earlier: v_i' dt = row. */
-static void jump_earlier(struct variation *x, size_t i, const double *row)
+/* u += jump of accelerations, dt earlier: slope dt = row. */
+static void jump_earlier(struct variation *x, double slope, const double *row)
 {
     const size_t n = x->sys->ndof;
     const double *after = x->events->stick_slip.acceleration;
     for (size_t d = 0; d < n; d++) {
-        tribo_add(x->v + (n + d) * x->columns, (after[d] - x->acceleration[d]) / x->slope[i], row, x->columns);
+        tribo_add(x->v + (n + d) * x->columns, (after[d] - x->acceleration[d]) / slope, row, x->columns);
     }
 }
 
@@ -58,38 +137,68 @@ static void reverse(struct variation *x, size_t i, const double *row)
     }
 }
 
-/* Contacts that stop together do so by what moved them before. */
+/* The contacts that stop, to x->stopped, and how much earlier perturbed motions have them do so, in rows. Returns how many. */
+static size_t find_stopped(struct variation *x)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        if (stops(x, i)) {
+            tribo_contact_row(x->sys, i, x->v + x->sys->ndof * x->columns, x->columns, x->rows + count * x->columns);
+            x->stopped[count++] = i;
+        }
+    }
+    return count;
+}
+
+/* 1 if perturbed motions, too, have these contacts stop at one time: others that hold tie them together. */
+static int together(const struct variation *x, size_t count)
+{
+    const double slope = x->slope[x->stopped[0]], size = tribo_largest(x->rows, x->columns) / fabs(slope);
+    for (size_t k = 1; k < count; k++) {
+        for (size_t j = 0; j < x->columns; j++) {
+            const double dt = x->rows[k * x->columns + j] / x->slope[x->stopped[k]] - x->rows[j] / slope;
+            if (fabs(dt) > TOGETHER * size) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+/* Contacts that stop by coincidence do so by what moved them before, each at its own time. */
 static void event_decided(struct company *company)
 {
     struct variation *x = (struct variation *)company;
-    const size_t c = x->sys->ncontact;
-    size_t count = 0;
-    for (size_t i = 0; i < c; i++) {
-        if (stops(x, i)) {
-            tribo_contact_row(x->sys, i, x->v + x->sys->ndof * x->columns, x->columns, x->rows + count * x->columns);
-            count++;
+    const size_t count = find_stopped(x);
+    if (count && together(x, count)) {
+        jump_earlier(x, x->slope[x->stopped[0]], x->rows);
+    } else {
+        for (size_t k = 0; k < count; k++) {
+            reverse(x, x->stopped[k], x->rows + k * x->columns);
         }
     }
-    for (size_t i = 0, k = 0; i < c; i++) {
-        if (stops(x, i)) {
-            (count > 1 ? reverse : jump_earlier)(x, i, x->rows + k * x->columns);
-            k++;
-        }
+    if (x->pulled < x->sys->ncontact && x->events->stick_slip.slip[x->pulled] != 0 && x->rise > 0.0) {
+        jump_earlier(x, x->rise, x->pull);
     }
 }
 
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
     *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
-    x->v = malloc(((2 * sys->ndof + sys->ncontact) * columns + 2 * sys->ncontact + 3 * sys->ndof + 1) * sizeof *x->v);
+    x->v = malloc(((2 * sys->ndof + sys->ncontact + 1) * columns + 4 * sys->ncontact + 6 * sys->ndof + 1) * sizeof *x->v);
     x->before = malloc(sys->ncontact + 1);
-    if (!x->v || !x->before) {
+    x->stopped = malloc((sys->ncontact + 1) * sizeof *x->stopped);
+    if (!x->v || !x->before || !x->stopped) {
         return 0;
     }
     x->rows = x->v + 2 * sys->ndof * columns;
     x->slope = x->rows + sys->ncontact * columns;
-    x->acceleration = x->slope + sys->ncontact;
-    x->work = x->acceleration + sys->ndof;
+    x->a = x->slope + sys->ncontact;
+    x->f = x->a + sys->ncontact;
+    x->acceleration = x->f + sys->ncontact;
+    x->column = x->acceleration + sys->ndof;
+    x->pull = x->column + 3 * sys->ndof;
+    x->work = x->pull + columns;
     return 1;
 }
 
@@ -97,5 +206,6 @@ void tribo_variation_free(struct variation *x)
 {
     free(x->v);
     free(x->before);
+    free(x->stopped);
     memset(x, 0, sizeof *x);
 }

@@ -2,10 +2,11 @@
  *
  * In a phase they move as the structure does without loads and without what slides, contacts at rest being held: a perturbed
  * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for
- * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once,
- * each makes the jump that its force does. Where one breaks away accelerations are continuous, since the problem that decides
- * about them has one solution: S = I. Forces of elastic contacts are continuous, too; but once one slides, its force stays, and
- * what has no mass moves by the rest. */
+ * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once
+ * by coincidence, each makes the jump that its force does. Where one breaks away accelerations are continuous, since the problem
+ * that decides about them has one solution: S = I. But not by a static limit that drops at once: there they jump when the force
+ * that holds contact i meets it, S = I + (q''+ - q''-) df_i/(limit' - f_i') for a force that rises. Forces of elastic contacts
+ * are continuous, too; but once one slides, its force stays, and what has no mass moves by the rest. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
@@ -22,6 +23,12 @@ struct variation {
     double *acceleration; /* [ndof] and q'' */
     double *work;         /* [2 ndof + ncontact] */
     signed char *before;  /* [ncontact] slip in the phase that ends */
+    size_t *stopped;      /* [ncontact] the contacts that stop there */
+    size_t pulled;        /* the contact whose static limit its force meets there; ncontact: none */
+    double *pull;         /* [columns] change of that force, */
+    double rise;          /* and how fast it outgrows the limit */
+    double *column;       /* [3 ndof] workspace; */
+    double *a, *f;        /* [ncontact] and this */
 };
 
 /* 1, or 0 if out of memory; tribo_variation_free takes what failed too. */

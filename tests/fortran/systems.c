@@ -182,6 +182,12 @@ static void periodic(void)
     put_one(tribo_driver_period_extremes(drv, c, &a, &b));
     put_one(a);
     put_one(b);
+    double least, most;
+    put_one(tribo_driver_period_extremes_at(drv, c, &least, &most, &a, &b));
+    put_one(least);
+    put_one(most);
+    put_one(a);
+    put_one(b);
     put_one(tribo_driver_period_harmonic(drv, c, 3, &a, &b));
     put_one(a);
     put_one(b);

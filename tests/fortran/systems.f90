@@ -285,7 +285,7 @@ contains
     type(tribo_system) :: sys
     type(tribo_driver) :: drv
     real(dp), parameter :: period = 8.975979010256552_dp, c(2) = [1.0_dp, 0.5_dp]
-    real(dp) :: y(3), re(2), im(2), a, b, contact(1)
+    real(dp) :: y(3), re(2), im(2), a, b, at(2), contact(1)
     integer :: stat
 
     y = 0
@@ -304,6 +304,10 @@ contains
     call compare('period_extremes', stat)
     call compare('period_extremes: least', a)
     call compare('period_extremes: most', b)
+    call drv%period_extremes_at(c, a, b, at(1), at(2), stat)
+    call compare('period_extremes_at', stat)
+    call compare('period_extremes_at: extremes', [a, b])
+    call compare('period_extremes_at: times', at)
     call drv%period_harmonic(c, 3, a, b, stat)
     call compare('period_harmonic', stat)
     call compare('period_harmonic: cosine', a)

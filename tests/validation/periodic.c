@@ -6,7 +6,7 @@
 #define MOST_DOFS 4
 #define MOST_STATES (2 * MOST_DOFS + 1)
 
-static const char *const methods[] = {"exact", "event"};
+static const char *const methods[] = {"exact", "event", "auto"};
 
 /* A structure of so many degrees of freedom, and a driver that looks for its motion of the load's period. */
 struct search {
@@ -207,6 +207,32 @@ TEST(open)
     assert_ok(tribo_driver_period_harmonic(s.drv, c, 3, &cosine, &sine));
     assert_close(hypot(cosine, sine), 0.0, 1e-12);
     require(driver_count(s.drv, TRIBO_COUNT_PERIODS) <= 3, "%zu periods", driver_count(s.drv, TRIBO_COUNT_PERIODS));
+    search_free(&s);
+}
+
+/* Extremes are where the velocity is zero, at times of the period that was asked for; of a linear motion, and of one
+ * that stops. */
+TEST(times_of_extremes)
+{
+    const double damping = 0.2, omega = 1.3, limit = _i / 2 ? 0.4 : 0.0, t = 40.0, c[] = {1.0, 0.0};
+    struct search s = oscillator_search(methods[_i % 2], damping, limit, 1.5, omega);
+    double y[3] = {0}, at[2], e[2], least, most, from = t;
+    find(&s, t, y);
+    assert_ok(tribo_driver_period_extremes(s.drv, c, &least, &most));
+    assert_ok(tribo_driver_period_extremes_at(s.drv, c, &e[0], &e[1], &at[0], &at[1]));
+    assert_exact(e[0], least);
+    assert_exact(e[1], most);
+    for (int i = 0; i < 2; i++) {
+        const int k = at[0] < at[1] ? i : 1 - i; /* the earlier one first */
+        require(at[k] >= t && at[k] <= t + s.period, "extreme %d at %g", k, at[k]);
+        driver_advance(s.drv, &from, at[k], y);
+        assert_close(y[0], e[k], 1e-9);
+        assert_close(y[1], 0.0, 1e-9);
+    }
+    if (limit == 0.0) {
+        const double turns = (omega * at[1] - atan2(damping * omega, 1.0 - omega * omega)) / (2.0 * PI);
+        assert_close(turns, round(turns), 1e-11);
+    }
     search_free(&s);
 }
 
@@ -511,15 +537,92 @@ TEST(errors)
 
 TEST(other_methods)
 {
-    static const char *const others[] = {"rk4/fixed", "central/fixed", "moreau/fixed", "rkf45", "auto"};
+    static const char *const others[] = {"rk4/fixed", "central/fixed", "moreau/fixed", "rkf45"};
     struct search s = oscillator_search(others[_i], 0.1, 0.5, 1.0, 0.8);
     double y[3] = {0};
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(s.drv), "exact or event");
+    assert_says(tribo_driver_message(s.drv), "exact, event or auto");
     search_free(&s);
 }
 
+/* Static limits that drop at once, and a belt that moves or swings: the motion is where marching leads to; multipliers are those
+ * of differences, in which a contact that rests stays so. */
+TEST(static_limit)
+{
+    static const struct {
+        double omega, limit, ratio, speed, turns;
+    } scene[] = {{0.5, 0.5, 1.4, 0.0, 0.0}, {0.3, 0.4, 1.6, 0.0, 0.0}, {0.5, 0.5, 1.4, 0.3, 1.0}, {0.3, 0.4, 1.6, 0.3, 0.0}};
+    const double limit = scene[_i / 3].limit, h = 1e-6;
+    struct search s = oscillator_search(methods[_i % 3], 0.1, limit, 1.0, scene[_i / 3].omega);
+    double y[3] = {0}, z[3] = {0}, m[2][2], re[2], im[2], share, t = 0.0;
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), &scene[_i / 3].ratio, NULL));
+    assert_ok(tribo_system_add_base_motion(s.sys, scene[_i / 3].turns * s.omega, &scene[_i / 3].speed, NULL));
+    find(&s, 0.0, y);
+    assert_ok(tribo_driver_period_stick(s.drv, &share));
+    require(share > 0.1, "rests for %g of the period", share);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    for (int k = 0; k < 2; k++) {
+        double up[3] = {y[0], y[1], 0.0}, down[3] = {y[0], y[1], 0.0};
+        up[k] += h;
+        down[k] -= h;
+        dissipated(&s, up);
+        dissipated(&s, down);
+        for (int i = 0; i < 2; i++) {
+            m[i][k] = (up[i] - down[i]) / (2.0 * h);
+        }
+    }
+    assert_close(re[0] + re[1], m[0][0] + m[1][1], 1e-6);
+    assert_close(re[0] * re[1] - im[0] * im[1], m[0][0] * m[1][1] - m[0][1] * m[1][0], 1e-6);
+    driver_advance(s.drv, &t, 300.0 * s.period, z);
+    assert_all_close(z, y, 2, 1e-9);
+    search_free(&s);
+}
+
+/* Limits that fall with the speed are refused, by whatever method. */
+TEST(falling_limit)
+{
+    const double ratio = 1.5, velocity = 0.3;
+    struct search s = oscillator_search(methods[_i], 0.1, 0.5, 1.0, 0.5);
+    double y[3] = {0.25, 0.0, 0.0};
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), &ratio, &velocity));
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "velocity[0] = 0.3");
+    assert_exact(y[0], 0.25);
+    search_free(&s);
+}
+
+/* "auto" leaves it to one of the two, with all that is asked of the motion and counted, and goes on as they do. */
+TEST(automatic)
+{
+    const double one[] = {1.0, 0.0};
+    double y[2][3] = {{0}}, e[2][2], re[2][2], im[2][2], t, z[2][3] = {{0}};
+    size_t count[2];
+    for (int k = 0; k < 2; k++) {
+        struct search s = oscillator_search(k ? "auto" : "exact", 0.1, 0.5, 1.0, 0.8);
+        assert_status(tribo_driver_get_multipliers(s.drv, re[k], im[k]), TRIBO_ERR_STATE);
+        find(&s, 0.0, y[k]);
+        assert_says(tribo_driver_method(s.drv), "exact");
+        assert_ok(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1]));
+        assert_ok(tribo_driver_get_multipliers(s.drv, re[k], im[k]));
+        count[k] = driver_count(s.drv, TRIBO_COUNT_PERIODS);
+        assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1.1 * s.period, y[k]), TRIBO_ERR_RANGE);
+        assert_says(tribo_driver_message(s.drv), "load[0], omega = 0.8");
+        t = 0.0;
+        driver_advance(s.drv, &t, 10.0, z[k]);
+        assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.6));
+        assert_status(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1]), TRIBO_ERR_STATE);
+        assert_says(tribo_driver_message(s.drv), "has changed");
+        search_free(&s);
+    }
+    assert_all_exact(y[1], y[0], 3);
+    assert_all_exact(z[1], z[0], 3);
+    assert_all_exact(e[1], e[0], 2);
+    assert_all_exact(re[1], re[0], 2);
+    require(count[1] == count[0] && count[0] > 0, "%zu periods, not %zu", count[1], count[0]);
+}
+
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
-          {stuck, 2}, {open, 2}, {constant_load, 2}, {swinging_limits, 8}, {multipliers_of_swinging_limits, 2}, {belt, 2},
-          {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2},
-          {nothing_left, 2}, {errors, 2}, {other_methods, 5})
+          {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
+          {multipliers_of_swinging_limits, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2},
+          {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12},
+          {falling_limit, 3}, {automatic, 1})

@@ -100,4 +100,26 @@ TEST(marching)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("periodic_beam", {sweep, 8}, {marching, 5})
+/* By "event", whose tolerances may be coarse: the motions come back on "exact", and need no more work; of contacts
+ * that slip, and of such that stay stuck. Loop test: _i / 4 is the tolerance, _i % 4 the frequency. */
+TEST(coarse_tolerances)
+{
+    const double tolerance[] = {1e-4, 1e-6, 1e-9};
+    tribo_system *sys = beam_with_contacts(0.0);
+    const double omega = frequency(sys, _i % 4), period = 2.0 * PI / omega;
+    beam_add_load(sys, omega);
+    tribo_driver *drv = driver_create(sys, "event", period, tolerance[_i / 4]);
+    for (int i = 4; i <= 36; i += 8) {
+        double y[BEAM_STATES] = {0};
+        assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit_of(i)));
+        const int status = tribo_driver_find_periodic(drv, 0.0, period, y);
+        require(!status, "limit %g: %s", limit_of(i), tribo_driver_message(drv));
+        check_return(sys, period, y);
+    }
+    const size_t work = driver_count(drv, TRIBO_COUNT_PERIODS);
+    require(work <= 80, "%zu periods", work);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("periodic_beam", {sweep, 8}, {coarse_tolerances, 12}, {marching, 5})

@@ -175,26 +175,67 @@ TEST(marching)
     tribo_system_destroy(s.sys);
 }
 
-/* The sum of the multipliers, and of their squares, is the trace of the map's derivative, and of its square. */
-TEST(multipliers)
+static double mass_product(const struct structure *s, const double *a, const double *b)
 {
-    struct structure s;
-    structure_create(&s, 2000 + _i);
-    tribo_driver *drv = driver_create(s.sys, "exact", 1.0, 0.0);
-    const size_t n = 2 * s.ndof;
+    double sum = 0.0;
+    for (size_t i = 0; i < s->ndof; i++) {
+        sum += a[i] * s->mass[i * s->ndof + i] * b[i];
+    }
+    return sum;
+}
+
+/* Takes the velocities of the contacts that rest in y out of u: held by more than their kinetic limit they would slide away. */
+static void hold(const struct structure *s, const double *y, double *u)
+{
+    double held[CONTACTS][DOFS] = {{0}}, v[CONTACTS];
+    size_t count = 0;
+    assert_ok(tribo_system_contacts(s->sys, 0.0, y, v, NULL, NULL));
+    for (size_t i = 0; i < s->ncontact; i++) {
+        double *b = held[count];
+        for (size_t d = 0; d < s->ndof; d++) {
+            b[d] = s->direction[i * s->ndof + d] / s->mass[d * s->ndof + d];
+        }
+        const double size = sqrt(mass_product(s, b, b));
+        for (size_t k = 0; k < count; k++) {
+            const double part = mass_product(s, held[k], b);
+            for (size_t d = 0; d < s->ndof; d++) {
+                b[d] -= part * held[k][d];
+            }
+        }
+        const double rest = sqrt(mass_product(s, b, b));
+        if (fabs(v[i]) < 1e-12 && rest > 1e-9 * size) {
+            for (size_t d = 0; d < s->ndof; d++) {
+                b[d] /= rest;
+            }
+            count++;
+        }
+    }
+    for (size_t k = 0; k < count; k++) {
+        const double part = mass_product(s, held[k], u);
+        for (size_t d = 0; d < s->ndof; d++) {
+            u[d] -= part * held[k][d];
+        }
+    }
+}
+
+/* The sum of the multipliers, and of their squares, is the trace of the map's derivative, and of its square. */
+static void check_multipliers(const struct structure *s, tribo_driver *drv, const double *y, double *re, double *im)
+{
+    const size_t n = 2 * s->ndof;
     static double m[2 * DOFS][2 * DOFS];
-    double y[STATES] = {0}, re[2 * DOFS], im[2 * DOFS], trace[2] = {0}, sum[2] = {0};
-    find(&s, drv, y);
+    double trace[2] = {0}, sum[2] = {0};
     assert_ok(tribo_driver_get_multipliers(drv, re, im));
     const double h = 1e-6 * fmax(largest(y, n), 1e-3);
     for (size_t k = 0; k < n; k++) {
-        double up[STATES], down[STATES];
-        memcpy(up, y, sizeof up);
-        memcpy(down, y, sizeof down);
-        up[k] += h;
-        down[k] -= h;
-        follow(&s, drv, up);
-        follow(&s, drv, down);
+        double up[STATES], down[STATES], change[STATES] = {0};
+        change[k] = h;
+        hold(s, y, change + s->ndof);
+        for (size_t i = 0; i < STATES; i++) {
+            up[i] = y[i] + change[i];
+            down[i] = y[i] - change[i];
+        }
+        follow(s, drv, up);
+        follow(s, drv, down);
         for (size_t i = 0; i < n; i++) {
             m[i][k] = (up[i] - down[i]) / (2.0 * h);
         }
@@ -208,9 +249,56 @@ TEST(multipliers)
             trace[1] += m[i][k] * m[k][i];
         }
     }
-    assert_close(hypot(re[0], im[0]), fmin(hypot(re[0], im[0]), 1.0), 1e-7);
     assert_close(sum[0], trace[0], 1e-5 * (double)n);
     assert_close(sum[1], trace[1], 1e-5 * (double)n);
+}
+
+TEST(multipliers)
+{
+    struct structure s;
+    structure_create(&s, 2000 + _i);
+    tribo_driver *drv = driver_create(s.sys, "exact", 1.0, 0.0);
+    double y[STATES] = {0}, re[2 * DOFS], im[2 * DOFS];
+    find(&s, drv, y);
+    check_multipliers(&s, drv, y, re, im);
+    assert_close(hypot(re[0], im[0]), fmin(hypot(re[0], im[0]), 1.0), 1e-7);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(s.sys);
+}
+
+/* From rest the motion never settles to one of this period. */
+static void march_in_vain(const struct structure *s, tribo_driver *drv)
+{
+    double y[STATES] = {0}, z[STATES], t = 0.0;
+    driver_advance(drv, &t, 1000.0 * s->period, y);
+    memcpy(z, y, sizeof z);
+    driver_advance(drv, &t, 1001.0 * s->period, z);
+    const double off = energy_between(s, y, z);
+    require(off > 1e-6, "marching comes to a motion that comes back within %g, which is not found", off);
+}
+
+/* Static limits that drop at once: there may be no motion that comes back, or unstable ones, or several. */
+TEST(static_limits)
+{
+    struct structure s;
+    structure_create(&s, 4000 + _i);
+    struct random r = random_of(_i);
+    double ratio[CONTACTS], y[STATES] = {0}, z[STATES], re[2 * DOFS], im[2 * DOFS];
+    const double zero[STATES] = {0};
+    for (size_t i = 0; i < s.ncontact; i++) {
+        ratio[i] = uniform(&r, 1.0, 2.0);
+    }
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), ratio, NULL));
+    tribo_driver *drv = driver_create(s.sys, "exact", 1.0, 0.0);
+    if (tribo_driver_find_periodic(drv, 0.0, s.period, y) == TRIBO_ERR_NO_CONVERGENCE) {
+        march_in_vain(&s, drv);
+    } else {
+        find(&s, drv, y);
+        memcpy(z, y, sizeof z);
+        follow(&s, drv, z);
+        assert_close(energy_between(&s, y, z), 0.0, 2e-10 * fmax(energy_between(&s, y, zero), 1e-3));
+        check_multipliers(&s, drv, y, re, im);
+    }
     tribo_driver_destroy(drv);
     tribo_system_destroy(s.sys);
 }
@@ -231,4 +319,4 @@ TEST(event)
     tribo_system_destroy(s.sys);
 }
 
-TEST_MAIN("periodic_random", {comes_back, 150}, {marching, 12}, {multipliers, 40}, {event, 12})
+TEST_MAIN("periodic_random", {comes_back, 150}, {marching, 12}, {multipliers, 40}, {static_limits, 100}, {event, 12})

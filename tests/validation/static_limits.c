@@ -236,20 +236,5 @@ TEST(falls_and_swings)
     tribo_system_destroy(sys);
 }
 
-/* What the derivatives of motions do not know is refused, before anything is sought. */
-TEST(not_periodic)
-{
-    double y[3] = {0.25, 0.0, 0.0};
-    tribo_system *sys = block(1.0, 1.0, 0.4);
-    add_load(sys, 1.0, 1.0, 0.0);
-    set_static(sys, 1.5, _i / 2 ? 0.5 : 0.0);
-    tribo_driver *drv = driver_create(sys, methods[_i % 2], 1.0, TOLERANCE);
-    assert_status(tribo_driver_find_periodic(drv, 0.0, 2.0 * PI, y), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(drv), "ratio[0] = 1.5");
-    assert_exact(y[0], 0.25);
-    tribo_driver_destroy(drv);
-    tribo_system_destroy(sys);
-}
-
 TEST_MAIN("static_limits", {let_go, 2}, {grazing, 2}, {touches_down, 2}, {lifts_off, 2}, {doubled, 2},
-          {located_methods_agree, 40}, {steps_agree, 8}, {falls_and_swings, 1}, {not_periodic, 4})
+          {located_methods_agree, 40}, {steps_agree, 8}, {falls_and_swings, 1})

@@ -1,0 +1,84 @@
+C     THE BEST FRICTION DAMPER OF FIVE MASSES IN A ROW, THE FIRST ONE ON
+C     A SPRING TO THE WALL. THE LAST ONE IS SHAKEN, AT ANY FREQUENCY UP
+C     TO 0.7; THE THIRD ONE RUBS AGAINST A FIXED PLATE. WHICH LIMIT (MU
+C     TIMES NORMAL LOAD) KEEPS THE LAST ONE QUIETEST WHERE IT IS WORST?
+C     GOLDEN SECTION OVER THE LOGARITHM OF THE LIMIT.
+      PROGRAM DAMPER
+      IMPLICIT REAL*8 (A-H,O-Z)
+      PARAMETER (N = 5)
+      DIMENSION RM(N,N), C(N,N), RK(N,N), RJ(1,N)
+      CHARACTER*120 TEXT
+      COMMON /HANDLE/ IH
+      DATA RM /25*0D0/, RK /25*0D0/, RJ /0D0, 0D0, 1D0, 0D0, 0D0/
+      DO 10 I = 1, N
+         RM(I,I) = 1D0
+         RK(I,I) = 2D0
+         IF (I .EQ. N) RK(I,I) = 1D0
+         IF (I .GT. 1) RK(I,I-1) = -1D0
+         IF (I .GT. 1) RK(I-1,I) = -1D0
+   10 CONTINUE
+      DO 30 J = 1, N
+         DO 20 I = 1, N
+            C(I,J) = 0.01D0*RK(I,J)
+   20    CONTINUE
+   30 CONTINUE
+      CALL TRBLIN(N, 1, RM, C, RK, N, RJ, 1, IH, TEXT, IERR)
+      IF (IERR .NE. 0) WRITE (*,*) TEXT
+      IF (IERR .NE. 0) STOP 1
+      CALL TRBDRV(IH, 'exact', 1D0, 0D0, 0D0, IERR)
+      A = DLOG(0.1D0)
+      B = DLOG(10D0)
+      G = 0.5D0*(DSQRT(5D0) - 1D0)
+   40 P = B - G*(B - A)
+      Q = A + G*(B - A)
+      IF (WORST(DEXP(P)) .LT. WORST(DEXP(Q))) THEN
+         B = Q
+      ELSE
+         A = P
+      END IF
+      IF (B - A .GT. 1D-5) GOTO 40
+      BEST = DEXP(0.5D0*(A + B))
+      WRITE (*,50) 'limit', BEST
+      WRITE (*,50) 'amplitude', WORST(BEST)
+      WRITE (*,50) 'at.0.4', AMPL(0.4D0, BEST)
+      CALL TRBSHS(IH, 1, SHARE, IERR)
+      WRITE (*,50) 'rest', SHARE
+      WRITE (*,50) 'free', AMPL(0.4D0, 0D0)
+      WRITE (*,50) 'stuck', AMPL(0.4D0, 1D6)
+   50 FORMAT ('masses.', A, 1X, 1PE20.12)
+      CALL TRBDEL(IH, IERR)
+      END
+C
+C     THE LARGEST AMPLITUDE OF ALL FREQUENCIES
+      DOUBLE PRECISION FUNCTION WORST(FMUN)
+      IMPLICIT REAL*8 (A-H,O-Z)
+      WORST = 0D0
+      DO 10 K = 20, 70
+         WORST = DMAX1(WORST, AMPL(0.01D0*K, FMUN))
+   10 CONTINUE
+      END
+C
+C     HOW FAR THE LAST MASS MOVES, STEADILY, AT ONE FREQUENCY
+      DOUBLE PRECISION FUNCTION AMPL(OMEGA, FMUN)
+      IMPLICIT REAL*8 (A-H,O-Z)
+      PARAMETER (N = 5)
+      DIMENSION PC(N), PS(N), Y(2*N+1), CV(2*N)
+      CHARACTER*120 TEXT
+      COMMON /HANDLE/ IH
+      DATA PC /5*0D0/, PS /0D0, 0D0, 0D0, 0D0, 1D0/
+      DATA CV /0D0, 0D0, 0D0, 0D0, 1D0, 5*0D0/
+      DO 10 I = 1, 2*N + 1
+         Y(I) = 0D0
+   10 CONTINUE
+      CALL TRBLM1(IH, FMUN, IERR)
+      CALL TRBCLL(IH, IERR)
+      CALL TRBLOD(IH, N, OMEGA, PC, PS, IERR)
+      CALL TRBPER(IH, N, 0D0, 8D0*DATAN(1D0)/OMEGA, Y, IERR)
+      IF (IERR .EQ. 0) CALL TRBEXT(IH, N, CV, XMIN, XMAX, TMIN, TMAX,
+     1                             IERR)
+      AMPL = 0.5D0*(XMAX - XMIN)
+      IF (IERR .EQ. 0) RETURN
+      CALL TRBMSG(IH, TEXT, IERR)
+      WRITE (*,*) TEXT
+      STOP 1
+      END

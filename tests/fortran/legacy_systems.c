@@ -1,0 +1,61 @@
+/* What legacy_systems.f does, by the functions of C. */
+#include "tape.h"
+#include "tribo/tribo_gsl.h"
+
+#define N 2
+#define DIMENSION (2 * N + 1)
+
+static void put_period(tribo_driver *drv, double *y)
+{
+    const double c[2 * N] = {1.0, -0.5, 0.25, 0.0};
+    double re[2 * N], im[2 * N], a, b, at[2], each[N];
+    size_t count = 0;
+    put_one(tribo_driver_find_periodic(drv, 0.5, 7.853981633974483, y));
+    put(DIMENSION, y);
+    tribo_driver_get_multipliers(drv, re, im);
+    put(2 * N, re);
+    put(2 * N, im);
+    tribo_driver_period_extremes_at(drv, c, &a, &b, &at[0], &at[1]);
+    put_one(a);
+    put_one(b);
+    put(2, at);
+    tribo_driver_period_harmonic(drv, c, 3, &a, &b);
+    put_one(a);
+    put_one(b);
+    tribo_driver_period_dissipation(drv, each);
+    put(N, each);
+    tribo_driver_period_stick(drv, each);
+    put(N, each);
+    tribo_driver_count(drv, TRIBO_COUNT_PERIODS, &count);
+    put_one((double)count);
+}
+
+void legacy_systems_play(void)
+{
+    const double mass[N * N] = {1.0, 0.0, 0.0, 2.0}, stiffness[N * N] = {3.0, -1.0, -1.0, 2.0};
+    const double damping[N * N] = {0.3, -0.1, -0.1, 0.1}, direction[N * N] = {1.0, 0.0, -1.0, 1.0};
+    const double cosine[N] = {1.0, -0.5}, sine[N] = {0.2, 0.7}, base[N] = {0.1, 0.0}, swing[N] = {0.05, 0.0};
+    const double limit[N] = {0.3, 0.2}, zero[N] = {0.0, 0.0}, omega = 0.8;
+    for (int damped = 0; damped < 2; damped++) {
+        double y[DIMENSION] = {0.0}, t = 0.5;
+        tribo_system *sys = NULL;
+        tribo_driver *drv = NULL;
+        tribo_system_linear(&sys, N, N, mass, damped ? damping : NULL, stiffness, direction, 0, NULL, 0);
+        tribo_set_limit(tribo_system_context(sys), limit);
+        tribo_system_add_load(sys, omega, sine, cosine);
+        tribo_system_clear_loads(sys);
+        tribo_system_add_load(sys, omega, cosine, sine);
+        tribo_system_add_base_motion(sys, omega, base, zero);
+        tribo_system_add_limit(sys, 2.0 * omega, zero, swing);
+        tribo_driver_create(&drv, sys, "event", 0.1, 1e-9, 1e-9);
+        put_period(drv, y);
+        tribo_driver_destroy(drv);
+        tribo_driver_create(&drv, sys, "exact", 0.1, 0.0, 0.0);
+        put_period(drv, y);
+        put_one(tribo_driver_advance(drv, &t, 3.0, y));
+        put_one(t);
+        put(DIMENSION, y);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
