@@ -19,7 +19,7 @@ struct contact {
     double limit; /* NaN: it varies, and is mu times what it varies with */
     double mu;
     double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
-    int planar; /* the first direction of two, and the next contact is the other one */
+    int planar;       /* the first direction of two, and the next contact is the other one */
 };
 
 /* "X,Y,Z,DIR" */

@@ -22,8 +22,9 @@ static double most_credit(const struct events *e)
 #define HEADWAY 1e-2
 #define MOST_STUCK 1e6
 
-/* So many steps without events mean that there is no headway, if together they take less than such a time. */
-#define MOST_IDLE 10000
+/* So many steps without events mean that there is no headway, if together they take less than such a time. Planar contacts that
+ * creep take some ten thousand. */
+#define MOST_IDLE 100000
 
 /* Slips from -1 to 3. */
 #define SLIPS 5

@@ -4,8 +4,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor. */
-#define RESONANCE 1e-3
+/* Closer than this, relative, the response to a harmonic is computed without the closed form's small divisor: what a response
+ * exceeds the motion by is lost in digits. */
+#define RESONANCE 1e-2
 
 /* A response larger than one over this would leave too few digits. */
 #define UNDAMPED 1e-9

@@ -66,10 +66,11 @@ static int check_massless(tribo_driver *drv)
     tribo_get_static(drv->sys->contacts, ratio, NULL);
     for (size_t i = 0; drv->sys->massless.count && i < drv->sys->ncontact; i++) {
         if (ratio[i] > 1.0) {
-            return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                     "periodic motions are found without static limits where degrees of freedom have no mass, and "
-                                     "ratio[%zu] = %g",
-                                     i, ratio[i]);
+            return tribo_driver_fail(
+                drv, TRIBO_ERR_UNSUPPORTED,
+                "periodic motions are found without static limits where degrees of freedom have no mass, and "
+                "ratio[%zu] = %g",
+                i, ratio[i]);
         }
     }
     return TRIBO_OK;
@@ -80,7 +81,8 @@ static int check_planar(tribo_driver *drv)
 {
     const size_t planar = tribo_system_planar(drv->sys);
     return planar ? tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                      "periodic motions are found of scalar contacts, and %zu are planar", planar)
+                                      "periodic motions are found of scalar contacts, and there are %zu contacts that are planar",
+                                      planar)
                   : TRIBO_OK;
 }
 

@@ -54,7 +54,7 @@ static struct scene scene_create(struct random *g, int kind)
 static tribo_system *scene_system(const struct scene *s, const size_t *place)
 {
     double mass[BODIES * BODIES] = {0}, stiffness[BODIES * BODIES], damping[BODIES * BODIES],
-           direction[MOST_CONTACTS * BODIES] = {0}, load[BODIES];
+                         direction[MOST_CONTACTS * BODIES] = {0}, load[BODIES];
     tribo_system *sys;
     for (size_t i = 0; i < BODIES; i++) {
         mass[place[i] * (BODIES + 1)] = s->mass[i];

@@ -591,6 +591,21 @@ TEST(falling_limit)
     search_free(&s);
 }
 
+/* Near resonance with a limit just below the load, the free amplitude is 1e6 times and more that of the motion: a response in
+ * that size would leave no digits of it. */
+TEST(nearly_stuck)
+{
+    for (int k = 0; k < 40; k++) {
+        const double limit = 3.0 - pow(10.0, -3.0 + 0.05 * k);
+        struct search s = oscillator_search("exact", 0.004, limit, 3.0, 1.0);
+        double y[3] = {0}, share;
+        find(&s, 0.0, y);
+        assert_ok(tribo_driver_period_stick(s.drv, &share));
+        require(share > 0.7 && share < 1.0, "limit %g: %g of the period at rest", limit, share);
+        search_free(&s);
+    }
+}
+
 /* "auto" leaves it to one of the two, with all that is asked of the motion and counted, and goes on as they do. */
 TEST(automatic)
 {
@@ -625,4 +640,4 @@ TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}
           {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
           {multipliers_of_swinging_limits, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2},
           {no_contacts, 2}, {resonance, 2}, {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12},
-          {falling_limit, 3}, {automatic, 1})
+          {falling_limit, 3}, {nearly_stuck, 1}, {automatic, 1})
