@@ -1,0 +1,183 @@
+/* What may be asked of searches for periodic motions, and of what they found: errors, other methods, static limits, and hard cases. */
+#include "search.h"
+
+#include <string.h>
+
+static const char *const methods[] = {"exact", "event", "auto"};
+
+static int seen_by(double t, const double *y, int event, void *data)
+{
+    (void)t;
+    (void)y;
+    (void)event;
+    ++*(int *)data;
+    return 0;
+}
+
+/* A search leaves the driver as if there had been none. */
+TEST(nothing_left)
+{
+    struct search s = oscillator_search(methods[_i], 0.1, 0.5, 1.0, 0.8);
+    double y[3] = {0}, z[3] = {0.3, -0.1, 0.0}, fresh[3] = {0.3, -0.1, 0.0}, t = 0.0;
+    int calls = 0;
+    assert_ok(tribo_driver_set_observer(s.drv, seen_by, &calls));
+    find(&s, 0.0, y);
+    require(calls == 0, "%d calls", calls);
+    driver_advance(s.drv, &t, s.period, y);
+    require(calls > 0, "no calls");
+    assert_ok(tribo_driver_set_observer(s.drv, NULL, NULL));
+    find(&s, 0.0, y);
+    t = 0.0;
+    driver_advance(s.drv, &t, 20.0, z);
+    run(s.sys, methods[_i], 0.1, 1e-14, 20.0, fresh);
+    assert_all_exact(z, fresh, 3);
+    /* a velocity that would be rounding of the motion found */
+    double slow[3] = {0.0, -2e-14, 0.0}, alone[3] = {0.0, -2e-14, 0.0};
+    const size_t events = driver_count(s.drv, TRIBO_COUNT_EVENTS);
+    t = 0.0;
+    driver_advance(s.drv, &t, 0.1, slow);
+    tribo_driver *other = driver_create(s.sys, methods[_i], 0.1, 1e-14);
+    t = 0.0;
+    driver_advance(other, &t, 0.1, alone);
+    assert_all_exact(slow, alone, 3);
+    require(driver_count(s.drv, TRIBO_COUNT_EVENTS) - events == driver_count(other, TRIBO_COUNT_EVENTS), "other events");
+    tribo_driver_destroy(other);
+    search_free(&s);
+}
+
+TEST(errors)
+{
+    const double one = 1.0;
+    struct search s = oscillator_search(methods[_i], 0.1, 0.5, 1.0, 0.8);
+    double y[3] = {0}, bad[3] = {NAN, 0.0, 0.0}, re[2], im[2], c[2] = {1.0, INFINITY}, a, b;
+    assert_status(tribo_driver_find_periodic(NULL, 0.0, s.period, y), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_find_periodic(s.drv, NAN, s.period, y), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, INFINITY, y), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, bad), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, 0.0, y), TRIBO_ERR_NOT_POSITIVE);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, -1.0, y), TRIBO_ERR_NOT_POSITIVE);
+    assert_status(tribo_driver_find_periodic(s.drv, 1e300, s.period, y), TRIBO_ERR_STEP);
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1.1 * s.period, y), TRIBO_ERR_RANGE);
+    assert_says(tribo_driver_message(s.drv), "load[0], omega = 0.8");
+    assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_STATE);
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_NOT_FINITE);
+    c[1] = 0.0;
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_STATE);
+    find(&s, 0.0, y);
+    assert_status(tribo_driver_get_multipliers(s.drv, NULL, im), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_extremes(s.drv, NULL, &a, &b), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_harmonic(s.drv, c, 1, NULL, &b), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_stick(s.drv, NULL), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_dissipation(NULL, &a), TRIBO_ERR_NULL);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.6));
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_STATE);
+    assert_says(tribo_driver_message(s.drv), "has changed");
+    assert_ok(tribo_system_set_limit_table(s.sys, 1, &one, &one));
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
+    search_free(&s);
+}
+
+TEST(other_methods)
+{
+    static const char *const others[] = {"rk4/fixed", "central/fixed", "moreau/fixed", "rkf45"};
+    struct search s = oscillator_search(others[_i], 0.1, 0.5, 1.0, 0.8);
+    double y[3] = {0};
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "exact, event or auto");
+    search_free(&s);
+}
+
+/* Static limits that drop at once, and a belt that moves or swings: the motion is where marching leads to; multipliers are those
+ * of differences, in which a contact that rests stays so. */
+TEST(static_limit)
+{
+    static const struct {
+        double omega, limit, ratio, speed, turns;
+    } scene[] = {{0.5, 0.5, 1.4, 0.0, 0.0}, {0.3, 0.4, 1.6, 0.0, 0.0}, {0.5, 0.5, 1.4, 0.3, 1.0}, {0.3, 0.4, 1.6, 0.3, 0.0}};
+    const double limit = scene[_i / 3].limit, h = 1e-6;
+    struct search s = oscillator_search(methods[_i % 3], 0.1, limit, 1.0, scene[_i / 3].omega);
+    double y[3] = {0}, z[3] = {0}, m[2][2], re[2], im[2], share, t = 0.0;
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), &scene[_i / 3].ratio, NULL));
+    assert_ok(tribo_system_add_base_motion(s.sys, scene[_i / 3].turns * s.omega, &scene[_i / 3].speed, NULL));
+    find(&s, 0.0, y);
+    assert_ok(tribo_driver_period_stick(s.drv, &share));
+    require(share > 0.1, "rests for %g of the period", share);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    for (int k = 0; k < 2; k++) {
+        double up[3] = {y[0], y[1], 0.0}, down[3] = {y[0], y[1], 0.0};
+        up[k] += h;
+        down[k] -= h;
+        dissipated(&s, up);
+        dissipated(&s, down);
+        for (int i = 0; i < 2; i++) {
+            m[i][k] = (up[i] - down[i]) / (2.0 * h);
+        }
+    }
+    assert_close(re[0] + re[1], m[0][0] + m[1][1], 1e-6);
+    assert_close(re[0] * re[1] - im[0] * im[1], m[0][0] * m[1][1] - m[0][1] * m[1][0], 1e-6);
+    driver_advance(s.drv, &t, 300.0 * s.period, z);
+    assert_all_close(z, y, 2, 1e-9);
+    search_free(&s);
+}
+
+/* Limits that fall with the speed are refused, by whatever method. */
+TEST(falling_limit)
+{
+    const double ratio = 1.5, velocity = 0.3;
+    struct search s = oscillator_search(methods[_i], 0.1, 0.5, 1.0, 0.5);
+    double y[3] = {0.25, 0.0, 0.0};
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), &ratio, &velocity));
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "velocity[0] = 0.3");
+    assert_exact(y[0], 0.25);
+    search_free(&s);
+}
+
+/* Near resonance with a limit just below the load, the free amplitude is 1e6 times and more that of the motion: a response in
+ * that size would leave no digits of it. */
+TEST(nearly_stuck)
+{
+    for (int k = 0; k < 40; k++) {
+        const double limit = 3.0 - pow(10.0, -3.0 + 0.05 * k);
+        struct search s = oscillator_search("exact", 0.004, limit, 3.0, 1.0);
+        double y[3] = {0}, share;
+        find(&s, 0.0, y);
+        assert_ok(tribo_driver_period_stick(s.drv, &share));
+        require(share > 0.7 && share < 1.0, "limit %g: %g of the period at rest", limit, share);
+        search_free(&s);
+    }
+}
+
+/* "auto" leaves it to one of the two, with all that is asked of the motion and counted, and goes on as they do. */
+TEST(automatic)
+{
+    const double one[] = {1.0, 0.0};
+    double y[2][3] = {{0}}, e[2][2], re[2][2], im[2][2], t, z[2][3] = {{0}};
+    size_t count[2];
+    for (int k = 0; k < 2; k++) {
+        struct search s = oscillator_search(k ? "auto" : "exact", 0.1, 0.5, 1.0, 0.8);
+        assert_status(tribo_driver_get_multipliers(s.drv, re[k], im[k]), TRIBO_ERR_STATE);
+        find(&s, 0.0, y[k]);
+        assert_says(tribo_driver_method(s.drv), "exact");
+        assert_ok(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1]));
+        assert_ok(tribo_driver_get_multipliers(s.drv, re[k], im[k]));
+        count[k] = driver_count(s.drv, TRIBO_COUNT_PERIODS);
+        assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1.1 * s.period, y[k]), TRIBO_ERR_RANGE);
+        assert_says(tribo_driver_message(s.drv), "load[0], omega = 0.8");
+        t = 0.0;
+        driver_advance(s.drv, &t, 10.0, z[k]);
+        assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.6));
+        assert_status(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1]), TRIBO_ERR_STATE);
+        assert_says(tribo_driver_message(s.drv), "has changed");
+        search_free(&s);
+    }
+    assert_all_exact(y[1], y[0], 3);
+    assert_all_exact(z[1], z[0], 3);
+    assert_all_exact(e[1], e[0], 2);
+    assert_all_exact(re[1], re[0], 2);
+    require(count[1] == count[0] && count[0] > 0, "%zu periods, not %zu", count[1], count[0]);
+}
+
+TEST_MAIN("periodic_rules", {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12}, {falling_limit, 3},
+          {nearly_stuck, 1}, {automatic, 1})
