@@ -8,7 +8,7 @@
  * sliding ones; then it solves for the groups in which it found one near stick. */
 #include <float.h>
 
-#include "context.h"
+#include "check.h"
 
 void tribo_begin_call(tribo_context *ctx)
 {

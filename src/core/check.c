@@ -58,7 +58,7 @@ int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const do
     if (x && none_negative(x, n)) {
         return TRIBO_OK;
     }
-    const int status = tribo_check_finite(ctx, name, x, n);
+    const int status = tribo_fail_not_finite(ctx, name, x, n);
     for (size_t i = 0; !status && i < n; i++) {
         if (x[i] < 0.0) {
             return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "%s[%zu] = %g is negative", name, i, x[i]);
@@ -69,7 +69,7 @@ int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const do
 
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
-    const int status = tribo_check_finite(ctx, name, x, n);
+    const int status = x && tribo_all_within(x, n, DBL_MAX) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
     if (status) {
         return status;
     }

@@ -1,7 +1,7 @@
 /* What a call learns of all contacts before it solves for any. In a large scene most slide, of which the direction is all that
  * there is to know, and reading and writing memory is all that they cost: so every array is passed over as seldom as can be, in
  * chunks that stay in the first-level cache. What a call learns takes the last call's place once v and a are found good. */
-#include "context.h"
+#include "check.h"
 
 /* Whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
 TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)

@@ -140,51 +140,14 @@ static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, siz
  * exception is raised. */
 int tribo_all_within(const double *x, size_t n, double most);
 
-static inline int tribo_all_finite(const double *x, size_t n)
-{
-    return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
-}
-
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
 int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
-
-static inline int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
-{
-    return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
-}
 
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
 int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
 
 /* TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
 int tribo_fail_without_operator(const tribo_context *ctx);
-
-static inline int tribo_need_operator(const tribo_context *ctx)
-{
-    return ctx->op->diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
-}
-
-static inline int tribo_need_epsilon(const tribo_context *ctx)
-{
-    return ctx->set.step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
-}
-
-/* The arguments of a step. */
-static inline int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f)
-{
-    if (!isfinite(dt)) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
-    }
-    if (dt <= 0.0) {
-        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
-    }
-    int status = tribo_need_operator(ctx);
-    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
-    if (status) {
-        return status;
-    }
-    return !f && ctx->n ? tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL") : TRIBO_OK;
-}
 
 /* settings.c: brings what follows from settings and operator up to date: after a change of limits; or of anything, then with
  * width and rate of an epsilon that follows the operator. */

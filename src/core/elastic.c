@@ -1,6 +1,6 @@
 /* The friction element of bladed-disc and joint codes: a spring in series with a Coulomb slider (Jenkins 1922; Masing 1926), by
  * return mapping: the spring takes the displacement, and what is beyond the limit the slider gives way. */
-#include "context.h"
+#include "check.h"
 
 /* TRIBO_OK, or what is wrong with count numbers. */
 static int check(const double *x, size_t count, int nonnegative)

@@ -1,7 +1,7 @@
 /* Forces of contacts whose f_eq is known. */
 #include <math.h>
 
-#include "context.h"
+#include "check.h"
 
 /* f_eq as laws read it: where it does not matter it need not be finite, nor even be set. */
 TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const double *restrict band, const double *restrict feq,

@@ -1,6 +1,7 @@
 /* Planar contacts of a context: which directions they are, and the clusters that they stand in.
  *
  *   planar.c          life: clusters of directions, from the operator's groups and the contacts that join them
+ *   planar_parts.c    what forces are made of: sliding, nearness to stick, blocks of R
  *   planar_force.c    forces: sliding ones, and the problems of clusters
  *   planar_static.c   which of them break away, where limits are static
  *   planar_tangent.c  their derivatives

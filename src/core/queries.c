@@ -1,7 +1,7 @@
 /* What a context tells of its last call, and of itself. */
 #include <math.h>
 
-#include "context.h"
+#include "check.h"
 #include "../common/simd.h"
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "context.h"
+#include "check.h"
 
 /* Whether epsilon follows limits and operator. */
 static int epsilon_follows(const tribo_context *ctx)

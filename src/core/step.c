@@ -1,7 +1,7 @@
 /* The force over a time step, and the box-constrained problem for laws of the caller's own. */
 #include <float.h>
 
-#include "context.h"
+#include "check.h"
 
 /* Forces of contacts that share no body. */
 TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, const double *restrict r, const double *lower,

@@ -8,7 +8,7 @@
  *     solve again, if there are any
  *
  * A contact is driven through zero if what it feels there is more than its limit can hold. */
-#include "context.h"
+#include "check.h"
 
 struct step {
     double dt;

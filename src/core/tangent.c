@@ -1,7 +1,7 @@
 /* How the forces of coupled contacts follow velocities, accelerations and limits. With the sets of contacts that the last
  * balance found this is linear: those inside their box (in the partition: all near stick) move so that the accelerations, or
  * f_eq, stay balanced, the others as their law or their bound tells. */
-#include "context.h"
+#include "check.h"
 
 /* What every contact's law says at the last balance, which was at v. */
 static void linearize_laws(tribo_context *ctx, const double *v, const double *a)

@@ -471,7 +471,8 @@ struct task {
 
 static int carry_out(tribo_driver *inner, const struct task *x)
 {
-    return x->finds ? tribo_driver_find_periodic(inner, *x->t, x->period, x->y) : tribo_driver_advance(inner, x->t, x->t1, x->y);
+    return x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y)
+                    : tribo_driver_advance(inner, x->t, x->t1, x->y);
 }
 
 /* Adds what inner has counted since it was what before says. Evaluations in an advance are counted by the caller. */

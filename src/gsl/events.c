@@ -50,6 +50,7 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
 
 void tribo_events_free(struct events *e)
 {
+    tribo_planar_slip_free(e->stick_slip.plane);
     tribo_stick_slip_free(&e->stick_slip);
     free(e->next);
     free(e->lasted);
@@ -251,6 +252,11 @@ static double to_a_number(const tribo_system *sys, double t, double reach, doubl
     return fabs(there - reach) <= 1e-3 * reach ? there : reach;
 }
 
+static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    return m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
+}
+
 /* One phase, from (t, y) to its end and the decision there. */
 static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
                  double fastest)
@@ -308,7 +314,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     } else if (*t < end) {
         status = count_step(e, drv, *t, when, fastest);
     }
-    status = status ? status : on_context(drv, tribo_stick_slip_decide(&e->stick_slip, sys, *t, y));
+    status = status ? status : on_context(drv, decide(&e->stick_slip, sys, *t, y));
     expect(e, event, when);
     if (!status && event && e->company) {
         e->company->decided(e->company);
@@ -333,7 +339,9 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
         return tribo_driver_fail(drv, TRIBO_ERR_STEP, "dt = %g, in which an observer sees the motion, is lost beside t = %.17g",
                                  drv->dt, t1);
     }
-    int status = on_context(drv, tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues));
+    tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues);
+    int status = tribo_planar_slip_start(&e->stick_slip, drv->sys, continues);
+    status = on_context(drv, status ? status : decide(&e->stick_slip, drv->sys, *t, y));
     e->paid = e->rested = *t;
     e->idle = e->suspects = 0;
     e->stuck = 0.0;

@@ -95,7 +95,6 @@ void tribo_stick_slip_free(struct stick_slip *m)
     tribo_destroy(m->box);
     tribo_destroy(m->hold);
     tribo_breakaway_free(&m->breakaway);
-    tribo_planar_slip_free(m->plane);
     free(m->limit);
     free(m->slip);
     free(m->at);
@@ -523,9 +522,6 @@ void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, do
 
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
-    if (m->plane) {
-        return tribo_planar_slip_decide(m, sys, t, y);
-    }
     tribo_stick_slip_begin_decision(m, sys, t, y);
     update_limits(m, sys, y);
     tribo_elastic_place(m, sys, y);
@@ -562,7 +558,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     return status ? status : tribo_stick_slip_find_holds(m, sys);
 }
 
-int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
+void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
 {
     tribo_system_set_time(sys, t);
     tribo_system_limits(sys, m->limit, m->limit_rate);
@@ -590,6 +586,4 @@ int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, do
     }
     const double most = tribo_system_fastest(sys) + m->breakaway.steepest;
     m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);
-    const int status = tribo_planar_slip_start(m, sys, continues);
-    return status ? status : tribo_stick_slip_decide(m, sys, t, y);
 }

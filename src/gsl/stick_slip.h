@@ -61,8 +61,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 
 /* Takes limits from the system, and, unless it continues, from the state who is at rest: contacts whose velocity is zero to
- * rounding. Decides. */
-int tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
+ * rounding. A decision must follow. */
+void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
 /* Decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out of their
  * velocities in y. Sets slip, holds, force, acceleration and allowance. */

@@ -1,0 +1,49 @@
+/* Checks of arguments that cost nothing to speak of where all is well; check.c has the words for where it is not. */
+#ifndef TRIBO_CHECK_H
+#define TRIBO_CHECK_H
+
+#include <float.h>
+#include <math.h>
+
+#include "context.h"
+
+static inline int tribo_all_finite(const double *x, size_t n)
+{
+    return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
+}
+
+/* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
+static inline int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
+{
+    return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
+}
+
+/* TRIBO_OK, or a failure that tells which call is missing. */
+static inline int tribo_need_operator(const tribo_context *ctx)
+{
+    return ctx->op->diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
+}
+
+static inline int tribo_need_epsilon(const tribo_context *ctx)
+{
+    return ctx->set.step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
+}
+
+/* The arguments of a step. */
+static inline int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f)
+{
+    if (!isfinite(dt)) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);
+    }
+    if (dt <= 0.0) {
+        return tribo_fail(ctx, TRIBO_ERR_NOT_POSITIVE, "dt = %g is not positive", dt);
+    }
+    int status = tribo_need_operator(ctx);
+    status = status ? status : tribo_check_finite(ctx, "vfree", vfree, ctx->n);
+    if (status) {
+        return status;
+    }
+    return !f && ctx->n ? tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL") : TRIBO_OK;
+}
+
+#endif
