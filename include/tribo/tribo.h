@@ -147,7 +147,7 @@ TRIBO_API int tribo_elastic_force(size_t n, const double *dz, const double *stif
                                   double *df_dz);
 
 /* The same in the plane, with |f| <= limit: dz, f [n][2]; stiffness, limit [n]; df_dz [n][2][2], symmetric. An element that
- * slides carries its limit in the direction of f + stiffness dz. */
+ * slides carries its limit in the direction of f + stiffness dz. Returns the same. */
 TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
                                          double *df_dz);
 
@@ -163,7 +163,7 @@ typedef struct tribo_context tribo_context;
 TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
 
 /* A copy with the same settings and memory. Neither sees what becomes of the other; the operator, which no call changes, takes
- * its memory once for both. */
+ * its memory once for both. Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 
 /* Releases a context; NULL is fine. */
@@ -181,10 +181,11 @@ TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char
 TRIBO_API size_t tribo_revision(const tribo_context *ctx);
 
 /* For libraries on top of this one: the operator is that of owner, a text that outlives ctx ("a tribo_system"), and cannot be
- * changed: tribo_set_operator_... return TRIBO_ERR_UNSUPPORTED. NULL: it is the caller's again, as it is in a clone. */
+ * changed: tribo_set_operator_... return TRIBO_ERR_UNSUPPORTED. NULL: it is the caller's again, as it is in a clone.
+ * Returns TRIBO_ERR_NULL (ctx). */
 TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
 
-/* Number of contacts. */
+/* Number of contacts. Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 
 /* Law of all contacts; clears the reversal memory. Returns TRIBO_ERR_RANGE for a number that is no law, TRIBO_ERR_UNSUPPORTED for
@@ -231,10 +232,12 @@ TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const 
  * velocities; tribo_set_law returns it too); on error all stays as it was. */
 TRIBO_API int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velocity);
 
-/* ratio, velocity [n] out, each or NULL: 1 where nothing was set, and velocity 0 where there is none. */
+/* ratio, velocity [n] out, each or NULL: 1 where nothing was set, and velocity 0 where there is none.
+ * Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity);
 
-/* Velocity scale of the regularized laws. epsilon [n] in, > 0, in units of v. */
+/* Velocity scale of the regularized laws. epsilon [n] in, > 0, in units of v.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE; on error all stays as it was. */
 TRIBO_API int tribo_set_epsilon(tribo_context *ctx, const double *epsilon);
 TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
 
@@ -243,7 +246,8 @@ TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
  * times as fast in the partition coupling, see TRIBO_REAL_MAX_RATE. Before there is an operator there is no epsilon either, and
  * tribo_get_epsilon, tribo_force, tribo_force_tangent and tribo_accept return TRIBO_ERR_STATE.
  * dt         in  time step of the caller's integrator, > 0
- * lambda_dt  in  > 0; the paper takes 1 for the oscillator and 0.4 for the chain; rk4 is stable to 2.785 */
+ * lambda_dt  in  > 0; the paper takes 1 for the oscillator and 0.4 for the chain; rk4 is stable to 2.785
+ * Returns what tribo_set_epsilon does. tribo_get_epsilon: epsilon [n] out. */
 TRIBO_API int tribo_set_epsilon_step(tribo_context *ctx, double dt, double lambda_dt);
 TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
 
@@ -271,35 +275,40 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 
 /* The operator R of z'' = R f + a. On error the old one stays. That of the context of a tribo_system is the system's, and cannot
- * be changed: TRIBO_ERR_UNSUPPORTED.
+ * be changed: TRIBO_ERR_UNSUPPORTED. All return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_MEMORY, with planar contacts what
+ * tribo_set_planar tells of them, and what stands below.
  * A contact with R_ii = 0 (driven from both sides: friction cannot move it) is taken as the limit R_ii -> +0: at rest
  * it carries -limit sgn(a_i), and nothing if a_i = 0; its f_eq is then reported as -sgn(a_i) times a huge number, and its
  * derivative by a as 0. */
 
-/* R = diag(r): contacts that share no body. r [n] in, >= 0. Never enters a solver. */
+/* R = diag(r): contacts that share no body. r [n] in, >= 0. Never enters a solver.
+ * Returns also TRIBO_ERR_NEGATIVE. */
 TRIBO_API int tribo_set_operator_diagonal(tribo_context *ctx, const double *r);
 
 /* r [n][n] in, symmetric to rounding (it is made exactly so), positive semidefinite, redundant contacts welcome.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_MEMORY. */
+ * Returns also TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE. */
 TRIBO_API int tribo_set_operator_dense(tribo_context *ctx, const double *r);
 
 /* The same in compressed rows, both triangles: the entries of row i are val[k] at column col[k], k = rowptr[i] to
  * rowptr[i+1] - 1, in any order, each at most once. rowptr [n+1], col and val [rowptr[n]].
- * Returns also TRIBO_ERR_RANGE, TRIBO_ERR_SIZE (rowptr decreases), TRIBO_ERR_DUPLICATE. */
+ * Returns also TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_RANGE (col), TRIBO_ERR_SIZE (rowptr does not begin with
+ * 0, or decreases), TRIBO_ERR_DUPLICATE. */
 TRIBO_API int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val);
 
 /* R = J diag(inverse_mass) J', J [n][ndof] in compressed rows: row i is how the velocities of the degrees of freedom
  * make v_i. inverse_mass [ndof] in, >= 0 (0: a degree of freedom whose motion is prescribed).
  * A light body between heavy ones hides them in R as numbers; groups in which it does are solved with twice as many digits here,
  * for shares J_ik^2 inverse_mass_k of one contact that differ by up to 1e18, in groups of up to 256 contacts (1e10 in larger
- * ones; beyond: TRIBO_ERR_UNSUPPORTED). Of the other forms of input, the caller must know what rounding leaves. */
+ * ones; beyond: TRIBO_ERR_UNSUPPORTED). Of the other forms of input, the caller must know what rounding leaves.
+ * Returns also TRIBO_ERR_NEGATIVE (inverse_mass), TRIBO_ERR_RANGE, TRIBO_ERR_SIZE, TRIBO_ERR_DUPLICATE. */
 TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr,
                                       const size_t *col, const double *val);
 
 /* R = J M^-1 J' for a mass matrix that only the caller can solve with; J as above. R is found column by column, and where
  * contacts do not feel each other its entries (those below 1e-17 of the diagonal too) are not kept.
  * apply  in  called once a contact: acceleration [ndof] out = M^-1 force [ndof] in, to 1e-11; it must not change ctx. Answers
- *            0, or anything else to end it: then this returns TRIBO_ERR_CALLBACK. data is handed to it. */
+ *            0, or anything else to end it: then this returns TRIBO_ERR_CALLBACK. data is handed to it.
+ * Returns also what tribo_set_operator_csr does: not symmetric or indefinite is then what apply makes of J. */
 TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                           int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
                                           void *data, const size_t *rowptr, const size_t *col, const double *val);
@@ -307,7 +316,8 @@ TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
 /* How f_eq of contacts that share bodies is found.
  *   CONSISTENT  f_eq of each contact balances the forces that the others really carry. Continuous, has a solution for every
  *               a, and at v = 0 it is Coulomb's law exactly. Beyond the paper.
- *   PARTITION   with S the contacts with |v| <= epsilon: R_SS f_eq = -(a_S + R_SL f_L). The paper, Eq. 8 to 10. */
+ *   PARTITION   with S the contacts with |v| <= epsilon: R_SS f_eq = -(a_S + R_SL f_L). The paper, Eq. 8 to 10.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_UNSUPPORTED (PARTITION with planar contacts). */
 enum { TRIBO_CONSISTENT = 0, TRIBO_PARTITION = 1 };
 TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
 TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
@@ -317,7 +327,8 @@ TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
  *   LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls. (Groups of more
  *          than 2048 contacts that are kept sparse: while not more than 64 are redundant; beyond that, one of the solutions.)
  *   LAST   one that is found from the forces of the last call, and follows slow changes without jumps. For event-driven codes,
- *          where a contact that has reached its limit should stay there while others take over. */
+ *          where a contact that has reached its limit should stay there while others take over.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE. */
 enum { TRIBO_SHARE_LEAST_NORM = 0, TRIBO_SHARE_PREVIOUS = 1 };
 TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
 TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
@@ -329,12 +340,12 @@ TRIBO_API int tribo_get_sharing(const tribo_context *ctx, int *sharing);
  * feq  [n] in   balancing force; read only where |v| <= epsilon
  * f    [n] out  friction force, |f| <= limit; of a planar contact the point of its lens that is nearest to f_eq - kappa, as R_d
  *               measures it (f'R_d f; the identity before there is an operator)
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE. The paper, Eq. 4. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_STATE (tribo_set_epsilon_step, and no operator). The paper, Eq. 4. */
 TRIBO_API int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 
 /* The same with derivatives. f, df_dv, df_dfeq, df_dlimit [n] out, each or NULL. Where epsilon follows the limit
  * (tribo_set_epsilon_step), df_dlimit takes that into account. Derivatives are those of scalar contacts: TRIBO_ERR_UNSUPPORTED
- * if one is planar, see tribo_force_tangent_planar. */
+ * if one is planar, see tribo_force_tangent_planar. Returns otherwise what tribo_force does. */
 TRIBO_API int tribo_force_tangent(const tribo_context *ctx, const double *v, const double *feq, double *f, double *df_dv,
                                   double *df_dfeq, double *df_dlimit);
 
@@ -356,14 +367,15 @@ TRIBO_API int tribo_force_tangent_planar(const tribo_context *ctx, const double 
  * contacts' j, for planar ones). Where
  * contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing. QUINN_REVERSAL: f_eq of
  * contacts near stick balances Quinn's forces.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_INCONSISTENT. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_STATE (no operator), TRIBO_ERR_NO_CONVERGENCE,
+ * TRIBO_ERR_INCONSISTENT. */
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
  * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink. Of redundant contacts only R times
  * it is unique: it is then the least in norm (with planar contacts: in parts of limits). Where the band of a planar contact ends
  * they grow beyond all bounds from inside, like 1/sqrt(1 - |v|/epsilon); there and outside they are those of sliding. On
- * TRIBO_ERR_INCONSISTENT they are not written. */
+ * TRIBO_ERR_INCONSISTENT they are not written. Returns what tribo_balance does. */
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
 
@@ -371,7 +383,8 @@ TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const d
  * of the last tribo_balance_tangent, whose matrices may be NULL. In O(s^2) for s coupled contacts near stick.
  * dv, da  [n] in   each or NULL for none
  * df      [n] out
- * Returns TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another balance or setting since. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, and TRIBO_ERR_STATE if there has been no tribo_balance_tangent, or another
+ * balance or setting since. */
 TRIBO_API int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da, double *df);
 
 /* The same for a change of limits, for hosts whose normal loads follow the motion: df = df_dlimit dlimit, with all that the other
@@ -391,7 +404,8 @@ TRIBO_API int tribo_limit_product(tribo_context *ctx, const double *dlimit, doub
  * dt     in       step, > 0
  * vfree  [n] in   relative velocity that the step would end with without friction
  * f      [n] out  friction force, |f| <= limit; of a planar contact f = -limit^2 v_end/|limit v_end|, or v_end = 0
- * Moreau (1988); Jean and Moreau (1992). */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE (dt), TRIBO_ERR_STATE (no operator),
+ * TRIBO_ERR_NO_CONVERGENCE. Moreau (1988); Jean and Moreau (1992). */
 TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f);
 
 /* The same to second order also where sliding turns or reverses within the step, which tribo_step_force is not.
@@ -400,18 +414,21 @@ TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfre
  *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until
  *                    then and the other way after: f is the mean of that, and tribo_get_slip tells the direction of the end
  * All others are as there, and so are all of them with static limits (tribo_set_static). It costs up to two solutions.
- * v  [n] in  relative velocity at the start of the step */
+ * v  [n] in  relative velocity at the start of the step
+ * Returns what tribo_step_force does. */
 TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
 
 /* The box-constrained problem behind it all, min 1/2 f'Rf + a'f with lower <= f <= upper, for laws of the caller's own. Neither
  * limits nor law nor epsilon matter, nor which contacts are planar.
  * a, lower, upper  [n] in   finite, lower <= upper
- * f                [n] out */
+ * f                [n] out
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (lower above upper), TRIBO_ERR_STATE (no operator),
+ * TRIBO_ERR_NO_CONVERGENCE. */
 TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f);
 
 /* Tells that the integrator accepted a step that ended at v, feq (feq is read only where |v| <= epsilon). Advances the
  * memory of QUINN_REVERSAL: a contact is marked when |v| > epsilon, and unmarked when |v| <= epsilon and |feq| <= limit.
- * Does nothing for other laws. */
+ * Does nothing for other laws. v, feq [n] in. Returns what tribo_force does. */
 TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);
 
 /* ----------------------------------------------------------------------------------------------------------- queries */
@@ -419,7 +436,8 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 /* What each contact did in the last tribo_balance or tribo_step_force. slip [n] out: 0 stuck, +1 and -1 sliding in that
  * direction (the force is -limit * slip), 2 open; both directions of a planar contact 0, 2, or 3 sliding in the plane; by the
  * limits that it had.
- * Returns TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or tribo_set_operator_... since. */
+ * Returns TRIBO_ERR_NULL, and TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or
+ * tribo_set_operator_... since. */
 TRIBO_API int tribo_get_slip(const tribo_context *ctx, signed char *slip);
 
 /* Counts. STUCK and RANK are those of the last tribo_balance, tribo_step_force or tribo_solve_box; ISLANDS is that of the
@@ -436,6 +454,7 @@ enum {
     TRIBO_COUNT_REUSED = 8,         /* of the solves: those that ended with the stick set and the factor they began with */
     TRIBO_COUNT_PLANAR = 9          /* planar contacts */
 };
+/* Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (which). */
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
 
 /* Real quantities.
@@ -445,7 +464,8 @@ TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value
  * lambda is the largest 2 limit R_ii/epsilon in the consistent coupling, and for contacts that share no body. In the partition
  * coupling it is that times the largest eigenvalue of D^-1 R, D being the diagonal of R, and half as much for the laws that are
  * dampers near v = 0 (VELOCITY_LIMITED, SMOOTH). An upper bound stands in for the eigenvalue: exact for two contacts, within 2%
- * for contacts in a row, farther away where every contact feels every other one. */
+ * for contacts in a row, farther away where every contact feels every other one.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (which), TRIBO_ERR_STATE (MAX_RATE, MAX_STEP: no operator). */
 enum { TRIBO_REAL_RESIDUAL = 0, TRIBO_REAL_MAX_RATE = 1, TRIBO_REAL_MAX_STEP = 2 };
 TRIBO_API int tribo_get_real(const tribo_context *ctx, int which, double *value);
 

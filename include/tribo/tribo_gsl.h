@@ -74,17 +74,18 @@ TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t nconta
                                   const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
 
 /* The same from sparse matrices (any GSL format; ones that hold only one triangle of a symmetric matrix must be completed first).
- * Without reduction a mass matrix that is not diagonal makes the system dense. With more than 3000 degrees of freedom the matrices
- * stay sparse, damping must be symmetric, and the system has no accelerations: driver moreau/fixed takes it through time, with a
- * sparse factor (CHOLMOD) of M + dt/2 C + dt^2/4 K, and whatever needs accelerations is TRIBO_ERR_UNSUPPORTED: other drivers,
- * tribo_system_contacts, tribo_system_accept, tribo_system_odeiv2.
+ * Without reduction a mass matrix that is not diagonal makes the system dense. With more than 3000 degrees of freedom the
+ * matrices stay sparse, damping must be symmetric, and the system has no accelerations: driver moreau/fixed takes it through
+ * time, with a sparse factor (CHOLMOD) of M + dt/2 C + dt^2/4 K, and whatever needs accelerations is TRIBO_ERR_UNSUPPORTED: other
+ * drivers, tribo_system_contacts, tribo_system_accept, tribo_system_odeiv2.
  *
  * From 200 degrees of freedom on, of which at most a quarter are modes wanted, the modes come from Lanczos' method and sparse
  * factors (CHOLMOD; a library built without it refuses more than 3000 degrees of freedom, TRIBO_ERR_UNSUPPORTED). Repeated
  * frequencies and rigid-body motions are found as often as there are: the modes below a frequency are counted by the signs of a
  * factor's pivots, and each is checked by its residual; what does not pass is TRIBO_ERR_NO_CONVERGENCE. A library with CHOLMOD
  * also reduces structures with a mass matrix that is only semidefinite, if the stiffness holds what has no mass, to the modes
- * that there are; of an indefinite one with more than 3000 rows it sees what the minors of two rows show. */
+ * that there are; of an indefinite one with more than 3000 rows it sees what the minors of two rows show.
+ * Returns what tribo_system_linear does. */
 TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
                                          char *message, size_t size);
@@ -104,20 +105,26 @@ TRIBO_API void tribo_system_destroy(tribo_system *sys);
 TRIBO_API int tribo_system_clone(const tribo_system *sys, tribo_system **copy);
 
 /* Adds a harmonic to the load, p(t) += cosine cos(omega t) + sine sin(omega t).
- * cosine, sine  [ndof of the matrices given] in, each or NULL; forces, also for a reduced system */
+ * omega         in   angular frequency, rad/time
+ * cosine, sine  [ndof of the matrices given] in, each or NULL; forces, also for a reduced system
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (a load on what has no mass), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
-/* Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay. */
+/* Takes all loads away, harmonics and tables, those that a system came with, too. Motions of the bases and limits stay.
+ * Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_system_clear_loads(tribo_system *sys);
 
 /* Adds a harmonic to the driven velocities of the contacts, b(t) += cosine cos(omega t) + sine sin(omega t), e.g. of a belt.
- * cosine, sine  [ncontact] in, each or NULL */
+ * cosine, sine  [ncontact] in, each or NULL; velocities
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
 /* Adds a load that follows a table, p(t) += pattern * value(t), with value linear between its knots and constant outside.
  * time     [knots] in   ascending
  * value    [knots] in
- * pattern  [ndof of the matrices given] in */
+ * pattern  [ndof of the matrices given] in
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (no knots), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (time does not ascend),
+ * TRIBO_ERR_UNSUPPORTED (a load on what has no mass), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
 
@@ -127,20 +134,25 @@ TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const
  * cosine, sine  [ncontact] in, each or NULL; forces
  * The limit that they are added to is what is set in the context, before or after, or the table's. The context's limits follow
  * the time that was last looked at: tribo_get_limit answers limit(t) of then, and to set just that again changes nothing.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (limits beyond 1e300), TRIBO_ERR_MEMORY. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (limits beyond 1e300), TRIBO_ERR_UNSUPPORTED (an elastic
+ * contact), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
 /* Lets the limits follow a table, linear between its knots and constant outside, instead of what the context says.
  * time   [knots] in   ascending; knots = 0 ends it, and harmonics: limits are again those that the context had before
  * limit  [knots][ncontact] in   >= 0; 0: lifted off
- * Limits that are set in the context meanwhile have no effect. */
+ * Limits that are set in the context meanwhile have no effect.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (time does not ascend),
+ * TRIBO_ERR_UNSUPPORTED (an elastic contact), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
 
-/* Reduced systems: damping ratio of every mode, C = diag(2 zeta omega_k). zeta >= 0. Others: TRIBO_ERR_UNSUPPORTED. */
+/* Reduced systems: damping ratio of every mode, C = diag(2 zeta omega_k). zeta >= 0.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_UNSUPPORTED (not reduced), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 
 /* Reduced systems: natural frequencies omega_k [ndof] out, ascending, rad/time; and the displacements of the whole structure,
- * full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in. Others: TRIBO_ERR_UNSUPPORTED. */
+ * full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in.
+ * Return TRIBO_ERR_NULL, TRIBO_ERR_UNSUPPORTED (not reduced). */
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
 TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
 
@@ -168,10 +180,13 @@ TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);
 
 /* What the contacts do in a state.
  * y    [dimension] in
- * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance; of elastic contacts both forces are what the state says */
+ * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance; of elastic contacts both forces are what the state says
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (see tribo_system_linear), and what tribo_balance
+ * returns. */
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
 
-/* tribo_accept for the state (t, y): to be called after each accepted step by integrators other than tribo_driver. */
+/* tribo_accept for the state (t, y): to be called after each accepted step by integrators other than tribo_driver.
+ * Returns what tribo_system_contacts does. */
 TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 
 /* --------------------------------------------------------------------------------------------------------- drivers */
@@ -187,7 +202,7 @@ typedef struct tribo_driver tribo_driver;
  *               (Moreau and Jean). Second order, with planar contacts as tribo_step_force_mean; but for scalar contacts
  *               that reverse without sticking, and central with damping: there first order. Where no two contacts share a
  *               body, central leaves out bodies that rest among others at rest, and TRIBO_COUNT_RESTED counts them
- *               "auto": exact where it can do the system and that is small, else event; see tribo_driver_method
+ *               "auto": exact where it can do the system, of up to 200 degrees of freedom, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
  *               Planar contacts: event, and not exact. They must have limits that do not change, and those at rest must not be
  *               redundant (TRIBO_ERR_UNSUPPORTED, where that happens). Where one creeps, much slower than friction would stop it,
@@ -213,8 +228,8 @@ typedef struct tribo_driver tribo_driver;
  *               5e-6, rk1imp 4e-4), for oscillator and belt, epsilon 1e-2 to 1e-4. Contacts with Coulomb's law itself chatter
  *               about v = 0 in very short steps.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY,
- * TRIBO_ERR_UNSUPPORTED (planar contacts, or no accelerations: the method cannot do such systems); the message is on the system's
- * context. */
+ * TRIBO_ERR_UNSUPPORTED (planar or static contacts, degrees of freedom without mass, or no accelerations, where the method cannot
+ * do such systems); the message is on the system's context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
 
@@ -231,8 +246,9 @@ TRIBO_API const char *tribo_method_name(int method);
  * On error t and y hold the last good step, always finite. (central/fixed without an observer: velocities and energy half a step
  * before.) Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (also where the motion grows without bound), TRIBO_ERR_RANGE (t1 < t),
  * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP (a step below what time resolves, or a dt that is not stable), TRIBO_ERR_CHATTER,
- * TRIBO_ERR_UNSUPPORTED and TRIBO_ERR_INDEFINITE (exact: a structure with contacts held whose motion has no closed form, or is
- * not known to two digits), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
+ * TRIBO_ERR_UNSUPPORTED (loads and contacts that the method does not take, see tribo_driver_create), TRIBO_ERR_UNSUPPORTED and
+ * TRIBO_ERR_INDEFINITE (exact: a structure with contacts held whose motion has no closed form, or is not known to two digits),
+ * TRIBO_ERR_MEMORY, and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
 /* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact, event, and auto by
@@ -282,7 +298,7 @@ TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, s
 TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
 TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
 
-/* Counts since creation. */
+/* Counts since creation. tribo_driver_count returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE. */
 enum {
     TRIBO_COUNT_STEPS = 100,       /* accepted steps */
     TRIBO_COUNT_REJECTED = 101,    /* steps tried and undone */
@@ -306,8 +322,8 @@ enum {
 TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
 
 /* Has seen called after every accepted step (event 0) and at events (event 1: a contact sticks, breaks away or reverses). What
- * it answers ends the run unless 0: the advance then returns TRIBO_ERR_STOPPED. It must not change the system. NULL: no observer.
- */
+ * it answers ends the run unless 0: the advance then returns TRIBO_ERR_STOPPED. It must not change the system. NULL: no
+ * observer. Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data),
                                         void *data);
 
