@@ -428,7 +428,8 @@ TRIBO_API int tribo_solve_box(tribo_context *ctx, const double *a, const double 
 
 /* Tells that the integrator accepted a step that ended at v, feq (feq is read only where |v| <= epsilon). Advances the
  * memory of QUINN_REVERSAL: a contact is marked when |v| > epsilon, and unmarked when |v| <= epsilon and |feq| <= limit.
- * Does nothing for other laws. v, feq [n] in. Returns what tribo_force does. */
+ * Does nothing for other laws. v, feq [n] in.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, and with QUINN_REVERSAL what tribo_force returns. */
 TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *feq);
 
 /* ----------------------------------------------------------------------------------------------------------- queries */
