@@ -29,7 +29,7 @@ static double noise(const struct guard *g)
 static double sixth_root(double x)
 {
     static const double root[] = {1.0, 1.122, 1.26, 1.414, 1.587, 1.782};
-    int e;
+    int e = 0;
     frexp(x, &e);
     e += 6000;
     return x > 0.0 && x <= DBL_MAX ? ldexp(root[e % 6], e / 6 - 1000) : x;
