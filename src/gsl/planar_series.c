@@ -302,7 +302,9 @@ static double square_of(const double *x, size_t terms, size_t k)
 void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h)
 {
     const size_t stride = s->room;
-    memset(s->square, 0, (2 * s->order + 1) * stride * sizeof *s->square);
+    for (size_t k = 0; k < (2 * s->order + 1) * stride; k++) {
+        s->square[k] = 0.0;
+    }
     for (size_t c = 0; c < m->plane->count; c++) {
         const struct planar_contact *p = &m->plane->contact[c];
         struct planar_line *l = &s->line[c];
