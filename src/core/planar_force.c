@@ -404,7 +404,10 @@ signed char tribo_planar_slip(const tribo_context *ctx, size_t k)
 void tribo_planar_slips(const tribo_context *ctx, signed char *slip)
 {
     for (size_t k = 0; k < ctx->planar->count; k++) {
-        slip[ctx->planar->first[k]] = slip[ctx->planar->first[k] + 1] = tribo_planar_slip(ctx, k);
+        const signed char own = tribo_planar_slip(ctx, k);
+        for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
+            slip[i] = (signed char)(ctx->follow.contacts.limit[i] > 0.0 ? own : OPEN);
+        }
     }
 }
 

@@ -219,6 +219,16 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
 
 /* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
  * But where bases part, a contact that rests by itself goes with them. */
+/* A static limit that is lost does not come back: it must not go with who of those that tie each other is held. */
+static int not_unique(const tribo_system *sys, size_t i)
+{
+    return tribo_system_fail(
+        sys, TRIBO_ERR_UNSUPPORTED,
+        "contact %zu, which has a static limit, and others that stop beside it tie each other, and which of them "
+        "rest is not unique: take central/fixed or moreau/fixed",
+        i);
+}
+
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;
@@ -236,6 +246,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
     for (size_t i = 0; !status && m->dependents && i < sys->ncontact; i++) {
         if (m->slip[i] == 0 && !m->holds[i]) {
             m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
+            status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
         }
     }
     for (size_t i = 0; i < sys->ncontact; i++) {

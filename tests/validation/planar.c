@@ -131,4 +131,24 @@ TEST(refused)
     tribo_system_destroy(s);
 }
 
-TEST_MAIN("planar", {orders, 6}, {adaptive, 2}, {released, 3}, {copies, 4}, {refused, 1})
+/* A planar contact without limit in one direction leaves that free. */
+TEST(open_direction)
+{
+    static const char *const methods[] = {"event", "central/fixed", "moreau/fixed", "rkf45"};
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, spring[] = {1.0, 0.0, 0.0, 0.0}, limit[] = {1.0, 0.0};
+    const size_t first = 0;
+    double y[5] = {0.0, 0.0, 0.0, 1.0, 0.0}, t = 0.0;
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, spring, mass, 0, NULL, 0));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    assert_ok(tribo_set_planar(tribo_system_context(sys), 1, &first));
+    tribo_driver *drv = driver_create(sys, methods[_i], 0.01, 1e-10);
+    driver_advance(drv, &t, 1.0, y);
+    assert_close(y[1], 1.0, 1e-9);
+    assert_close(y[3], 1.0, 1e-9);
+    assert_close(y[4], 0.0, 1e-12);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("planar", {orders, 6}, {adaptive, 2}, {released, 3}, {copies, 4}, {refused, 1}, {open_direction, 4})

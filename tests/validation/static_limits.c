@@ -236,5 +236,32 @@ TEST(falls_and_swings)
     tribo_system_destroy(sys);
 }
 
+/* A body rests on a contact that holds 1.2 while another one drags at it on a belt that turns back: at that instant both rest, and
+ * either could be the one that is held. */
+TEST(turning_belt)
+{
+    static const char *const each[] = {"exact", "event", "central/fixed", "moreau/fixed"};
+    const double mass = 1.0, stiffness = 0.0, direction[] = {1.0, 1.0}, limit[] = {0.1, 0.8}, ratio[] = {1.0, 1.5}, load = 1.0,
+                 belt[] = {0.4, 0.0};
+    double y[3] = {0.0}, t = 0.0;
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 1, 2, &mass, NULL, &stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
+    assert_ok(tribo_system_add_load(sys, 0.0, &load, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, 1.0, NULL, belt));
+    tribo_driver *drv = driver_create(sys, each[_i], 0.01, 1e-10);
+    const int status = tribo_driver_advance(drv, &t, 20.0, y);
+    if (_i < 2) {
+        require(status == TRIBO_ERR_UNSUPPORTED, "%s: status %d, and the body is at %g", each[_i], status, y[0]);
+        assert_says(tribo_driver_message(drv), "contact 1, which has a static limit");
+    } else {
+        assert_ok(status);
+    }
+    assert_exact(y[0], 0.0);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
 TEST_MAIN("static_limits", {let_go, 2}, {grazing, 2}, {touches_down, 2}, {lifts_off, 2}, {doubled, 2},
-          {located_methods_agree, 40}, {steps_agree, 8}, {falls_and_swings, 1})
+          {located_methods_agree, 40}, {steps_agree, 8}, {falls_and_swings, 1}, {turning_belt, 4})
