@@ -211,7 +211,8 @@ typedef struct tribo_driver tribo_driver;
  *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
  *               more than rounding. Where contacts at rest tie each other, which of them loses its limit first is
  *               not unique: event and exact may let one go that others could relieve, or refuse to choose
- *               (TRIBO_ERR_UNSUPPORTED); central and moreau hold what can be held. All methods with steps are of first order then.
+ *               (TRIBO_ERR_UNSUPPORTED); central and moreau hold what can be held. All methods with steps are of first order
+ *               then.
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL

@@ -224,8 +224,8 @@ static int not_unique(const tribo_system *sys, size_t i)
 {
     return tribo_system_fail(
         sys, TRIBO_ERR_UNSUPPORTED,
-        "contact %zu, which has a static limit, and others that stop beside it tie each other, and which of them "
-        "rest is not unique: take central/fixed or moreau/fixed",
+        "contact %zu has a static limit and is tied to others that stop beside it: which of them rest is not "
+        "unique; take central/fixed or moreau/fixed",
         i);
 }
 
@@ -581,6 +581,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+        m->rested[i] = 0;
     }
     if (!continues) {
         tribo_elastic_start(m, sys, y);

@@ -96,10 +96,17 @@ static void find(const struct structure *s, tribo_driver *drv, double *y)
     require(!status, "%s: %s", tribo_strerror(status), tribo_driver_message(drv));
 }
 
-static void follow(const struct structure *s, tribo_driver *drv, double *y)
+/* 1; or 0 where contacts tie each other and who keeps a static limit is not unique. */
+static int follow(const struct structure *s, tribo_driver *drv, double *y)
 {
     double t = 0.0;
-    driver_advance(drv, &t, s->period, y);
+    const int status = tribo_driver_advance(drv, &t, s->period, y);
+    if (status == TRIBO_ERR_UNSUPPORTED) {
+        assert_says(tribo_driver_message(drv), "not unique");
+        return 0;
+    }
+    require(!status, "%s", tribo_driver_message(drv));
+    return 1;
 }
 
 static double largest(const double *x, size_t n)
@@ -135,7 +142,7 @@ TEST(comes_back)
     double y[STATES] = {0}, z[STATES], dissipated[CONTACTS], sum = 0.0;
     find(&s, drv, y);
     memcpy(z, y, sizeof z);
-    follow(&s, drv, z);
+    ck_assert_int_eq(follow(&s, drv, z), 1);
     const double size = fmax(energy_between(&s, y, zero), 1e-3);
     assert_close(energy_between(&s, y, z), 0.0, 2e-10 * size);
     assert_ok(tribo_driver_period_dissipation(drv, dissipated));
@@ -234,8 +241,9 @@ static void check_multipliers(const struct structure *s, tribo_driver *drv, cons
             up[i] = y[i] + change[i];
             down[i] = y[i] - change[i];
         }
-        follow(s, drv, up);
-        follow(s, drv, down);
+        if (!follow(s, drv, up) || !follow(s, drv, down)) {
+            return;
+        }
         for (size_t i = 0; i < n; i++) {
             m[i][k] = (up[i] - down[i]) / (2.0 * h);
         }
@@ -270,12 +278,14 @@ TEST(multipliers)
 static void march_in_vain(const struct structure *s, tribo_driver *drv)
 {
     double y[STATES] = {0}, z[STATES], t = 0.0;
-    if (tribo_driver_advance(drv, &t, 1000.0 * s->period, y) == TRIBO_ERR_UNSUPPORTED) {
-        assert_says(tribo_driver_message(drv), "is not unique");
+    int status = tribo_driver_advance(drv, &t, 1000.0 * s->period, y);
+    memcpy(z, y, sizeof z);
+    status = status ? status : tribo_driver_advance(drv, &t, 1001.0 * s->period, z);
+    if (status == TRIBO_ERR_UNSUPPORTED) {
+        assert_says(tribo_driver_message(drv), "not unique");
         return;
     }
-    memcpy(z, y, sizeof z);
-    driver_advance(drv, &t, 1001.0 * s->period, z);
+    assert_ok(status);
     const double off = energy_between(s, y, z);
     require(off > 1e-6, "marching comes to a motion that comes back within %g, which is not found", off);
 }
@@ -298,13 +308,14 @@ TEST(static_limits)
     if (status == TRIBO_ERR_NO_CONVERGENCE) {
         march_in_vain(&s, drv);
     } else if (status == TRIBO_ERR_UNSUPPORTED) {
-        assert_says(tribo_driver_message(drv), "is not unique");
+        assert_says(tribo_driver_message(drv), "not unique");
     } else {
         find(&s, drv, y);
         memcpy(z, y, sizeof z);
-        follow(&s, drv, z);
-        assert_close(energy_between(&s, y, z), 0.0, 2e-10 * fmax(energy_between(&s, y, zero), 1e-3));
-        check_multipliers(&s, drv, y, re, im);
+        if (follow(&s, drv, z)) {
+            assert_close(energy_between(&s, y, z), 0.0, 2e-10 * fmax(energy_between(&s, y, zero), 1e-3));
+            check_multipliers(&s, drv, y, re, im);
+        }
     }
     tribo_driver_destroy(drv);
     tribo_system_destroy(s.sys);
