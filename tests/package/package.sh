@@ -109,7 +109,7 @@ follow() {
             rests ./a.out
         done <compile.lines
         if [ -f user2.c ]; then
-            eval "$(sed -n -e 's/user\.c/user2.c/p' compile.lines | head -n 1)"
+            eval "$(sed -n -e 's/--libs tribo)/--libs tribo_gsl)/' -e 's/user\.c/user2.c/p' compile.lines | head -n 1)"
             ./a.out >out
             grep -q '^between -0\.11634 and 0\.11634 m; friction takes 0\.38536 J a period$' out || {
                 cat out
