@@ -89,6 +89,9 @@ void tribo_matrix_scale_rows(struct matrix *a, const double *factor);
  * 0. */
 int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *i, size_t *j, double *value, double *mirror);
 
+/* Raises below and above to how many diagonals to either side of the main one A has entries on. */
+void tribo_matrix_widen(const struct matrix *a, size_t *below, size_t *above);
+
 /* 1 if no entry is off the diagonal. */
 int tribo_matrix_is_diagonal(const struct matrix *a);
 /* The largest sum of a row's absolute values: no eigenvalue is larger. 0 without rows. */

@@ -44,15 +44,12 @@ void tribo_step_band_free(struct step_band *b)
 
 /* ---------------------------------------------------------------------------------------------------- whether it applies */
 
-static size_t width_of(const struct matrix *a, size_t width)
+static size_t width_of(const tribo_system *sys)
 {
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            const size_t off = i > a->col[k] ? i - a->col[k] : a->col[k] - i;
-            width = off > width ? off : width;
-        }
-    }
-    return width;
+    size_t below = 0, above = 0;
+    tribo_matrix_widen(&sys->stiffness, &below, &above);
+    tribo_matrix_widen(&sys->damping, &below, &above);
+    return below > above ? below : above;
 }
 
 /* Each contact touches one body, and each body one contact at most. seen [ndof] is workspace, all zero. */
@@ -113,7 +110,7 @@ static int applies(struct step_band *b, const tribo_system *sys)
     for (size_t i = 0; i < n; i++) {
         b->mass[i] = tribo_matrix_get(&sys->mass, i, i);
     }
-    b->width = width_of(&sys->damping, width_of(&sys->stiffness, 0));
+    b->width = width_of(sys);
     memset(b->held, 0, n);
     return 2 * b->width <= sys->ncontact && each_its_own(&sys->direction, b->held) && symmetric(&sys->stiffness, b->mass) &&
            symmetric(&sys->damping, b->mass);
@@ -217,8 +214,8 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
     }
     b->n = n;
     memset(b->held, 0, n);
-    *where = factorize(b); /* with nobody held: A is definite if and only if all these pivots are */
     b->factored = 0;
+    *where = factorize(b); /* with nobody held: A is definite if and only if all these pivots are */
     return *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 

@@ -116,16 +116,6 @@ static int try_sparse(struct step_matrix *m, const tribo_system *sys, double h)
 
 /* --------------------------------------------------------------------------------------------------------------- bands */
 
-static void widen(const struct matrix *a, size_t *below, size_t *above)
-{
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            *below = i > a->col[k] && i - a->col[k] > *below ? i - a->col[k] : *below;
-            *above = a->col[k] > i && a->col[k] - i > *above ? a->col[k] - i : *above;
-        }
-    }
-}
-
 /* Adds factor a to the band, rows of what has mass or of what has none. */
 static void add_band(struct step_matrix *m, const tribo_system *sys, const struct matrix *a, double factor, int with_mass)
 {
@@ -170,10 +160,10 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
     if (sys->unsolved) {
         return factorize_unsolved(m, sys, h);
     }
-    widen(&sys->stiffness, &m->below, &m->above);
-    widen(&sys->damping, &m->below, &m->above);
+    tribo_matrix_widen(&sys->stiffness, &m->below, &m->above);
+    tribo_matrix_widen(&sys->damping, &m->below, &m->above);
     if (sys->massless.count) {
-        widen(&sys->elastic, &m->below, &m->above);
+        tribo_matrix_widen(&sys->elastic, &m->below, &m->above);
     }
     const int status = suits_sparse(m, sys) ? try_sparse(m, sys, h) : TRIBO_OK;
     return status || m->sparse.n ? status : factorize_band(m, sys, h);

@@ -217,18 +217,17 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
     tribo_breakaway_take(&m->breakaway, sys->ncontact, m->limit, m->limit_rate);
 }
 
-/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
- * But where bases part, a contact that rests by itself goes with them. */
 /* A static limit that is lost does not come back: it must not go with who of those that tie each other is held. */
 static int not_unique(const tribo_system *sys, size_t i)
 {
-    return tribo_system_fail(
-        sys, TRIBO_ERR_UNSUPPORTED,
-        "contact %zu has a static limit and is tied to others that stop beside it: which of them rest is not "
-        "unique; take central/fixed or moreau/fixed",
-        i);
+    return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                             "contact %zu has a static limit and is tied to others that stop beside it: which of them rest is "
+                             "not unique; take central/fixed or moreau/fixed",
+                             i);
 }
 
+/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
+ * But where bases part, a contact that rests by itself goes with them. */
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;

@@ -1,20 +1,20 @@
 #!/bin/sh
 # sh tests/bench/modes.sh build results [--quick]: plates of 10,680, 41,520 and 163,680 degrees of freedom (--quick: the first two)
-# that CalculiX makes of TRIBO_PLATES/plate.py (default /work/shared/data/generate); 20 modes of each by bench_modes and, where
+# that CalculiX makes of what TRIBO_PLATES/plate.py writes; 20 modes of each by bench_modes and, where
 # python3 has scipy, by eigsh(sigma=0), in turn, with each BLAS that is installed; frequencies beside those that CalculiX finds. One
 # thread each. Prints a table; what cannot run here is named and left out.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
 here=$PWD bench=$PWD/$1/tests/bench results=$2 sizes='40,12 80,24 160,48'
 [ "${3-}" != --quick ] || sizes='40,12 80,24'
-generate=${TRIBO_PLATES:-/work/shared/data/generate}
+generate=${TRIBO_PLATES-}
 export OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1
 
 skip() {
     echo "bench_modes: left out, $1"
     exit 0
 }
-[ -f "$generate/plate.py" ] || skip "there is no $generate/plate.py (set TRIBO_PLATES)"
+[ -f "$generate/plate.py" ] || skip "TRIBO_PLATES names no folder with plate.py, which writes a plate for CalculiX"
 command -v ccx >/dev/null || skip "there is no ccx (Debian: calculix-ccx)"
 command -v python3 >/dev/null || skip "there is no python3"
 python=${TRIBO_PYTHON:-python3}

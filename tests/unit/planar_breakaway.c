@@ -276,41 +276,15 @@ TEST(turned)
     for (int k = 0; k < 40; k++) {
         struct scene s = scene_create(&g), t;
         const size_t n = s.p.n;
-        double turn[LARGEST * LARGEST] = {0.0}, f[LARGEST], got[LARGEST];
-        for (size_t i = 0; i < n; i += (size_t)s.wide[i]) {
-            const double angle = s.wide[i] == 2 ? uniform(&g, -PI, PI) : 0.0;
-            turn[i * n + i] = cos(angle);
-            if (s.wide[i] == 2) {
-                s.p.limit[i + 1] = s.p.limit[i];
-                turn[i * n + i + 1] = -sin(angle);
-                turn[(i + 1) * n + i] = sin(angle);
-                turn[(i + 1) * n + i + 1] = cos(angle);
-            }
-        }
+        double turn[LARGEST * LARGEST], f[LARGEST], got[LARGEST];
         t = s;
-        for (size_t i = 0; i < n; i++) {
-            t.p.v[i] = t.p.a[i] = 0.0;
-            for (size_t j = 0; j < n; j++) {
-                t.p.v[i] += turn[i * n + j] * s.p.v[j];
-                t.p.a[i] += turn[i * n + j] * s.p.a[j];
-                t.p.r[i * n + j] = 0.0;
-                for (size_t l = 0; l < n * n; l++) {
-                    t.p.r[i * n + j] += turn[i * n + l / n] * s.p.r[l] * turn[j * n + l % n];
-                }
-            }
-        }
+        t.p = problem_turn(&g, &s.p, s.wide, turn);
         tribo_context *c = scene_context(&s, TRIBO_QUINN, k % 2), *d = scene_context(&t, TRIBO_QUINN, k % 2), *copy;
         assert_ok(tribo_clone(d, &copy));
         for (int step = 0; step < 2; step++) {
             assert_ok(step ? tribo_step_force(c, 1.0, s.p.a, f) : tribo_balance(c, s.p.v, s.p.a, NULL, f));
             assert_ok(step ? tribo_step_force(copy, 1.0, t.p.a, got) : tribo_balance(copy, t.p.v, t.p.a, NULL, got));
-            for (size_t i = 0; i < n; i++) {
-                double want = 0.0;
-                for (size_t j = 0; j < n; j++) {
-                    want += turn[i * n + j] * f[j];
-                }
-                assert_close(got[i], want, 2e-10);
-            }
+            problem_check_turned(n, turn, f, got);
         }
         tribo_destroy(c);
         tribo_destroy(d);

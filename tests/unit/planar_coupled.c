@@ -263,29 +263,9 @@ TEST(turned)
         const struct recipe recipe = recipe_regular(&g, 12);
         struct scene s = scene_create(&g, &recipe), t;
         const size_t n = s.p.n;
-        double turn[LARGEST * LARGEST] = {0.0}, f[LARGEST], got[LARGEST];
-        for (size_t i = 0; i < n; i += (size_t)s.wide[i]) {
-            const double angle = s.wide[i] == 2 ? uniform(&g, -PI, PI) : 0.0;
-            turn[i * n + i] = cos(angle);
-            if (s.wide[i] == 2) {
-                s.p.limit[i + 1] = s.p.limit[i];
-                turn[i * n + i + 1] = -sin(angle);
-                turn[(i + 1) * n + i] = sin(angle);
-                turn[(i + 1) * n + i + 1] = cos(angle);
-            }
-        }
+        double turn[LARGEST * LARGEST], f[LARGEST], got[LARGEST];
         t = s;
-        for (size_t i = 0; i < n; i++) {
-            t.p.v[i] = t.p.a[i] = 0.0;
-            for (size_t j = 0; j < n; j++) {
-                t.p.v[i] += turn[i * n + j] * s.p.v[j];
-                t.p.a[i] += turn[i * n + j] * s.p.a[j];
-                t.p.r[i * n + j] = 0.0;
-                for (size_t l = 0; l < n * n; l++) {
-                    t.p.r[i * n + j] += turn[i * n + l / n] * s.p.r[l] * turn[j * n + l % n];
-                }
-            }
-        }
+        t.p = problem_turn(&g, &s.p, s.wide, turn);
         tribo_context *c = scene_context(&s, TRIBO_QUINN), *d = scene_context(&t, TRIBO_QUINN);
         if (k % 2) {
             assert_ok(tribo_set_epsilon_step(c, 0.1, 1.0));
@@ -295,13 +275,7 @@ TEST(turned)
         }
         assert_ok(tribo_balance(c, s.p.v, s.p.a, NULL, f));
         assert_ok(tribo_balance(d, t.p.v, t.p.a, NULL, got));
-        for (size_t i = 0; i < n; i++) {
-            double want = 0.0;
-            for (size_t j = 0; j < n; j++) {
-                want += turn[i * n + j] * f[j];
-            }
-            assert_close(got[i], want, 2e-10);
-        }
+        problem_check_turned(n, turn, f, got);
         tribo_destroy(c);
         tribo_destroy(d);
     }
@@ -367,17 +341,6 @@ TEST(tangents)
     require(smooth > all / 2, "only %zu of %zu compared", smooth, all);
 }
 
-/* Forces with limits that have gone by part of dlimit. */
-static void forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f)
-{
-    double limit[LARGEST];
-    for (size_t i = 0; i < p->n; i++) {
-        limit[i] = p->limit[i] + part * dlimit[i];
-    }
-    assert_ok(tribo_set_limit(c, limit));
-    assert_ok(tribo_balance(c, p->v, p->a, NULL, f));
-}
-
 /* Discs stay discs, ellipses change their shape; lines stay lines. */
 static void change_limits(struct random *g, const struct scene *s, double *dlimit)
 {
@@ -404,8 +367,8 @@ TEST(limits)
         }
         assert_ok(tribo_balance_tangent(c, s.p.v, s.p.a, NULL, f, NULL, NULL));
         assert_ok(tribo_limit_product(c, dlimit, df));
-        forces_of_limits(c, &s.p, -STEP, dlimit, before);
-        forces_of_limits(c, &s.p, STEP, dlimit, after);
+        problem_forces_of_limits(c, &s.p, -STEP, dlimit, before);
+        problem_forces_of_limits(c, &s.p, STEP, dlimit, after);
         for (size_t i = 0; i < s.p.n; i++) {
             const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP, size = 1.0 + fabs(df[i]);
             if (fabs(forward - backward) < 1e-4 * size) {

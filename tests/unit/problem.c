@@ -125,6 +125,58 @@ void problem_forces(tribo_context *c, const struct problem *p, double step, cons
     assert_ok(tribo_balance(c, v, a, NULL, f));
 }
 
+void problem_forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f)
+{
+    double limit[LARGEST];
+    for (size_t i = 0; i < p->n; i++) {
+        limit[i] = p->limit[i] + part * dlimit[i];
+    }
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_balance(c, p->v, p->a, NULL, f));
+}
+
+struct problem problem_turn(struct random *g, struct problem *p, const int *wide, double *turn)
+{
+    const size_t n = p->n;
+    for (size_t k = 0; k < n * n; k++) {
+        turn[k] = 0.0;
+    }
+    for (size_t i = 0; i < n; i += (size_t)wide[i]) {
+        const double angle = wide[i] == 2 ? uniform(g, -PI, PI) : 0.0;
+        turn[i * n + i] = cos(angle);
+        if (wide[i] == 2) {
+            p->limit[i + 1] = p->limit[i];
+            turn[i * n + i + 1] = -sin(angle);
+            turn[(i + 1) * n + i] = sin(angle);
+            turn[(i + 1) * n + i + 1] = cos(angle);
+        }
+    }
+    struct problem t = *p;
+    for (size_t i = 0; i < n; i++) {
+        t.v[i] = t.a[i] = 0.0;
+        for (size_t j = 0; j < n; j++) {
+            t.v[i] += turn[i * n + j] * p->v[j];
+            t.a[i] += turn[i * n + j] * p->a[j];
+            t.r[i * n + j] = 0.0;
+            for (size_t l = 0; l < n * n; l++) {
+                t.r[i * n + j] += turn[i * n + l / n] * p->r[l] * turn[j * n + l % n];
+            }
+        }
+    }
+    return t;
+}
+
+void problem_check_turned(size_t n, const double *turn, const double *f, const double *got)
+{
+    for (size_t i = 0; i < n; i++) {
+        double want = 0.0;
+        for (size_t j = 0; j < n; j++) {
+            want += turn[i * n + j] * f[j];
+        }
+        assert_close(got[i], want, 2e-10);
+    }
+}
+
 tribo_context *problem_chain(size_t n, size_t islands, int coupling)
 {
     const size_t all = n * islands;

@@ -34,6 +34,16 @@ tribo_context *problem_context(const struct problem *p, int law, int coupling);
 /* f of the problem's v + step dv and a + step da. */
 void problem_forces(tribo_context *c, const struct problem *p, double step, const double *dv, const double *da, double *f);
 
+/* f with limits that have gone by part of dlimit. */
+void problem_forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f);
+
+/* The same contacts in other tangential directions: turn [n][n] takes each that is two directions wide (wide[i] of those that begin
+ * at i) by an angle of its own, and p's limits become the same in both of its directions. */
+struct problem problem_turn(struct random *g, struct problem *p, const int *wide, double *turn);
+
+/* turn f = got. */
+void problem_check_turned(size_t n, const double *turn, const double *f, const double *got);
+
 /* A chain of n contacts between bodies of mass 1: tridiagonal R. */
 tribo_context *problem_chain(size_t n, size_t islands, int coupling);
 

@@ -237,17 +237,6 @@ TEST(product_of_tangents)
 
 /* ------------------------------------------------------------------------------------------------------------ limits */
 
-/* Forces with limits that have gone by part of dlimit. */
-static void forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f)
-{
-    double limit[LARGEST];
-    for (size_t i = 0; i < p->n; i++) {
-        limit[i] = p->limit[i] + part * dlimit[i];
-    }
-    assert_ok(tribo_set_limit(c, limit));
-    assert_ok(tribo_balance(c, p->v, p->a, NULL, f));
-}
-
 /* How many forces have no kink within the step; these are compared. */
 static size_t check_limits(tribo_context *c, const struct problem *p, const double *dlimit)
 {
@@ -255,8 +244,8 @@ static size_t check_limits(tribo_context *c, const struct problem *p, const doub
     size_t smooth = 0;
     assert_ok(tribo_balance_tangent(c, p->v, p->a, NULL, f, NULL, NULL));
     assert_ok(tribo_limit_product(c, dlimit, df));
-    forces_of_limits(c, p, -STEP, dlimit, before);
-    forces_of_limits(c, p, STEP, dlimit, after);
+    problem_forces_of_limits(c, p, -STEP, dlimit, before);
+    problem_forces_of_limits(c, p, STEP, dlimit, after);
     for (size_t i = 0; i < p->n; i++) {
         const double forward = (after[i] - f[i]) / STEP, backward = (f[i] - before[i]) / STEP, size = 1.0 + fabs(df[i]);
         if (fabs(forward - backward) < 2e-4 * size) {

@@ -64,14 +64,6 @@ TEST(loop_of_driven_slider)
     tribo_system_destroy(s);
 }
 
-static int see_most(double t, const double *y, int event, void *most)
-{
-    (void)t;
-    (void)event;
-    *(double *)most = fmax(*(double *)most, y[0]);
-    return 0;
-}
-
 TEST(steady_state)
 {
     const double period = 2.0 * acos(-1.0) / 1.1;

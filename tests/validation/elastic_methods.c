@@ -111,14 +111,6 @@ TEST(moreau_loop)
     tribo_system_destroy(s);
 }
 
-static int see_most(double t, const double *y, int event, void *most)
-{
-    (void)t;
-    (void)event;
-    *(double *)most = fmax(*(double *)most, y[0]);
-    return 0;
-}
-
 /* Steady state, max x = 3.38660810 as far as the steps show it; and the state there. */
 TEST(moreau_steady_state)
 {

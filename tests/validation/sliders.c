@@ -58,3 +58,11 @@ tribo_system *structure(void)
     assert_ok(tribo_system_add_base_motion(s, base_omega, base, NULL));
     return s;
 }
+
+int see_most(double t, const double *y, int event, void *most)
+{
+    (void)t;
+    (void)event;
+    *(double *)most = fmax(*(double *)most, y[0]);
+    return 0;
+}
