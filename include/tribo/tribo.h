@@ -400,7 +400,9 @@ TRIBO_API int tribo_limit_product(tribo_context *ctx, const double *dlimit, doub
  * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
  * With static limits (tribo_set_static) a contact sticks if it can: v_end is found with |f| <= ratio*limit; contacts that slide
  * then go by limit, or by N(|v_end|), all of them at the same time, and v_end is found again, until all others stick. Of first
- * order in dt, since contacts break away, and their limits fall, from the beginning of a step on.
+ * order in dt, since contacts break away, and their limits fall, from the beginning of a step on. Who slides already is not known
+ * here: a contact at rest that shares a body with one that slides may break away by what the static limit of that one would
+ * bring it. tribo_step_force_mean knows.
  * dt     in       step, > 0
  * vfree  [n] in   relative velocity that the step would end with without friction
  * f      [n] out  friction force, |f| <= limit; of a planar contact f = -limit^2 v_end/|limit v_end|, or v_end = 0
@@ -413,7 +415,8 @@ TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfre
  *                    w/|limit w| with w = v + v_end, unless they turn back by more than a right angle
  *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until
  *                    then and the other way after: f is the mean of that, and tribo_get_slip tells the direction of the end
- * All others are as there, and so are all of them with static limits (tribo_set_static). It costs up to two solutions.
+ * All others are as there. It costs up to two solutions. With static limits (tribo_set_static) all are as there, of first order,
+ * but that contacts which come in sliding, |v| > 1e-4 dt R_ii ratio limit, go by limit, or N(|v|), at once.
  * v  [n] in  relative velocity at the start of the step
  * Returns what tribo_step_force does. */
 TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);

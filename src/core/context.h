@@ -222,6 +222,9 @@ double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
 void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
                         const double *feq, const struct tangents *d);
 
+/* All contacts hold over a step of dt, for now, but those that come in sliding at v [n]; at NULL none is known to do. */
+void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v);
+
 /* The near contacts of a problem hold, for now. */
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p);
 
@@ -253,6 +256,9 @@ struct bounds {
 /* step.c: solves v_end = v + dt R f for all contacts, f [n]; known [n], or NULL for none: not 0 for scalar contacts of
  * clusters that have a force already, there. */
 int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct bounds b, const signed char *known, double *f);
+
+/* tribo_step_force, of arguments that are checked; v as in tribo_hold_for_step. */
+int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);
 
 /* Views of group k. */
 static inline struct box_qp *tribo_problem(tribo_context *ctx, size_t k)
@@ -328,7 +334,7 @@ void tribo_planar_limits(const tribo_context *ctx, size_t i, int holds, const do
 /* What laws see of the planar contact at i, with limits to stick; its limits become limit [2]. */
 struct contacts tribo_planar_view(const tribo_context *ctx, size_t i, double *limit);
 
-/* Contacts of a cluster near stick at v hold, for now, the others have the limit by which they slide; or all hold, at NULL. */
+/* Contacts of a cluster near stick at v hold, for now, the others have the limit by which they slide. */
 void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double *v);
 
 /* Those that the solution cannot hold slide from here on, at the end of a step of dt from v = 0, or (0) from rest; returns how

@@ -291,9 +291,6 @@ int tribo_planar_step(tribo_context *ctx, double dt, const double *v, const sign
         for (size_t j = 0; j < g->size; j++) {
             ctx->plane.a[member[j]] = quotient(v[member[j]], dt);
         }
-        if (ctx->set.breaking) {
-            tribo_planar_hold(ctx, g, NULL);
-        }
         if (collect_free(ctx, g, known)) {
             status = solve_all(ctx, g, dt, ctx->plane.a);
         }

@@ -45,9 +45,7 @@ void tribo_planar_hold(tribo_context *ctx, const struct cluster *g, const double
     const size_t *member = ctx->planar->member + g->member;
     for (size_t k = 0; k < g->size; k++) {
         const size_t i = member[k];
-        if (!v) {
-            ctx->follow.now[i] = ctx->follow.hold[i];
-        } else if (ctx->planar->role[i] == ROLE_FIRST) {
+        if (ctx->planar->role[i] == ROLE_FIRST) {
             hold_planar(ctx, i, v + i);
         } else if (ctx->planar->role[i] == ROLE_SCALAR) {
             hold_scalar(ctx, i, v[i]);

@@ -55,6 +55,32 @@ void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const doubl
     }
 }
 
+/* Over a step a contact rests if its speed is this part of what friction can stop: more than rounding, and so little that what
+ * it takes to stop it is no load for others. */
+#define RESTS 1e-4
+
+/* Contact i of so many directions goes by what its speed makes of its limits, unless it rests. */
+static void slide_for_step(const tribo_context *ctx, double dt, size_t i, size_t directions, const double *v)
+{
+    const double speed = tribo_length((int)directions, v + i);
+    double stops = 0.0;
+    for (size_t k = i; k < i + directions; k++) {
+        stops += product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]);
+    }
+    for (size_t k = i; speed > RESTS * stops && k < i + directions; k++) {
+        ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
+    }
+}
+
+void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v)
+{
+    tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
+    for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
+        directions = ctx->planar && ctx->planar->role[i] == ROLE_FIRST ? 2 : 1;
+        slide_for_step(ctx, dt, i, directions, v);
+    }
+}
+
 void tribo_hold(const tribo_context *ctx, const struct box_qp *p)
 {
     for (size_t e = 0; ctx->set.breaking == DROPS && e < p->count; e++) {

@@ -241,24 +241,28 @@ int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct boun
     return status;
 }
 
-int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
+int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
 {
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    int status = tribo_check_step(ctx, dt, vfree, f);
-    if (status) {
-        return status;
-    }
     tribo_begin_call(ctx);
-    tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->set.breaking ? ctx->n : 0);
+    if (ctx->set.breaking) {
+        tribo_hold_for_step(ctx, dt, v);
+    }
     const struct bounds b = {NULL, ctx->follow.contacts.limit};
-    status = ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
+    const int status = ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;
         ctx->last.holds = 1.0;
     }
     return status;
+}
+
+int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double *f)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    const int status = tribo_check_step(ctx, dt, vfree, f);
+    return status ? status : tribo_step_at_end(ctx, dt, NULL, vfree, f);
 }
 
 int tribo_solve_box(tribo_context *ctx, const double *a, const double *lower, const double *upper, double *f)

@@ -158,7 +158,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     int status = tribo_check_step(ctx, dt, vfree, f);
     status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
     if (status || ctx->set.breaking) {
-        return status ? status : tribo_step_force(ctx, dt, vfree, f);
+        return status ? status : tribo_step_at_end(ctx, dt, v, vfree, f);
     }
     struct step s = {dt, v, vfree, ctx->spare.of, ctx->last.v, ctx->last.feq, ctx->plane.v, 0};
     tribo_begin_call(ctx);

@@ -203,6 +203,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         s->goes_on = 0;
     }
     tribo_bodies_begin(&x->alone, drv->sys);
+    tribo_step_form_start(s, drv->sys);
     status = tribo_driver_fixed_steps(drv, t, t1, y, central_step);
     if (status && *t > begin && !drv->seen) {
         memcpy(drv->state + n, s->u, n * sizeof *y);

@@ -25,6 +25,15 @@ void tribo_step_form_free(struct step_form *s)
     free(s->mode);
 }
 
+void tribo_step_form_start(struct step_form *s, const tribo_system *sys)
+{
+    s->statics = 0;
+    tribo_get_static(sys->contacts, s->f, NULL);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        s->statics |= s->f[i] > 1.0;
+    }
+}
+
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t)
 {
     if (sys->base_harmonics) {
@@ -66,7 +75,8 @@ int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h
     if (status) {
         return status;
     }
-    return planar ? tribo_step_force_mean(contacts, h, s->v, s->end, s->f) : tribo_step_force(contacts, h, s->end, s->f);
+    return planar || s->statics ? tribo_step_force_mean(contacts, h, s->v, s->end, s->f)
+                                : tribo_step_force(contacts, h, s->end, s->f);
 }
 
 double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after)

@@ -9,6 +9,7 @@ struct step_form {
     double *u, *a;       /* [ndof] velocity (central: half a step back), acceleration or what a step adds to u */
     double *v, *end, *f; /* [ncontact] velocity before and at the end, force */
     double *base;        /* [ncontact] b at the end */
+    int statics;         /* there are static limits */
     int goes_on;         /* end is the velocity that the next step begins with */
     signed char *mode;   /* [ncontact] */
     size_t revision;     /* of the system that a method has prepared for */
@@ -17,6 +18,9 @@ struct step_form {
 /* 1, or 0 if out of memory. tribo_step_form_free takes what failed too. */
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys);
 void tribo_step_form_free(struct step_form *s);
+
+/* An advance begins. */
+void tribo_step_form_start(struct step_form *s, const tribo_system *sys);
 
 /* base = b(t), if the base moves at all. */
 void tribo_step_form_find_base(struct step_form *s, tribo_system *sys, double t);
@@ -30,8 +34,9 @@ void tribo_step_form_turn(struct step_form *s);
 /* v = the velocity that a step begins with, at t. What has no mass may begin with another one than it ended with. */
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u);
 
-/* f over a step of h, from v and end. Where contacts are planar, the mean over the step; else that which stops contacts where
- * they reverse: with the mean, light bodies between heavy ones come out worse. */
+/* f over a step of h, from v and end. Where contacts are planar, the mean over the step, and where they have static limits, by
+ * those of contacts that slide; else that which stops contacts where they reverse: with the mean, light bodies between heavy ones
+ * come out worse. */
 int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h);
 
 /* The power that f dissipates at the mean of two velocities. */

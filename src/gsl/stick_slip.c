@@ -24,6 +24,9 @@
 /* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
 #define ALLOWED 8.0
 
+/* Of redundant contacts the solver may leave so many times the noise of accelerations. */
+#define CERTAIN 1e3
+
 /* The moment later, in parts of one over the highest frequency. What has changed by then is far above noise, as a rule, and
  * nearly linear in time. */
 #define LOOK_AHEAD 1e-4
@@ -49,7 +52,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(7, c);
+    m->slip = calloc(8, c);
     m->at = malloc(c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
@@ -70,6 +73,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->holds = (unsigned char *)m->slip + 4 * c;
     m->rested = (unsigned char *)m->slip + 5 * c;
     m->slid = m->slip + 6 * c;
+    m->pulled = m->slip + 7 * c;
     /* these two know directions only */
     tribo_set_planar(m->box, 0, NULL);
     tribo_set_planar(m->hold, 0, NULL);
@@ -242,7 +246,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
             }
         }
     }
-    for (size_t i = 0; !status && m->dependents && i < sys->ncontact; i++) {
+    for (size_t i = 0; !status && m->dependents && m->base_moves && i < sys->ncontact; i++) {
         if (m->slip[i] == 0 && !m->holds[i]) {
             m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
             status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
@@ -257,7 +261,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 /* ------------------------------------------------------------------------------------------------------------- forces */
 
 /* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
-static int searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
+int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
 {
     return m->slip[i] == 0 && !tribo_massless_touches(&sys->massless, i);
 }
@@ -275,7 +279,7 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
 }
 
 /* Forces and accelerations, with contacts at rest as they are marked. */
-static int find_forces(struct stick_slip *m, tribo_system *sys)
+int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 {
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
@@ -300,7 +304,7 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
 }
 
 /* A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
-static void let_go(struct stick_slip *m, size_t i, signed char direction)
+void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     m->slip[i] = tribo_breakaway_lets_go(&m->breakaway, i) ? 0 : direction;
     m->tied[i] = 0;
@@ -313,7 +317,7 @@ static int breaks_away(struct stick_slip *m, size_t i, signed char direction, do
     if (direction * acceleration <= m->gain[i]) {
         return 0;
     }
-    let_go(m, i, direction);
+    tribo_stick_slip_let_go(m, i, direction);
     return 1;
 }
 
@@ -330,7 +334,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     *ties = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->tied[i] = 0;
-        close += searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
+        close += tribo_stick_slip_searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
     }
     if (close == 0) {
         return 0;
@@ -340,10 +344,11 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double room = m->stick[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / ALLOWED;
-        if (searches(m, sys, i) && room <= within) {
+        if (tribo_stick_slip_searches(m, sys, i) && room <= within) {
             const signed char direction = direction_of(m, i, m->force[i]);
+            const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->tied[i] = 1;
-            changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure);
             *ties += m->tied[i] != 0;
         }
     }
@@ -425,65 +430,22 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     if (status) {
         return status;
     }
+    memset(m->pulled, 0, sys->ncontact);
     memset(m->rate, 0, sys->ndof * sizeof *m->rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, m->rate);
     tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (searches(m, sys, i) && room >= 0.0) {
+        if (tribo_stick_slip_searches(m, sys, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
             const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            m->pulled[i] = (signed char)(m->tied[i] && room <= 0.0 && direction * m->v[i] > m->gain[i] ? direction : 0);
             *changes += (size_t)leaves;
             m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
         }
     }
     return TRIBO_OK;
-}
-
-/* ------------------------------------------------------------------------------------------------------------ overload */
-
-/* f = the forces that hold all contacts at rest where they are, the others having theirs. */
-static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
-{
-    int status = tribo_stick_slip_find_holds(m, sys);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->v[i] = m->loose[i] ? m->force[i] : 0.0;
-    }
-    memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 1, m->v);
-    status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
-    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
-}
-
-/* Of a light body between heavy ones the acceleration may be nothing but rounding, also where a contact on it lets go, or goes
- * back inside its limit. Then the forces tell that it takes to hold all that are at rest: if they go beyond the limits, the
- * contact that is most overloaded slides; and otherwise these are the forces. */
-static int relieve(struct stick_slip *m, const tribo_system *sys, size_t *changes)
-{
-    const int status = find_holding_forces(m, sys);
-    size_t worst = sys->ncontact;
-    double most = 1.0;
-    for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        const double excess = fabs(m->f[i]) - m->stick[i];
-        if (m->tied[i] && m->holds[i] && excess > most * m->allowance[i]) {
-            worst = i;
-            most = excess / m->allowance[i];
-        }
-    }
-    if (worst < sys->ncontact) {
-        let_go(m, worst, m->f[worst] > 0.0 ? -1 : 1);
-        *changes = 1;
-        return status;
-    }
-    for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        m->force[i] = m->loose[i] ? m->force[i] : clamp(m->f[i], -m->stick[i], m->stick[i]);
-        m->excess[i] = m->loose[i] ? 0.0 : fabs(m->f[i] - m->force[i]);
-    }
-    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
-    return status;
 }
 
 /* lo = the limits by which contacts slide at the time set with velocities v: others than those that were last decided with, if
@@ -546,13 +508,13 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     }
     for (size_t changes = 1; !status && changes;) {
         size_t ties;
-        status = find_forces(m, sys);
+        status = tribo_stick_slip_find_forces(m, sys);
         changes = status ? 0 : let_slide(m, sys, y, &ties);
         if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
             status = look_ahead(m, sys, y, &changes);
         }
         if (!status && !changes && ties) {
-            status = relieve(m, sys, &changes);
+            status = tribo_stick_slip_relieve(m, sys, &changes);
         }
     }
     m->reached = m->contacts;

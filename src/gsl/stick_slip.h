@@ -47,6 +47,7 @@ struct stick_slip {
     double *free, *rate, *size; /* [ndof] workspace: q'' without friction, its rate, the sizes of its parts */
     int sized;                  /* size is that of now */
     signed char *tied;          /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    signed char *pulled;        /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
     signed char *before;        /* [ncontact] what find_holds saw last */
     int fresh;                  /* it saw nothing yet */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
@@ -77,6 +78,19 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
+
+/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. Forces and accelerations, with
+ * contacts at rest as they are marked; a status. A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other
+ * one. */
+int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i);
+int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
+void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction);
+
+/* stick_slip_relieve.c: whether contact i would lose a static limit, and the forces at rest are not unique. Then, and where
+ * accelerations are nothing but rounding, the forces tell that it takes to hold all that are at rest: these are the forces, or
+ * contacts let go; a status. */
+int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i);
+int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes);
 
 /* stick_slip_elastic.c: elastic contacts, whose forces the state knows. The first finds these, and what of them may be rounding:
  * spring, slack. For the decision, in this order: velocities that they would slide with; forces, slip, and places without mass;
