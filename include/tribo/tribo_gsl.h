@@ -209,10 +209,11 @@ typedef struct tribo_driver tribo_driver;
  *               event follows its direction in steps of that short time
  *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at
  *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
- *               more than rounding. Where contacts at rest tie each other, which of them loses its limit first is
- *               not unique: event and exact may let one go that others could relieve, or refuse to choose
- *               (TRIBO_ERR_UNSUPPORTED); central and moreau hold what can be held. All methods with steps are of first order
- *               then.
+ *               more than rounding. Contacts at rest that tie each other hold as long as any forces within their limits hold
+ *               all of them; of the forces that then come nearest to it, those at limits that are too small break away together.
+ *               Where contacts that tie each other come to rest on bases that part in the same instant, which of them keeps its
+ *               limit is not unique, and event and exact refuse to choose (TRIBO_ERR_UNSUPPORTED). All methods with steps are
+ *               of first order then.
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL

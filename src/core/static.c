@@ -65,7 +65,7 @@ static void slide_for_step(const tribo_context *ctx, double dt, size_t i, size_t
     const double speed = tribo_length((int)directions, v + i);
     double stops = 0.0;
     for (size_t k = i; k < i + directions; k++) {
-        stops += product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]);
+        stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
     }
     for (size_t k = i; speed > RESTS * stops && k < i + directions; k++) {
         ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
@@ -115,7 +115,9 @@ void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree)
 {
     for (size_t i = 0; i < ctx->n; i++) {
         const double hold = ctx->follow.hold[i], held = product(ctx->op->diagonal[i] * dt, hold), beyond = fabs(vfree[i]) - held;
-        if ((!ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE) && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
+        const int alone = !ctx->op->groups || ctx->op->group_of[i] == TRIBO_ALONE;
+        const int scalar = !ctx->planar || ctx->planar->role[i] == ROLE_SCALAR;
+        if (alone && scalar && fabs(ctx->last.f[i]) == hold && beyond > 0.0) {
             ctx->follow.now[i] = tribo_limit_at(ctx, i, beyond);
             ctx->last.f[i] = copysign(ctx->follow.now[i], -vfree[i]);
         }

@@ -6,7 +6,8 @@
  *         contacts at rest slide if their force is at the limit and their acceleration is more than rounding
  *         if none does, but some are just at their limit: solve for a moment later, and contacts at their limit then slide
  *         if still none does: of the forces that hold all at rest, the one most beyond its limit makes its contact slide
- *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on
+ *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on, and
+ *         others that began to slide are at rest again
  *     until none begins to slide
  *     an independent set of those at rest holds: it keeps all of them where they are */
 #include "stick_slip.h"
@@ -306,8 +307,20 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
 /* A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
 void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
-    m->slip[i] = tribo_breakaway_lets_go(&m->breakaway, i) ? 0 : direction;
+    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
+    m->slip[i] = again ? 0 : direction;
     m->tied[i] = 0;
+    m->again |= again;
+}
+
+/* Where static limits were lost, all that began to slide while they held are decided about once more, too: the other way they
+ * might go, or none. */
+static void rest_again(struct stick_slip *m)
+{
+    for (size_t i = 0; m->again && i < m->contacts; i++) {
+        m->slip[i] = m->rested[i] ? 0 : m->slip[i];
+    }
+    m->again = 0;
 }
 
 /* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
@@ -516,6 +529,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         if (!status && !changes && ties) {
             status = tribo_stick_slip_relieve(m, sys, &changes);
         }
+        rest_again(m);
     }
     m->reached = m->contacts;
     if (m->breakaway.some && !status) {

@@ -32,6 +32,7 @@ struct stick_slip {
     double *stick, *stick_rate; /* [ncontact] by which those at rest hold: these, unless there are static limits */
     double *swing;              /* [ncontact] by how much harmonics change the limit at most */
     struct breakaway breakaway; /* of static limits */
+    int again;                  /* some were lost in this round of a decision */
     struct planar_slip *plane;  /* of planar contacts; NULL if there are none */
     double abstol, reltol;      /* of the driver */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */

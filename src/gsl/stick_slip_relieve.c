@@ -11,8 +11,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Forces beyond static limits are an event as soon as they are so by the allowance: there it has to be decided. */
-#define AT_THE_EVENT 0.5
+/* Forces beyond static limits are an event as soon as they are so by the allowance of the phase, which may have been smaller than
+ * that of its end: there it has to be decided, by what is more than noise. */
+#define AT_THE_EVENT 0.125
 
 /* f = the forces that hold all contacts at rest where they are, the others having theirs. */
 static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)

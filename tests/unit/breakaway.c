@@ -449,6 +449,39 @@ TEST(in_the_mean)
     tribo_destroy(c);
 }
 
+/* A contact that slides past brings its own limit to one that rests beside it, which holds by 0.7; by the static limit, or by that
+ * of a step whose start is not known, it would have to hold by 1.2. Scalar contacts alone, and beside a planar one. */
+TEST(sliding_beside)
+{
+    const double r[] = {1.0, 0.5, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0};
+    const double limit[] = {1.0, 0.6, 0.6, 0.6}, ratio[] = {2.0, 1.5, 1.5, 1.5}, velocity[] = {0.01, 1.0, 1.0, 1.0};
+    const double v[] = {1.0, 0.0, 0.0, 0.0}, vfree[] = {1.0, -0.02, 0.0, 0.0}, planar[] = {1.0, 0.5, 0.5, 1.0};
+    const double want[] = {-1.0, 0.0, 0.7};
+    const size_t last = 2;
+    double f[4];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 4));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_planar(c, _i / 2 ? 1 : 0, &last));
+    assert_ok(tribo_set_static(c, ratio, _i % 2 ? velocity : NULL));
+    assert_ok(tribo_step_force_mean(c, 0.1, v, vfree, f));
+    assert_all_close(f, TWO(-1.0, 0.7), 2, 1e-14);
+    assert_ok(tribo_step_force(c, 0.1, vfree, f));
+    assert_close(f[0], -1.0, 1e-14);
+    require(_i % 2 || f[1] == 0.6, "%g", f[1]);
+    tribo_destroy(c);
+    /* the planar contact slides itself, along its first axis, and a scalar one beside it rests */
+    assert_ok(tribo_create(&c, 3));
+    assert_ok(tribo_set_limit(c, (const double[]){1.0, 1.0, 0.6}));
+    assert_ok(tribo_set_operator_dense(c, (const double[]){planar[0], 0.0, planar[1], 0.0, 1.0, 0.0, planar[2], 0.0, planar[3]}));
+    assert_ok(tribo_set_planar(c, 1, (const size_t[]){0}));
+    assert_ok(tribo_set_static(c, (const double[]){2.0, 2.0, 1.5}, NULL));
+    assert_ok(tribo_step_force_mean(c, 0.1, v, (const double[]){1.0, 0.0, -0.02}, f));
+    assert_all_close(f, want, 3, 1e-14);
+    tribo_destroy(c);
+}
+
 /* Limits beyond what a force can be are cut; nothing overflows. */
 TEST(far_limits)
 {
@@ -463,4 +496,4 @@ TEST(far_limits)
 
 TEST_MAIN("breakaway", {in_the_mean, 2}, {one_block, 4}, {ties, 2}, {just_at_the_limit, 40}, {decided_again, 2},
           {many_contacts, 100}, {falling_limit, 6}, {dropping_limit, 6}, {falling_limit_in_steps, 1}, {undone, 40}, {clones, 20},
-          {rate_of_relaxation, 2}, {tangents_of_the_law, 24}, {refusals, 1}, {far_limits, 2})
+          {rate_of_relaxation, 2}, {tangents_of_the_law, 24}, {refusals, 1}, {sliding_beside, 4}, {far_limits, 2})
