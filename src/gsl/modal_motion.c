@@ -9,22 +9,26 @@
 /* Over a time this short, in terms of the fastest exponent, three terms of a series are all of it. */
 #define CLOSE 1e-6
 
+/* Over a time this short a change is less than what it is a difference of. */
+#define SHORT 0.1
+
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
 {
     const size_t n = sys->ndof;
-    double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
-                                &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
+    double **const by_mode[] = {&x->eta, &x->rate, &x->off, &x->vel, &x->acc, &x->now, &x->work, &x->drift_rate, &x->dq};
     double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
-    double *work = malloc((10 * n + 20 * n + 3 * sys->ncontact + 1) * sizeof *work);
+    double *work = malloc((9 * n + 20 * n + 3 * sys->ncontact + 1) * sizeof *work);
     if (!work) {
         return 0;
     }
-    for (size_t k = 0; k < 10; k++) {
+    for (size_t k = 0; k < 9; k++) {
         *by_mode[k] = work + k * n;
-        *by_exponent[k] = work + (10 + 2 * k) * n;
+    }
+    for (size_t k = 0; k < 10; k++) {
+        *by_exponent[k] = work + (9 + 2 * k) * n;
     }
     x->sys = sys;
-    x->start = work + 30 * n;
+    x->start = work + 29 * n;
     x->ramp = x->start + sys->ncontact;
     x->steady = x->ramp + sys->ncontact;
     x->contacts = contacts;
@@ -231,32 +235,51 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
     }
 }
 
-/* eta (into now) and eta' (into work) where go() was. */
+/* How far what goes as e^{lambda t} has come from z to w. In a short time it is what is left of far larger numbers, where a
+ * limit far above all other forces stops a contact. */
+static double complex way_of(const struct modal_motion *x, double complex lambda, double complex z, double complex w)
+{
+    const double complex turn = lambda * x->tau;
+    return cabs(turn) < SHORT ? z * turn * tribo_exp_1(turn) : w - z;
+}
+
+/* The same of exponent p; resonance adds to it from nothing on. */
+static double complex way_of_exponent(const struct modal_motion *x, size_t p)
+{
+    const struct modal *h = x->h;
+    const double complex z = x->zr[p] + x->zi[p] * I, w = x->wr[p] + x->wi[p] * I;
+    return h->any_resonant ? w - z : way_of(x, h->lr[p] + h->li[p] * I, z, w);
+}
+
+/* By how much eta has changed (into now), and eta' (into work), where go() was. */
 static void amplitudes(struct modal_motion *x)
 {
     const struct modal *h = x->h;
     const size_t m = h->modes, e = h->exponents;
     for (size_t k = 0; k < m; k++) {
-        const double start = h->drifts[k] ? x->drift[k] + x->drift_rate[k] * x->tau : 0.0;
-        x->now[k] = x->off[k] + x->tau * (x->vel[k] + 0.5 * x->acc[k] * x->tau) + start;
-        x->work[k] = x->vel[k] + x->acc[k] * x->tau + (h->drifts[k] ? x->drift_rate[k] : 0.0);
+        const double drift = h->drifts[k] ? x->drift_rate[k] : 0.0;
+        x->now[k] = x->tau * (x->vel[k] + 0.5 * x->acc[k] * x->tau + drift);
+        x->work[k] = x->vel[k] + x->acc[k] * x->tau + drift;
     }
-    for (size_t p = 0; h->owner && p < e; p++) {
-        x->now[h->owner[p]] += x->wr[p];
-        x->work[h->owner[p]] += h->lr[p] * x->wr[p] - h->li[p] * x->wi[p];
-    }
-    for (size_t k = 0; !h->owner && k < m; k++) {
-        for (size_t p = 0; p < e; p++) {
+    for (size_t p = 0; p < e; p++) {
+        const double complex way = way_of_exponent(x, p);
+        const double ur = h->lr[p] * x->wr[p] - h->li[p] * x->wi[p], ui = h->lr[p] * x->wi[p] + h->li[p] * x->wr[p];
+        if (h->owner) {
+            x->now[h->owner[p]] += creal(way);
+            x->work[h->owner[p]] += ur;
+        }
+        for (size_t k = 0; !h->owner && k < m; k++) {
             const double rr = h->rr[k * e + p], ri = h->ri[k * e + p];
-            x->now[k] += rr * x->wr[p] - ri * x->wi[p];
-            x->work[k] += rr * (h->lr[p] * x->wr[p] - h->li[p] * x->wi[p]) - ri * (h->lr[p] * x->wi[p] + h->li[p] * x->wr[p]);
+            x->now[k] += rr * creal(way) - ri * cimag(way);
+            x->work[k] += rr * ur - ri * ui;
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {
         const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
+        const double complex way = way_of(x, omega * I, x->cos_0[s] + x->sin_0[s] * I, ct + st * I);
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * ct - xi * st;
+            x->now[k] += xr * creal(way) - xi * cimag(way);
             x->work[k] -= omega * (xr * st + xi * ct);
         }
     }
@@ -284,9 +307,9 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
         to[n + h->dof[i]] = u;
     }
     for (size_t k = 0; k < h->modes; k++) {
-        const double *phi = h->phi + k * h->moving, change = x->now[k] - x->eta[k];
+        const double *phi = h->phi + k * h->moving;
         for (size_t i = 0; i < h->moving; i++) {
-            x->dq[h->dof[i]] += phi[i] * change;
+            x->dq[h->dof[i]] += phi[i] * x->now[k];
             to[n + h->dof[i]] += phi[i] * x->work[k];
         }
     }
@@ -396,7 +419,6 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
         }
         x->now[k] = x->eta[k] - q;
         x->work[k] = x->rate[k] - u;
-        x->drift[k] = x->now[k];
         x->drift_rate[k] = x->work[k];
     }
     for (size_t p = 0; p < h->exponents; p++) {

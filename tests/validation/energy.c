@@ -104,4 +104,29 @@ TEST(open_contacts)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("energy", {balance_of_energy, 16}, {free_oscillator, 1}, {open_contacts, 3})
+/* A limit far above all other forces stops one of two masses in no time, and takes its energy; so it is with damping and a limit
+ * that swings, which leave an error that grows with the limit, but no faster. */
+TEST(far_limits)
+{
+    static const char *const methods[] = {"exact", "event"};
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {2.0, -1.0, -1.0, 2.0}, direction[] = {1.0, 0.0};
+    const double damping[][4] = {{0.0, 0.0, 0.0, 0.0}, {0.3, -0.1, -0.1, 0.2}, {0.3, 0.0, 0.0, 0.05}, {0.0, 0.0, 0.0, 0.0}};
+    const char *method = methods[_i % 2];
+    const int kind = _i / 2;
+    for (double limit = 1e2; limit < 1e11; limit *= 1e2) {
+        const double half = 0.5 * limit, wave = kind == 3 ? half : 0.0, tolerance = kind ? 1e-14 + 1e-15 * limit : 1e-14;
+        double y[5] = {0.3, -0.2, 1.0, 0.5, 0.0};
+        tribo_system *sys;
+        assert_ok(tribo_system_linear(&sys, 2, 1, mass, damping[kind], stiffness, direction, 0, NULL, 0));
+        assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
+        assert_ok(tribo_system_add_limit(sys, 2.0, NULL, &wave));
+        run(sys, method, 0.1, 1e-15, 1e-1, y);
+        assert_exact(y[2], 0.0);
+        /* way: 1/2 v^2 over what stops it, force of the springs (0.3 * 2 + 0.2) and limit; what is next to that is (F/limit)^3 */
+        require(fabs(2.0 * y[4] * (limit + 0.8) / limit - 1.0) < 3.0 * (kind ? 1.0 / limit : pow(limit, -2.0)) + tolerance,
+                "%s, limit %g: %.17g", method, limit, y[4]);
+        tribo_system_destroy(sys);
+    }
+}
+
+TEST_MAIN("energy", {far_limits, 8}, {balance_of_energy, 16}, {free_oscillator, 1}, {open_contacts, 3})
