@@ -20,10 +20,21 @@ static inline double lower_of(const struct bounds *b, size_t i)
     return b->lower ? b->lower[i] : -b->upper[i];
 }
 
-/* A call: its bounds, and how hard a contact is pulled, which is scale v. */
+/* How hard a contact is pulled that would end a step with v, in numbers: times v, up to most. */
+struct pull {
+    double times, most;
+};
+
+static inline double pull_of(struct pull p, double v)
+{
+    return p.times * clamp(v, -p.most, p.most);
+}
+
+/* A call: its bounds, and what pulls. */
 struct call {
     struct bounds b;
-    double dt, scale;
+    double dt;
+    struct pull pull;
     const double *v;
     const size_t *group_of;
     int all;       /* contacts take part, whatever friction can do against the pull */
@@ -35,17 +46,17 @@ struct call {
 #define ESTIMATED 1e150
 
 /* Whether a contact is pulled harder than forces of this limit can hold it, through a row of R with this sum. */
-static inline int out_of_reach(double scale, double v, double row_sum, double limit)
+static inline int out_of_reach(struct pull pull, double v, double row_sum, double limit)
 {
-    return fabs(scale * v) > row_sum * limit;
+    return fabs(pull_of(pull, v)) > row_sum * limit;
 }
 
-TRIBO_SIMD static int any_within_reach(size_t n, double scale, const double *restrict v, const double *restrict row_sum,
+TRIBO_SIMD static int any_within_reach(size_t n, struct pull pull, const double *restrict v, const double *restrict row_sum,
                                        double largest)
 {
     int64_t any = 0; /* as wide as what is compared */
     for (size_t i = 0; i < n; i++) {
-        any |= out_of_reach(scale, v[i], row_sum[i], largest) ? 0 : -1;
+        any |= out_of_reach(pull, v[i], row_sum[i], largest) ? 0 : -1;
     }
     return any != 0;
 }
@@ -70,13 +81,13 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         const double largest = largest_around(ctx, k);
-        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->scale, c->v + i, op->row_sum + i, largest))) {
+        if (c->estimates && (largest == 0.0 || !any_within_reach(n, c->pull, c->v + i, op->row_sum + i, largest))) {
             continue;
         }
         for (size_t j = i; j < i + n; j++) {
             const size_t g = group_of[j];
             if (g != TRIBO_ALONE && !m->solved[g] &&
-                !(c->estimates && out_of_reach(c->scale, c->v[j], op->row_sum[j], largest))) {
+                !(c->estimates && out_of_reach(c->pull, c->v[j], op->row_sum[j], largest))) {
                 m->solved[g] = 1;
                 m->solved_list[m->nsolved++] = g;
             }
@@ -105,14 +116,14 @@ static struct limits limits_of(const tribo_context *ctx, const struct box_qp *p)
 static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t k, const struct call *c, const struct limits *l)
 {
     const double v = c->v[p->member[k]], row_sum = c->estimates ? ctx->op->row_sum[p->member[k]] : 0.0;
-    const int may = !c->estimates | !out_of_reach(c->scale, v, row_sum, l->largest);
-    const int sure = c->estimates & !out_of_reach(c->scale, v, row_sum, l->least);
+    const int may = !c->estimates | !out_of_reach(c->pull, v, row_sum, l->largest);
+    const int sure = c->estimates & !out_of_reach(c->pull, v, row_sum, l->least);
     double reach;
     if (may == sure) {
         return may;
     }
     tribo_row_dot(p, k, l->of, &reach);
-    return !(fabs(c->scale * v) > reach);
+    return !(fabs(pull_of(c->pull, v)) > reach);
 }
 
 /* Sets the problem of a group: its contacts in the problem's order, those that take part first. Contacts whose bounds leave no
@@ -131,7 +142,7 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
-            p->q[k] = cut(c->scale * c->v[i]);
+            p->q[k] = pull_of(c->pull, c->v[i]);
         } else {
             p->near[--behind] = k;
             p->x[k] = tribo_carried(ctx, p, k);
@@ -199,7 +210,8 @@ static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, st
 {
     const int breaks = !b.lower && ctx->set.breaking, all = b.lower || breaks;
     const int estimates = !all && ctx->follow.largest < ESTIMATED && ctx->op->largest_sum < ESTIMATED;
-    const struct call c = {b, dt, ctx->op->groups ? quotient(1.0, dt) : 0.0, v, group_of, all, breaks, estimates};
+    const double times = ctx->op->groups ? quotient(1.0, dt) : 0.0;
+    const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, all, breaks, estimates};
     tribo_store_all(ctx);
     box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
     if (breaks) {

@@ -351,4 +351,20 @@ TEST(sparse)
     tribo_destroy(c);
 }
 
-TEST_MAIN("traps", {single_contacts, 12}, {unset_feq, 12}, {uncoupled, 200}, {coupled, 200}, {sparse, 12})
+/* A step would end with the largest velocities that there are, which are beyond what friction can stop. */
+TEST(far_steps)
+{
+    const double r[] = {2.0, 1.0, 1.0, 2.0}, limit[] = {1.0, 2.0}, v[] = {DBL_MAX, -1e308}, steps[] = {1e-300, 1e-3, 1.0, 1e300};
+    double f[2];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_dense(c, r));
+    for (size_t k = 0; trapped(_i) && k < COUNT(steps); k++) {
+        assert_quiet(tribo_step_force(c, steps[k], v, f));
+        require(steps[k] > 1.0 || (f[0] == -1.0 && f[1] == 2.0), "dt %g: %g, %g", steps[k], f[0], f[1]);
+    }
+    tribo_destroy(c);
+}
+
+TEST_MAIN("traps", {far_steps, 2}, {single_contacts, 12}, {unset_feq, 12}, {uncoupled, 200}, {coupled, 200}, {sparse, 12})
