@@ -11,6 +11,9 @@
  */
 #define MOST_LOOKS ((size_t)1 << 24)
 
+/* Where bounds that hold so long leave intervals of which that many are not this part of it, it need not be tried. */
+#define HOPELESS 1e-6
+
 /* The third derivative of a sum of exponentials and sines is at most the root of its size times its bend (Cauchy, Schwarz), that
  * of powers of time at most 4.5 times this and 60 size/longest^3. So over this part of a first length it changes what two
  * derivatives tell by a thousandth of noise. */
@@ -240,6 +243,7 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         struct guard *g = &s->guard[k];
         g->allowance = greater(g->allowance, greater(ALLOWED * g->size, DBL_MIN));
     }
+    s->lost = (double)MOST_LOOKS * h < HOPELESS * lesser(better, longest);
     sample(s, 0.0);
     keep_left(s);
     for (size_t k = 0; k < s->guards; k++) {
