@@ -372,7 +372,8 @@ TRIBO_API int tribo_force_tangent_planar(const tribo_context *ctx, const double 
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
 
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
- * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink. Of redundant contacts only R times
+ * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink: of a planar contact that is pulled
+ * beyond its limits at v = 0, towards where it is about to slide. Of redundant contacts only R times
  * it is unique: it is then the least in norm (with planar contacts: in parts of limits). Where the band of a planar contact ends
  * they grow beyond all bounds from inside, like 1/sqrt(1 - |v|/epsilon); there and outside they are those of sliding. On
  * TRIBO_ERR_INCONSISTENT they are not written. Returns what tribo_balance does. */

@@ -21,6 +21,35 @@ static void resume(tribo_context *ctx, const struct cluster *g)
     }
 }
 
+/* The direction [2] of a velocity v; at rest, where |v| has a kink, that in which a contact beyond its limits is about to slide:
+ * the one at e of the problem, if it is on the rim of its set. 0 if it stays. */
+static void heading(const struct disc_qp *p, size_t e, const double *bound, const double *v, double *along)
+{
+    const double speed = tribo_length(2, v);
+    const int about = !(speed > 0.0) && p && p->place[e] == LENS_ON_DISC;
+    for (size_t k = 0; k < 2; k++) {
+        along[k] = !about ? v[k] : bound[k] > 0.0 ? quotient(p->gradient[e + k], bound[k]) : 0.0;
+    }
+    const double length = tribo_length(2, along);
+    for (size_t k = 0; k < 2; k++) {
+        along[k] = length > 0.0 ? along[k] / length : 0.0;
+    }
+}
+
+/* By how much |v| of the planar contact at place k of a cluster, whose first direction is i, grows with dv. */
+static double faster_by(const tribo_context *ctx, const struct cluster *g, size_t i, const double *dv)
+{
+    const struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member;
+    double along[2];
+    size_t e = 0;
+    while (e < p->size && member[ctx->plane.near[e]] != i) {
+        e++;
+    }
+    heading(e < p->size ? p : NULL, e, ctx->follow.contacts.bound + i, ctx->plane.v + i, along);
+    return along[0] * tribo_entry(dv, i) + along[1] * tribo_entry(dv, i + 1);
+}
+
 /* What d makes of the limits of a cluster, where these fall with the speed: with v, in the plane by |v|. */
 static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
 {
@@ -33,11 +62,8 @@ static struct change with_limits(tribo_context *ctx, const struct cluster *g, co
         const size_t i = member[k], first = i - (ctx->planar->role[i] == ROLE_SECOND);
         const int directions = ctx->planar->role[i] == ROLE_SCALAR ? 1 : 2;
         const double speed = tribo_length(directions, ctx->plane.v + first), rate = tribo_limit_rate(ctx, i, speed);
-        dlimit[i] = tribo_entry(d->limit, i);
-        for (size_t j = first; j < first + (size_t)directions; j++) {
-            const double part = speed > 0.0 ? ctx->plane.v[j] / speed : directions == 1;
-            dlimit[i] += product(rate, part * tribo_entry(d->v, j));
-        }
+        const double alone = ctx->plane.v[i] < 0.0 ? -tribo_entry(d->v, i) : tribo_entry(d->v, i);
+        dlimit[i] = tribo_entry(d->limit, i) + product(rate, directions == 1 ? alone : faster_by(ctx, g, first, d->v));
     }
     return (struct change){d->v, d->a, dlimit};
 }
@@ -308,10 +334,13 @@ static void turn_near(struct disc_qp *p, const struct given *g, const double *v,
 }
 
 /* t with what limits that are static make of it, of the contact at i: they follow those that the caller set, and |v|. */
-static struct turn turn_static(const tribo_context *ctx, size_t i, const struct given *g, const double *v, struct turn t)
+static struct turn turn_static(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p,
+                               const double *v, struct turn t)
 {
     const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit, speed = tribo_length(2, v);
-    const double faster = speed > 0.0 ? (v[0] * t.v[0] + v[1] * t.v[1]) / speed : 0.0;
+    double along[2];
+    heading(p, 0, g->c.bound, v, along);
+    const double faster = along[0] * t.v[0] + along[1] * t.v[1];
     t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
     for (size_t k = 0; k < 2 && ctx->set.breaking; k++) {
         const double part = set[k] > 0.0 ? quotient(g->c.limit[k], set[k]) : 0.0;
@@ -341,7 +370,8 @@ int tribo_planar_blocks(const tribo_context *ctx, const double *v, const double 
         for (size_t column = 0; column < 6; column++) {
             double unit[6] = {0.0}, df[2] = {0.0, 0.0};
             unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
-            const struct turn t = turn_static(ctx, i, &g, v + i, (struct turn){{unit[0], unit[1]}, {unit[4], unit[5]}, 0.0});
+            const struct turn by = {{unit[0], unit[1]}, {unit[4], unit[5]}, 0.0};
+            const struct turn t = turn_static(ctx, i, &g, g.near ? &x.p : NULL, v + i, by);
             if (g.near) {
                 turn_near(&x.p, &g, v + i, ctx->set.law->relaxes, &t, unit + 2, df);
             } else {

@@ -339,6 +339,38 @@ TEST(tangents)
 /* -------------------------------------------------------------------------------------------------------- arguments */
 
 /* A planar contact has one ratio and one velocity, whichever call comes first; what is refused changes nothing. */
+/* At rest, pulled beyond limits that fall with the speed, the same in all directions or not: differences on the way in which the
+ * contact is about to slide. */
+TEST(tangents_about_to_slide)
+{
+    static const int laws[] = {TRIBO_KARNOPP, TRIBO_QUINN};
+    const double limit[] = {1.0, _i & 1 ? 0.6 : 1.0}, r[] = {1.0, 0.2, 0.2, _i & 2 ? 0.5 : 1.0};
+    const double h = 1e-7, none[] = {0.0, 0.0}, a[] = {-2.7, -2.1};
+    double feq[2], f[2], g[2], dv[4], df[2], way[2], at[2], given[3][4];
+    tribo_context *c = plane(laws[_i / 4], limit, r, 1.5, 0.3);
+    assert_ok(tribo_balance_tangent(c, none, a, feq, f, dv, NULL));
+    for (int k = 0; k < 2; k++) {
+        way[k] = a[k] + r[2 * k] * f[0] + r[2 * k + 1] * f[1];
+    }
+    const double length = hypot(way[0], way[1]);
+    for (int k = 0; k < 2; k++) {
+        way[k] /= length;
+        at[k] = h * way[k];
+    }
+    assert_ok(tribo_tangent_product(c, way, NULL, df));
+    assert_ok(tribo_balance(c, at, a, NULL, g));
+    for (int k = 0; k < 2; k++) {
+        assert_close(dv[2 * k] * way[0] + dv[2 * k + 1] * way[1], (g[k] - f[k]) / h, 1e-4);
+        assert_close(df[k], (g[k] - f[k]) / h, 1e-4);
+    }
+    assert_ok(tribo_force_tangent_planar(c, none, feq, f, given[0], given[1], given[2]));
+    assert_ok(tribo_force(c, at, feq, g));
+    for (int k = 0; k < 2; k++) {
+        assert_close(given[0][2 * k] * way[0] + given[0][2 * k + 1] * way[1], (g[k] - f[k]) / h, 1e-4);
+    }
+    tribo_destroy(c);
+}
+
 TEST(refusals)
 {
     const double r[4] = {1.0, 0.0, 0.0, 1.0};
@@ -359,4 +391,5 @@ TEST(refusals)
     tribo_destroy(c);
 }
 
-TEST_MAIN("planar_breakaway", {one_disc, 2}, {ellipse, 3}, {line, 12}, {rounds, 6}, {turned, 4}, {tangents, 4}, {refusals, 1})
+TEST_MAIN("planar_breakaway", {one_disc, 2}, {ellipse, 3}, {line, 12}, {rounds, 6}, {turned, 4}, {tangents, 4},
+          {tangents_about_to_slide, 8}, {refusals, 1})
