@@ -46,8 +46,8 @@ static int reserve(struct planar_series *s, size_t terms, size_t contacts)
         l->ut = l->un + terms;
         l->speed = l->ut + terms;
     }
-    s->room = contacts;
-    return s->line && s->work;
+    s->room = s->line && s->work ? contacts : 0;
+    return s->room > 0;
 }
 
 static int reserve_begins(struct planar_series *s, const tribo_system *sys, size_t begins)

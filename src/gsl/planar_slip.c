@@ -64,24 +64,36 @@ static void take_contacts(struct planar_slip *p, const struct stick_slip *m, con
     }
 }
 
+/* All of it, or NULL. */
+static struct planar_slip *allocate(size_t contacts)
+{
+    struct planar_slip *p = calloc(1, sizeof *p);
+    if (!p) {
+        return NULL;
+    }
+    p->contact = malloc((contacts / 2) * sizeof *p->contact);
+    p->in_plane = malloc(contacts);
+    p->rate = malloc(3 * contacts * sizeof *p->rate);
+    if (!p->contact || !p->in_plane || !p->rate) {
+        tribo_planar_slip_free(p);
+        return NULL;
+    }
+    p->ahead = p->rate + contacts;
+    p->error = p->rate + 2 * contacts;
+    return p;
+}
+
 static int create(struct stick_slip *m, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
-    struct planar_slip *p = m->plane = m->plane ? m->plane : calloc(1, sizeof *p);
+    struct planar_slip *p = m->plane = m->plane ? m->plane : allocate(c);
     signed char *slip = malloc(c);
-    if (p && !p->contact) {
-        p->contact = malloc((c / 2) * sizeof *p->contact);
-        p->in_plane = malloc(c);
-        p->rate = malloc(3 * c * sizeof *p->rate);
-        p->ahead = p->rate + c;
-        p->error = p->rate + 2 * c;
-    }
     if (p) {
         tribo_destroy(p->disc);
         p->disc = NULL;
         p->count = 0;
     }
-    int status = !p || !slip || !p->contact || !p->in_plane || !p->rate ? TRIBO_ERR_MEMORY : tribo_clone(sys->contacts, &p->disc);
+    int status = !p || !slip ? TRIBO_ERR_MEMORY : tribo_clone(sys->contacts, &p->disc);
     if (!status) {
         tribo_set_law(p->disc, TRIBO_COULOMB);
         tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);

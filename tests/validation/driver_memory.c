@@ -6,21 +6,22 @@
 #include "memory.h"
 #include "model.h"
 
-static tribo_system *start(const struct model *m, double *y)
+static tribo_system *start(const struct model *m, int planar, double *y)
 {
+    const size_t first = 0;
     tribo_system *sys = model_system(m, 1, 0, 0.1);
+    assert_ok(tribo_set_planar(tribo_system_context(sys), planar ? 1 : 0, &first));
     memset(y, 0, DIMENSION * sizeof *y);
     y[0] = 1.0;
     return sys;
 }
 
-TEST(creation)
+static void create_within_bounds(const char *method, int planar)
 {
-    const char *method = tribo_method_name(_i);
     struct random g = random_of(1);
     const struct model m = model_create(&g, 1);
     double y[DIMENSION];
-    tribo_system *sys = start(&m, y);
+    tribo_system *sys = start(&m, planar, y);
     size_t failures = 0, bytes = 0;
     for (int status = TRIBO_ERR_MEMORY; status; bytes = memory_missed()) {
         tribo_driver *drv = NULL;
@@ -43,19 +44,18 @@ TEST(creation)
 /* Methods with fixed steps prepare at the beginning, so that nothing has happened when that fails, and nothing is allocated
  * later. Exact and event prepare what they need for contacts that stick when they first do, and GSL allocates in all steps of
  * implicit ones: where they end there is a good state, from which another run comes as close as its tolerance says. */
-TEST(advance)
+static void advance_within_bounds(const char *method, int planar)
 {
-    const char *method = tribo_method_name(_i);
     struct random g = random_of(2);
     const struct model m = model_create(&g, 1);
     const int fixed = strstr(method, "/fixed") != NULL;
     double want[DIMENSION];
-    tribo_system *twin = start(&m, want);
+    tribo_system *twin = start(&m, planar, want);
     run(twin, method, 0.01, 1e-6, 0.5, want);
     int status = TRIBO_ERR_MEMORY;
     for (size_t bytes = 0; status; bytes = memory_missed()) {
         double t = 0.0, y[DIMENSION], before[DIMENSION];
-        tribo_system *sys = start(&m, y);
+        tribo_system *sys = start(&m, planar, y);
         memcpy(before, y, sizeof y);
         tribo_driver *drv = driver_create(sys, method, 0.01, 1e-6);
         memory_bound(bytes);
@@ -77,4 +77,22 @@ TEST(advance)
     tribo_system_destroy(twin);
 }
 
-TEST_MAIN("driver_memory", {creation, 17}, {advance, 17})
+TEST(creation)
+{
+    create_within_bounds(tribo_method_name(_i), 0);
+}
+
+TEST(advance)
+{
+    advance_within_bounds(tribo_method_name(_i), 0);
+}
+
+/* Two of the contacts are the directions of one. */
+TEST(planar)
+{
+    static const char *const methods[] = {"event", "central/fixed", "moreau/fixed", "rk4/fixed"};
+    create_within_bounds(methods[_i], 1);
+    advance_within_bounds(methods[_i], 1);
+}
+
+TEST_MAIN("driver_memory", {creation, 17}, {advance, 17}, {planar, 4})
