@@ -417,7 +417,7 @@ TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfre
  *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until
  *                    then and the other way after: f is the mean of that, and tribo_get_slip tells the direction of the end
  * All others are as there. It costs up to two solutions. With static limits (tribo_set_static) all are as there, of first order,
- * but that contacts which come in sliding, |v| > 1e-4 dt R_ii ratio limit, go by limit, or N(|v|), at once.
+ * but that contacts which come in sliding, |v| > 1e-4 dt R_ii ratio limit, go by limit, or N(|v|), unless they come to a stop.
  * v  [n] in  relative velocity at the start of the step
  * Returns what tribo_step_force does. */
 TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);

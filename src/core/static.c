@@ -59,25 +59,52 @@ void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const doubl
  * it takes to stop it is no load for others. */
 #define RESTS 1e-4
 
-/* Contact i of so many directions goes by what its speed makes of its limits, unless it rests. */
-static void slide_for_step(const tribo_context *ctx, double dt, size_t i, size_t directions, const double *v)
+/* Whether contact i of so many directions comes into a step with a velocity that counts. */
+static int comes_sliding(const tribo_context *ctx, double dt, size_t i, size_t directions, const double *v)
 {
-    const double speed = tribo_length((int)directions, v + i);
     double stops = 0.0;
     for (size_t k = i; k < i + directions; k++) {
         stops = greater(stops, product(product(ctx->op->diagonal[k], dt), ctx->follow.hold[k]));
     }
-    for (size_t k = i; speed > RESTS * stops && k < i + directions; k++) {
-        ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
-    }
+    return tribo_length((int)directions, v + i) > RESTS * stops;
 }
 
-void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v)
+/* Whether f does not act against v. */
+static int turns(size_t directions, const double *v, const double *f)
+{
+    double power = 0.0;
+    for (size_t k = 0; k < directions; k++) {
+        power += product(f[k], v[k]);
+    }
+    return !(power < 0.0);
+}
+
+static size_t directions_of(const tribo_context *ctx, size_t i)
+{
+    return ctx->planar && ctx->planar->role[i] == ROLE_FIRST ? 2 : 1;
+}
+
+int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f)
+{
+    for (size_t i = 0, directions; i < ctx->n; i += directions) {
+        directions = directions_of(ctx, i);
+        if (comes_sliding(ctx, dt, i, directions, v) && turns(directions, v + i, f + i)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f)
 {
     tribo_copy(ctx->follow.now, ctx->follow.hold, ctx->n);
     for (size_t i = 0, directions; v && i < ctx->n; i += directions) {
-        directions = ctx->planar && ctx->planar->role[i] == ROLE_FIRST ? 2 : 1;
-        slide_for_step(ctx, dt, i, directions, v);
+        directions = directions_of(ctx, i);
+        const int slides = comes_sliding(ctx, dt, i, directions, v) && !(f && turns(directions, v + i, f + i));
+        const double speed = tribo_length((int)directions, v + i);
+        for (size_t k = i; slides && k < i + directions; k++) {
+            ctx->follow.now[k] = tribo_limit_at(ctx, k, speed);
+        }
     }
 }
 

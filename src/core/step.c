@@ -86,8 +86,7 @@ static void find_candidates(tribo_context *ctx, const struct call *c)
         }
         for (size_t j = i; j < i + n; j++) {
             const size_t g = group_of[j];
-            if (g != TRIBO_ALONE && !m->solved[g] &&
-                !(c->estimates && out_of_reach(c->pull, c->v[j], op->row_sum[j], largest))) {
+            if (g != TRIBO_ALONE && !m->solved[g] && !(c->estimates && out_of_reach(c->pull, c->v[j], op->row_sum[j], largest))) {
                 m->solved[g] = 1;
                 m->solved_list[m->nsolved++] = g;
             }
@@ -253,14 +252,34 @@ int tribo_solve_step(tribo_context *ctx, double dt, const double *v, struct boun
     return status;
 }
 
+/* With the limits that contacts have for now. */
+static int step_once(tribo_context *ctx, double dt, const double *vfree, double *f)
+{
+    const struct bounds b = {NULL, ctx->follow.contacts.limit};
+    tribo_begin_call(ctx);
+    return ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
+}
+
+/* Where limits are static: whoever slides does so until it comes to a stop, and holds there if it can. */
+static int step_from(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
+{
+    double *first = ctx->last.v;
+    tribo_hold_for_step(ctx, dt, v, NULL);
+    const int status = step_once(ctx, dt, vfree, v ? first : f);
+    if (status || !v) {
+        return status;
+    }
+    if (!tribo_any_turns(ctx, dt, v, first)) {
+        tribo_copy(f, first, ctx->n);
+        return TRIBO_OK;
+    }
+    tribo_hold_for_step(ctx, dt, v, first);
+    return step_once(ctx, dt, vfree, f);
+}
+
 int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f)
 {
-    tribo_begin_call(ctx);
-    if (ctx->set.breaking) {
-        tribo_hold_for_step(ctx, dt, v);
-    }
-    const struct bounds b = {NULL, ctx->follow.contacts.limit};
-    const int status = ctx->planar ? tribo_solve_step(ctx, dt, vfree, b, NULL, f) : box_all(ctx, dt, vfree, b, f);
+    const int status = ctx->set.breaking ? step_from(ctx, dt, v, vfree, f) : step_once(ctx, dt, vfree, f);
     if (!status) {
         ctx->last.modes = MODES_IN_FORCES;
         ctx->last.holds = 1.0;

@@ -449,6 +449,20 @@ TEST(in_the_mean)
     tribo_destroy(c);
 }
 
+/* A contact that comes to a stop within the step holds there by its static limit; one that slides on does not. */
+TEST(stops_within_a_step)
+{
+    double f[2];
+    tribo_context *c = pair(FOUR(1.0, 0.5, 0.5, 1.0), TWO(1.0, 1.0), TWO(2.0, 2.0), _i ? TWO(0.01, 0.01) : NULL);
+    assert_ok(tribo_step_force_mean(c, 0.1, TWO(0.01, 3.0), TWO(-0.09, 3.0), f));
+    assert_all_close(f, TWO(1.4, -1.0), 2, 1e-14);
+    check_slip(c, 0, 1);
+    assert_ok(tribo_step_force_mean(c, 0.1, TWO(0.01, 3.0), TWO(-0.29, 3.0), f));
+    require(f[0] >= 1.0 && f[0] <= 1.0 + 1e-3 && f[1] == -1.0, "%g, %g", f[0], f[1]);
+    check_slip(c, -1, 1);
+    tribo_destroy(c);
+}
+
 /* A contact that slides past brings its own limit to one that rests beside it, which holds by 0.7; by the static limit, or by that
  * of a step whose start is not known, it would have to hold by 1.2. Scalar contacts alone, and beside a planar one. */
 TEST(sliding_beside)
@@ -496,4 +510,5 @@ TEST(far_limits)
 
 TEST_MAIN("breakaway", {in_the_mean, 2}, {one_block, 4}, {ties, 2}, {just_at_the_limit, 40}, {decided_again, 2},
           {many_contacts, 100}, {falling_limit, 6}, {dropping_limit, 6}, {falling_limit_in_steps, 1}, {undone, 40}, {clones, 20},
-          {rate_of_relaxation, 2}, {tangents_of_the_law, 24}, {refusals, 1}, {sliding_beside, 4}, {far_limits, 2})
+          {rate_of_relaxation, 2}, {tangents_of_the_law, 24}, {refusals, 1}, {stops_within_a_step, 2}, {sliding_beside, 4},
+          {far_limits, 2})
