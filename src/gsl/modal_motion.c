@@ -235,20 +235,17 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
     }
 }
 
-/* How far what goes as e^{lambda t} has come from z to w. In a short time it is what is left of far larger numbers, where a
- * limit far above all other forces stops a contact. */
-static double complex way_of(const struct modal_motion *x, double complex lambda, double complex z, double complex w)
+/* How far what goes as e^{(lr + li i) t} has come, from z to w: way [2]; alone: nothing else is in w. In a short time it is what is
+ * left of far larger numbers, where a limit far above all other forces stops a contact. */
+static inline void find_way(int alone, double tau, double lr, double li, const double *z, const double *w, double *way)
 {
-    const double complex turn = lambda * x->tau;
-    return cabs(turn) < SHORT ? z * turn * tribo_exp_1(turn) : w - z;
-}
-
-/* The same of exponent p; resonance adds to it from nothing on. */
-static double complex way_of_exponent(const struct modal_motion *x, size_t p)
-{
-    const struct modal *h = x->h;
-    const double complex z = x->zr[p] + x->zi[p] * I, w = x->wr[p] + x->wi[p] * I;
-    return h->any_resonant ? w - z : way_of(x, h->lr[p] + h->li[p] * I, z, w);
+    way[0] = w[0] - z[0];
+    way[1] = w[1] - z[1];
+    if (alone && (fabs(lr) + fabs(li)) * tau < SHORT) {
+        const double complex turn = tau * (lr + li * I), change = (z[0] + z[1] * I) * (turn * tribo_exp_1(turn));
+        way[0] = creal(change);
+        way[1] = cimag(change);
+    }
 }
 
 /* By how much eta has changed (into now), and eta' (into work), where go() was. */
@@ -262,24 +259,29 @@ static void amplitudes(struct modal_motion *x)
         x->work[k] = x->vel[k] + x->acc[k] * x->tau + drift;
     }
     for (size_t p = 0; p < e; p++) {
-        const double complex way = way_of_exponent(x, p);
+        const double z[2] = {x->zr[p], x->zi[p]}, w[2] = {x->wr[p], x->wi[p]};
+        double way[2];
+        /* resonance adds to z from nothing on */
+        find_way(!h->any_resonant, x->tau, h->lr[p], h->li[p], z, w, way);
         const double ur = h->lr[p] * x->wr[p] - h->li[p] * x->wi[p], ui = h->lr[p] * x->wi[p] + h->li[p] * x->wr[p];
         if (h->owner) {
-            x->now[h->owner[p]] += creal(way);
+            x->now[h->owner[p]] += way[0];
             x->work[h->owner[p]] += ur;
         }
         for (size_t k = 0; !h->owner && k < m; k++) {
             const double rr = h->rr[k * e + p], ri = h->ri[k * e + p];
-            x->now[k] += rr * creal(way) - ri * cimag(way);
+            x->now[k] += rr * way[0] - ri * way[1];
             x->work[k] += rr * ur - ri * ui;
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {
         const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
-        const double complex way = way_of(x, omega * I, x->cos_0[s] + x->sin_0[s] * I, ct + st * I);
+        const double z[2] = {x->cos_0[s], x->sin_0[s]}, w[2] = {ct, st};
+        double way[2];
+        find_way(1, x->tau, 0.0, omega, z, w, way);
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * creal(way) - xi * cimag(way);
+            x->now[k] += xr * way[0] - xi * way[1];
             x->work[k] -= omega * (xr * st + xi * ct);
         }
     }
