@@ -235,8 +235,8 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
     }
 }
 
-/* How far what goes as e^{(lr + li i) t} has come, from z to w: way [2]; alone: nothing else is in w. In a short time it is what is
- * left of far larger numbers, where a limit far above all other forces stops a contact. */
+/* How far what goes as e^{(lr + li i) t} has come, from z to w: way [2]; alone: nothing else is in w. In a short time it is
+ * what is left of far larger numbers, where a limit far above all other forces stops a contact. */
 static inline void find_way(int alone, double tau, double lr, double li, const double *z, const double *w, double *way)
 {
     way[0] = w[0] - z[0];
