@@ -5,12 +5,23 @@
 #include <float.h>
 #include <math.h>
 
+/* Tells the context that finds the forces of those that hold who they are. f [ncontact] is workspace. */
+static int take_holds(struct stick_slip *m, double *f)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        f[i] = m->loose[i] ? 0.0 : 1.0;
+    }
+    m->hold_differs = 0;
+    return tribo_set_limit(m->hold, f);
+}
+
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 {
     for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
         f[i] = !m->loose[i] ? -a[i] / m->diagonal[i] : 0.0;
     }
-    return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
+    const int status = m->hold_differs && !m->uncoupled ? take_holds(m, f) : TRIBO_OK;
+    return status || m->uncoupled ? status : tribo_balance(m->hold, m->still, a, f, NULL);
 }
 
 /* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
@@ -55,15 +66,15 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
         m->holds[i] = m->slip[i] == 0 && (may_hold(m, sys, i) || tribo_massless_touches(&sys->massless, i));
     }
     m->dependents = 0;
-    if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
+    if (!m->independent && rest > 1 && !choose_holds(m, sys, rest)) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
     }
     for (size_t i = 0; i < c; i++) {
         m->dependents += m->slip[i] == 0 && !m->holds[i];
         m->loose[i] = !m->holds[i] || tribo_massless_touches(&sys->massless, i);
-        m->lo[i] = m->loose[i] ? 0.0 : 1.0;
     }
-    return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
+    m->hold_differs = 1;
+    return TRIBO_OK;
 }
 
 /* 1 if J x - base is more than the rounding of x for a contact that holds. */

@@ -3,6 +3,7 @@
 #ifndef TRIBO_MATRIX_H
 #define TRIBO_MATRIX_H
 
+#include <math.h>
 #include <stddef.h>
 
 #include <gsl/gsl_spmatrix.h>
@@ -41,6 +42,16 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
     double sum = 0.0;
     for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
         sum += a->val[k] * x[a->col[k]];
+    }
+    return sum;
+}
+
+/* The same of absolute values. */
+static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, const double *x)
+{
+    double sum = 0.0;
+    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        sum += fabs(a->val[k] * x[a->col[k]]);
     }
     return sum;
 }

@@ -91,9 +91,7 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
 void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
 {
     for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            y[i] += fabs(a->val[k] * x[a->col[k]]);
-        }
+        y[i] += tribo_matrix_row_size(a, i, x);
     }
 }
 

@@ -146,6 +146,9 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
  * the difference of two. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
+/* q'' without friction, [ndof]. */
+void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
+
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
 
