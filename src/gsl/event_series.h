@@ -15,9 +15,7 @@ struct event {
     double tolerance;         /* relative */
     double fastest;           /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
-    double tau, length;              /* where go() was; that of the step, and what bounds hold for */
-    const double *seen;              /* what was read last there; NULL: nothing yet */
-    struct sample sight;             /* and what it was */
+    double length;                   /* of the step, and what bounds hold for */
     double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
     double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
     double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */

@@ -1,5 +1,6 @@
 /* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
 #include "system.h"
+#include "turn.h"
 #include "../common/real.h"
 #include "../common/twofold.h"
 
@@ -158,9 +159,11 @@ static void turn(struct harmonic *h, double t, double low)
 {
     const double angle = h->omega * t,
                  rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
-    const double c = cos(angle), s = sin(angle);
-    const int tiny = fabs(rest) < TINY_ANGLE;
-    const double x = tiny ? 1.0 : cos(rest), y = tiny ? rest : sin(rest);
+    double c, s, x = 1.0, y = rest;
+    tribo_turn(angle, &c, &s);
+    if (!(fabs(rest) < TINY_ANGLE)) {
+        tribo_turn(rest, &x, &y);
+    }
     h->cos_t = c * x - s * y;
     h->sin_t = s * x + c * y;
 }

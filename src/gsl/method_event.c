@@ -72,13 +72,6 @@ static double step_length(const struct event *e)
 
 /* --------------------------------------------------------------------------------------------------------- guards */
 
-static void go(void *motion, double tau)
-{
-    struct event *e = motion;
-    e->tau = tau;
-    e->seen = NULL;
-}
-
 /* Adds factor times a polynomial at s with so many terms, c apart, and its derivatives. */
 static void add_polynomial(struct sample *to, double factor, size_t terms, size_t c, const double *term, double s)
 {
@@ -93,25 +86,35 @@ static void add_polynomial(struct sample *to, double factor, size_t terms, size_
     to->e += 2.0 * factor * v2;
 }
 
-/* The two sides of what is watched follow one another, and are computed once. */
-static struct sample read_guard(void *motion, const struct guard *g)
+/* What a guard watches, at tau. */
+static struct sample watch(const struct event *e, const struct guard *g, double tau)
 {
-    struct event *e = motion;
-    const size_t c = e->sys->ncontact;
-    struct sample x = {g->offset, 0.0, 0.0};
-    if (g->side != 0.0 && e->seen != g->output) {
-        const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
-        e->seen = g->output;
-        e->sight = (struct sample){0.0, 0.0, 0.0};
-        add_polynomial(&e->sight, 1.0, plane ? 2 * e->order + 1 : e->order + 1, plane ? e->planar.room : c, g->output, e->tau);
+    const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
+    const size_t terms = plane ? 2 * e->order + 1 : e->order + 1;
+    struct sample v = {0.0, 0.0, 0.0};
+    add_polynomial(&v, 1.0, terms, plane ? e->planar.room : e->sys->ncontact, g->output, tau);
+    return v;
+}
+
+/* The two sides of what is watched follow one another, and are computed once. */
+static void look(void *motion, double tau, size_t guards, struct guard *guard)
+{
+    const struct event *e = motion;
+    const void *seen = NULL;
+    struct sample v = {0.0, 0.0, 0.0};
+    for (struct guard *g = guard; g < guard + guards; g++) {
+        if (g->side != 0.0 && seen != g->output) {
+            seen = g->output;
+            v = watch(e, g, tau);
+        }
+        g->middle = (struct sample){g->offset, 0.0, 0.0};
+        if (g->side != 0.0) {
+            g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+        }
+        if (g->limit != 0.0) {
+            add_polynomial(&g->middle, g->limit, e->terms, e->sys->ncontact, e->limit + g->contact, tau);
+        }
     }
-    if (g->side != 0.0) {
-        x = (struct sample){x.g + g->side * e->sight.g, g->side * e->sight.d, g->side * e->sight.e};
-    }
-    if (g->limit != 0.0) {
-        add_polynomial(&x, g->limit, e->terms, c, e->limit + g->contact, e->tau);
-    }
-    return x;
 }
 
 /* Bounds of so many terms of all that is watched, or of limits, over [0, h]. */
@@ -289,8 +292,7 @@ static int create(tribo_driver *drv)
     e->limit_bend = e->limit_size + c;
     e->spring = e->limit_bend + c;
     e->work = e->spring + c;
-    e->events.search.go = go;
-    e->events.search.read = read_guard;
+    e->events.search.look = look;
     e->events.search.bound = bound;
     e->events.search.motion = e->events.motion = e;
     e->events.begin = begin;

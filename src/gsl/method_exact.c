@@ -22,8 +22,6 @@ struct exact {
     size_t helds, room, bytes, revision;
 
     struct modal_motion motion; /* of the phase */
-    const struct output *seen;  /* what was read last where go() was; NULL: nothing yet */
-    struct sample sight;        /* and what it was */
     double *work;               /* of transitions, allocated when one is first asked for */
     size_t columns;             /* for so many */
 };
@@ -56,8 +54,10 @@ static int find_held(struct exact *x, const struct modal **found)
     for (size_t i = x->helds; i-- > 0;) {
         struct modal *h = x->held[i];
         if (rests_like(h, &x->events.stick_slip, sys->ncontact)) {
-            memmove(x->held + i, x->held + i + 1, (x->helds - 1 - i) * sizeof *x->held);
-            x->held[x->helds - 1] = h;
+            for (; i + 1 < x->helds; i++) {
+                x->held[i] = x->held[i + 1];
+            }
+            x->held[i] = h;
             *found = h;
             return TRIBO_OK;
         }
@@ -87,37 +87,34 @@ static int find_held(struct exact *x, const struct modal **found)
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */
 
-static void go(void *motion, double tau)
+/* All guards at tau. The two sides of an output follow one another, and are computed once. */
+static void look(void *motion, double tau, size_t guards, struct guard *guard)
 {
-    struct exact *x = motion;
-    tribo_modal_motion_go(&x->motion, tau);
-    x->seen = NULL;
+    struct modal_motion *x = &((struct exact *)motion)->motion;
+    const void *seen = NULL;
+    struct sample v = {0.0, 0.0, 0.0};
+    tribo_modal_motion_go(x, tau);
+    for (struct guard *g = guard; g < guard + guards; g++) {
+        g->middle = (struct sample){g->offset, 0.0, 0.0};
+        if (g->output && g->output != seen) {
+            seen = g->output;
+            v = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
+        }
+        if (g->output) {
+            g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+        }
+        if (g->limit != 0.0) {
+            const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+            g->middle.g += g->limit * limit.g;
+            g->middle.d += g->limit * limit.d;
+            g->middle.e += g->limit * limit.e;
+        }
+    }
 }
 
 static void move_to(void *motion, double tau, const double *from, double *to)
 {
     tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
-}
-
-/* A guard where go() was. The two sides of an output follow one another, and are computed once. */
-static struct sample read_guard(void *motion, const struct guard *g)
-{
-    struct exact *e = motion;
-    const struct modal_motion *x = &e->motion;
-    struct sample v = {0.0, 0.0, 0.0};
-    if (g->output && e->seen != g->output) {
-        e->seen = g->output;
-        e->sight = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
-    }
-    if (g->output) {
-        v = e->sight;
-    }
-    v = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
-    if (g->limit != 0.0) {
-        const struct sample limit = tribo_modal_motion_limit(x, g->contact);
-        v = (struct sample){v.g + g->limit * limit.g, v.d + g->limit * limit.d, v.e + g->limit * limit.e};
-    }
-    return v;
 }
 
 /* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */
@@ -139,11 +136,7 @@ static void bound_guard(const struct exact *x, struct guard *g)
 static double bound(void *motion, double tau)
 {
     struct exact *x = motion;
-    double decay = 0.0;
-    const struct modal *h = x->motion.h;
-    for (size_t p = 0; p < h->exponents; p++) {
-        decay = greater(decay, -h->lr[p]);
-    }
+    const double decay = x->motion.h->decay;
     tribo_modal_motion_bound(&x->motion, tau);
     for (size_t k = 0; k < x->events.search.guards; k++) {
         struct guard *g = &x->events.search.guard[k];
@@ -279,8 +272,7 @@ static int create(tribo_driver *drv)
     if (status) {
         return status;
     }
-    x->events.search.go = go;
-    x->events.search.read = read_guard;
+    x->events.search.look = look;
     x->events.search.bound = bound;
     x->events.search.motion = x->events.motion = x;
     x->events.begin = begin;

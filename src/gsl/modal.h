@@ -52,7 +52,7 @@ struct modal {
     double *gr, *gi, *xr, *xi; /* [harmonics][modes] forcing and response of eta */
     double *yr, *yi;           /* [given][moving] velocities from the belts that hold */
     double *y0;                /* [moving] the same from belts of constant speed */
-    double *drag;              /* [modes] forcing by damping, from belts of constant speed */
+    double *constant;          /* [modes] forcing by constant loads, and by damping, from belts of constant speed */
     double *ramp;              /* [modes] forcing per unit of time, from belts of constant speed */
     int any_resonant;
     unsigned char *resonant; /* [harmonics][modes] the response is not in x, since it would be close to infinite */
@@ -60,6 +60,7 @@ struct modal {
     size_t outputs, sliding; /* the first ones are of sliding contacts, the others of held ones */
     struct output *output;
     double fastest; /* largest |lambda| */
+    double quickest, decay; /* the largest of these and the frequencies of harmonics; the largest decay rate */
     void *memory;   /* all arrays */
     size_t bytes;
 };

@@ -1,6 +1,8 @@
 #include "modal_motion.h"
 #include "divided.h"
+#include "turn.h"
 #include "../common/real.h"
+#include "../common/simd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -26,7 +28,7 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     x->sys = sys;
     x->start = work + 30 * n;
     x->ramp = x->start + sys->ncontact;
-    x->steady = x->ramp + sys->ncontact;
+    x->room_for_steady = x->ramp + sys->ncontact;
     x->contacts = contacts;
     return 1;
 }
@@ -43,7 +45,7 @@ int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics)
     if (room <= x->room) {
         return 1;
     }
-    double *more = realloc(x->cos_t, 4 * room * sizeof *more);
+    double *more = realloc(x->cos_t, 5 * room * sizeof *more);
     if (!more) {
         return 0;
     }
@@ -52,14 +54,8 @@ int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics)
     x->sin_t = more + room;
     x->cos_0 = more + 2 * room;
     x->sin_0 = more + 3 * room;
+    x->side = more + 4 * room;
     return 1;
-}
-
-/* How many times a harmonic is in what happens: those of limits as many times as the force of their contact follows it. */
-static double side_of(const struct modal_motion *x, size_t s)
-{
-    const size_t contact = x->h->forcing[s].contact;
-    return contact < x->sys->ncontact ? tribo_stick_slip_follows(x->contacts, contact) : 1.0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- later on */
@@ -110,10 +106,12 @@ static void for_resonances(struct modal_motion *x, double tau)
 /* e^{lambda delta} of an exponent. */
 static void grow(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
-    const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0, angle = h->li[p] * delta;
-    const double c = cos(angle), s = sin(angle); /* at once, where the compiler can */
-    *re = size * c;
-    *im = size * s;
+    tribo_turn(h->li[p] * delta, re, im);
+    if (h->lr[p] != 0.0) {
+        const double size = exp(h->lr[p] * delta);
+        *re *= size;
+        *im *= size;
+    }
 }
 
 /* The same where |lambda delta| is tiny. */
@@ -124,25 +122,38 @@ static void grow_little(const struct modal *h, size_t p, double delta, double *r
     *im = y + x * y;
 }
 
-/* From t0, or, if that is close, from where it was. */
-void tribo_modal_motion_go(struct modal_motion *x, double tau)
+/* Turns the harmonics that were at `from` (cosines, sines) on by a time, a little one or not; those of single contacts are what
+ * the system's are. */
+static void turn_harmonics(struct modal_motion *x, const double *const *from, double delta, int little)
 {
     const struct modal *h = x->h;
-    const double delta = tau - x->tau;
-    const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
-    const double *cos_from = close ? x->cos_t : x->cos_0, *sin_from = close ? x->sin_t : x->sin_0;
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double angle = h->forcing[s].omega * (close ? delta : tau);
-        /* far ones from t0, since what rounding leaves of a late time must not tremble within a phase */
-        const double c = close ? 1.0 - 0.5 * angle * angle : cos(angle), d = close ? angle : sin(angle);
-        const double ct = cos_from[s], st = sin_from[s];
+    for (size_t s = 0; s < h->given; s++) {
+        const double angle = h->forcing[s].omega * delta, ct = from[0][s], st = from[1][s];
+        double c = 1.0 - 0.5 * angle * angle, d = angle;
+        if (!little) {
+            tribo_turn(angle, &c, &d);
+        }
         x->cos_t[s] = c * ct - d * st;
         x->sin_t[s] = d * ct + c * st;
     }
+    for (size_t s = h->given; s < h->harmonics; s++) {
+        x->cos_t[s] = x->side[s] * x->cos_t[h->forcing[s].harmonic];
+        x->sin_t[s] = x->side[s] * x->sin_t[h->forcing[s].harmonic];
+    }
+}
+
+/* Lets exponentials that were at `from` (real, imaginary parts) grow for a time, a little one or not. */
+static void grow_all(struct modal_motion *x, const double *const *from, double delta, int little)
+{
+    const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double lr = h->lr[p], li = h->li[p], zr = close ? x->wr[p] : x->zr[p], zi = close ? x->wi[p] : x->zi[p];
+        const double lr = h->lr[p], li = h->li[p], zr = from[0][p], zi = from[1][p];
         double er, ei;
-        (close ? grow_little : grow)(h, p, close ? delta : tau, &er, &ei);
+        if (little) {
+            grow_little(h, p, delta, &er, &ei);
+        } else {
+            grow(h, p, delta, &er, &ei);
+        }
         const double wr = zr * er - zi * ei, wi = zr * ei + zi * er;
         const double w1r = lr * wr - li * wi, w1i = lr * wi + li * wr;
         x->wr[p] = wr;
@@ -152,26 +163,64 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
         x->w2r[p] = lr * w1r - li * w1i;
         x->w2i[p] = lr * w1i + li * w1r;
     }
+}
+
+/* From t0, or, if that is close, from where it was. Far ones from t0, since what rounding leaves of a late time must not tremble
+ * within a phase. */
+void tribo_modal_motion_go(struct modal_motion *x, double tau)
+{
+    const double delta = tau - x->tau;
+    const int little = fabs(delta) * x->h->quickest < CLOSE && !x->h->any_resonant, on = little && !x->unmoved;
+    const double *const wave[] = {on ? x->cos_t : x->cos_0, on ? x->sin_t : x->sin_0};
+    const double *const z[] = {on ? x->wr : x->zr, on ? x->wi : x->zi};
+    turn_harmonics(x, wave, little ? delta : tau, little);
+    grow_all(x, z, little ? delta : tau, little);
     for_resonances(x, tau);
     x->tau = tau;
+    x->unmoved = 0;
+}
+
+enum { LANES = 4 }; /* side by side, since one sum would wait for itself */
+
+/* What exponentials make of an output: v, v', v'' += Re(c w), Re(c w'), Re(c w''). Returns how many are done, whole lanes. */
+TRIBO_SIMD static size_t add_lanes(const struct modal_motion *x, size_t n, const double *restrict cr, const double *restrict ci,
+                                   double *restrict v)
+{
+    const double *restrict wr = x->wr, *restrict wi = x->wi, *restrict w1r = x->w1r, *restrict w1i = x->w1i,
+                           *restrict w2r = x->w2r, *restrict w2i = x->w2i;
+    double g[LANES] = {0.0}, d[LANES] = {0.0}, e[LANES] = {0.0};
+    size_t p = 0;
+    for (; p + LANES <= n; p += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            g[k] += cr[p + k] * wr[p + k] - ci[p + k] * wi[p + k];
+            d[k] += cr[p + k] * w1r[p + k] - ci[p + k] * w1i[p + k];
+            e[k] += cr[p + k] * w2r[p + k] - ci[p + k] * w2i[p + k];
+        }
+    }
+    v[0] += (g[0] + g[2]) + (g[1] + g[3]);
+    v[1] += (d[0] + d[2]) + (d[1] + d[3]);
+    v[2] += (e[0] + e[2]) + (e[1] + e[3]);
+    return p;
 }
 
 struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, double start, double ramp)
 {
-    double v0 = start + ramp * x->tau, v1 = ramp, v2 = 0.0;
-    for (size_t p = 0; p < x->h->exponents; p++) {
-        v0 += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
-        v1 += w->cr[p] * x->w1r[p] - w->ci[p] * x->w1i[p];
-        v2 += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
+    const struct modal *h = x->h;
+    const size_t n = h->exponents;
+    double v[] = {start + ramp * x->tau, ramp, 0.0};
+    for (size_t p = n < LANES ? 0 : add_lanes(x, n, w->cr, w->ci, v); p < n; p++) {
+        v[0] += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
+        v[1] += w->cr[p] * x->w1r[p] - w->ci[p] * x->w1i[p];
+        v[2] += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
     }
-    for (size_t s = 0; s < x->h->harmonics; s++) {
-        const double omega = x->h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
-        const double re = w->rr[s] * ct - w->ri[s] * st, im = -w->rr[s] * st - w->ri[s] * ct;
-        v0 += re;
-        v1 += omega * im;
-        v2 -= omega * omega * re;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
+        const double re = w->rr[s] * ct - w->ri[s] * st, im = w->rr[s] * st + w->ri[s] * ct;
+        v[0] += re;
+        v[1] -= omega * im;
+        v[2] -= omega * omega * re;
     }
-    return (struct sample){v0, v1, v2};
+    return (struct sample){v[0], v[1], v[2]};
 }
 
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
@@ -225,7 +274,7 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
         *size += w->size[p] * x->growth[p];
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double side = fabs(side_of(x, s));
+        const double side = fabs(x->side[s]);
         *size += side * w->wave[s];
         *bend += side * w->wave_bend[s];
     }
@@ -317,96 +366,128 @@ static void find_constant(struct modal_motion *x, const tribo_system *sys, const
 {
     const struct modal *h = x->h;
     const size_t m = h->modes;
-    memcpy(x->now, h->drag, m * sizeof *x->now);
-    for (size_t o = 0; o < h->outputs; o++) {
+    for (size_t k = 0; k < m; k++) {
+        x->now[k] = h->constant[k];
+    }
+    for (size_t o = 0; m > 0 && o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         const double push = o < h->sliding ? x->steady[out->contact] : -offset(sys, out->contact, y);
         for (size_t k = 0; k < m; k++) {
             x->now[k] += push * out->on_rate[k];
         }
     }
-    for (size_t s = 0; s < h->given; s++) {
-        for (size_t k = 0; h->forcing[s].omega == 0.0 && k < m; k++) {
-            x->now[k] += h->gr[s * m + k];
-        }
-    }
 }
 
 /* The forces of contacts but for harmonics of limits that they follow. */
-static void find_steady_forces(struct modal_motion *x, const tribo_system *sys)
+static const double *find_steady_forces(const struct modal_motion *x, const tribo_system *sys)
 {
-    memcpy(x->steady, x->contacts->force, sys->ncontact * sizeof *x->steady);
+    double *steady = x->room_for_steady;
     for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
         double limit = sys->given_limit[i];
         for (size_t s = 0; s < sys->harmonics; s++) {
             const struct harmonic *w = &sys->harmonic[s];
             limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
         }
-        x->steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
+        steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
     }
+    return sys->limit_harmonics ? steady : x->contacts->force;
 }
 
-/* Amplitudes of eta at t0, split into what the right-hand side makes of it and exponentials. */
-static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
+/* The harmonics at t0, those of limits as many times as the force of their contact follows them. */
+static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
     const struct modal *h = x->h;
-    const size_t n = sys->ndof, m = h->modes;
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
-        const double side = side_of(x, s);
+        const double side = s < h->given ? 1.0 : tribo_stick_slip_follows(x->contacts, f->contact);
+        x->side[s] = side;
         x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
         x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
     }
-    for (size_t k = 0; k < m; k++) {
+}
+
+/* Amplitudes of eta at t0. */
+static void find_amplitudes(struct modal_motion *x, const double *y)
+{
+    const struct modal *h = x->h;
+    const double *velocity = y + x->sys->ndof;
+    for (size_t k = 0; k < h->modes; k++) {
         const double *psi = h->psi + k * h->moving;
         double q = 0.0, u = 0.0;
         for (size_t i = 0; i < h->moving; i++) {
             q += psi[i] * y[h->dof[i]];
-            u += psi[i] * y[n + h->dof[i]];
+            u += psi[i] * velocity[h->dof[i]];
         }
         x->eta[k] = q;
         x->rate[k] = u;
     }
-    find_steady_forces(x, sys);
+}
+
+/* What the constant part of the right-hand side, and what of it grows with time, make of mode k. */
+static void find_course(struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    const double force = x->now[k], stiffness = h->omega2[k];
+    x->off[k] = x->vel[k] = x->acc[k] = 0.0;
+    if (h->drifts[k]) {
+        x->acc[k] = force;
+    } else if (stiffness == 0.0) {
+        x->vel[k] = force / h->damping[k];
+    } else {
+        x->vel[k] = h->ramp[k] / stiffness;
+        x->off[k] = force / stiffness;
+    }
+}
+
+/* What damping of that makes of a mode with stiffness. */
+static void correct_course(struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    const size_t m = h->modes;
+    if (h->omega2[k] != 0.0) {
+        x->off[k] -= (h->coupling ? tribo_dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
+    }
+}
+
+/* What all of that, and harmonics, do not explain of mode k at t0. */
+static void find_rest(struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    double q = x->off[k], u = x->vel[k];
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double xr = h->xr[s * h->modes + k], xi = h->xi[s * h->modes + k];
+        q += xr * x->cos_0[s] - xi * x->sin_0[s];
+        u -= h->forcing[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
+    }
+    x->drift[k] = x->eta[k] - q;
+    x->drift_rate[k] = x->rate[k] - u;
+}
+
+/* Splits the motion into what the right-hand side makes of it and exponentials. */
+static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
+{
+    const struct modal *h = x->h;
+    const size_t m = h->modes;
+    start_harmonics(x, sys);
+    x->steady = find_steady_forces(x, sys);
+    find_amplitudes(x, y);
     find_constant(x, sys, y);
     for (size_t k = 0; k < m; k++) {
-        const double force = x->now[k];
-        x->off[k] = x->vel[k] = x->acc[k] = 0.0;
-        if (h->drifts[k]) {
-            x->acc[k] = force;
-        } else if (h->omega2[k] == 0.0) {
-            x->vel[k] = force / h->damping[k];
-        } else {
-            x->vel[k] = h->ramp[k] / h->omega2[k];
-            x->off[k] = force / h->omega2[k];
-        }
+        find_course(x, k);
     }
     for (size_t k = 0; k < m; k++) {
-        if (h->omega2[k] != 0.0) {
-            x->off[k] -= (h->coupling ? tribo_dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
-        }
-    }
-    for (size_t k = 0; k < m; k++) {
-        double q = x->off[k], u = x->vel[k];
-        for (size_t s = 0; s < h->harmonics; s++) {
-            const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            q += xr * x->cos_0[s] - xi * x->sin_0[s];
-            u -= h->forcing[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
-        }
-        x->now[k] = x->eta[k] - q;
-        x->work[k] = x->rate[k] - u;
-        x->drift[k] = x->now[k];
-        x->drift_rate[k] = x->work[k];
+        correct_course(x, k);
+        find_rest(x, k);
     }
     for (size_t p = 0; p < h->exponents; p++) {
         if (h->owner) {
-            const double q = x->now[h->owner[p]], u = x->work[h->owner[p]];
+            const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
             x->zr[p] = h->ar[p] * q + h->br[p] * u;
             x->zi[p] = h->ai[p] * q + h->bi[p] * u;
         } else {
-            x->zr[p] = tribo_dot(h->ar + p * m, x->now, m) + tribo_dot(h->br + p * m, x->work, m);
-            x->zi[p] = tribo_dot(h->ai + p * m, x->now, m) + tribo_dot(h->bi + p * m, x->work, m);
+            x->zr[p] = tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m);
+            x->zi[p] = tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m);
         }
     }
 }
@@ -459,14 +540,7 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
         find_lines(x, y);
     }
     x->tau = 0.0;
-    x->fastest = h->fastest;
-    for (size_t s = 0; s < h->harmonics; s++) {
-        x->fastest = greater(x->fastest, fabs(h->forcing[s].omega));
-        x->cos_t[s] = x->cos_0[s];
-        x->sin_t[s] = x->sin_0[s];
-    }
-    memcpy(x->wr, x->zr, h->exponents * sizeof *x->wr);
-    memcpy(x->wi, x->zi, h->exponents * sizeof *x->wi);
+    x->unmoved = 1;
     x->longest = longest_phase(h, longest);
     tribo_modal_motion_bound(x, 0.0);
     return x->longest;
