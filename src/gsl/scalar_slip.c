@@ -207,15 +207,6 @@ static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
     }
 }
 
-/* q'' with the forces found, as far as the next derivative has a part of it. */
-static void find_acceleration(struct stick_slip *m, const tribo_system *sys)
-{
-    if (sys->damping.rows) {
-        memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
-        tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
-    }
-}
-
 /* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
@@ -223,7 +214,6 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     if (m->breakaway.falls) {
         find_falling(m, sys, y);
     }
-    find_acceleration(m, sys);
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {

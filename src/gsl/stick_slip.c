@@ -268,6 +268,13 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
+const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys)
+{
+    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
+    return m->acceleration;
+}
+
 /* rate = the rate of q'' while the forces of contacts at rest are what they are. */
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
@@ -275,7 +282,7 @@ void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, c
     tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->rate);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->rate);
     if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, m->acceleration, m->rate);
+        tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->rate);
     }
 }
 

@@ -77,12 +77,13 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 /* What a decision is made of. It begins at time t, with base and noise there. Limits, and with them which contacts are open, are
  * brought up to that time. Then whoever has no velocity, or none in the
  * direction of its slip any more, is at rest; a status. What accelerations of contacts may be rounding, and how far forces may
- * go; the rate of q'' while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
+ * go; q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
  * derivative of b. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
+const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 

@@ -120,7 +120,7 @@ static int stops(const struct variation *x, size_t i)
 static void jump_earlier(struct variation *x, double slope, const double *row)
 {
     const size_t n = x->sys->ndof;
-    const double *after = x->events->stick_slip.acceleration;
+    const double *after = tribo_stick_slip_find_acceleration(&x->events->stick_slip, x->sys);
     for (size_t d = 0; d < n; d++) {
         tribo_add(x->v + (n + d) * x->columns, (after[d] - x->acceleration[d]) / slope, row, x->columns);
     }
