@@ -67,10 +67,10 @@ int tribo_events_find_periodic(tribo_driver *drv, double t, double period, doubl
  * force is side * value. Or one of its limit, which is offset + limit * value: whether the contact lifts off, or touches down, or
  * has its limit fall to the force that it keeps. */
 void tribo_events_clear_guards(struct events *e);
-void tribo_events_guard(struct events *e, struct guard guard); /* of any kind, all set */
-void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard);
-void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard);
-void tribo_events_guard_part(struct events *e, size_t i, struct guard guard);
-void tribo_events_guard_limit(struct events *e, size_t i, struct guard guard);
+struct guard *tribo_events_guard(struct events *e, const struct guard *guard); /* of any kind, all set */
+void tribo_events_guard_slip(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard_stick(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard_part(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard_limit(struct events *e, size_t i, const struct guard *guard);
 
 #endif

@@ -6,6 +6,8 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
 
 /* So many looks at a motion between two events, or a first step of zero, mean that it has frequencies which cannot be followed.
  */
@@ -28,14 +30,19 @@ static double noise(const struct guard *g)
     return 4.0 * DBL_EPSILON * g->size;
 }
 
-/* x^(1/6) within a factor of 1.13. */
+/* x^(1/6) within a factor of 1.13, by the exponent of x, which is in the bits after the first: once a phase, a sixth of its search
+ * would be frexp and ldexp. */
 static double sixth_root(double x)
 {
     static const double root[] = {1.0, 1.122, 1.26, 1.414, 1.587, 1.782};
-    int e = 0;
-    frexp(x, &e);
-    e += 6000;
-    return x > 0.0 && x <= DBL_MAX ? ldexp(root[e % 6], e / 6 - 1000) : x;
+    const double normal = greater(x, DBL_MIN);
+    uint64_t bits, power;
+    double scale;
+    memcpy(&bits, &normal, sizeof bits);
+    const int e = (int)(bits >> 52) - 1022 + 6000; /* normal = m 2^(e - 6000), 1/2 <= m < 1 */
+    power = (uint64_t)(e / 6 - 1000 + 1023) << 52;
+    memcpy(&scale, &power, sizeof scale);
+    return x > 0.0 && x <= DBL_MAX ? root[e % 6] * scale : x;
 }
 
 static void sample(struct first_zero *s, double tau)

@@ -11,6 +11,16 @@ double tribo_largest(const double *x, size_t n);
 void tribo_add(double *to, double factor, const double *x, size_t n);
 int tribo_dense_finite(const double *x, size_t n);
 
+/* The same, without a call where there are few. */
+static inline int tribo_few_finite(const double *x, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; n < 8 && i < n; i++) {
+        sum += x[i] - x[i];
+    }
+    return n < 8 ? sum == 0.0 : tribo_dense_finite(x, n);
+}
+
 /* c [rows][cols] += factor a b, a [rows][inner], b [inner][cols], skipping zeros of a, of which diagonal operators have many;
  * to [cols][rows] = the transpose of a [rows][cols]. */
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);

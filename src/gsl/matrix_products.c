@@ -95,8 +95,29 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
     }
 }
 
+static int is_small(const struct matrix *a)
+{
+    return a->rows <= FEW_ROWS && a->cols <= 4 * FEW_ROWS;
+}
+
+/* y += factor A x of a small matrix. */
+static void add_few_rows(const struct matrix *a, double factor, const double *x, double *y)
+{
+    if (a->diagonals) {
+        add_outer_rows(a, 0, a->rows, factor, x, y);
+        return;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        y[i] += factor * tribo_matrix_row_dot(a, i, x);
+    }
+}
+
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
+    if (is_small(a)) {
+        add_few_rows(a, factor, x, y);
+        return;
+    }
     for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
         const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
         tribo_matrix_add_rows(a, i, end, factor, x, y + i);
@@ -105,7 +126,11 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
 {
-    for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
+    const int small = is_small(a);
+    for (size_t i = 0; small && i < a->rows; i++) {
+        y[i] = tribo_matrix_row_dot(a, i, x);
+    }
+    for (size_t i = 0; !small && i < a->rows; i += MATRIX_BLOCK) {
         const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
         memset(y + i, 0, (end - i) * sizeof *y);
         tribo_matrix_add_rows(a, i, end, 1.0, x, y + i);

@@ -193,7 +193,7 @@ static void set_planar_guards(struct event *e)
         e->size[p->at] = line->size;
         e->bend[p->at] = line->bend;
         if (moves || line->size >= 0.5 * limit) {
-            tribo_events_guard(&e->events, g);
+            tribo_events_guard(&e->events, &g);
         }
     }
 }
@@ -216,17 +216,17 @@ static void set_guards(struct event *e)
             continue;
         }
         if (m->slip[i] == 1 || m->slip[i] == -1) {
-            tribo_events_guard_slip(&e->events, i, g);
+            tribo_events_guard_slip(&e->events, i, &g);
         } else if (tribo_stick_slip_may_part(m, i)) {
             e->size[i] = parts_of_velocity(e, i, h);
-            tribo_events_guard_part(&e->events, i, g);
+            tribo_events_guard_part(&e->events, i, &g);
         }
         g.limit = varies ? ratio : 0.0;
         g.offset = (varies ? 0.0 : ratio * e->limit[i]) + tribo_stick_slip_slack(m, i);
         if (m->holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
-            tribo_events_guard_stick(&e->events, i, g);
+            tribo_events_guard_stick(&e->events, i, &g);
         } else if (limit_tells(m, i, varies)) {
-            tribo_events_guard_limit(&e->events, i, (struct guard){.limit = 1.0});
+            tribo_events_guard_limit(&e->events, i, &(struct guard){.limit = 1.0});
         }
     }
 }

@@ -164,9 +164,9 @@ static void add_guards(struct exact *x, const struct output *w, int of_velocity,
     struct guard g = {.output = w, .contact = i};
     tribo_modal_motion_line(&x->motion, w, of_velocity, now, &g.start, &g.ramp);
     if (of_velocity && m->slip[i] == 0) {
-        tribo_events_guard_part(&x->events, i, g);
+        tribo_events_guard_part(&x->events, i, &g);
     } else if (of_velocity) {
-        tribo_events_guard_slip(&x->events, i, g);
+        tribo_events_guard_slip(&x->events, i, &g);
     } else {
         bound_guard(x, &g);
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
@@ -174,7 +174,7 @@ static void add_guards(struct exact *x, const struct output *w, int of_velocity,
         g.offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
         /* nothing to guard if it is far from the limit for the whole phase */
         if (g.size >= g.offset - ratio * m->swing[i]) {
-            tribo_events_guard_stick(&x->events, i, g);
+            tribo_events_guard_stick(&x->events, i, &g);
         }
     }
 }
@@ -186,7 +186,7 @@ static void add_limit_guard(struct exact *x, size_t i)
     const struct stick_slip *m = &x->events.stick_slip;
     if (m->swing[i] > 0.0 && !m->holds[i]) {
         const struct guard g = {.offset = x->sys->given_limit[i], .limit = 1.0};
-        tribo_events_guard_limit(&x->events, i, g);
+        tribo_events_guard_limit(&x->events, i, &g);
     }
 }
 

@@ -320,7 +320,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     amplitudes(x);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
-        memcpy(to, from, tribo_system_dimension(sys) * sizeof *to);
+        memcpy(to, from, (2 * n + 1) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         double dq = h->y0[i] * tau, u = h->y0[i];
