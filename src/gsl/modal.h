@@ -14,7 +14,8 @@
  * + ramp t. */
 struct output {
     size_t contact;
-    double *cr, *ci;          /* [exponents] c_p */
+    double *cr, *ci;          /* [exponents] c_p, */
+    double *c1r, *c1i, *c2r, *c2i; /* and c_p lambda_p, c_p lambda_p^2 */
     double *size;             /* [exponents] |c_p| */
     double *bend;             /* [exponents] |c_p| |lambda_p|^6 */
     double *rr, *ri;          /* [harmonics] response */

@@ -16,17 +16,20 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     const size_t n = sys->ndof;
     double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
                                 &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
-    double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
-    double *work = malloc((10 * n + 20 * n + 3 * sys->ncontact + 1) * sizeof *work);
+    double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
+    const size_t modes = sizeof by_mode / sizeof *by_mode, exponents = sizeof by_exponent / sizeof *by_exponent;
+    double *work = malloc(((modes + 2 * exponents) * n + 3 * sys->ncontact + 1) * sizeof *work);
     if (!work) {
         return 0;
     }
-    for (size_t k = 0; k < 10; k++) {
+    for (size_t k = 0; k < modes; k++) {
         *by_mode[k] = work + k * n;
-        *by_exponent[k] = work + (10 + 2 * k) * n;
+    }
+    for (size_t k = 0; k < exponents; k++) {
+        *by_exponent[k] = work + (modes + 2 * k) * n;
     }
     x->sys = sys;
-    x->start = work + 30 * n;
+    x->start = work + (modes + 2 * exponents) * n;
     x->ramp = x->start + sys->ncontact;
     x->room_for_steady = x->ramp + sys->ncontact;
     x->contacts = contacts;
@@ -82,18 +85,19 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
     const double yr = zi / nu, yi = -zr / nu; /* times -i/nu */
     const double ct = x->cos_t[s], st = x->sin_t[s];
     const double force = -(gr * ct - gi * st) / nu, rate = omega * (gr * st + gi * ct) / nu;
-    const double y1r = h->lr[p] * yr - nu * yi, y1i = h->lr[p] * yi + nu * yr + force;
     x->wr[p] += yr;
     x->wi[p] += yi;
-    x->w1r[p] += y1r;
-    x->w1i[p] += y1i;
-    x->w2r[p] += h->lr[p] * y1r - nu * y1i;
-    x->w2i[p] += h->lr[p] * y1i + nu * y1r + rate;
+    x->w1i[p] += force;
+    x->w2r[p] -= nu * force;
+    x->w2i[p] += h->lr[p] * force + rate;
 }
 
 static void for_resonances(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
+    for (size_t p = 0; p < h->exponents && h->any_resonant; p++) {
+        x->w1i[p] = x->w2r[p] = x->w2i[p] = 0.0;
+    }
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         for (size_t p = 0; p < h->exponents; p++) {
             if (h->resonant[s * h->modes + h->owner[p]]) {
@@ -147,21 +151,15 @@ static void grow_all(struct modal_motion *x, const double *const *from, double d
 {
     const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double lr = h->lr[p], li = h->li[p], zr = from[0][p], zi = from[1][p];
+        const double zr = from[0][p], zi = from[1][p];
         double er, ei;
         if (little) {
             grow_little(h, p, delta, &er, &ei);
         } else {
             grow(h, p, delta, &er, &ei);
         }
-        const double wr = zr * er - zi * ei, wi = zr * ei + zi * er;
-        const double w1r = lr * wr - li * wi, w1i = lr * wi + li * wr;
-        x->wr[p] = wr;
-        x->wi[p] = wi;
-        x->w1r[p] = w1r;
-        x->w1i[p] = w1i;
-        x->w2r[p] = lr * w1r - li * w1i;
-        x->w2i[p] = lr * w1i + li * w1r;
+        x->wr[p] = zr * er - zi * ei;
+        x->wi[p] = zr * ei + zi * er;
     }
 }
 
@@ -182,19 +180,21 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
 
 enum { LANES = 4 }; /* side by side, since one sum would wait for itself */
 
-/* What exponentials make of an output: v, v', v'' += Re(c w), Re(c w'), Re(c w''). Returns how many are done, whole lanes. */
-TRIBO_SIMD static size_t add_lanes(const struct modal_motion *x, size_t n, const double *restrict cr, const double *restrict ci,
+/* What n exponentials make of an output, as far as they fill lanes: v, v', v'' += Re(c w), Re(c lambda w), Re(c lambda^2 w).
+ * Returns how many are done. */
+TRIBO_SIMD static size_t add_lanes(const struct output *c, size_t n, const double *restrict wr, const double *restrict wi,
                                    double *restrict v)
 {
-    const double *restrict wr = x->wr, *restrict wi = x->wi, *restrict w1r = x->w1r, *restrict w1i = x->w1i,
-                           *restrict w2r = x->w2r, *restrict w2i = x->w2i;
     double g[LANES] = {0.0}, d[LANES] = {0.0}, e[LANES] = {0.0};
     size_t p = 0;
     for (; p + LANES <= n; p += LANES) {
+        const double *restrict r = wr + p, *restrict i = wi + p;
+        const double *restrict cr = c->cr + p, *restrict ci = c->ci + p, *restrict c1r = c->c1r + p, *restrict c1i = c->c1i + p,
+                               *restrict c2r = c->c2r + p, *restrict c2i = c->c2i + p;
         for (size_t k = 0; k < LANES; k++) {
-            g[k] += cr[p + k] * wr[p + k] - ci[p + k] * wi[p + k];
-            d[k] += cr[p + k] * w1r[p + k] - ci[p + k] * w1i[p + k];
-            e[k] += cr[p + k] * w2r[p + k] - ci[p + k] * w2i[p + k];
+            g[k] += cr[k] * r[k] - ci[k] * i[k];
+            d[k] += c1r[k] * r[k] - c1i[k] * i[k];
+            e[k] += c2r[k] * r[k] - c2i[k] * i[k];
         }
     }
     v[0] += (g[0] + g[2]) + (g[1] + g[3]);
@@ -203,15 +203,28 @@ TRIBO_SIMD static size_t add_lanes(const struct modal_motion *x, size_t n, const
     return p;
 }
 
+/* What resonances add to the derivatives of an output. */
+static void add_resonances(const struct modal_motion *x, const struct output *w, double *v)
+{
+    for (size_t p = 0; p < x->h->exponents; p++) {
+        v[1] -= w->ci[p] * x->w1i[p];
+        v[2] += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
+    }
+}
+
 struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, double start, double ramp)
 {
     const struct modal *h = x->h;
     const size_t n = h->exponents;
     double v[] = {start + ramp * x->tau, ramp, 0.0};
-    for (size_t p = n < LANES ? 0 : add_lanes(x, n, w->cr, w->ci, v); p < n; p++) {
-        v[0] += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
-        v[1] += w->cr[p] * x->w1r[p] - w->ci[p] * x->w1i[p];
-        v[2] += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
+    for (size_t p = n < LANES ? 0 : add_lanes(w, n, x->wr, x->wi, v); p < n; p++) {
+        const double wr = x->wr[p], wi = x->wi[p];
+        v[0] += w->cr[p] * wr - w->ci[p] * wi;
+        v[1] += w->c1r[p] * wr - w->c1i[p] * wi;
+        v[2] += w->c2r[p] * wr - w->c2i[p] * wi;
+    }
+    if (h->any_resonant) {
+        add_resonances(x, w, v);
     }
     for (size_t s = 0; s < h->harmonics; s++) {
         const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];

@@ -17,7 +17,8 @@ struct modal_motion {
     double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
     double *drift, *drift_rate;              /* [modes] of those that drift: what harmonics do not explain, at t0 */
     double *zr, *zi;                         /* [exponents] at t0 */
-    double *wr, *wi, *w1r, *w1i, *w2r, *w2i; /* [exponents] z and its derivatives at tau */
+    double *wr, *wi;                         /* [exponents] z at tau */
+    double *w1i, *w2r, *w2i;                 /* [exponents] what resonances add to lambda z and lambda^2 z in its derivatives */
     double *growth, *growth6;                /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
     size_t room;
     double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] at t0 + tau, at t0; of contacts times */
