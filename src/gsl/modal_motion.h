@@ -12,14 +12,14 @@ struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
     const struct modal *h;
-    double t0, tau;                          /* tau: where w is */
-    int unmoved;                             /* but at t0 it is z, and harmonics are those of t0 */
-    double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
-    double *drift, *drift_rate;              /* [modes] of those that drift: what harmonics do not explain, at t0 */
-    double *zr, *zi;                         /* [exponents] at t0 */
-    double *wr, *wi;                         /* [exponents] z at tau */
-    double *w1i, *w2r, *w2i;                 /* [exponents] what resonances add to lambda z and lambda^2 z in its derivatives */
-    double *growth, *growth6;                /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
+    double t0, tau;                       /* tau: where w is */
+    int unmoved;                          /* but at t0 it is z, and harmonics are those of t0 */
+    double *eta, *rate, *off, *vel, *acc; /* [modes] at t0 */
+    double *drift, *drift_rate;           /* [modes] of those that drift: what harmonics do not explain, at t0 */
+    double *zr, *zi;                      /* [exponents] at t0 */
+    double *wr, *wi;                      /* [exponents] z at tau */
+    double *w1i, *w2r, *w2i;              /* [exponents] what resonances add to lambda z and lambda^2 z in its derivatives */
+    double *growth, *growth6;             /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
     size_t room;
     double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] at t0 + tau, at t0; of contacts times */
     double *side;                          /* [harmonics] how many times their force follows the limit; others 1 */

@@ -38,8 +38,8 @@ static int create_output(struct modal_build *b, struct output *w, size_t contact
         return 0;
     }
     double *y = x + 8 * p;
-    *w = (struct output){contact,   x,         x + p, x + 2 * p, x + 3 * p, x + 4 * p, x + 5 * p,
-                         x + 6 * p, x + 7 * p, y,     y + s,     y + 2 * s, y + 3 * s, y + 4 * s, 0.0};
+    *w = (struct output){contact,   x, x + p, x + 2 * p, x + 3 * p, x + 4 * p, x + 5 * p, x + 6 * p,
+                         x + 7 * p, y, y + s, y + 2 * s, y + 3 * s, y + 4 * s, 0.0};
     return 1;
 }
 

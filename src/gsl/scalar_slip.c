@@ -38,15 +38,14 @@ static double force_alone(const struct stick_slip *m, size_t i, double a)
 }
 
 /* v [ncontact] = a + R f: the accelerations that forces f leave. Rounding of R may hide a heavy body, that of its factors does
- * not. */
+ * not. v may be a. */
 static void accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v)
 {
-    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        v[i] = a[i] + m->diagonal[i] * f[i];
+    for (size_t i = 0; i < m->contacts; i++) {
+        v[i] = a[i] + (m->uncoupled ? m->diagonal[i] * f[i] : 0.0);
     }
     if (!m->uncoupled) {
         tribo_matrix_multiply(&sys->response, f, m->rate);
-        memcpy(v, a, m->contacts * sizeof *v);
         tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, v);
     }
 }

@@ -24,10 +24,11 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit,    &m->limit_rate,  &m->force,   &m->allowance, &m->base,  &m->noise,
-                                   &m->diagonal, &m->seen,        &m->parting, &m->excess,    &m->v,     &m->a,
-                                   &m->gain,     &m->lo,          &m->hi,      &m->f,         &m->still, &m->swing,
-                                   &m->spring,   &m->spring_rate, &m->slack,       &m->base_size, &m->base_rate_size};
+    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force,         &m->allowance, &m->base,
+                                   &m->noise, &m->diagonal,   &m->seen,          &m->parting,   &m->excess,
+                                   &m->v,     &m->a,          &m->gain,          &m->lo,        &m->hi,
+                                   &m->f,     &m->still,      &m->swing,         &m->spring,    &m->spring_rate,
+                                   &m->slack, &m->base_size,  &m->base_rate_size};
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);

@@ -50,11 +50,11 @@ struct stick_slip {
     double *free, *acceleration, *rate, *size; /* [ndof] workspace: q'' without friction, with it, its rate, sizes of its parts */
     double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
-    int sized;                  /* size is that of now */
-    signed char *tied;          /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
-    signed char *before;        /* [ncontact] what find_holds saw last */
-    int fresh;                  /* it saw nothing yet */
-    int hold_differs;           /* hold was not told who holds */
+    int sized;                                 /* size is that of now */
+    signed char *tied;                    /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    signed char *before;                  /* [ncontact] what find_holds saw last */
+    int fresh;                            /* it saw nothing yet */
+    int hold_differs;                     /* hold was not told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */
@@ -75,9 +75,9 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
 /* What a decision is made of. It begins at time t, with base and noise there. Limits, and with them which contacts are open, are
- * brought up to that time. Then whoever has no velocity, or none in the
- * direction of its slip any more, is at rest; a status. What accelerations of contacts may be rounding, and how far forces may
- * go; q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
+ * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status.
+ * What accelerations of contacts may be rounding, and how far forces may go; q'' [ndof] with the forces found, also after a
+ * decision; its rate while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
  * derivative of b. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
