@@ -212,6 +212,9 @@ static void set_guards(struct event *e)
     for (size_t i = 0; i < m->contacts; i++) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct guard g = {.output = e->watch + i};
+        if (m->slip[i] == 2) { /* not guarded, but when it touches down, rounding of its velocity counts */
+            e->events.stick_slip.seen[i] = e->size[i];
+        }
         if (m->plane && m->plane->in_plane[i]) {
             continue;
         }

@@ -179,6 +179,15 @@ static void add_guards(struct exact *x, const struct output *w, int of_velocity,
     }
 }
 
+/* The velocity v of an open contact is not guarded, but when it touches down its rounding counts. */
+static void note_size(struct exact *x, const struct output *w, double v)
+{
+    struct guard g = {.output = w, .contact = w->contact};
+    tribo_modal_motion_line(&x->motion, w, 1, v, &g.start, &g.ramp);
+    bound_guard(x, &g);
+    x->events.stick_slip.seen[w->contact] = g.size;
+}
+
 /* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
  * hold have guards of their forces. */
 static void add_limit_guard(struct exact *x, size_t i)
@@ -199,8 +208,10 @@ static void set_guards(struct exact *x, const double *y)
         const struct output *w = &h->output[k];
         const size_t i = w->contact;
         const int of_velocity = k < h->sliding;
-        if (m->slip[i] != 2) {
-            const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+        const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+        if (m->slip[i] == 2) {
+            note_size(x, w, v);
+        } else {
             add_guards(x, w, of_velocity, of_velocity ? v : m->force[i]);
         }
     }
