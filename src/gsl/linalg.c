@@ -90,6 +90,15 @@ void tribo_transpose(size_t rows, size_t cols, const double *a, double *to)
     }
 }
 
+void tribo_even_out(size_t n, double *a)
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < i; j++) {
+            a[i * n + j] = a[j * n + i] = 0.5 * (a[i * n + j] + a[j * n + i]);
+        }
+    }
+}
+
 void tribo_cholesky_free(struct cholesky *c)
 {
     free(c->factor);

@@ -16,6 +16,9 @@ int tribo_dense_finite(const double *x, size_t n);
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
+/* a [n][n], symmetric but for rounding, becomes exactly so. */
+void tribo_even_out(size_t n, double *a);
+
 /* Matrices that are not diagonal are factored as sparse ones from SPARSE_LEAST rows on, if the library can do that; if not, dense
  * ones may have DENSE_MOST. */
 #define SPARSE_LEAST 200

@@ -140,11 +140,7 @@ static void find_operator(const struct matrix *j, const struct cholesky *mass, d
         }
         tribo_matrix_multiply_add(j, 1.0, x, r + i * j->rows);
     }
-    for (size_t i = 0; i < j->rows; i++) {
-        for (size_t k = 0; k < i; k++) {
-            r[i * j->rows + k] = r[k * j->rows + i] = 0.5 * (r[i * j->rows + k] + r[k * j->rows + i]);
-        }
-    }
+    tribo_even_out(j->rows, r);
 }
 
 static int check_unsolved(const struct model *m)
