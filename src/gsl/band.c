@@ -59,9 +59,11 @@ static void forward(size_t n, size_t width, const double *l, double *x)
 {
     for (size_t i = 0; i < n; i++) {
         const double *row = l + i * (width + 1) + width - i;
+        double rest = x[i];
         for (size_t j = begin_of(width, i); j < i; j++) {
-            x[i] -= row[j] * x[j];
+            rest -= row[j] * x[j];
         }
+        x[i] = rest;
     }
 }
 
@@ -69,9 +71,9 @@ static void forward(size_t n, size_t width, const double *l, double *x)
 static void back(size_t n, size_t width, const double *l, double *x)
 {
     for (size_t i = n; i-- > 0;) {
-        const double *row = l + i * (width + 1) + width - i;
+        const double *row = l + i * (width + 1) + width - i, own = x[i];
         for (size_t j = begin_of(width, i); j < i; j++) {
-            x[j] -= row[j] * x[i];
+            x[j] -= row[j] * own;
         }
     }
 }

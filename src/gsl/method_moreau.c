@@ -403,9 +403,9 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
         p[i] += 0.5 * h * m->load[i];
     }
     pull_back(sys, 1, h, s->u, u, p);
-    if (sys->mass.rows && !sys->unsolved) {
-        memcpy(m->work, p, n * sizeof *p);
-        tribo_matrix_multiply(&sys->mass, m->work, p);
+    if (sys->mass.rows && !sys->mass.identity && !sys->unsolved) {
+        tribo_matrix_multiply(&sys->mass, p, m->work);
+        memcpy(p, m->work, n * sizeof *p);
     }
     pull_back(sys, 0, h, s->u, u, p);
     sys->evaluations++;
