@@ -21,6 +21,7 @@ TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
 {
     const int64_t limit = bits_of(&most);
     int64_t room = 0; /* negative once one is */
+    TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
         room |= limit - size_of(bits_of(x + i));
     }
@@ -46,6 +47,7 @@ TRIBO_SIMD static int none_negative(const double *x, size_t n)
     const double most = DBL_MAX;
     const int64_t limit = bits_of(&most);
     int64_t room = 0;
+    TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
         const int64_t bits = bits_of(x + i), size = size_of(bits);
         room |= (limit - size) | (bits & -size);
