@@ -5,9 +5,12 @@
  * limits that are the same for all, a where all contacts slide. */
 #include "check.h"
 
-/* What a call is given, and how the forces f [n] of its chunk k are found; or that of the only contact. */
+enum { FEW = 8 * TRIBO_CHUNK }; /* whose forces stay in the first-level cache */
+
+/* What a call is given, and how the forces f [n] of its chunk k are found: returns whether all contacts slide; or that of the only
+ * contact. */
 struct call {
-    void (*find)(const tribo_context *ctx, const struct call *call, size_t k, double *f);
+    int (*find)(const tribo_context *ctx, const struct call *call, size_t k, double *f);
     double (*find_one)(const tribo_context *ctx, const struct call *call);
     double holds; /* see struct last */
     const double *v, *a;
@@ -18,6 +21,51 @@ struct call {
 
 /* ---------------------------------------------------------------------------------------------------------------- calls */
 
+/* Which way a contact slides by its force: that reaches its limit, or the part of it at which the law lets go. */
+static inline signed char slip_of(double f, double edge)
+{
+    const double forth = f <= -edge ? FORTH : 0.0, back = f >= edge ? -BACK : 0.0;
+    return (signed char)(int)(forth - back); /* numbers as wide as f: vectors of them stay whole */
+}
+
+TRIBO_SIMD static void find_slips(size_t n, double holds, const double *restrict limit, const double *restrict f,
+                                  signed char *restrict slip)
+{
+    for (size_t i = 0; i < n; i++) {
+        slip[i] = slip_of(f[i], holds * limit[i]);
+    }
+}
+
+TRIBO_SIMD static void find_alike_slips(size_t n, double edge, const double *restrict f, signed char *restrict slip)
+{
+    for (size_t i = 0; i < n; i++) {
+        slip[i] = slip_of(f[i], edge);
+    }
+}
+
+TRIBO_SIMD static void find_open(size_t n, const double *restrict limit, signed char *restrict slip)
+{
+    for (size_t i = 0; i < n; i++) {
+        slip[i] = (signed char)(limit[i] > 0.0 ? slip[i] : OPEN);
+    }
+}
+
+/* What the contacts of chunk k did, by their forces f [n]. */
+static void write_slips(const tribo_context *ctx, double holds, size_t k, const double *f, signed char *slip)
+{
+    const struct chunk *chunk = &ctx->follow.chunk[k];
+    const size_t n = tribo_chunk_size(ctx, k * TRIBO_CHUNK);
+    const double *limit = ctx->follow.contacts.limit + k * TRIBO_CHUNK;
+    if (chunk->alike) {
+        find_alike_slips(n, holds * chunk->largest, f, slip);
+        return;
+    }
+    find_slips(n, holds, limit, f, slip);
+    if (chunk->least == 0.0) {
+        find_open(n, limit, slip);
+    }
+}
+
 static void keep_forces(tribo_context *ctx, double holds)
 {
     tribo_store_all(ctx);
@@ -25,17 +73,7 @@ static void keep_forces(tribo_context *ctx, double holds)
     ctx->last.holds = holds;
 }
 
-/* The forces of a few contacts are kept. */
-static void find_few(tribo_context *ctx, const struct call *call, double *f)
-{
-    if (ctx->n) {
-        call->find(ctx, call, 0, ctx->last.f);
-    }
-    tribo_copy(f, ctx->last.f, f ? ctx->n : 0);
-    keep_forces(ctx, call->holds);
-}
-
-/* The same for one, without what many are worth. */
+/* The only contact, without what many are worth. */
 static void find_one(tribo_context *ctx, const struct call *call, double *f)
 {
     const double force = call->find_one(ctx, call);
@@ -46,15 +84,28 @@ static void find_one(tribo_context *ctx, const struct call *call, double *f)
     keep_forces(ctx, call->holds);
 }
 
+/* The forces of a few contacts are kept. */
+static void find_few(tribo_context *ctx, const struct call *call, double *f)
+{
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        call->find(ctx, call, k, ctx->last.f + i);
+        tribo_copy(f ? f + i : NULL, ctx->last.f + i, f ? tribo_chunk_size(ctx, i) : 0);
+    }
+    keep_forces(ctx, call->holds);
+}
+
 /* Those of many would have to be written to memory and read again: what each contact did is written down while its force is at
  * hand. */
 static void find_many(tribo_context *ctx, const struct call *call, double *f)
 {
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         double room[TRIBO_CHUNK], *force = f ? f + i : room;
-        const struct contacts c = tribo_chunk_contacts(ctx, i);
-        call->find(ctx, call, k, force);
-        tribo_find_slips(&c, tribo_chunk_size(ctx, i), force, call->holds, ctx->last.did.of + i);
+        const int slide = call->find(ctx, call, k, force);
+        if (slide && ctx->follow.chunk[k].least > 0.0) {
+            tribo_find_directions(tribo_chunk_size(ctx, i), call->v + i, ctx->last.did.of + i);
+        } else {
+            write_slips(ctx, call->holds, k, force, ctx->last.did.of + i);
+        }
     }
     ctx->last.did.all_stored = 0;
     ctx->last.modes = MODES_WRITTEN;
@@ -62,7 +113,7 @@ static void find_many(tribo_context *ctx, const struct call *call, double *f)
 
 static void find_all(tribo_context *ctx, const struct call *call, double *f)
 {
-    (ctx->n == 1 ? find_one : ctx->n <= TRIBO_CHUNK ? find_few : find_many)(ctx, call, f);
+    (ctx->n == 1 ? find_one : ctx->n <= FEW ? find_few : find_many)(ctx, call, f);
     ctx->last.rank = 0;
     ctx->last.linearized = 0;
     ctx->count.skipped += ctx->op->islands;
@@ -77,7 +128,7 @@ static int reads_feq(const tribo_context *ctx, size_t k, size_t n, const double 
     return ctx->set.law->uses_feq && (fabs(*v) <= band || tribo_any_in_band(n, v, band));
 }
 
-static void balance_chunk(const tribo_context *ctx, const struct call *call, size_t k, double *f)
+static int balance_chunk(const tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct contacts c = tribo_chunk_contacts(ctx, i);
@@ -86,12 +137,13 @@ static void balance_chunk(const tribo_context *ctx, const struct call *call, siz
     const int reads = reads_feq(ctx, k, n, v);
     if (reads && !call->feq && call->plain && ctx->follow.chunk[k].plain) {
         ctx->set.law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
-        return;
+        return 0;
     }
     if (reads || call->feq) {
         tribo_find_feq(ctx, i, n, call->a, feq);
     }
     ctx->set.law->force(&c, n, v, reads ? feq : v, f);
+    return ctx->set.law->uses_feq && !reads;
 }
 
 static double balance_one(const tribo_context *ctx, const struct call *call)
@@ -182,16 +234,17 @@ TRIBO_SIMD static void slide(const struct contacts *c, size_t n, const double *r
     }
 }
 
-static void step_chunk(const tribo_context *ctx, const struct call *call, size_t k, double *f)
+static int step_chunk(const tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct contacts c = tribo_chunk_contacts(ctx, i);
     const double *v = call->v + i, reach = reach_of(&ctx->follow.chunk[k], call->dt);
     if (fabs(*v) <= reach || tribo_any_in_band(n, v, reach)) {
         tribo_stop_alone(ctx, k, call->dt, v, (struct bounds){NULL, c.limit}, f);
-    } else {
-        slide(&c, n, v, f);
+        return 0;
     }
+    slide(&c, n, v, f);
+    return 1;
 }
 
 static double step_one(const tribo_context *ctx, const struct call *call)

@@ -14,7 +14,7 @@ TRIBO_SIMD int tribo_any_in_band(size_t n, const double *v, double band)
     return any != 0;
 }
 
-TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, signed char *restrict did)
+TRIBO_SIMD void tribo_find_directions(size_t n, const double *restrict v, signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
         did[i] = v[i] > 0.0 ? FORTH : BACK;
@@ -126,20 +126,32 @@ TRIBO_SIMD static void find_bounds(const double *x, struct chunk *chunk)
     chunk->largest = largest[0];
 }
 
+/* The same of a few. */
+static void find_few_bounds(size_t n, const double *x, struct chunk *chunk)
+{
+    chunk->least = chunk->largest = x[0];
+    for (size_t i = 1; i < n; i++) {
+        chunk->least = lesser(chunk->least, x[i]);
+        chunk->largest = greater(chunk->largest, x[i]);
+    }
+}
+
 void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk)
 {
+    enum { FEW = 16 };
+    double whole[TRIBO_CHUNK];
     memcpy(to, from, n * sizeof *to);
-    if (n == TRIBO_CHUNK) {
+    if (n < FEW) {
+        find_few_bounds(n, from, chunk);
+    } else if (n < TRIBO_CHUNK) {
+        memcpy(whole, from, n * sizeof *whole);
+        for (size_t k = n; k < TRIBO_CHUNK; k++) {
+            whole[k] = from[0];
+        }
+        find_bounds(whole, chunk);
+    } else {
         find_bounds(from, chunk);
-        return;
     }
-    double least = from[0], largest = from[0];
-    for (size_t i = 1; i < n; i++) {
-        least = lesser(least, from[i]);
-        largest = greater(largest, from[i]);
-    }
-    chunk->least = least;
-    chunk->largest = largest;
 }
 
 TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
@@ -228,7 +240,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
             find_states(n, v + i, band, now.of + i);
             narrow(ctx, v, i, i + n, now.of);
         } else {
-            find_directions(n, v + i, now.of + i);
+            tribo_find_directions(n, v + i, now.of + i);
         }
     }
     now.all_stored = 0;

@@ -193,9 +193,10 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
 /* f_eq [n] of the contacts of the chunk that begins with i, as if all were alone; 0 for open ones. */
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
 
-/* No contact of chunk k that is faster is near stick; and whether any of n contacts is not. */
+/* No contact of chunk k that is faster is near stick; and whether any of n contacts is not. What they did if none is. */
 double tribo_widest_band(const tribo_context *ctx, size_t k);
 int tribo_any_in_band(size_t n, const double *v, double band);
+void tribo_find_directions(size_t n, const double *v, signed char *did);
 
 /* alone.c: the whole of tribo_balance and tribo_step_force, where tribo_all_alone. f_eq and f of the balance may be NULL. */
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
@@ -266,10 +267,7 @@ size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
 /* The same for contacts in no group, from their forces with static limits; these become right. */
 void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
-/* queries.c: the slip [n] of contacts with forces f [n]. */
-void tribo_find_slips(const struct contacts *c, size_t n, const double *f, double holds, signed char *slip);
-
-/* Writes modes down, before limits change. */
+/* queries.c: writes modes down, before limits change. */
 void tribo_write_modes(tribo_context *ctx);
 
 /* The force of the contact at place k of a group as the solver takes it. */
