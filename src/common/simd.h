@@ -5,6 +5,7 @@
 #define TRIBO_SIMD_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "compiler.h"
 
@@ -15,6 +16,21 @@
 #else
 #define TRIBO_SIMD
 #endif
+
+/* Before a loop that does next to nothing with each number, where counting them would take as long; clang does so unasked. */
+#if defined(TRIBO_GNU_C) && !defined(__clang__)
+#define TRIBO_UNROLLED _Pragma("GCC unroll 4")
+#else
+#define TRIBO_UNROLLED
+#endif
+
+/* Where a vector as wide as any begins, so that none of an array's lies in two lines of cache: at most TRIBO_LINE - 1 numbers on. */
+enum { TRIBO_LINE = 8 };
+static inline double *tribo_aligned(double *x)
+{
+    enum { BYTES = TRIBO_LINE * sizeof *x };
+    return x ? x + (BYTES - (uintptr_t)x % BYTES) % BYTES / sizeof *x : NULL;
+}
 
 /* So many bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
 static inline void tribo_expect(const void *from, size_t bytes, int written)

@@ -12,6 +12,12 @@ static inline int tribo_all_finite(const double *x, size_t n)
     return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
 }
 
+/* The same of numbers that are TRIBO_PLAIN at most. */
+static inline int tribo_all_plain(const double *x, size_t n)
+{
+    return n == 1 ? isfinite(*x) && fabs(*x) <= TRIBO_PLAIN : tribo_all_within(x, n, TRIBO_PLAIN);
+}
+
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
 static inline int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
