@@ -267,8 +267,28 @@ static void destroy(tribo_driver *drv)
     }
 }
 
+/* What the system has become since a driver was created is looked at again by every advance. */
+static int check_system(const tribo_system *sys)
+{
+    if (sys->tables || sys->limits.knots) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "%s follow a table, and method exact takes harmonic ones only: take event or auto",
+                                 sys->tables ? "loads" : "limits");
+    }
+    const size_t i = tribo_system_first_falling(sys);
+    return i == sys->ncontact ? TRIBO_OK
+                              : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                                  "contact %zu has a static limit that falls with the speed, and method exact "
+                                                  "takes such that drop at once only: take event or auto",
+                                                  i);
+}
+
 static int create(tribo_driver *drv)
 {
+    const int unsupported = check_system(drv->sys);
+    if (unsupported) {
+        return unsupported;
+    }
     struct exact *x = calloc(1, sizeof *x);
     drv->own = x;
     if (!x) {
@@ -298,14 +318,8 @@ static int open_events(tribo_driver *drv, struct events **events)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
-    if (sys->tables || sys->limits.knots) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes harmonic loads and limits only; method event takes tables too");
-    }
-    if (tribo_system_falls(sys)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes static limits that drop at once; method event takes such that fall with "
-                                 "the speed too");
+    if (check_system(sys)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_message(sys->contacts));
     }
     if (x->revision != sys->revision) {
         drop_helds(x);

@@ -1,5 +1,4 @@
 /* Periodic motions: what callers see of them. */
-#include "breakaway.h"
 #include "shooting.h"
 
 #include <math.h>
@@ -48,18 +47,7 @@ static int check_loads(tribo_driver *drv, double period)
     return TRIBO_OK;
 }
 
-/* Derivatives of motions know nothing of forces that follow the speed. */
-static int check_falling(tribo_driver *drv)
-{
-    return !tribo_system_falls(drv->sys)
-               ? TRIBO_OK
-               : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                   "periodic motions are found with static limits that drop at once, and velocity[0] = %g: set "
-                                   "ratios without velocities",
-                                   drv->sys->feq[0]);
-}
-
-/* Nor of forces that jump beside springs without mass, */
+/* Derivatives of motions know nothing of forces that jump beside springs without mass, */
 static int check_massless(tribo_driver *drv)
 {
     double *ratio = drv->sys->feq;
@@ -109,7 +97,6 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     int status = drv->method->find_periodic ? check_state(drv, t, y) : unsupported(drv);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
-    status = status ? status : check_falling(drv);
     status = status ? status : check_massless(drv);
     status = status ? status : check_planar(drv);
     return status ? status : drv->method->find_periodic(drv, t, period, y);
