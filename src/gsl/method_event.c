@@ -313,7 +313,8 @@ static int prepare(struct event *e)
     const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", sys->harmonics);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", sys->harmonics,
+                                 plural(sys->harmonics));
     }
     e->cosine = more;
     e->sine = more + room;
@@ -386,7 +387,7 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     const size_t n = e->sys->ndof;
     (void)end;
     if (!tribo_signal_reserve(to, 0, e->order)) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu powers", e->order);
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu power%s", e->order, plural(e->order));
     }
     to->tau = tau;
     for (size_t k = 0; k <= e->order; k++) {

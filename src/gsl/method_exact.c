@@ -69,7 +69,7 @@ static int find_held(struct exact *x, const struct modal **found)
         const size_t room = 2 * x->room + 16;
         struct modal **more = realloc(x->held, room * sizeof *more);
         if (!more) {
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structure%s", room, plural(room));
         }
         x->held = more;
         x->room = room;
@@ -225,7 +225,8 @@ static int begin(void *motion, double t, const double *y, double *reach)
         return status;
     }
     if (!tribo_modal_motion_reserve(&x->motion, h->harmonics)) {
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", h->harmonics);
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", h->harmonics,
+                                 plural(h->harmonics));
     }
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     set_guards(x, y);
@@ -238,7 +239,7 @@ static int transition(void *motion, double tau, size_t columns, double *v)
     if (columns > x->columns) {
         double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
         if (!more) {
-            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", columns);
+            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
         }
         x->work = more;
         x->columns = columns;

@@ -259,7 +259,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period)
     int status = m->drv->method->open(m->drv, &m->events);
     status = status ? status : prepare_norm(m, period);
     if (!status && !m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, m->n)) {
-        status = tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", m->n);
+        status = tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
     }
     if (!status) {
         m->t = t;

@@ -272,8 +272,8 @@ static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct repla
     const size_t count = drv->sys->ncontact;
     struct replay r = {.phase = phase, .sum = calloc(count + 2 * drv->sys->ndof + 1, sizeof *to)};
     r.row = r.sum ? r.sum + count : NULL;
-    const int status =
-        r.sum ? replay(drv, &r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contacts", count);
+    const int status = r.sum ? replay(drv, &r)
+                             : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
     if (!status) {
         memcpy(to, r.sum, count * sizeof *to);
     }

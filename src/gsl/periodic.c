@@ -69,8 +69,7 @@ static int check_planar(tribo_driver *drv)
 {
     const size_t planar = tribo_system_planar(drv->sys);
     return planar ? tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                      "periodic motions are found of scalar contacts, and there are %zu contacts that are planar",
-                                      planar)
+                                      "periodic motions are found without planar contacts, of which the system has %zu", planar)
                   : TRIBO_OK;
 }
 
@@ -84,9 +83,10 @@ int tribo_events_find_periodic(tribo_driver *drv, double t, double period, doubl
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     drv->free_shooting = tribo_shooting_free;
-    return drv->shooting ? tribo_shooting_find(drv->shooting, t, period, y)
-                         : tribo_driver_fail(drv, TRIBO_ERR_MEMORY,
-                                             "out of memory for periodic motions of %zu degrees of freedom", drv->sys->ndof);
+    return drv->shooting
+               ? tribo_shooting_find(drv->shooting, t, period, y)
+               : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                                   drv->sys->ndof, plural(drv->sys->ndof));
 }
 
 int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y)

@@ -24,7 +24,7 @@ static int reserve(struct series_transition *x, const tribo_system *sys, size_t 
     x->project = malloc((3 * n * n + 3 * n * columns + 1) * sizeof *x->project);
     if (!x->holds || !x->project) {
         tribo_series_transition_free(x);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", columns);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     x->stiff = x->project + n * n;
     x->damp = x->stiff + n * n;
@@ -40,7 +40,7 @@ static int reserve_slopes(struct series_transition *x, const tribo_system *sys, 
     const size_t c = sys->ncontact;
     x->push = malloc((sys->ndof * c + (terms + 1) * c * x->columns + 1) * sizeof *x->push);
     if (!x->push) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", x->columns);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", x->columns, plural(x->columns));
     }
     x->force = x->push + sys->ndof * c;
     x->row = x->force + c * x->columns;
@@ -68,7 +68,7 @@ static int project(struct stick_slip *m, const tribo_system *sys, const struct m
 {
     const size_t n = sys->ndof;
     double *columns = a ? tribo_matrix_transpose_to_dense(a) : calloc(n * n + 1, sizeof *columns);
-    int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu columns", n);
+    int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu column%s", n, plural(n));
     for (size_t j = 0; !status && j < n; j++) {
         columns[j * n + j] += a ? 0.0 : 1.0;
         if (sys->massless.count && a == &sys->stiffness) {

@@ -69,8 +69,8 @@ static double length(const double *x, size_t n)
 
 static int no_memory(const struct shooting *s)
 {
-    return tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degrees of freedom",
-                             s->map.sys->ndof);
+    return tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                             s->map.sys->ndof, plural(s->map.sys->ndof));
 }
 
 /* -------------------------------------------------------------------------------------------------------------- points */
@@ -357,8 +357,9 @@ static int find_multipliers(struct shooting *s)
     whole_derivative(s);
     const int status = tribo_eigen(s->b, n, s->re, s->im, s->a);
     sort(s);
-    return status ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equations: %s", n, tribo_strerror(status))
-                  : TRIBO_OK;
+    return status
+               ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status))
+               : TRIBO_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
