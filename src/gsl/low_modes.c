@@ -101,9 +101,7 @@ static int factorize_sum(const struct model *m, double factor, double other, str
     if (!tribo_matrix_sum(&sum, factor, &m->stiffness, other, &m->mass)) {
         return TRIBO_ERR_MEMORY;
     }
-    const int status = tribo_cholesky_create(c, &sum, where, &pivot);
-    tribo_matrix_free(&sum);
-    return status;
+    return tribo_cholesky_consume(c, &sum, where, &pivot);
 }
 
 static int factor_failed(const struct model *m, int status, const char *what, size_t where)
