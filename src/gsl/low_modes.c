@@ -271,8 +271,7 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
     return status ? status : check_modes(m, s, &low, r);
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- the
- * contacts */
+/* --------------------------------------------------------------------------------------------------------------- contacts */
 
 /* x -= the part of it in each of count motions, orthonormal in M, twice. mx [ndof] is workspace. Returns the norm of the rest. */
 static double separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
@@ -398,8 +397,7 @@ static int find_statics(const struct model *m, const struct shifted *s, struct r
     return status || r->count == m->nmode ? status : finish_statics(m, r);
 }
 
-/* ------------------------------------------------------------------------------------------------------------------------
- * calls */
+/* ------------------------------------------------------------------------------------------------------------------ calls */
 
 void tribo_reduced_free(struct reduced *r)
 {
@@ -429,7 +427,8 @@ static int find_lowest(const struct model *m, struct shifted *s, struct reduced 
             return status;
         }
     }
-    int status = factor_failed(m, check_mass(m, &where), "mass", where);
+    int status = check_mass(m, &where);
+    status = factor_failed(m, status, "mass", where);
     status = status ? status : factorize_shifted(m, s);
     return status ? status : find_sparsely(m, s, r);
 }
