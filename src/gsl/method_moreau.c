@@ -6,14 +6,12 @@
 #include <string.h>
 
 #include "breakaway.h"
+#include "delassus.h"
 #include "elastic.h"
 #include "hidden.h"
 #include "step_band.h"
 #include "step_form.h"
 #include "step_matrix.h"
-
-/* Contacts whose responses are solved for at a time. */
-enum { BATCH = 16 };
 
 /* For steps of length h: the matrix S of forces over accelerations, S^-1 J', and the contacts that see J S^-1 J'.
  *
@@ -152,31 +150,12 @@ static int keeps_response(const struct moreau *m, const tribo_system *sys)
     return !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
 }
 
-/* x = row i of J. */
-static void put_row(const tribo_system *sys, size_t i, double *x)
-{
-    const struct matrix *j = &sys->direction;
-    memset(x, 0, sys->ndof * sizeof *x);
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        x[j->col[k]] = j->val[k];
-    }
-}
-
-/* x = S^-1 J_i': what it is where J_i touches goes into own. */
-static void note_own(const tribo_system *sys, size_t i, const double *x, double *own)
-{
-    const struct matrix *j = &sys->direction;
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        own[k] = x[j->col[k]];
-    }
-}
-
 /* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] = S^-1 J'. */
 static void find_by_halves(const struct moreau *m, const tribo_system *sys, double *x, double *r, double *own)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
     for (size_t i = 0; i < c; i++) {
-        put_row(sys, i, x + i * n);
+        tribo_delassus_put_row(&sys->direction, i, x + i * n);
         tribo_step_matrix_half_solve(&m->matrix, x + i * n);
         for (size_t k = 0; k <= i; k++) {
             r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
@@ -184,30 +163,13 @@ static void find_by_halves(const struct moreau *m, const tribo_system *sys, doub
     }
     for (size_t i = 0; i < c; i++) {
         tribo_step_matrix_half_solve_back(&m->matrix, x + i * n);
-        note_own(sys, i, x + i * n, own);
+        tribo_delassus_note_own(&sys->direction, i, x + i * n, own);
     }
 }
 
-/* r = J X with X = S^-1 J', some contacts at a time: X is x, or is not kept. 0 if out of memory. */
-static int find_by_columns(const struct moreau *m, const tribo_system *sys, double *x, double *r, double *own)
+static int solve_steps(const void *matrix, size_t count, double *x)
 {
-    const size_t n = sys->ndof, c = sys->ncontact;
-    double *room = x ? NULL : malloc(BATCH * n * sizeof *room);
-    int done = x || room;
-    for (size_t first = 0; done && first < c; first += BATCH) {
-        const size_t count = c - first < BATCH ? c - first : BATCH;
-        double *some = x ? x + first * n : room;
-        for (size_t i = 0; i < count; i++) {
-            put_row(sys, first + i, some + i * n);
-        }
-        done = tribo_step_matrix_solve(&m->matrix, count, some);
-        for (size_t i = 0; done && i < count; i++) {
-            tribo_matrix_multiply_add(&sys->direction, 1.0, some + i * n, r + (first + i) * c);
-            note_own(sys, first + i, some + i * n, own);
-        }
-    }
-    free(room);
-    return done;
+    return tribo_step_matrix_solve(matrix, count, x);
 }
 
 /* r [ncontact][ncontact] = J S^-1 J', and own as in hidden.h. 0 if out of memory. */
@@ -218,7 +180,7 @@ static int find_operator(const struct moreau *m, const tribo_system *sys, double
         find_by_halves(m, sys, m->response, r, own);
         return 1;
     }
-    const int done = find_by_columns(m, sys, m->response, r, own);
+    const int done = tribo_delassus_by_columns(&sys->direction, solve_steps, &m->matrix, m->response, r, own);
     if (symmetric) {
         tribo_even_out(sys->ncontact, r);
     }

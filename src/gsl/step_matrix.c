@@ -147,7 +147,7 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
     tribo_matrix_widen(&a, &m->below, &m->above);
     const int lopsided = tribo_step_damping(sys).of->rows && tribo_matrix_flaw(&a, 1, &where, &j, &x, &y);
     const int status = lopsided              ? factorize_lopsided(m, &a, &where)
-                       : suits_sparse(m, &a) ? tribo_cholesky_create(&m->sparse, &a, &where, &x)
+                       : suits_sparse(m, &a) ? tribo_cholesky_consume(&m->sparse, &a, &where, &x)
                                              : factorize_band(m, &a, &where);
     tribo_matrix_free(&a);
     return status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_indefinite(sys, h, where)
