@@ -159,8 +159,8 @@ static double balance_one(const tribo_context *ctx, const struct call *call)
 
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
-    int status = tribo_check_finite(ctx, "v", v, ctx->n);
-    const int plain = a && tribo_all_plain(a, ctx->n);
+    const int within = v && a ? tribo_motion_within(v, a, TRIBO_PLAIN, ctx->n) : 0, plain = within & 2;
+    int status = within & 1 ? TRIBO_OK : tribo_check_finite(ctx, "v", v, ctx->n);
     status = status || plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
     if (!status) {
         const struct call call = {balance_chunk, balance_one, ctx->set.law->holds, v, a, feq, 0.0, plain};
