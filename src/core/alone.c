@@ -159,8 +159,8 @@ static double balance_one(const tribo_context *ctx, const struct call *call)
 
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
 {
-    int status = tribo_check_finite(ctx, "v", v, ctx->n);
-    const int plain = a && tribo_all_plain(a, ctx->n);
+    const int within = v && a ? tribo_motion_within(v, a, TRIBO_PLAIN, ctx->n) : 0, plain = within & 2;
+    int status = within & 1 ? TRIBO_OK : tribo_check_finite(ctx, "v", v, ctx->n);
     status = status || plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
     if (!status) {
         const struct call call = {balance_chunk, balance_one, ctx->set.law->holds, v, a, feq, 0.0, plain};
@@ -192,12 +192,14 @@ TRIBO_SIMD static void stop_alike(size_t n, double scale, const double *restrict
     }
 }
 
+#define LEAST_STEP (1.0 / TRIBO_PLAIN)
+
 /* The same where products might be no numbers, or 1/dt. */
 static void stop_far(size_t n, double dt, const double *v, const double *inverse, const struct bounds *b, double *f)
 {
     const double scale = quotient(1.0, dt);
     for (size_t i = 0; i < n; i++) {
-        const double a = scale < TRIBO_FAR ? product(v[i], scale) : quotient(v[i], dt);
+        const double a = dt < LEAST_STEP ? quotient(v[i], dt) : scaled(v[i], scale);
         f[i] = clamp(tribo_alone_far(a, inverse[i]), tribo_lower(b, i), b->upper[i]);
     }
 }
@@ -207,7 +209,7 @@ void tribo_stop_alone(const tribo_context *ctx, size_t k, double dt, const doubl
     const size_t n = tribo_chunk_size(ctx, k * TRIBO_CHUNK);
     const struct chunk *chunk = &ctx->follow.chunk[k];
     const double *inverse = tribo_inverses(ctx, k), scale = quotient(1.0, dt);
-    if (!chunk->plain || scale > TRIBO_PLAIN || !tribo_all_plain(v, n)) {
+    if (!chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
         stop_far(n, dt, v, inverse, &b, f);
     } else if (chunk->alike && b.upper == ctx->follow.contacts.limit + k * TRIBO_CHUNK) {
         stop_alike(n, scale, v, inverse, *b.upper, f);

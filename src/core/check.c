@@ -28,6 +28,18 @@ TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
     return room >= 0;
 }
 
+TRIBO_SIMD int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n)
+{
+    const int64_t limit_x = bits_of(&most_x), limit_y = bits_of(&most_y);
+    int64_t room_x = 0, room_y = 0;
+    TRIBO_UNROLLED
+    for (size_t i = 0; i < n; i++) {
+        room_x |= limit_x - size_of(bits_of(x + i));
+        room_y |= limit_y - size_of(bits_of(y + i));
+    }
+    return (room_x >= 0 ? 1 : 0) | (room_y >= 0 ? 2 : 0);
+}
+
 int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     if (!x && n) {

@@ -35,6 +35,9 @@ struct chunk {
     int alike;             /* and the same limit, above 0 */
 };
 
+/* Of so many contacts an output does not stay in any cache. */
+#define TRIBO_MANY ((size_t)1 << 22)
+
 static inline size_t tribo_chunks(size_t n)
 {
     return (n + TRIBO_CHUNK - 1) / TRIBO_CHUNK;
@@ -160,6 +163,9 @@ static inline struct bounds tribo_bounds_from(const struct bounds *b, size_t i)
 /* check.c: whether all numbers are finite, and none is larger than most, which is finite. Whatever they are, no floating-point
  * exception is raised. */
 int tribo_all_within(const double *x, size_t n, double most);
+
+/* The same of two arrays: 1 for x, and 2 for y. Memory gives more if it is asked for both at once. */
+int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n);
 
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
 int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);

@@ -108,7 +108,7 @@ static inline double tribo_alone(double a, double inverse)
 
 static inline double tribo_alone_far(double a, double inverse)
 {
-    return product(-a, inverse);
+    return scaled(-a, inverse);
 }
 
 static inline double sign(double x)
