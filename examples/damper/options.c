@@ -267,6 +267,7 @@ struct options read_options(int argc, char **argv)
         const int read = strcmp(name, "--read") == 0;
         if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
             print_help();
+            close_file(stdout, "standard output");
             exit(EXIT_SUCCESS);
         }
         if (!option && !read) {

@@ -1,9 +1,12 @@
 /* tribo-damper from outside: damaged files and wrong options, each of which must end it with status 1 and one line that names
  * file, line and value; and structures as small as can be. Works in the current folder. TRIBO_CASES: how many random damages of
  * each kind. */
+#define _POSIX_C_SOURCE 200809L
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "support.h"
 #include "tool.h"
@@ -309,6 +312,10 @@ TEST(no_files)
     assert_refused(CHAIN " --mass /dev/zero", "endless", "/dev/zero:1: ");
     assert_refused(CHAIN " --dofs /", "a folder", "/:1: cannot be read");
     assert_refused(CHAIN " --out nowhere", "no folder", "nowhere/");
+    if (symlink("/dev/full", "damper-curve.csv") == 0) {
+        assert_refused(CHAIN, "a full disk", "cannot write ./damper-curve.csv: No space left");
+        remove("damper-curve.csv");
+    }
     write_text("options.txt", "\x1b[2J\xff 1\n");
     assert_refused(CHAIN " --read options.txt", "no option", "options.txt:1: there is no option \"?[2J?\"");
 }
