@@ -46,7 +46,8 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys)
         m->holds[m->at[c.order[k]]] = 0;
     }
     tribo_constraints_free(&c);
-    return done ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+    return done ? TRIBO_OK
+                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
 }
 
 /* Takes down who is at rest, and tied; returns for how many that has changed. */

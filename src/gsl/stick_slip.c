@@ -39,7 +39,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
     if (status || !work || !m->slip || !m->at || !m->last || !statics) {
         tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stick and slip of %zu contacts", sys->ncontact);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
     }
     for (size_t k = 0; k < contact_arrays; k++) {
         *by_contact[k] = work + k * c;
@@ -67,7 +67,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     const size_t rank = m->uncoupled ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
     if (rank > sys->ncontact) {
         tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the ties of %zu contacts", sys->ncontact);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
     }
     m->independent = rank == sys->ncontact;
     /* a contact that has reached its limit stays there while others take over */
