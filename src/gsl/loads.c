@@ -1,7 +1,7 @@
 /* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
+#include "cos_sin.h"
 #include "system.h"
 #include "../common/real.h"
-#include "../common/twofold.h"
 
 #include <float.h>
 #include <math.h>
@@ -110,11 +110,6 @@ static double look_up(const tribo_system *sys, const struct table *table, size_t
     return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
 }
 
-int tribo_system_limits_vary(const tribo_system *sys)
-{
-    return sys->limits.knots || sys->limit_harmonics;
-}
-
 /* Finds out which limits are given in the context: those that it has before they vary, and those that it gets while harmonics,
  * but no table, change them. */
 static void find_given_limits(tribo_system *sys)
@@ -150,25 +145,35 @@ static void follow_limits(tribo_system *sys)
     tribo_system_put_limits(sys, 0.0);
 }
 
-/* An angle so small has the cosine 1 and is its own sine. */
-#define TINY_ANGLE 1e-8
-
-/* The harmonic at t + low. What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
-static void turn(struct harmonic *h, double t, double low)
+/* Where the harmonics of t stand among those foreseen: times are asked for in their order, if at all. */
+static size_t find_foreseen(tribo_system *sys, double t)
 {
-    const double angle = h->omega * t,
-                 rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
-    const double c = cos(angle), s = sin(angle);
-    const int tiny = fabs(rest) < TINY_ANGLE;
-    const double x = tiny ? 1.0 : cos(rest), y = tiny ? rest : sin(rest);
-    h->cos_t = c * x - s * y;
-    h->sin_t = s * x + c * y;
+    while (sys->next_foreseen < sys->foreseen && sys->foresight[sys->next_foreseen] < t) {
+        sys->next_foreseen++;
+    }
+    return sys->next_foreseen;
+}
+
+/* Bases at a time are the same to the last bit whoever asks: contacts that stick have exactly no velocity. */
+static int is_foreseen(const tribo_system *sys, const struct harmonic *h)
+{
+    return sys->foreseen && h->drives == DRIVES_LOAD;
 }
 
 static void set_loads(tribo_system *sys, double t)
 {
+    const size_t at = find_foreseen(sys, t);
+    const int known = at < sys->foreseen && sys->foresight[at] == t;
     for (size_t k = 0; k < sys->harmonics; k++) {
-        turn(&sys->harmonic[k], t, sys->low);
+        struct harmonic *h = &sys->harmonic[k];
+        if (!is_foreseen(sys, h)) {
+            tribo_cos_sin(h->omega, t, sys->low, &h->cos_t, &h->sin_t);
+        } else if (known) {
+            h->cos_t = h->cos_ahead[at];
+            h->sin_t = h->sin_ahead[at];
+        } else {
+            tribo_cos_sin_all(h->omega, 1, &t, &h->cos_t, &h->sin_t);
+        }
     }
     for (size_t k = 0; k < sys->tables; k++) {
         sys->table[k].at = knot_at(&sys->table[k], t);
@@ -176,11 +181,34 @@ static void set_loads(tribo_system *sys, double t)
     sys->time = t;
 }
 
+/* What is set, or foreseen, is of loads or times that are others now. */
+static void forget_time(tribo_system *sys)
+{
+    sys->time = NAN;
+    sys->foreseen = 0;
+}
+
+void tribo_system_foresee(tribo_system *sys, size_t count, const double *t)
+{
+    if (!sys->foreseen || !count) {
+        forget_time(sys);
+    }
+    memcpy(sys->foresight, t, count * sizeof *t);
+    sys->foreseen = count;
+    sys->next_foreseen = 0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        struct harmonic *h = &sys->harmonic[k];
+        if (is_foreseen(sys, h)) {
+            tribo_cos_sin_all(h->omega, count, t, h->cos_ahead, h->sin_ahead);
+        }
+    }
+}
+
 void tribo_system_set_low(tribo_system *sys, double low)
 {
     if (low != sys->low) {
         sys->low = low;
-        sys->time = NAN;
+        forget_time(sys);
     }
 }
 
@@ -431,7 +459,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     sys->base_harmonics += drives == DRIVES_BASE;
     sys->limit_harmonics += drives == DRIVES_LIMIT;
     sys->revision++;
-    sys->time = NAN;
+    forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -464,7 +492,7 @@ int tribo_system_clear_loads(tribo_system *sys)
     }
     sys->tables = 0;
     sys->revision++;
-    sys->time = NAN;
+    forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -529,7 +557,7 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
     tribo_system_accelerate(sys, pattern, t.pattern);
     sys->table[sys->tables++] = t;
     sys->revision++;
-    sys->time = NAN;
+    forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -567,6 +595,6 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     free_table(&sys->limits);
     sys->limits = t;
     sys->revision++;
-    sys->time = NAN;
+    forget_time(sys);
     return TRIBO_OK;
 }
