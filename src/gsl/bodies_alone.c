@@ -248,6 +248,9 @@ static inline void find_loads(struct bodies_alone *b, const tribo_system *sys)
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *h = &sys->harmonic[s];
+        if (h->drives == DRIVES_LOAD) {
+            tribo_system_turn(sys, s);
+        }
         for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
             b->load[h->index[k]] += h->cosine[k] * h->cos_t + h->sine[k] * h->sin_t;
         }
@@ -364,14 +367,19 @@ static int awake(const struct bodies_alone *b, size_t k)
     return any;
 }
 
-/* A step of degree of freedom i by its row. */
+/* The acceleration of degree of freedom i without friction, by its rows. */
+static inline double free_one(const struct bodies_alone *b, const tribo_system *sys, size_t i, const double *q, const double *u)
+{
+    const double a = b->load[i] - tribo_matrix_row_dot(&sys->stiffness, i, q);
+    return sys->damping.rows ? a - tribo_matrix_row_dot(&sys->damping, i, u) : a;
+}
+
 static inline struct moved step_one(const struct bodies_alone *b, const tribo_system *sys, size_t i, double time, double h,
                                     const double *q, const double *u)
 {
     const int bases = sys->base_harmonics > 0;
-    double a = b->load[i] - tribo_matrix_row_dot(&sys->stiffness, i, q);
-    a -= sys->damping.rows ? tribo_matrix_row_dot(&sys->damping, i, u) : 0.0;
-    return move_one(time, h, b->mass[i], b->brake[i], bases ? b->before[i] : 0.0, bases ? b->after[i] : 0.0, q[i], u[i], a);
+    return move_one(time, h, b->mass[i], b->brake[i], bases ? b->before[i] : 0.0, bases ? b->after[i] : 0.0, q[i], u[i],
+                    free_one(b, sys, i, q, u));
 }
 
 /* A few degrees of freedom are not worth vectors. to [ndof]; returns what friction does to all of them, twice. */
@@ -423,7 +431,14 @@ size_t tribo_bodies_run(struct bodies_alone *b, tribo_system *sys, size_t count,
     return count;
 }
 
-void tribo_bodies_accelerate(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
+static void accelerate_few(const struct bodies_alone *b, const tribo_system *sys, const double *q, const double *u, double *a)
+{
+    for (size_t i = 0; i < sys->ndof; i++) {
+        a[i] = free_one(b, sys, i, q, u);
+    }
+}
+
+static void accelerate_block(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
                              double *a)
 {
     static const double nothing[MATRIX_BLOCK];
@@ -434,6 +449,16 @@ void tribo_bodies_accelerate(const struct bodies_alone *b, const tribo_system *s
     }
 }
 
+void tribo_bodies_accelerate(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
+                             double *a)
+{
+    if (sys->ndof <= FEW) {
+        accelerate_few(b, sys, q, u, a);
+    } else {
+        accelerate_block(b, sys, k, q, u, a);
+    }
+}
+
 /* Block k. */
 static int step_block(const struct bodies_alone *b, const tribo_system *sys, const struct body_step *s, size_t k, double *energy)
 {
@@ -441,7 +466,7 @@ static int step_block(const struct bodies_alone *b, const tribo_system *sys, con
     double work[MATRIX_BLOCK];
     const size_t i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
     const double *before = sys->base_harmonics ? b->before + i : nothing, *after = sys->base_harmonics ? b->after + i : nothing;
-    tribo_bodies_accelerate(b, sys, k, s->q, s->u, work);
+    accelerate_block(b, sys, k, s->q, s->u, work);
     const int did = move(n, s->to - s->from, s->h, b->rows[k].mass, b->rows[k].brake, before, after, s->q + i, s->u + i,
                          s->q_to + i, s->u_to + i, work);
     *energy -= 0.5 * sum_of(n, work);

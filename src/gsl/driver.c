@@ -357,7 +357,9 @@ static void look_ahead(tribo_driver *drv, const struct march *m, double k, const
             times[count++] = t[s] + method->part[i] * (t[s + 1] - t[s]);
         }
     }
-    tribo_system_foresee(drv->sys, count, times);
+    if (drv->sys->harmonics > drv->sys->base_harmonics + drv->sys->limit_harmonics) {
+        tribo_system_foresee(drv->sys, count, times);
+    }
 }
 
 /* Steps from the k-th on until loads have to be looked up again: from and to take each other's place after each. Returns how

@@ -1,5 +1,4 @@
 /* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
-#include "cos_sin.h"
 #include "system.h"
 #include "../common/real.h"
 
@@ -51,6 +50,7 @@ static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
 {
     int done = 1;
     *to = *from;
+    to->time = NAN;
     to->index = tribo_copy_of(from->index, from->count, sizeof *to->index, &done);
     to->cosine = tribo_copy_of(from->cosine, from->count, sizeof *to->cosine, &done);
     to->sine = tribo_copy_of(from->sine, from->count, sizeof *to->sine, &done);
@@ -145,70 +145,11 @@ static void follow_limits(tribo_system *sys)
     tribo_system_put_limits(sys, 0.0);
 }
 
-/* Where the harmonics of t stand among those foreseen: times are asked for in their order, if at all. */
-static size_t find_foreseen(tribo_system *sys, double t)
-{
-    while (sys->next_foreseen < sys->foreseen && sys->foresight[sys->next_foreseen] < t) {
-        sys->next_foreseen++;
-    }
-    return sys->next_foreseen;
-}
-
-/* Bases at a time are the same to the last bit whoever asks: contacts that stick have exactly no velocity. */
-static int is_foreseen(const tribo_system *sys, const struct harmonic *h)
-{
-    return sys->foreseen && h->drives == DRIVES_LOAD;
-}
-
-static void set_loads(tribo_system *sys, double t)
-{
-    const size_t at = find_foreseen(sys, t);
-    const int known = at < sys->foreseen && sys->foresight[at] == t;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        struct harmonic *h = &sys->harmonic[k];
-        if (!is_foreseen(sys, h)) {
-            tribo_cos_sin(h->omega, t, sys->low, &h->cos_t, &h->sin_t);
-        } else if (known) {
-            h->cos_t = h->cos_ahead[at];
-            h->sin_t = h->sin_ahead[at];
-        } else {
-            tribo_cos_sin_all(h->omega, 1, &t, &h->cos_t, &h->sin_t);
-        }
-    }
-    for (size_t k = 0; k < sys->tables; k++) {
-        sys->table[k].at = knot_at(&sys->table[k], t);
-    }
-    sys->time = t;
-}
-
-/* What is set, or foreseen, is of loads or times that are others now. */
-static void forget_time(tribo_system *sys)
-{
-    sys->time = NAN;
-    sys->foreseen = 0;
-}
-
-void tribo_system_foresee(tribo_system *sys, size_t count, const double *t)
-{
-    if (!sys->foreseen || !count) {
-        forget_time(sys);
-    }
-    memcpy(sys->foresight, t, count * sizeof *t);
-    sys->foreseen = count;
-    sys->next_foreseen = 0;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        struct harmonic *h = &sys->harmonic[k];
-        if (is_foreseen(sys, h)) {
-            tribo_cos_sin_all(h->omega, count, t, h->cos_ahead, h->sin_ahead);
-        }
-    }
-}
-
 void tribo_system_set_low(tribo_system *sys, double low)
 {
     if (low != sys->low) {
         sys->low = low;
-        forget_time(sys);
+        tribo_system_forget_time(sys);
     }
 }
 
@@ -216,7 +157,10 @@ void tribo_system_set_time(tribo_system *sys, double t)
 {
     const int moves = t != sys->time;
     if (moves) {
-        set_loads(sys, t);
+        sys->time = t;
+        for (size_t k = 0; k < sys->tables; k++) {
+            sys->table[k].at = knot_at(&sys->table[k], t);
+        }
     }
     if (tribo_system_limits_vary(sys) && (moves || sys->seen != tribo_revision(sys->contacts))) {
         follow_limits(sys);
@@ -268,6 +212,7 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
             continue;
         }
         double c, s;
+        tribo_system_turn(sys, k);
         differentiate(h, order, &c, &s);
         for (size_t i = 0; i < h->count; i++) {
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
@@ -340,6 +285,7 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
             const struct harmonic *h = &sys->harmonic[k];
             double c, s;
             if (h->drives == DRIVES_LIMIT) {
+                tribo_system_turn(sys, k);
                 differentiate(h, order, &c, &s);
                 sum += h->cosine[i] * c + h->sine[i] * s;
                 size += hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
@@ -436,7 +382,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     if (status) {
         return status;
     }
-    struct harmonic h = {.omega = omega, .drives = drives};
+    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
     double *parts = calloc(2 * n + 1, sizeof *parts);
     struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
     sys->harmonic = all ? all : sys->harmonic;
@@ -459,7 +405,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     sys->base_harmonics += drives == DRIVES_BASE;
     sys->limit_harmonics += drives == DRIVES_LIMIT;
     sys->revision++;
-    forget_time(sys);
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -492,7 +438,7 @@ int tribo_system_clear_loads(tribo_system *sys)
     }
     sys->tables = 0;
     sys->revision++;
-    forget_time(sys);
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -557,7 +503,7 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
     tribo_system_accelerate(sys, pattern, t.pattern);
     sys->table[sys->tables++] = t;
     sys->revision++;
-    forget_time(sys);
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -595,6 +541,6 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     free_table(&sys->limits);
     sys->limits = t;
     sys->revision++;
-    forget_time(sys);
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }

@@ -355,6 +355,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
         const double side = side_of(x, s);
+        tribo_system_turn(sys, f->harmonic);
         x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
         x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
     }
