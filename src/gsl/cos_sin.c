@@ -1,5 +1,5 @@
-/* Of many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of a turn: there
- * Taylor's series end soon. Nothing is chosen, so that loops over times become vectors. */
+/* Of many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of a
+ * turn: there Taylor's series end soon. Nothing is chosen, so that loops over times become vectors. */
 #include "cos_sin.h"
 #include "../common/simd.h"
 #include "../common/twofold.h"

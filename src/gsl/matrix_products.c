@@ -11,8 +11,8 @@
 /* So few rows are multiplied with sooner entry by entry. */
 #define FEW_ROWS 4
 
-/* y [rows] = z + factor times rows `begin` and following of A x, all of one block and with all diagonals inside the matrix; z NULL:
- * y. Three diagonals at a time, so that y is passed over as seldom as can be, but in the order of one after the other. */
+/* y [rows] = z + factor times rows `begin` and following of A x, all of one block and with all diagonals inside the matrix; z
+ * NULL: y. Three diagonals at a time, so that y is passed over as seldom as can be, but in the order of one after the other. */
 static inline void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
                                  const double *restrict z, double *restrict y)
 {
