@@ -6,8 +6,14 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include "compiler.h"
+
+#if defined(TRIBO_GNU_C) && defined(__SSE2__)
+#include <emmintrin.h>
+#define TRIBO_STREAMS
+#endif
 
 #if defined(TRIBO_CLONES_512)
 #define TRIBO_SIMD __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
@@ -17,13 +23,19 @@
 #define TRIBO_SIMD
 #endif
 
-/* A cache line holds so many numbers. Vectors that begin with one are read in half the time of such as lie across two. */
-enum { TRIBO_LINE = 8 };
+/* Before a loop that does next to nothing with each number, where counting them would take as long; clang does so unasked. */
+#if defined(TRIBO_GNU_C) && !defined(__clang__)
+#define TRIBO_UNROLLED _Pragma("GCC unroll 4")
+#else
+#define TRIBO_UNROLLED
+#endif
 
-/* How many numbers from x on the next line begins, at most TRIBO_LINE. */
-static inline size_t tribo_to_line(const double *x)
+/* Where a vector as wide as any begins, so that none of an array's lies in two lines of cache: at most TRIBO_LINE - 1 numbers on. */
+enum { TRIBO_LINE = 8 };
+static inline double *tribo_aligned(double *x)
 {
-    return TRIBO_LINE - (size_t)((uintptr_t)x / sizeof *x % TRIBO_LINE);
+    enum { BYTES = TRIBO_LINE * sizeof *x };
+    return x ? x + (BYTES - (uintptr_t)x % BYTES) % BYTES / sizeof *x : NULL;
 }
 
 /* So many bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
@@ -40,6 +52,33 @@ static inline void tribo_expect(const void *from, size_t bytes, int written)
     }
 #else
     (void)from, (void)bytes, (void)written;
+#endif
+}
+
+/* A copy to memory that is far away and will not be read soon, which need not come here to be written: between threads it is
+ * over with tribo_stream_end. Elsewhere a plain copy. */
+static inline void tribo_stream(double *to, const double *from, size_t n)
+{
+#if defined(TRIBO_STREAMS)
+    size_t i = 0;
+    for (; i < n && (uintptr_t)(to + i) % sizeof(__m128d) > 0; i++) {
+        to[i] = from[i];
+    }
+    for (; i + 2 <= n; i += 2) {
+        _mm_stream_pd(to + i, _mm_loadu_pd(from + i));
+    }
+    for (; i < n; i++) {
+        to[i] = from[i];
+    }
+#else
+    memcpy(to, from, n * sizeof *to);
+#endif
+}
+
+static inline void tribo_stream_end(void)
+{
+#if defined(TRIBO_STREAMS)
+    _mm_sfence();
 #endif
 }
 

@@ -49,7 +49,7 @@ int tribo_rates_create(struct rates_alone *r, const tribo_system *sys)
         return 0;
     }
     r->blocks = r->bodies.blocks;
-    r->f = r->memory + tribo_to_line(r->memory);
+    r->f = tribo_aligned(r->memory);
     r->v = r->f + MATRIX_BLOCK;
     r->a = r->v + MATRIX_BLOCK;
     r->own = r->a + MATRIX_BLOCK;

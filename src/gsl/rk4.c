@@ -38,7 +38,7 @@ static int create(tribo_driver *drv)
     if (!r || !(r->memory = malloc((4 * n + TRIBO_LINE) * sizeof *r->memory)) || !tribo_rates_create(&r->alone, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method rk4/fixed");
     }
-    r->k = r->memory + tribo_to_line(r->memory);
+    r->k = tribo_aligned(r->memory);
     r->sum = r->k + n;
     r->stage[0] = r->sum + n;
     r->stage[1] = r->stage[0] + n;
