@@ -12,6 +12,7 @@ static void expand_harmonics(struct event *e, double t)
     const size_t h = sys->harmonics;
     tribo_system_set_time(sys, t);
     for (size_t s = 0; s < h; s++) {
+        tribo_system_turn(sys, s);
         double c = sys->harmonic[s].cos_t, d = sys->harmonic[s].sin_t;
         for (size_t k = 0; k < e->order + 2; k++) {
             const double rate = sys->harmonic[s].omega / (double)(k + 1), next = -rate * d;

@@ -8,14 +8,18 @@
 
 #include <gsl/gsl_spmatrix.h>
 
+/* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
+enum { MATRIX_BLOCK = 128 };
+
 struct matrix {
     size_t rows, cols;
     size_t *first, *col; /* row i: entries first[i] to first[i+1] - 1, columns ascending */
     double *val;
     size_t diagonals; /* number of diagonals in `fast`, 0 if it holds no diagonals */
     ptrdiff_t *offset;
-    double *fast; /* [diagonals][rows] or [rows][cols] or NULL */
-    int identity; /* multiplying with it changes nothing */
+    size_t *block; /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
+    double *fast;  /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */
+    int identity;  /* multiplying with it changes nothing */
 };
 
 /* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */
@@ -56,11 +60,11 @@ static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, con
     return sum;
 }
 
-/* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
-enum { MATRIX_BLOCK = 128 };
-
-/* y [end - begin] += factor times rows begin to end - 1 of A x. */
+/* y [end - begin] += factor times rows begin to end - 1 of A x, which are of one block. */
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y);
+
+/* The same with y = z - A x, z [end - begin] apart from y. */
+void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y);
 
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);

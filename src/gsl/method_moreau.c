@@ -28,8 +28,8 @@ struct moreau {
     double *push;             /* [ndof] for that */
     double *limit;            /* [ncontact] */
     double *ratio, *velocity; /* [ncontact] of static limits */
-    size_t statics;           /* revision of the system's contacts that these came from */
-    int breaks, tell;         /* some limits are static; contacts have not got them yet */
+    int taken, tell, breaks;  /* these are known; contacts have not got them yet; some are static */
+    size_t settings_taken;    /* revision of the system's contacts that these came from */
     double *load;             /* [ndof] at the end of the step before */
     double *spring, *rate;    /* [ncontact] forces of elastic contacts at the end of the step before; workspace */
     double *work;             /* [ndof] */
@@ -256,28 +256,28 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
+/* Limits as the contacts of a step have them, and static ones, if they may be others than in the step before. */
 static void take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_revision(sys->contacts);
+    if (m->taken && m->settings_taken == revision) {
+        return;
+    }
+    m->taken = m->tell = 1;
+    m->settings_taken = revision;
+    m->breaks = 0;
     tribo_get_limit(sys->contacts, m->limit);
+    tribo_get_static(sys->contacts, m->ratio, m->velocity);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->limit[i] *= tribo_massless_touches(&sys->massless, i) ? 0.5 : 1.0;
-    }
-    if (m->statics != revision) {
-        m->statics = revision;
-        m->breaks = 0;
-        m->tell = 1;
-        tribo_get_static(sys->contacts, m->ratio, m->velocity);
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            m->breaks |= m->ratio[i] > 1.0;
-        }
+        m->breaks |= m->ratio[i] > 1.0;
     }
 }
 
 static void give_limits(struct moreau *m, const tribo_system *sys)
 {
-    tribo_set_limit(m->contacts, m->limit);
     if (m->tell) {
+        tribo_set_limit(m->contacts, m->limit);
         tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
         m->tell = 0;
     }
@@ -291,8 +291,8 @@ static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
         y[sys->ndof + d] = tribo_has_mass(&sys->massless, d) ? y[sys->ndof + d] : 0.0;
     }
     if (!m->common.goes_on) {
-        tribo_get_limit(sys->contacts, m->limit);
-        tribo_elastic_enter(sys, m->limit, m->work, m->spring, y);
+        tribo_get_limit(sys->contacts, m->rate);
+        tribo_elastic_enter(sys, m->rate, m->work, m->spring, y);
     }
 }
 
@@ -470,8 +470,9 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
 {
     struct moreau *m = drv->own;
     struct step_form *s = &m->common;
+    static const struct fixed_method method = {moreau_step, NULL, 1, {1.0, 0.0}};
     s->goes_on = continues && s->goes_on;
-    return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step);
+    return tribo_driver_fixed_steps(drv, t, t1, y, &method);
 }
 
 const struct method tribo_method_moreau_fixed = {

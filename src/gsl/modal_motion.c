@@ -415,6 +415,7 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
         const struct forcing *f = &h->forcing[s];
         const double side = s < h->given ? 1.0 : tribo_stick_slip_follows(x->contacts, f->contact);
         x->side[s] = side;
+        tribo_system_turn(sys, f->harmonic);
         x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
         x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
     }

@@ -81,7 +81,7 @@ static int allocate(struct step_band *b, size_t n, size_t count)
         return 1;
     }
     b->body = malloc((count + n + 1) * sizeof *b->body);
-    b->mass = calloc(3 * n + 2 * count + 1, sizeof *b->mass);
+    b->mass = calloc(3 * n + 3 * count + 1, sizeof *b->mass);
     b->at = calloc(count + n + 1, 1);
     if (!b->body || !b->mass || !b->at) {
         return 0;
@@ -90,7 +90,8 @@ static int allocate(struct step_band *b, size_t n, size_t count)
     b->push = b->mass + n;
     b->move = b->push + n;
     b->lever = b->move + n;
-    b->noise = b->lever + count;
+    b->inverse = b->lever + count;
+    b->noise = b->inverse + count;
     b->held = b->at + count;
     return 1;
 }
@@ -151,6 +152,7 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
         b->body[i] = sys->direction.col[sys->direction.first[i]];
         b->contact[b->body[i]] = i;
         b->lever[i] = sys->direction.val[sys->direction.first[i]];
+        b->inverse[i] = 1.0 / b->lever[i];
     }
     b->n = n;
     memset(b->held, 0, n);
@@ -161,17 +163,23 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
 
 /* --------------------------------------------------------------------------------------------------------------- the step */
 
-/* Row i of A times x, and the size of its terms. */
+/* Row i of A times x, and the size of its terms. A is symmetric: right of the diagonal its rows are columns of what is stored. */
 static double row_dot(const struct step_band *b, size_t i, const double *x, double *size)
 {
     const size_t w = b->width, end = i + w < b->n ? i + w : b->n - 1;
-    double sum = 0.0;
-    *size = 0.0;
-    for (size_t j = begin_of(b, i); j <= end; j++) {
-        const double term = x[j] * (j <= i ? b->a[i * (w + 1) + j + w - i] : b->a[j * (w + 1) + i + w - j]);
+    const double *row = b->a + i * (w + 1);
+    double sum = 0.0, sizes = 0.0;
+    for (size_t j = begin_of(b, i); j <= i; j++) {
+        const double term = x[j] * row[j + w - i];
         sum += term;
-        *size += fabs(term);
+        sizes += fabs(term);
     }
+    for (size_t j = i + 1, at = j * (w + 1) + w - 1; j <= end; j++, at += w) {
+        const double term = x[j] * b->a[at];
+        sum += term;
+        sizes += fabs(term);
+    }
+    *size = sizes;
     return sum;
 }
 
@@ -197,12 +205,15 @@ static int find_moves(struct step_band *b, const double *base, const double *u)
     return any;
 }
 
-/* What of x comes from the moves goes to the other side. */
+/* What of x comes from the moves of held bodies, and those near them, goes to the other side. */
 static void take_moves(const struct step_band *b, double *x)
 {
-    double ignored;
-    for (size_t d = 0; d < b->n; d++) {
-        x[d] -= row_dot(b, d, b->move, &ignored);
+    const size_t w = b->width;
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i], end = d + w < b->n ? d + w : b->n - 1;
+        for (size_t j = begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
+            x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
+        }
     }
 }
 
@@ -230,23 +241,24 @@ static void solve_sets(struct step_band *b, double h, const double *limit, const
     for (size_t i = 0; i < b->count; i++) {
         x[b->body[i]] = b->at[i] ? x[b->body[i]] : b->move[b->body[i]];
     }
+    const double rate = 1.0 / h;
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
         double size;
-        const double sum = row_dot(b, d, x, &size), unit = 1.0 / (h * fabs(b->lever[i]));
-        b->noise[i] = doubt * unit * (size + fabs(b->push[d]) + fabs(b->a[d * (b->width + 1) + b->width] * u[d]));
-        f[i] = b->at[i] ? f[i] : (sum - b->push[d]) / (h * b->lever[i]);
+        const double sum = row_dot(b, d, x, &size), unit = rate * b->inverse[i];
+        b->noise[i] = doubt * fabs(unit) * (size + fabs(b->push[d]) + fabs(b->a[d * (b->width + 1) + b->width] * u[d]));
+        f[i] = b->at[i] ? f[i] : unit * (sum - b->push[d]);
     }
 }
 
 /* Where a contact wants to be. */
-static signed char wants(const struct step_band *b, size_t i, double h, double limit, double v, double f)
+static signed char wants(const struct step_band *b, size_t i, double rate, double limit, double v, double f)
 {
     if (b->at[i] == 0) {
         return (signed char)((f > limit + b->noise[i]) - (f < -limit - b->noise[i]));
     }
     /* a velocity counts by the force that would take it away within the step */
-    const double pull = v * b->a[b->body[i] * (b->width + 1) + b->width] / (h * b->lever[i] * b->lever[i]);
+    const double pull = v * b->a[b->body[i] * (b->width + 1) + b->width] * (rate * b->inverse[i] * b->inverse[i]);
     return pull * b->at[i] > b->noise[i] ? 0 : b->at[i];
 }
 
@@ -254,10 +266,11 @@ static signed char wants(const struct step_band *b, size_t i, double h, double l
 static void revise(struct step_band *b, double h, const double *limit, const double *base, const double *u, const double *du,
                    const double *f, size_t *freed, size_t *caught)
 {
+    const double rate = 1.0 / h;
     *freed = *caught = 0;
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
-        const signed char to = wants(b, i, h, limit[i], b->lever[i] * (u[d] + du[d]) - base[i], f[i]);
+        const signed char to = wants(b, i, rate, limit[i], b->lever[i] * (u[d] + du[d]) - base[i], f[i]);
         *freed += !b->at[i] && to;
         *caught += b->at[i] && !to;
         b->at[i] = to;

@@ -13,6 +13,7 @@ struct step_band {
     size_t *body;        /* [count] whom a contact holds */
     size_t *contact;     /* [n] who does that; count: nobody */
     double *lever;       /* [count] its entry of J */
+    double *inverse;     /* [count] one over it */
     double *mass;        /* [n] */
     double *push, *move; /* [n] what pushes the bodies; how held ones move */
     double *noise;       /* [count] how much force may be rounding */
