@@ -13,9 +13,9 @@
  * arrays that are a power of two apart few would stay in cache. */
 static int allocate_numbers(tribo_context *ctx, size_t n)
 {
-    double **const array[] = {&ctx->set.limit,        &ctx->set.width,         &ctx->set.rate,    &ctx->set.ratio,
-                              &ctx->set.stribeck,     &ctx->follow.cut_limit,  &ctx->follow.now,  &ctx->follow.cut_factor,
-                              &ctx->follow.hold,      &ctx->follow.hold_width, &ctx->last.f,      &ctx->last.feq,
+    double **const array[] = {&ctx->set.limit,    &ctx->set.width,         &ctx->set.rate,   &ctx->set.ratio,
+                              &ctx->set.stribeck, &ctx->follow.cut_limit,  &ctx->follow.now, &ctx->follow.cut_factor,
+                              &ctx->follow.hold,  &ctx->follow.hold_width, &ctx->last.f,     &ctx->last.feq,
                               &ctx->last.v};
     enum { ARRAYS = sizeof array / sizeof *array };
     const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);

@@ -175,7 +175,7 @@ static inline double held_rate(double feq, int held)
     }
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
-    static double name##_force_of_one(const struct contacts *c, double v, double feq)                                           \
+    static double name##_force_of_one(const struct contacts *c, double v, double feq)                                            \
     {                                                                                                                            \
         return name##_force(v, feq, *c->limit, tribo_epsilon_of(c, 0), tribo_slope_of(c, 0), *c->moving);                        \
     }                                                                                                                            \
