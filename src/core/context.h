@@ -13,6 +13,7 @@
 #include "law/law.h"
 #include "planar.h"
 #include "../common/compiler.h"
+#include "../common/plural.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 

@@ -81,7 +81,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     const size_t n = ctx->n;
     tribo_context *c = malloc(sizeof *c);
     if (!c) {
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
     }
     *c = *ctx;
     c->owner = NULL;
@@ -92,7 +92,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) ||
         !tribo_plane_create(&c->plane, c->planar, n)) {
         tribo_destroy(c);
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
     }
     c->last.linearized = 0;
     tribo_copy(c->set.limit, ctx->set.limit, n);
