@@ -30,7 +30,7 @@
 #define TRIBO_UNROLLED
 #endif
 
-/* Where a vector as wide as any begins, so that none of an array's lies in two lines of cache: at most TRIBO_LINE - 1 numbers on. */
+/* Where a line of cache begins, so that no vector of an array lies in two: at most TRIBO_LINE - 1 numbers on. */
 enum { TRIBO_LINE = 8 };
 static inline double *tribo_aligned(double *x)
 {

@@ -1,14 +1,14 @@
 /* Forces of contacts that share no body, where no limit is static: of the balance, and over a step.
  *
- * Since outputs stay as they are where a call fails, all of v and a is read and found good before anything is written. Then come the
- * contacts chunk by chunk. Arrays of a large scene come from far away, and so nothing is read that leaves no choice: 1/R_ii or
- * limits that are the same for all, a where all contacts slide. */
+ * Since outputs stay as they are where a call fails, all of v and a is read and found good before anything is written. Then come
+ * the contacts chunk by chunk. Arrays of a large scene come from far away, and so nothing is read that leaves no choice: 1/R_ii
+ * or limits that are the same for all, a where all contacts slide. */
 #include "check.h"
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* whose forces stay in the first-level cache */
 
-/* What a call is given, and how the forces f [n] of its chunk k are found: returns whether all contacts slide; or that of the only
- * contact. */
+/* What a call is given, and how the forces f [n] of its chunk k are found: returns whether all contacts slide; or that of the
+ * only contact. */
 struct call {
     int (*find)(const tribo_context *ctx, const struct call *call, size_t k, double *f);
     double (*find_one)(const tribo_context *ctx, const struct call *call);
@@ -211,7 +211,7 @@ void tribo_stop_alone(const tribo_context *ctx, size_t k, double dt, const doubl
     const double *inverse = tribo_inverses(ctx, k), scale = quotient(1.0, dt);
     if (!chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
         stop_far(n, dt, v, inverse, &b, f);
-    } else if (chunk->alike && b.upper == ctx->follow.contacts.limit + k * TRIBO_CHUNK) {
+    } else if (chunk->alike && !b.lower && b.upper == ctx->follow.contacts.limit + k * TRIBO_CHUNK) {
         stop_alike(n, scale, v, inverse, *b.upper, f);
     } else {
         stop(n, scale, v, inverse, b.lower, b.upper, f);

@@ -89,8 +89,8 @@ static int check_force(const tribo_context *ctx, const double *v, const double *
     return status || !ctx->planar ? status : tribo_planar_check_feq(ctx, v, feq);
 }
 
-/* Each output may be NULL. streams: they do not go to memory by way of the caches, which first would read what is written. This is
- * worth it where more is written than read. */
+/* Each output may be NULL. streams: they do not go to memory by way of the caches, which first would read what is written. This
+ * is worth it where more is written than read. */
 struct outputs {
     double *f;
     struct tangents d;
@@ -126,7 +126,9 @@ static void stream_chunk(const tribo_context *ctx, const struct contacts *c, siz
     ctx->set.law->force(c, n, v, feq, room[0]);
     tribo_law_tangents(ctx, c, i, n, v, feq, &(struct tangents){room[1], room[2], room[3]});
     for (int k = 0; k < 4; k++) {
-        tribo_stream(to[k] ? to[k] + i : NULL, room[k], to[k] ? n : 0);
+        if (to[k]) {
+            tribo_stream(to[k] + i, room[k], n);
+        }
     }
 }
 

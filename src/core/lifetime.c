@@ -9,13 +9,13 @@
 
 #define DEFAULT_EPSILON 1e-6
 
-/* The arrays of n numbers, zero, in one piece of memory. Each begins a line of cache, and an odd number of lines behind the last: of
- * arrays that are a power of two apart few would stay in cache. */
+/* The arrays of n numbers, zero, in one piece of memory. Each begins a line of cache, and an odd number of lines behind the last:
+ * of arrays that are a power of two apart few would stay in cache. */
 static int allocate_numbers(tribo_context *ctx, size_t n)
 {
-    double **const array[] = {&ctx->set.limit,        &ctx->set.width,         &ctx->set.rate,    &ctx->set.ratio,
-                              &ctx->set.stribeck,     &ctx->follow.cut_limit,  &ctx->follow.now,  &ctx->follow.cut_factor,
-                              &ctx->follow.hold,      &ctx->follow.hold_width, &ctx->last.f,      &ctx->last.feq,
+    double **const array[] = {&ctx->set.limit,    &ctx->set.width,         &ctx->set.rate,   &ctx->set.ratio,
+                              &ctx->set.stribeck, &ctx->follow.cut_limit,  &ctx->follow.now, &ctx->follow.cut_factor,
+                              &ctx->follow.hold,  &ctx->follow.hold_width, &ctx->last.f,     &ctx->last.feq,
                               &ctx->last.v};
     enum { ARRAYS = sizeof array / sizeof *array };
     const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);

@@ -5,9 +5,13 @@
 
 #include "../../examples/common/output.h"
 
-const char *const kernel_name[KERNELS] = {"tribo_force", "tribo_force_tangent", "tribo_balance, diagonal R",
-                                          "tribo_balance, all inside epsilon", "tribo_step_force, all slide",
-                                          "tribo_step_force, all stop", "tribo_set_limit"};
+const char *const kernel_name[KERNELS] = {"tribo_force",
+                                          "tribo_force_tangent",
+                                          "tribo_balance, diagonal R",
+                                          "tribo_balance, all inside epsilon",
+                                          "tribo_step_force, all slide",
+                                          "tribo_step_force, all stop",
+                                          "tribo_set_limit"};
 
 void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, int alike)
 {

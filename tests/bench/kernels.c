@@ -41,7 +41,7 @@ struct traffic {
     size_t n, checked, read, written;
     const double *in[8];
     double *out[4];
-    int odd;
+    int streams, odd;
 };
 
 TRIBO_SIMD static int any_odd(size_t n, const double *x)
@@ -62,12 +62,23 @@ TRIBO_SIMD static void add_to(size_t n, double *restrict sum, const double *rest
     }
 }
 
+static void put(const struct traffic *t, double *to, const double *from, size_t n)
+{
+    if (t->streams) {
+        tribo_stream(to, from, n);
+    } else {
+        memcpy(to, from, n * sizeof *to);
+    }
+}
+
 static void run_traffic(void *data)
 {
     enum { CHUNK = 128 };
     struct traffic *t = data;
-    for (size_t k = 0; k < t->checked; k++) {
-        t->odd += any_odd(t->n, t->in[k]);
+    for (size_t i = 0; i < t->n; i += CHUNK) {
+        for (size_t k = 0; k < t->checked; k++) {
+            t->odd += any_odd(t->n - i < CHUNK ? t->n - i : CHUNK, t->in[k] + i);
+        }
     }
     for (size_t i = 0; i < t->n; i += CHUNK) {
         double sum[CHUNK] = {0};
@@ -76,7 +87,7 @@ static void run_traffic(void *data)
             add_to(n, sum, t->in[k] + i);
         }
         for (size_t k = 0; k < t->written; k++) {
-            memcpy(t->out[k] + i, sum, n * sizeof *sum);
+            put(t, t->out[k] + i, sum, n);
         }
     }
 }
@@ -84,13 +95,21 @@ static void run_traffic(void *data)
 /* How many arrays a call is given, how many of what the context knows of each contact it reads, and how many it writes. */
 static const struct passes {
     size_t given, known, differing, written;
-} passes[KERNELS] = {[FORCE] = {2, 0, 3, 1},   [FORCE_TANGENT] = {2, 0, 3, 4}, [BALANCE] = {2, 1, 3, 1}, [BALANCE_STUCK] = {2, 1, 3, 1},
-                     [STEP] = {1, 0, 1, 1},    [STEP_STUCK] = {1, 1, 1, 1},    [SET_LIMIT] = {1, 0, 0, 1}};
+} passes[KERNELS] = {
+    [FORCE] = {2, 0, 3, 1}, [FORCE_TANGENT] = {2, 0, 3, 4}, [BALANCE] = {2, 1, 3, 1},  [BALANCE_STUCK] = {2, 1, 3, 1},
+    [STEP] = {1, 0, 1, 1},  [STEP_STUCK] = {1, 1, 1, 1},    [SET_LIMIT] = {1, 0, 0, 1}};
 
 static struct traffic traffic_of(const struct kernel_scene *s, int alike, double *known)
 {
     const struct passes *p = &passes[s->kernel];
-    struct traffic t = {s->n, p->given, p->given + p->known + (alike ? 0 : p->differing), p->written, {s->v, s->a}, {NULL}, 0};
+    struct traffic t = {s->n,
+                        p->given,
+                        p->given + p->known + (alike ? 0 : p->differing),
+                        p->written,
+                        {s->v, s->a},
+                        {NULL},
+                        p->written > 1 && s->n > 1000000,
+                        0};
     for (size_t k = p->given; k < t.read; k++) {
         t.in[k] = known + (k - p->given) * s->n;
     }
@@ -156,7 +175,7 @@ int main(int count, char **argument)
         return strcmp(argument[1], "--help") == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
     }
     const size_t sizes[] = {1, 1000, quick ? 1000000 : 10000000};
-    const int repeats = smoke ? 1 : quick ? 15 : 12;
+    const int repeats = smoke ? 1 : quick ? 15 : 40;
     for (size_t k = 0; k < (smoke ? 2 : 3); k++) {
         for (int alike = 1; alike >= 0; alike--) {
             measure(sizes[k], alike, smoke ? 1 : 200000, repeats);

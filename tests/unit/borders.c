@@ -253,7 +253,8 @@ TEST(feq_of_any_size)
     assert_ok(tribo_balance(c, zero, a, feq, f));
     for (size_t i = 0; i < N; i++) {
         const double want = (double)fmaxl(-(long double)a[i] / fmax(r[i], DBL_MIN), -1e300);
-        require(fabs(feq[i] - want) <= 1e-15 * fabs(want) + DBL_MIN, "f_eq = %.17g, not %.17g, at %g/%g", feq[i], want, a[i], r[i]);
+        require(fabs(feq[i] - want) <= 1e-15 * fabs(want) + DBL_MIN, "f_eq = %.17g, not %.17g, at %g/%g", feq[i], want, a[i],
+                r[i]);
         require(fabs(f[i] - fmax(want, -1e200)) <= 1e-15 * fabs(want) + DBL_MIN, "f = %.17g of f_eq = %.17g", f[i], feq[i]);
     }
     tribo_destroy(c);

@@ -98,8 +98,8 @@ extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law
 
 const struct law *tribo_law(int id); /* NULL if there is none */
 
-/* f_eq of a contact that shares no body, from 1/R_ii, which takes a tenth of a division. Where a product of three numbers might be
- * none, tribo_alone_far says the same, with the same bits elsewhere. */
+/* f_eq of a contact that shares no body, from 1/R_ii, which takes a tenth of a division. Where products might be no numbers,
+ * tribo_alone_far says the same, with the same bits elsewhere. */
 #define TRIBO_PLAIN 1e100
 static inline double tribo_alone(double a, double inverse)
 {
@@ -141,8 +141,8 @@ static inline double held_rate(double feq, int held)
     return held ? 0.0 : sign(feq);
 }
 
-/* Defines <name>_force_all, <name>_balance_all, <name>_tangent_all and <name>_force_of_one from the law's functions of one contact, <name>_force and
- * <name>_tangent. */
+/* Defines <name>_force_all, <name>_balance_all, <name>_tangent_all and <name>_force_of_one from the law's functions of one
+ * contact, <name>_force and <name>_tangent. */
 #define TRIBO_FORCE_EACH(name, limit, epsilon, slope)                                                                            \
     for (size_t i = 0; i < n; i++) {                                                                                             \
         f[i] = name##_force(v[i], feq[i], limit, epsilon, slope, moving[i]);                                                     \
@@ -175,7 +175,7 @@ static inline double held_rate(double feq, int held)
     }
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
-    static double name##_force_of_one(const struct contacts *c, double v, double feq)                                           \
+    static double name##_force_of_one(const struct contacts *c, double v, double feq)                                            \
     {                                                                                                                            \
         return name##_force(v, feq, *c->limit, tribo_epsilon_of(c, 0), tribo_slope_of(c, 0), *c->moving);                        \
     }                                                                                                                            \
