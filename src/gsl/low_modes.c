@@ -71,8 +71,8 @@ static int search_failed(const struct model *m, int status, const struct low_mod
     case TRIBO_ERR_MEMORY:
         return tribo_model_no_memory(m);
     case TRIBO_ERR_SIZE:
-        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu modes only", m->nmode,
-                                low->count);
+        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only", m->nmode,
+                                low->count, plural(low->count));
     default:
         return tribo_model_fail(
             m, status, "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more", m->nmode);
@@ -109,8 +109,9 @@ static int factor_failed(const struct model *m, int status, const char *what, si
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(m, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what, where)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
-           : status ? tribo_model_fail(m, status, "out of memory for the factor of %zu degrees of freedom", m->ndof)
-                    : TRIBO_OK;
+           : status
+               ? tribo_model_fail(m, status, "out of memory for the factor of %zu degree%s of freedom", m->ndof, plural(m->ndof))
+               : TRIBO_OK;
 }
 
 static int factorize_shifted(const struct model *m, struct shifted *s)

@@ -213,10 +213,12 @@ int tribo_model_build(struct model *m, tribo_system **sys)
 static int check_sizes(const struct model *m, int damped)
 {
     if (m->ndof == 0 || m->ndof > (size_t)1 << 24 || m->ncontact > (size_t)1 << 24) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%zu degrees of freedom and %zu contacts", m->ndof, m->ncontact);
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%zu degree%s of freedom and %zu contact%s", m->ndof, plural(m->ndof),
+                                m->ncontact, plural(m->ncontact));
     }
     if (m->nmode > m->ndof) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degrees of freedom", m->nmode, m->ndof);
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", m->nmode, m->ndof,
+                                plural(m->ndof));
     }
     if (m->nmode && damped) {
         return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED, "damping of a reduced system is set by tribo_system_set_damping_ratio");
