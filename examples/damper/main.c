@@ -31,6 +31,7 @@ int main(int argc, char **argv)
     gsl_set_error_handler_off();
     const struct options options = read_options(argc, argv);
     struct structure structure = read_structure(options.mass, options.stiffness, options.dofs);
+    tell_of_loose_rows(&structure, options.stiffness);
     struct damper damper = create_damper(&options, &structure);
     free_structure(&structure);
     struct tables tables = open_tables(&options);

@@ -97,6 +97,19 @@ static void report_best(struct study *s, double limit)
     free_family(&f, 1);
 }
 
+/* Why a motion was not found. */
+static const char *first_message(const struct family *f, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < f->curve[k].count; i++) {
+            if (f->curve[k].sample[i].motion.message[0]) {
+                return f->curve[k].sample[i].motion.message;
+            }
+        }
+    }
+    return "nobody looked";
+}
+
 static void find_best(struct study *s, const struct family *f, const double *limit, size_t count)
 {
     size_t best = count;
@@ -108,7 +121,11 @@ static void find_best(struct study *s, const struct family *f, const double *lim
             best = k;
         }
     }
-    if (best == 0 || best + 1 >= count) {
+    if (best == count) {
+        printf("no motion was found at any of these limits: %s\n", first_message(f, count));
+        return;
+    }
+    if (best == 0 || best + 1 == count) {
         printf("no limit within the range is better than its ends: widen --limits to find the best\n");
         return;
     }

@@ -13,7 +13,8 @@ struct sparse_factor;
 int tribo_sparse_available(void);
 
 /* Of a positive definite matrix, of which the lower triangle counts. spent is a again if that may be freed as soon as it has
- * been read, before the factor takes its memory, or NULL; the caller frees it nevertheless, if an error comes first. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED,
+ * been read, before the factor takes its memory, or NULL; if an error comes first, the
+ * caller frees it. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED,
  * or TRIBO_ERR_INDEFINITE with the row where it shows. */
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where);
 int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from); /* 1, or 0 if out of memory */

@@ -60,6 +60,24 @@ TEST(spring)
 }
 END_TEST
 
+/* Masses that hang together, the last of which has no spring: said, with the reason why no motion is found. */
+TEST(loose_row)
+{
+#define MATRIX "%%MatrixMarket matrix coordinate real symmetric\n4 4 "
+#define STRUCTURE " --stiffness loose.mtx --dofs loose.txt --load 2,0,0,x --contact 1,0,0,x"
+    write_text("loose.mtx", MATRIX "4\n1 1 1.0\n2 2 2.0\n3 3 7.0\n4 4 0.0\n");
+    write_text("together.mtx", MATRIX "10\n1 1 2\n2 1 1\n3 1 0.5\n4 1 0.7\n2 2 3\n3 2 0.4\n4 2 1\n3 3 2\n4 3 0.6\n4 4 2\n");
+    write_text("minus.mtx", MATRIX "4\n1 1 1.0\n2 2 -1.0\n3 3 1.0\n4 4 1.0\n");
+    write_text("loose.txt", "1 1 1 1 0 0\n2 2 1 2 0 0\n3 3 1 3 0 0\n4 7 3 4 0 0\n");
+    const struct outcome o = assert_runs("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1:0.2:3 --limits 0.1:1:3");
+    require(strstr(o.out, "loose.mtx: no stiffness holds row 4 (node 7, direction z)\n") != NULL, "%s", o.out);
+    require(strstr(o.out, "no motion was found at any of these limits: not available here") != NULL, "%s", o.out);
+    const struct outcome minus = run_tool("--mass minus.mtx" STRUCTURE);
+    ck_assert_int_eq(minus.status, 1);
+    require(strstr(minus.err, "at degree of freedom 1 (counted from 0)") != NULL, "%s", minus.err);
+}
+END_TEST
+
 /* The stiffer the springs, the more they are like none; a rigid contact among them. */
 TEST(stiff_springs)
 {
@@ -168,4 +186,4 @@ TEST(interrupted)
 }
 END_TEST
 
-TEST_MAIN("damper", {beam, 1}, {spring, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})
+TEST_MAIN("damper", {beam, 1}, {spring, 1}, {loose_row, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})
