@@ -95,18 +95,6 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
     memset(u, 0, vectors * sizeof *u);
 }
 
-/* step = the way to least norm that the first vectors leave. */
-static void aim_at_least(struct box_qp *p, size_t vectors)
-{
-    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
-        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
-    }
-    for (size_t j = 0; j < vectors; j++) {
-        const double *b = p->basis + j * p->group->size;
-        free_add(p, -free_dot(p, b, p->x), b, p->step);
-    }
-}
-
 /* Of the free x: scaled, since their squares may overflow. */
 static double free_norm(const struct box_qp *p)
 {
@@ -121,10 +109,28 @@ static double free_norm(const struct box_qp *p)
     return most * sqrt(sum);
 }
 
+/* step = the way to least norm that the first vectors leave. What of it is rounding is no move: it would meet bounds at which
+ * contacts stand that cannot move any more. */
+static void aim_at_least(struct box_qp *p, size_t vectors)
+{
+    const size_t all = p->sets->rank + p->sets->dependents;
+    const double noise = tribo_resolution(p->group->size) * free_norm(p);
+    for (size_t k = 0; k < all; k++) {
+        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
+    }
+    for (size_t j = 0; j < vectors; j++) {
+        const double *b = p->basis + j * p->group->size;
+        free_add(p, -free_dot(p, b, p->x), b, p->step);
+    }
+    for (size_t k = 0; k < all; k++) {
+        const size_t i = p->order[k];
+        p->step[i] = fabs(p->step[i]) > noise ? p->step[i] : 0.0;
+    }
+}
+
 /* Lets one of the held contacts go, if its x then moves off its bound. */
 static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
 {
-    const double noise = tribo_resolution(p->group->size) * free_norm(p);
     for (size_t tried = 0; tried < *held; tried++) {
         const size_t i = p->held[0], others = *held - 1;
         memmove(p->held, p->held + 1, others * sizeof *p->held);
@@ -132,7 +138,7 @@ static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
             hold_contact(p, vectors - h, p->held[h]);
         }
         aim_at_least(p, vectors - others);
-        if (p->x[i] <= p->lo[i] ? p->step[i] > noise : p->step[i] < -noise) {
+        if (p->x[i] <= p->lo[i] ? p->step[i] > 0.0 : p->step[i] < 0.0) {
             *held = others;
             return 1;
         }
