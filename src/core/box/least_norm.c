@@ -95,6 +95,33 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
     memset(u, 0, vectors * sizeof *u);
 }
 
+/* Whether the first vectors move contact i by more than rounding. If not they let it rest from here on: held, it would take one of
+ * them along in which others can still share. */
+static int can_move(struct box_qp *p, size_t vectors, size_t i)
+{
+    double square = 0.0;
+    for (size_t j = 0; j < vectors; j++) {
+        square += p->basis[j * p->group->size + i] * p->basis[j * p->group->size + i];
+    }
+    const int can = sqrt(square) > tribo_resolution(p->group->size);
+    for (size_t j = 0; !can && j < vectors; j++) {
+        p->basis[j * p->group->size + i] = 0.0;
+    }
+    return can;
+}
+
+/* step = the way to least norm that the first vectors leave. */
+static void aim_at_least(struct box_qp *p, size_t vectors)
+{
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
+    }
+    for (size_t j = 0; j < vectors; j++) {
+        const double *b = p->basis + j * p->group->size;
+        free_add(p, -free_dot(p, b, p->x), b, p->step);
+    }
+}
+
 /* Of the free x: scaled, since their squares may overflow. */
 static double free_norm(const struct box_qp *p)
 {
@@ -109,28 +136,10 @@ static double free_norm(const struct box_qp *p)
     return most * sqrt(sum);
 }
 
-/* step = the way to least norm that the first vectors leave. What of it is rounding is no move: it would meet bounds at which
- * contacts stand that cannot move any more. */
-static void aim_at_least(struct box_qp *p, size_t vectors)
-{
-    const size_t all = p->sets->rank + p->sets->dependents;
-    const double noise = tribo_resolution(p->group->size) * free_norm(p);
-    for (size_t k = 0; k < all; k++) {
-        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
-    }
-    for (size_t j = 0; j < vectors; j++) {
-        const double *b = p->basis + j * p->group->size;
-        free_add(p, -free_dot(p, b, p->x), b, p->step);
-    }
-    for (size_t k = 0; k < all; k++) {
-        const size_t i = p->order[k];
-        p->step[i] = fabs(p->step[i]) > noise ? p->step[i] : 0.0;
-    }
-}
-
 /* Lets one of the held contacts go, if its x then moves off its bound. */
 static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
 {
+    const double noise = tribo_resolution(p->group->size) * free_norm(p);
     for (size_t tried = 0; tried < *held; tried++) {
         const size_t i = p->held[0], others = *held - 1;
         memmove(p->held, p->held + 1, others * sizeof *p->held);
@@ -138,7 +147,7 @@ static int release_contact(struct box_qp *p, size_t vectors, size_t *held)
             hold_contact(p, vectors - h, p->held[h]);
         }
         aim_at_least(p, vectors - others);
-        if (p->x[i] <= p->lo[i] ? p->step[i] > 0.0 : p->step[i] < 0.0) {
+        if (p->x[i] <= p->lo[i] ? p->step[i] > noise : p->step[i] < -noise) {
             *held = others;
             return 1;
         }
@@ -164,8 +173,10 @@ int tribo_least_norm(struct box_qp *p)
         aim_at_least(p, vectors - held);
         const size_t hit = tribo_box_advance(p, 1.0);
         if (hit < size && held < vectors) {
-            hold_contact(p, vectors - held, hit);
-            p->held[held++] = hit;
+            if (can_move(p, vectors - held, hit)) {
+                hold_contact(p, vectors - held, hit);
+                p->held[held++] = hit;
+            }
         } else if (!release_contact(p, vectors, &held)) {
             break;
         }
