@@ -41,7 +41,7 @@ int main(int argc, char **argv)
     (options.drive.points > 1 ? study_band : study_limits)(&study);
     write_result(&tables, "gaps", (double)study.gaps);
     if (study.gaps) {
-        printf("%zu points were not found: gaps in the tables, with messages\n", study.gaps);
+        printf("%zu point%s not found: gaps in the tables, with messages\n", study.gaps, study.gaps == 1 ? " was" : "s were");
     }
     if (interrupted()) {
         printf("interrupted: tables hold what was found until then\n");

@@ -92,7 +92,7 @@ static int check_planar(const tribo_system *sys, const struct method *m)
     const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
     return !planar ? TRIBO_OK
                    : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                       "method %s knows no planar contacts%s, and there are %zu contacts of that kind%s", m->name,
+                                       "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
                                        sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
                                        sys->massless.count ? "" : ": take event");
 }
@@ -143,7 +143,8 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     if (!d || !work) {
         free(d);
         free(work);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equations", dimension);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", dimension,
+                                 plural(dimension));
     }
     d->sys = sys;
     d->message = d->text;

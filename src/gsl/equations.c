@@ -281,7 +281,8 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
     done = done && tribo_system_build(&to, sys->ndof, sys->ncontact, &a[0], &a[1], &a[2], &a[3]) == TRIBO_OK;
     if (!done || !copy_rest(to, sys)) {
         tribo_system_destroy(to);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degrees of freedom", sys->ndof);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
+                                 plural(sys->ndof));
     }
     *copy = to;
     return TRIBO_OK;

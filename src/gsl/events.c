@@ -40,7 +40,8 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
     e->lasted = calloc(SLIPS * sys->ncontact + 1, sizeof *e->lasted);
     e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
     if (!e->next || !e->lasted || !e->search.guard) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contacts", sys->ncontact);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
+                                 plural(sys->ncontact));
     }
     e->stick_slip.abstol = drv->abstol;
     e->stick_slip.reltol = drv->reltol;
@@ -280,8 +281,8 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         status = tribo_driver_check(drv, e->next);
         return status ? status
                       : tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu looks", *t,
-                                          e->search.looks);
+                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s",
+                                          *t, e->search.looks, plural(e->search.looks));
     }
     when = event ? lesser(when, reach) : reach;
     status = show_between(e, drv, begin, shown, *t, when, y);

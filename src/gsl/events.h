@@ -32,6 +32,8 @@ struct events {
     int (*transition)(void *motion, double tau, size_t columns, double *v);
     /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
     int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
+    /* What a phase that has lasted tau dissipated in contact i, which slides; NULL: limits are steady, or harmonics. */
+    double (*work)(const void *motion, size_t i, double tau);
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
 
     struct company *company; /* NULL: nobody */

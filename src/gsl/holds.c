@@ -56,7 +56,7 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
     }
     m->dependents = 0;
     if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
     }
     for (size_t i = 0; i < c; i++) {
         m->dependents += m->slip[i] == 0 && !m->holds[i];

@@ -425,7 +425,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     free(parts);
     if (!done) {
         free_harmonic(&h);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
     }
     sys->harmonic[sys->harmonics++] = h;
     sys->base_harmonics += drives == DRIVES_BASE;
@@ -524,7 +524,7 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
     }
     if (!t.pattern) {
         free_table(&t);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
     }
     tribo_system_accelerate(sys, pattern, t.pattern);
     sys->table[sys->tables++] = t;
@@ -555,7 +555,7 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
         }
         if (!create_table(&t, knots, sys->ncontact, time, limit)) {
             free_table(&t);
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
         }
     }
     find_given_limits(sys);

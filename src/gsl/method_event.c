@@ -246,6 +246,7 @@ static void destroy(tribo_driver *drv)
 static int begin(void *motion, double t, const double *y, double *reach);
 static int transition(void *motion, double tau, size_t columns, double *v);
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
+static double work(const void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
 
 static int create(tribo_driver *drv)
@@ -265,19 +266,20 @@ static int create(tribo_driver *drv)
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = e->most_order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
-    double *work = malloc((terms * (2 * n + 4 * c + 1) + 2 * n + 9 * c + 1) * sizeof *work);
-    if (!work) {
+    double *all = malloc((terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
+    if (!all) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
     e->drv = drv;
     e->sys = sys;
-    e->q = work;
+    e->q = all;
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
     e->limit = e->watch + terms * c;
     e->fall = e->limit + terms * c;
     e->part = e->fall + terms * c;
-    e->d = e->part + terms * c;
+    e->slope = e->part + terms * c;
+    e->d = e->slope + terms * c;
     e->acceleration = e->d + terms;
     e->base = e->acceleration + n;
     e->a = e->base + c;
@@ -297,6 +299,7 @@ static int create(tribo_driver *drv)
     e->events.state = state;
     e->events.transition = transition;
     e->events.signal = combine;
+    e->events.work = work;
     return TRIBO_OK;
 }
 
@@ -310,7 +313,8 @@ static int prepare(struct event *e)
     const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", sys->harmonics);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", sys->harmonics,
+                                 plural(sys->harmonics));
     }
     e->cosine = more;
     e->sine = more + room;
@@ -369,7 +373,12 @@ static int begin(void *motion, double t, const double *y, double *reach)
 static int transition(void *motion, double tau, size_t columns, double *v)
 {
     struct event *e = motion;
-    return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, tau, columns, v);
+    const int falls = e->events.stick_slip.breakaway.falls;
+    const struct slopes slopes = {falls ? e->order + 1 : 0, e->slope};
+    if (falls) {
+        tribo_event_slopes(e);
+    }
+    return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, &slopes, tau, columns, v);
 }
 
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
@@ -378,13 +387,18 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     const size_t n = e->sys->ndof;
     (void)end;
     if (!tribo_signal_reserve(to, 0, e->order)) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu powers", e->order);
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu power%s", e->order, plural(e->order));
     }
     to->tau = tau;
     for (size_t k = 0; k <= e->order; k++) {
         to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
     }
     return TRIBO_OK;
+}
+
+static double work(const void *motion, size_t i, double tau)
+{
+    return tribo_event_work(motion, i, tau);
 }
 
 static int open_events(tribo_driver *drv, struct events **events)

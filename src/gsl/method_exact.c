@@ -69,7 +69,7 @@ static int find_held(struct exact *x, const struct modal **found)
         const size_t room = 2 * x->room + 16;
         struct modal **more = realloc(x->held, room * sizeof *more);
         if (!more) {
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structure%s", room, plural(room));
         }
         x->held = more;
         x->room = room;
@@ -225,7 +225,8 @@ static int begin(void *motion, double t, const double *y, double *reach)
         return status;
     }
     if (!tribo_modal_motion_reserve(&x->motion, h->harmonics)) {
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", h->harmonics);
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", h->harmonics,
+                                 plural(h->harmonics));
     }
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     set_guards(x, y);
@@ -238,7 +239,7 @@ static int transition(void *motion, double tau, size_t columns, double *v)
     if (columns > x->columns) {
         double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
         if (!more) {
-            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", columns);
+            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
         }
         x->work = more;
         x->columns = columns;
@@ -267,8 +268,28 @@ static void destroy(tribo_driver *drv)
     }
 }
 
+/* What the system has become since a driver was created is looked at again by every advance. */
+static int check_system(const tribo_system *sys)
+{
+    if (sys->tables || sys->limits.knots) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "%s follow a table, and method exact takes harmonic ones only: take event or auto",
+                                 sys->tables ? "loads" : "limits");
+    }
+    const size_t i = tribo_system_first_falling(sys);
+    return i == sys->ncontact ? TRIBO_OK
+                              : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                                  "contact %zu has a static limit that falls with the speed, and method exact "
+                                                  "takes such that drop at once only: take event or auto",
+                                                  i);
+}
+
 static int create(tribo_driver *drv)
 {
+    const int unsupported = check_system(drv->sys);
+    if (unsupported) {
+        return unsupported;
+    }
     struct exact *x = calloc(1, sizeof *x);
     drv->own = x;
     if (!x) {
@@ -298,14 +319,8 @@ static int open_events(tribo_driver *drv, struct events **events)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
-    if (sys->tables || sys->limits.knots) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes harmonic loads and limits only; method event takes tables too");
-    }
-    if (tribo_system_falls(sys)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes static limits that drop at once; method event takes such that fall with "
-                                 "the speed too");
+    if (check_system(sys)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_message(sys->contacts));
     }
     if (x->revision != sys->revision) {
         drop_helds(x);

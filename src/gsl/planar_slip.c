@@ -133,8 +133,7 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     if (tribo_system_limits_vary(sys)) {
         return tribo_system_fail(
             sys, TRIBO_ERR_UNSUPPORTED,
-            "method event knows no limits that change with time beside planar contacts: there are %zu contacts of that kind",
-            planar);
+            "method event knows no limits that change with time beside planar contacts, of which the system has %zu", planar);
     }
     const int status = create(m, sys);
     for (size_t k = 0; !status && k < m->plane->count; k++) {

@@ -56,7 +56,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
     if (status || !work || !m->slip || !m->at || !m->last || !statics) {
         tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stick and slip of %zu contacts", sys->ncontact);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
     }
     for (size_t k = 0; k < contact_arrays; k++) {
         *by_contact[k] = work + k * c;

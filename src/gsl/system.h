@@ -7,6 +7,7 @@
 
 #include "linalg.h"
 #include "massless.h"
+#include "../common/plural.h"
 
 /* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
