@@ -27,9 +27,6 @@
 #define TOLERANCE 1e-10
 #define AIM 1e-12
 
-/* A search on closed forms that ends as near as this may have been ended by their rounding. */
-#define ROUNDED 1e-7
-
 /* Half periods at most; and the periods that are marched before they are spent once more. */
 #define MOST 200
 #define MARCHED 100
@@ -367,16 +364,12 @@ static int find_multipliers(struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
 
-/* Closed forms are sums of what forces do to a mode for ever: where loads are far above its frequency, rounding of that is
- * left. */
 static int no_convergence(const struct shooting *s, double residual)
 {
-    const int closed = s->map.drv->method == &tribo_method_exact && residual < ROUNDED;
     return tribo_driver_fail(
         s->map.drv, TRIBO_ERR_NO_CONVERGENCE,
-        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size%s",
-        s->map.period, 0.5 * (double)s->map.halves, residual,
-        closed ? ", which may be rounding of method exact: take event" : "");
+        "no motion of period %.17g was found in %g periods: the nearest misses its beginning by %.3g of its size", s->map.period,
+        0.5 * (double)s->map.halves, residual);
 }
 
 static int find(struct shooting *s, double *y)
