@@ -157,6 +157,18 @@ TEST(comes_back)
     tribo_system_destroy(s.sys);
 }
 
+/* Newton's steps alone lead nowhere here. */
+TEST(marched_first)
+{
+    struct structure s;
+    structure_create(&s, 2620);
+    tribo_driver *drv = driver_create(s.sys, "exact", 1.0, 0.0);
+    double y[STATES] = {0};
+    find(&s, drv, y);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(s.sys);
+}
+
 /* From anywhere, motions do not part from the periodic one; and what they dissipate a period becomes what it does. */
 TEST(marching)
 {
@@ -350,5 +362,5 @@ TEST(event)
     tribo_system_destroy(s.sys);
 }
 
-TEST_MAIN("periodic_random", {comes_back, 500}, {marching, 12}, {multipliers, 40}, {static_limits, 100}, {falling_limits, 40},
+TEST_MAIN("periodic_random", {comes_back, 500}, {marched_first, 1}, {marching, 12}, {multipliers, 40}, {static_limits, 100}, {falling_limits, 40},
           {event, 12})
