@@ -47,6 +47,7 @@ int main(int argc, char **argv)
         printf("interrupted: tables hold what was found until then\n");
     }
     close_tables(&tables);
+    close_file(stdout, "standard output");
     free_damper(&damper);
     return interrupted() ? INTERRUPTED : EXIT_SUCCESS;
 }

@@ -87,7 +87,7 @@ static void report_best(struct study *s, double limit)
         FILE *table = create_table(s->tables, "best");
         write_motion_head(table, s->damper->contacts);
         write_curve(table, &f.curve[0], s->damper->contacts);
-        close_table(table, "best");
+        close_table(s->tables, table, "best");
         printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude, top->motion.hz);
         write_result(s->tables, "band.limit", limit);
         write_result(s->tables, "band.amplitude", top->motion.amplitude);
@@ -135,7 +135,7 @@ static void write_family(struct study *s, const struct family *f, size_t count)
         }
         s->gaps += gaps_of(c);
     }
-    close_table(table, "family");
+    close_table(s->tables, table, "family");
     fflush(stdout);
 }
 

@@ -122,7 +122,7 @@ static void report(const struct study *s, const struct marched *m, size_t count)
     write_result(s->tables, "check.amplitude", amplitude);
     write_result(s->tables, "check.power", power > 0.0 ? power / most : 0.0);
     write_result(s->tables, "check.balance", unbalanced);
-    close_table(table, "check");
+    close_table(s->tables, table, "check");
 }
 
 void check_by_marching(const struct study *s, const struct curve *c)

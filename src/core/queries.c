@@ -34,25 +34,6 @@ TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const doub
     }
 }
 
-/* Which way a contact slides by its force, of which an open one has none: that reaches its limit, or this part of it. */
-static inline signed char slip_of(double f, double limit, double holds)
-{
-    const double edge = holds * limit, forth = f <= -edge ? FORTH : 0.0, back = f >= edge ? BACK : 0.0;
-    return (signed char)(int)(forth + back + (limit > 0.0 ? 0.0 : OPEN)); /* numbers as wide as f: vectors of them stay whole */
-}
-
-TRIBO_SIMD void tribo_find_slips(const struct contacts *c, size_t n, const double *restrict f, double holds,
-                                 signed char *restrict slip)
-{
-    const double *limit = c->limit, one = *limit;
-    for (size_t i = 0; c->alike && i < n; i++) {
-        slip[i] = slip_of(f[i], one, holds);
-    }
-    for (size_t i = 0; !c->alike && i < n; i++) {
-        slip[i] = slip_of(f[i], limit[i], holds);
-    }
-}
-
 void tribo_write_modes(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {

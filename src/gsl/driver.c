@@ -147,6 +147,7 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
                                  plural(dimension));
     }
     d->sys = sys;
+    d->message = d->text;
     d->method = d->at_work = m;
     d->dt = dt;
     d->abstol = abstol;
@@ -198,11 +199,11 @@ const char *tribo_driver_message(const tribo_driver *drv)
     return drv ? drv->message : "drv is NULL";
 }
 
-int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
+int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    vsnprintf(drv->message, sizeof drv->message, format, args);
+    vsnprintf(drv->message, sizeof drv->text, format, args);
     va_end(args);
     return status;
 }
@@ -240,10 +241,17 @@ int tribo_driver_set_max_step(tribo_driver *drv, double h)
     return TRIBO_OK;
 }
 
+/* Of a query. */
+static int check_query(const tribo_driver *drv, const void *value)
+{
+    return drv && value ? TRIBO_OK : drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "value is NULL") : TRIBO_ERR_NULL;
+}
+
 int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
 {
-    if (!drv || !value) {
-        return TRIBO_ERR_NULL;
+    const int status = check_query(drv, value);
+    if (status) {
+        return status;
     }
     switch (which) {
     case TRIBO_COUNT_STEPS:
@@ -274,21 +282,23 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
         *value = drv->rested;
         return TRIBO_OK;
     default:
-        return TRIBO_ERR_RANGE;
+        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
     }
 }
 
 int tribo_driver_real(const tribo_driver *drv, int which, double *value)
 {
-    if (!drv || !value) {
-        return TRIBO_ERR_NULL;
+    const int status = check_query(drv, value);
+    if (status) {
+        return status;
     }
     if (which != TRIBO_REAL_EXCESS && which != TRIBO_REAL_BACKSLIP) {
-        return TRIBO_ERR_RANGE;
+        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no real quantity of a driver", which);
     }
     const double found = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
     if (isnan(found)) {
-        return TRIBO_ERR_UNSUPPORTED;
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s does not bound how far the motion strays",
+                                 drv->method->name);
     }
     *value = found;
     return TRIBO_OK;

@@ -42,11 +42,12 @@ struct tribo_driver {
     void (*free_shooting)(struct shooting *s);
     size_t freedom; /* dimension of the family of the last one */
     size_t rested;  /* degrees of freedom left out, step by step */
-    char message[240];
+    char *message;  /* is text, which a const driver keeps, too */
+    char text[240];
 };
 
 /* Keeps the message and returns status. */
-int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
+int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
 #endif

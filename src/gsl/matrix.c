@@ -286,6 +286,34 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
     return dense;
 }
 
+/* An array of count entries in no more memory than these take, if that is to be had. */
+static void *shrink(void *x, size_t count, size_t size)
+{
+    void *less = realloc(x, (count + 1) * size);
+    return less ? less : x;
+}
+
+void tribo_matrix_keep_lower(struct matrix *a)
+{
+    size_t count = 0;
+    for (size_t i = 0, k = 0; i < a->rows; i++) {
+        for (; k < a->first[i + 1]; k++) {
+            if (a->col[k] <= i) {
+                a->col[count] = a->col[k];
+                a->val[count++] = a->val[k];
+            }
+        }
+        a->first[i + 1] = count;
+    }
+    a->col = shrink(a->col, count, sizeof *a->col);
+    a->val = shrink(a->val, count, sizeof *a->val);
+    free(a->offset);
+    free(a->fast);
+    a->offset = NULL;
+    a->fast = NULL;
+    a->diagonals = 0;
+}
+
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
     a->identity = 0;

@@ -36,8 +36,8 @@ static int check_loads(tribo_driver *drv, double period)
     }
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *w = &sys->harmonic[k];
-        const double turns = w->omega / (2.0 * acos(-1.0)) * period;
-        if (w->count > 0 && !(fabs(turns - round(turns)) <= WHOLE)) {
+        const double turns = fabs(w->omega) / (2.0 * acos(-1.0)) * period, whole = fmax(round(turns), w->omega != 0.0);
+        if (w->count > 0 && !(fabs(turns - whole) <= WHOLE)) {
             return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
                                      "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
                                      of_kind[w->drives], w->omega, period, turns);
@@ -105,11 +105,11 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
 int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im)
 {
     if (!drv || !re || !im) {
-        return TRIBO_ERR_NULL;
+        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", re ? "im" : "re") : TRIBO_ERR_NULL;
     }
     const struct shooting *s = drv->shooting;
     if (!s || !s->found) {
-        return TRIBO_ERR_STATE;
+        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
     }
     memcpy(re, s->re, s->map.n * sizeof *re);
     memcpy(im, s->im, s->map.n * sizeof *im);

@@ -8,6 +8,7 @@
  * it. So as long as contacts only begin to slide, twice as many neighbours slide along from round to round; who did so too early
  * is found to be pushed by its force, and holds again. */
 #include "step_band.h"
+#include "band.h"
 
 #include <float.h>
 #include <math.h>
@@ -21,11 +22,6 @@ enum { FREE, HOLDS, FOLLOWS };
 
 /* A round costs as much as the band has entries, and a step hardly ever takes more than 10. */
 enum { ROUNDS = 100 };
-
-static double *row_of(double *a, const struct step_band *b, size_t i)
-{
-    return a + i * (b->width + 1);
-}
 
 /* The first column of row i. */
 static size_t begin_of(const struct step_band *b, size_t i)
@@ -118,68 +114,12 @@ static int applies(struct step_band *b, const tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------ the factor */
 
-static void add(const struct step_band *b, const struct matrix *part, double factor)
-{
-    for (size_t i = 0; i < part->rows; i++) {
-        double *row = row_of(b->a, b, i);
-        for (size_t k = part->first[i]; k < part->first[i + 1] && part->col[k] <= i; k++) {
-            row[part->col[k] + b->width - i] += factor * b->mass[i] * part->val[k];
-        }
-    }
-}
-
-/* L D L' of A without who is held, D in place of ones on the diagonal. Returns the place of a pivot that is not positive, or n. */
+/* Of A without who is held; the place of a pivot that is not positive, or n. */
 static size_t factorize(struct step_band *b)
 {
-    const size_t w = b->width;
-    for (size_t i = 0; i < b->n; i++) {
-        const double *a = row_of(b->a, b, i);
-        double *l = row_of(b->l, b, i), pivot = a[w];
-        memset(l, 0, w * sizeof *l);
-        l[w] = 1.0;
-        if (b->held[i]) {
-            continue;
-        }
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            const double *other = row_of(b->l, b, j);
-            double x = b->held[j] ? 0.0 : a[j + w - i];
-            for (size_t k = begin_of(b, i); k < j; k++) {
-                x -= l[k + w - i] * other[k + w - j];
-            }
-            l[j + w - i] = x;
-        }
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            const double x = l[j + w - i];
-            l[j + w - i] = x / b->l[j * (w + 1) + w];
-            pivot -= x * l[j + w - i];
-        }
-        if (!(pivot > 0.0)) {
-            return i;
-        }
-        l[w] = pivot;
-    }
-    b->factored = 1;
-    return b->n;
-}
-
-static void solve(struct step_band *b, double *x)
-{
-    const size_t w = b->width;
-    for (size_t i = 0; i < b->n; i++) {
-        const double *l = row_of(b->l, b, i);
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            x[i] -= l[j + w - i] * x[j];
-        }
-    }
-    for (size_t i = 0; i < b->n; i++) {
-        x[i] /= b->l[i * (w + 1) + w];
-    }
-    for (size_t i = b->n; i-- > 0;) {
-        const double *l = row_of(b->l, b, i);
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            x[j] -= l[j + w - i] * x[i];
-        }
-    }
+    const size_t where = tribo_band_factorize(b->n, b->width, b->a, b->held, b->l);
+    b->factored = where == b->n;
+    return where;
 }
 
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double h, size_t *where)
@@ -202,8 +142,8 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
     for (size_t i = 0; i < n; i++) {
         b->a[i * (b->width + 1) + b->width] = b->mass[i];
     }
-    add(b, &sys->stiffness, 0.25 * h * h);
-    add(b, &sys->damping, 0.5 * h);
+    tribo_band_add(b->a, b->width, &sys->stiffness, 0.25 * h * h, b->mass);
+    tribo_band_add(b->a, b->width, &sys->damping, 0.5 * h, b->mass);
     for (size_t d = 0; d < n; d++) {
         b->contact[d] = b->count;
     }
@@ -286,7 +226,7 @@ static void solve_sets(struct step_band *b, double h, const double *limit, const
     for (size_t d = 0; d < b->n; d++) {
         x[d] = b->held[d] ? 0.0 : x[d];
     }
-    solve(b, x);
+    tribo_band_solve(b->n, b->width, b->l, x);
     for (size_t i = 0; i < b->count; i++) {
         x[b->body[i]] = b->at[i] ? x[b->body[i]] : b->move[b->body[i]];
     }
@@ -356,9 +296,7 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
                           double *f)
 {
     size_t reach = 0, freed, caught;
-    for (size_t d = 0; d < b->n; d++) {
-        b->push[d] = b->mass[d] * du[d];
-    }
+    memcpy(b->push, du, b->n * sizeof *du);
     for (int round = 0; round < ROUNDS; round++) {
         solve_sets(b, h, limit, base, u, du, f);
         revise(b, h, limit, base, u, du, f, &freed, &caught);
@@ -372,8 +310,6 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
             sweep(b, reach, 0);
         }
     }
-    for (size_t d = 0; d < b->n; d++) {
-        du[d] = b->push[d] / b->mass[d];
-    }
+    memcpy(du, b->push, b->n * sizeof *du);
     return 0;
 }

@@ -167,9 +167,13 @@ static const struct scene {
     {"balance-alike", "contact", KERNEL, BALANCE, 1000, 1, NULL, 0.0, 0.0},
     {"balance", "contact", KERNEL, BALANCE, 1000, 0, NULL, 0.0, 0.0},
     {"balance-stuck", "contact", KERNEL, BALANCE_STUCK, 1000, 0, NULL, 0.0, 0.0},
+    {"step-alike", "contact", KERNEL, STEP, 1000, 1, NULL, 0.0, 0.0},
+    {"step", "contact", KERNEL, STEP, 1000, 0, NULL, 0.0, 0.0},
+    {"step-stuck", "contact", KERNEL, STEP_STUCK, 1000, 0, NULL, 0.0, 0.0},
     {"set-limit", "contact", KERNEL, SET_LIMIT, 1000, 0, NULL, 0.0, 0.0},
     {"force-one", "call", KERNEL, FORCE, 1, 0, NULL, 0.0, 0.0},
     {"balance-one", "call", KERNEL, BALANCE, 1, 0, NULL, 0.0, 0.0},
+    {"step-one", "call", KERNEL, STEP, 1, 0, NULL, 0.0, 0.0},
     {"set-limit-one", "call", KERNEL, SET_LIMIT, 1, 0, NULL, 0.0, 0.0},
 #if defined(HAVE_FORTRAN)
     {"trbbal-one", "call", FIXED_FORM, FORCE, 1, 0, NULL, 0.0, 0.0},

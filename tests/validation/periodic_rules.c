@@ -60,6 +60,7 @@ TEST(errors)
     assert_status(tribo_driver_find_periodic(s.drv, 1e300, s.period, y), TRIBO_ERR_STEP);
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1.1 * s.period, y), TRIBO_ERR_RANGE);
     assert_says(tribo_driver_message(s.drv), "load[0], omega = 0.8");
+    assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1e-12 * s.period, y), TRIBO_ERR_RANGE); /* no whole turn at all */
     assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_STATE);
     assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_NOT_FINITE);
     c[1] = 0.0;
