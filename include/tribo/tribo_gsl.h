@@ -231,8 +231,8 @@ typedef struct tribo_driver tribo_driver;
  *               5e-6, rk1imp 4e-4), for oscillator and belt, epsilon 1e-2 to 1e-4. Contacts with Coulomb's law itself chatter
  *               about v = 0 in very short steps.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY,
- * TRIBO_ERR_UNSUPPORTED (planar or static contacts, tables, degrees of freedom without mass, or no accelerations, where the method
- * cannot do such systems); the message is on the system's context. */
+ * TRIBO_ERR_UNSUPPORTED (planar or static contacts, tables, degrees of freedom without mass, or no accelerations, where the
+ * method cannot do such systems); the message is on the system's context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
 
@@ -258,7 +258,7 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * one of the two; others return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other
  * (in energy), and there is such a motion, as symmetric as its loads, wherever motions are bounded. With it, or with static
  * limits, there may be none, or several, or none is found. Of several it is one near the guess, as a rule, stable or not, see
- * tribo_driver_get_multipliers; static limits have the motion followed for 100 periods from the guess before the search gives up.
+ * tribo_driver_get_multipliers; before it gives up the search follows the motion from the guess for a while, and begins anew.
  * Static limits that fall with the speed: event, and auto.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it

@@ -11,6 +11,9 @@
 /* Over a time this short, in terms of the fastest exponent, three terms of a series are all of it. */
 #define CLOSE 1e-6
 
+/* And over one as short as this an exponent is hardly another one. */
+#define LITTLE 0.1
+
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
 {
     const size_t n = sys->ndof;
@@ -293,24 +296,36 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
     }
 }
 
-/* eta (into now) and eta' (into work) where go() was. */
+/* By how much an exponent has moved where go() was. In a time short beside its own it moves by little of what it is, which with a
+ * load far above its frequency is all that there is. */
+static double complex moved(const struct modal_motion *x, size_t p)
+{
+    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I), z = x->zr[p] + x->zi[p] * I;
+    if (x->tau * x->h->size[p] < LITTLE && !x->h->any_resonant) {
+        return z * lambda_tau * tribo_exp_1(lambda_tau);
+    }
+    return x->wr[p] + x->wi[p] * I - z;
+}
+
+/* By how much eta has changed (into now), and eta' (into work) where go() was. */
 static void amplitudes(struct modal_motion *x)
 {
     const struct modal *h = x->h;
     const size_t m = h->modes, e = h->exponents;
     for (size_t k = 0; k < m; k++) {
-        const double start = h->drifts[k] ? x->drift[k] + x->drift_rate[k] * x->tau : 0.0;
-        x->now[k] = x->off[k] + x->tau * (x->vel[k] + 0.5 * x->acc[k] * x->tau) + start;
-        x->work[k] = x->vel[k] + x->acc[k] * x->tau + (h->drifts[k] ? x->drift_rate[k] : 0.0);
+        const double drift = h->drifts[k] ? x->drift_rate[k] : 0.0;
+        x->now[k] = x->tau * (x->vel[k] + drift + 0.5 * x->acc[k] * x->tau);
+        x->work[k] = x->vel[k] + x->acc[k] * x->tau + drift;
     }
     for (size_t p = 0; h->owner && p < e; p++) {
-        x->now[h->owner[p]] += x->wr[p];
+        x->now[h->owner[p]] += creal(moved(x, p));
         x->work[h->owner[p]] += h->lr[p] * x->wr[p] - h->li[p] * x->wi[p];
     }
-    for (size_t k = 0; !h->owner && k < m; k++) {
-        for (size_t p = 0; p < e; p++) {
+    for (size_t p = 0; !h->owner && p < e; p++) {
+        const double complex z = moved(x, p);
+        for (size_t k = 0; k < m; k++) {
             const double rr = h->rr[k * e + p], ri = h->ri[k * e + p];
-            x->now[k] += rr * x->wr[p] - ri * x->wi[p];
+            x->now[k] += rr * creal(z) - ri * cimag(z);
             x->work[k] += rr * (h->lr[p] * x->wr[p] - h->li[p] * x->wi[p]) - ri * (h->lr[p] * x->wi[p] + h->li[p] * x->wr[p]);
         }
     }
@@ -318,7 +333,7 @@ static void amplitudes(struct modal_motion *x)
         const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * ct - xi * st;
+            x->now[k] += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
             x->work[k] -= omega * (xr * st + xi * ct);
         }
     }
@@ -346,7 +361,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
         to[n + h->dof[i]] = u;
     }
     for (size_t k = 0; k < h->modes; k++) {
-        const double *phi = h->phi + k * h->moving, change = x->now[k] - x->eta[k];
+        const double *phi = h->phi + k * h->moving, change = x->now[k];
         for (size_t i = 0; i < h->moving; i++) {
             x->dq[h->dof[i]] += phi[i] * change;
             to[n + h->dof[i]] += phi[i] * x->work[k];

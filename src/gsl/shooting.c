@@ -27,9 +27,12 @@
 #define TOLERANCE 1e-10
 #define AIM 1e-12
 
-/* Half periods at most; and the periods that are marched before they are spent once more. */
+/* Half periods at most of the search from the guess; and of another one from what so many periods of marching come to, where
+ * static limits may need more of them. */
+#define FIRST 120
 #define MOST 200
-#define MARCHED 100
+#define MARCHED 20
+#define MARCHED_STATIC 100
 
 /* A step pays if the residual falls to this part. */
 #define PAYS 0.9
@@ -241,9 +244,9 @@ static int proceed(struct shooting *s)
 }
 
 /* From s->here on: s->best. */
-static int search(struct shooting *s)
+static int search(struct shooting *s, size_t halves)
 {
-    const size_t most = s->map.halves + MOST;
+    const size_t most = s->map.halves + halves;
     int status = tribo_period_map_follow(&s->map, &s->here);
     if (status) {
         return status;
@@ -262,13 +265,25 @@ static int search(struct shooting *s)
     return status;
 }
 
-/* By static limits motions may part from each other, and steps of Newton's lead anywhere. What marching from the guess comes to
- * is then where to look. */
-static int search_again(struct shooting *s)
+/* Where contacts hardly slip, or, by static limits, motions part from each other, steps of Newton's may lead nowhere. What
+ * marching from the guess comes to is then where to look. */
+static int search_again(struct shooting *s, size_t periods)
 {
     memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
-    const int status = tribo_period_map_march(&s->map, MARCHED, s->here.x);
-    return status ? status : search(s);
+    const int status = tribo_period_map_march(&s->map, periods, s->here.x);
+    return status ? status : search(s, MOST);
+}
+
+static int search_all(struct shooting *s)
+{
+    int status = search(s, FIRST);
+    if (!status && !close_enough(&s->best, TOLERANCE)) {
+        status = search_again(s, MARCHED);
+    }
+    if (!status && !close_enough(&s->best, TOLERANCE) && s->map.events->stick_slip.breakaway.some) {
+        status = search_again(s, MARCHED_STATIC);
+    }
+    return status;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the family */
@@ -377,10 +392,7 @@ static int find(struct shooting *s, double *y)
     double residual = 0.0;
     tribo_energy_norm_of(&s->map.norm, 1, y, s->here.x);
     memcpy(s->guess, s->here.x, s->map.n * sizeof *s->guess);
-    int status = search(s);
-    if (!status && !close_enough(&s->best, TOLERANCE) && s->map.events->stick_slip.breakaway.some) {
-        status = search_again(s);
-    }
+    int status = search_all(s);
     if (!status && !close_enough(&s->best, TOLERANCE)) {
         return no_convergence(s, s->nearest);
     }

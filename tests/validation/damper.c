@@ -78,6 +78,26 @@ TEST(loose_row)
 }
 END_TEST
 
+/* Without friction and stuck are those that closed forms know, also where a contact has its own limit, or none. */
+TEST(own_limit)
+{
+    static const char *const own[] = {"limit=3", "limit=0"};
+    char options[400];
+    write_text("own-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("own-k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
+    write_text("own.txt", "1 1 1 0 0 0\n2 2 1 1 0 0\n");
+    for (size_t k = 0; k < 2; k++) {
+        snprintf(options, sizeof options,
+                 "--mass own-m.mtx --stiffness own-k.mtx --dofs own.txt --load 1,0,0,x --damping 0.05 --contact 0,0,0,x:%s "
+                 "--contact 1,0,0,x --limits 0.1:1:3",
+                 own[k]);
+        assert_runs(options);
+        assert_close(value_of("damper.free"), value_of("damper.free.analytic"), 1e-9);
+        assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), 1e-12);
+    }
+}
+END_TEST
+
 /* The stiffer the springs, the more they are like none; a rigid contact among them. */
 TEST(stiff_springs)
 {
@@ -186,4 +206,4 @@ TEST(interrupted)
 }
 END_TEST
 
-TEST_MAIN("damper", {beam, 1}, {spring, 1}, {loose_row, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})
+TEST_MAIN("damper", {beam, 1}, {spring, 1}, {loose_row, 1}, {own_limit, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})

@@ -178,6 +178,18 @@ TEST(nearly_stuck)
     }
 }
 
+/* A load 1e4 times as fast as the mode: what 0.3 of friction would do to the mode in time is 1e8 times the motion, of which closed
+ * forms have digits enough. Nearly rigid: x'' = cos(omega t) + f. */
+TEST(fast_load)
+{
+    const double omega = 1e4, n = 0.3;
+    struct search s = oscillator_search(methods[_i], 0.1, n, 1.0, omega);
+    double y[3] = {0};
+    find(&s, 0.0, y);
+    assert_close(amplitude(&s, 0) * omega * omega, sqrt(1.0 - n * n * PI * PI / 4.0), 1e-5);
+    search_free(&s);
+}
+
 /* "auto" leaves it to one of the two, with all that is asked of the motion and counted, and goes on as they do. */
 TEST(automatic)
 {
@@ -209,4 +221,4 @@ TEST(automatic)
 }
 
 TEST_MAIN("periodic_rules", {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12}, {falling_limit, 12},
-          {nearly_stuck, 1}, {automatic, 1})
+          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1})
