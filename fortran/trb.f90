@@ -464,8 +464,8 @@ subroutine trbpln(ih, npl, ifirst, ierr)
   integer, intent(out) :: ierr
   type(tribo_context) :: c
 
-  call borrow(ih, c, ierr)
-  if (ierr == TRIBO_OK) call c%set_planar(ifirst(:max(npl, 0)), ierr)
+  call borrow(ih, c, ierr, name='NPL', value=npl, least=0)
+  if (ierr == TRIBO_OK) call c%set_planar(ifirst(:npl), ierr)
 end subroutine trbpln
 
 subroutine trblm1(ih, fmun, ierr)

@@ -67,8 +67,9 @@ FILE *create_file(const char *folder, const char *name)
 void close_file(FILE *file, const char *name)
 {
     const int failed = ferror(file);
+    errno = 0;
     if (fclose(file) || failed) {
-        die("cannot write %s", name);
+        die("cannot write %s%s%s", name, errno ? ": " : "", errno ? strerror(errno) : "");
     }
 }
 

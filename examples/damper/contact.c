@@ -77,6 +77,9 @@ static void read_word(const char *origin, char *word, struct contact *c, struct 
     const char *equals = strchr(word, '=');
     const size_t length = equals ? (size_t)(equals - word) : strlen(word);
     double *value = find_word(w, word, length);
+    if (equals && (value ? !isnan(*value) : c->between && strncmp(word, "to=", 3) == 0)) {
+        die("%s: %.*s= is there twice", origin, (int)length, word);
+    }
     if (equals && value) {
         *value = read_real(origin, equals + 1, 0.0, value == &w->limit);
     } else if (strncmp(word, "to=", 3) == 0) {
@@ -129,14 +132,10 @@ size_t read_contact(const char *origin, const char *text, struct contact *contac
     return count;
 }
 
-/* Messages show what is in the line. */
-static void make_printable(char *text)
+static void cut_blanks(char *text)
 {
-    for (; *text; text++) {
-        *text = (*text < ' ' && *text != '\t') || *text > '~' ? '?' : *text;
-    }
-    while (text[-1] == ' ' || text[-1] == '\t') {
-        *--text = '\0';
+    for (char *end = text + strlen(text); end > text && (end[-1] == ' ' || end[-1] == '\t');) {
+        *--end = '\0';
     }
 }
 
@@ -146,7 +145,7 @@ size_t read_contacts(const char *path, struct contact *contact, size_t count)
     const size_t before = count;
     while (next_data(&l)) {
         l.at[strcspn(l.at, "\r")] = '\0';
-        make_printable(l.at);
+        cut_blanks(make_printable(l.at));
         count = read_contact(new_text("%s:%zu: contact %s", path, l.line, l.at), l.at, contact, count);
     }
     close_lines(&l);

@@ -71,7 +71,8 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
     const int status =
         tribo_system_linear_sparse(&d->sys, s->mass, NULL, s->stiffness, direction, d->modes, message, sizeof message);
     if (status) {
-        die("%s and %s: %s%s", o->mass, o->stiffness, message, strchr(message, '[') ? " (counted from 0)" : "");
+        const int counts = strchr(message, '[') || strstr(message, "degree of freedom ");
+        die("%s and %s: %s%s", o->mass, o->stiffness, message, counts ? " (counted from 0)" : "");
     }
     gsl_spmatrix_free(direction);
     tribo_context *contacts = tribo_system_context(d->sys);

@@ -25,7 +25,25 @@ void die_at(const struct lines *l, const char *format, ...)
     va_start(args, format);
     vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    die("%s:%zu: %s", l->path, l->line, text);
+    die("%s:%zu: %s", l->path, l->line, make_printable(text));
+}
+
+char *make_printable(char *text)
+{
+    for (char *c = text; *c; c++) {
+        *c = (*c < ' ' && *c != '\t') || *c > '~' ? '?' : *c;
+    }
+    return text;
+}
+
+/* Some editors begin a file with the mark of UTF-8. */
+static void skip_mark(struct lines *l, size_t length)
+{
+    static const char mark[] = "\xEF\xBB\xBF";
+    const size_t marked = sizeof mark - 1;
+    if (l->line == 1 && strncmp(l->text, mark, marked) == 0) {
+        memmove(l->text, l->text + marked, length - marked + 1);
+    }
 }
 
 /* A last line that does not end may be cut within a number. */
@@ -53,6 +71,7 @@ int next_line(struct lines *l)
         l->text[length++] = (char)c;
     }
     l->text[length] = '\0';
+    skip_mark(l, length);
     l->at = l->text;
     return 1;
 }

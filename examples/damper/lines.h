@@ -37,6 +37,9 @@ void expect_end(struct lines *l);
 /* Room for one element of that size more than the count that an array holds: the array, moved where that is needed. */
 void *need_room(void *array, size_t count, size_t *room, size_t size);
 
+/* For messages: what does not print becomes a question mark. Returns text. */
+char *make_printable(char *text);
+
 /* Ends the program: "file:line: ..." */
 void die_at(const struct lines *l, const char *format, ...) PRINTF_LIKE(2);
 

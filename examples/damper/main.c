@@ -31,6 +31,7 @@ int main(int argc, char **argv)
     gsl_set_error_handler_off();
     const struct options options = read_options(argc, argv);
     struct structure structure = read_structure(options.mass, options.stiffness, options.dofs);
+    tell_of_loose_rows(&structure, options.stiffness);
     struct damper damper = create_damper(&options, &structure);
     free_structure(&structure);
     struct tables tables = open_tables(&options);
@@ -41,12 +42,13 @@ int main(int argc, char **argv)
     (options.drive.points > 1 ? study_band : study_limits)(&study);
     write_result(&tables, "gaps", (double)study.gaps);
     if (study.gaps) {
-        printf("%zu points were not found: gaps in the tables, with messages\n", study.gaps);
+        printf("%zu point%s not found: gaps in the tables, with messages\n", study.gaps, study.gaps == 1 ? " was" : "s were");
     }
     if (interrupted()) {
         printf("interrupted: tables hold what was found until then\n");
     }
     close_tables(&tables);
+    close_file(stdout, "standard output");
     free_damper(&damper);
     return interrupted() ? INTERRUPTED : EXIT_SUCCESS;
 }

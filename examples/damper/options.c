@@ -94,6 +94,12 @@ static void set_law(const char *origin, const char *value, struct options *o)
         }
         die("%s: no law has this name; there are%s", origin, names);
     }
+    /* nothing holds a velocity at 0 in rk4, whose four stages meet forces of either sign that may cancel */
+    if (o->law == TRIBO_COULOMB || o->law == TRIBO_KARNOPP) {
+        die("%s: the contacts of this law rest at velocities that are exactly zero, which marching does not make: take quinn, "
+            "quinn-reversal, velocity-limited or smooth, or --method exact, which needs no law",
+            origin);
+    }
 }
 
 static void set_threads(const char *origin, const char *value, struct options *o)
@@ -179,7 +185,7 @@ static void read_option_file(const char *path, struct options *o)
         if (*value == '\0') {
             die_at(&l, "option %s needs a value", option->name + 2);
         }
-        apply(option, new_text("%s:%zu: %s %s", path, l.line, option->name + 2, value),
+        apply(option, make_printable(new_text("%s:%zu: %s %s", path, l.line, option->name + 2, value)),
               option->is_path ? path_beside(path, value) : new_text("%s", value), o);
     }
     close_lines(&l);
@@ -261,6 +267,7 @@ struct options read_options(int argc, char **argv)
         const int read = strcmp(name, "--read") == 0;
         if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
             print_help();
+            close_file(stdout, "standard output");
             exit(EXIT_SUCCESS);
         }
         if (!option && !read) {

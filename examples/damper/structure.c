@@ -1,8 +1,10 @@
 #include "structure.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 
+#include "../common/output.h"
 #include "lines.h"
 #include "matrix_file.h"
 
@@ -20,6 +22,25 @@ void free_structure(struct structure *s)
     gsl_spmatrix_free(s->mass);
     gsl_spmatrix_free(s->stiffness);
     free(s->dof);
+}
+
+void tell_of_loose_rows(const struct structure *s, const char *stiffness)
+{
+    char *held = need_memory(s->ndof, sizeof *held);
+    size_t loose = 0, first = 0;
+    for (size_t k = 0; k < s->stiffness->nz; k++) {
+        held[s->stiffness->i[k]] |= s->stiffness->data[k] != 0.0;
+    }
+    for (size_t i = s->ndof; i-- > 0;) {
+        loose += !held[i];
+        first = held[i] ? first : i;
+    }
+    free(held);
+    if (loose) {
+        const struct degree *d = &s->dof[first];
+        printf("%s: no stiffness holds row %zu (node %zu, direction %c)", stiffness, d->row, d->node, "xyz"[d->direction - 1]);
+        printf(loose > 1 ? ", and %zu others\n" : "\n", loose - 1);
+    }
 }
 
 static double distance(const struct degree *d, const double *at)

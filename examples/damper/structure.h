@@ -19,6 +19,9 @@ struct structure {
 struct structure read_structure(const char *mass, const char *stiffness, const char *dofs);
 void free_structure(struct structure *s);
 
+/* Tells of rows of the stiffness that are empty, as those of what nothing holds but contacts, or has been left out by mistake. */
+void tell_of_loose_rows(const struct structure *s, const char *stiffness);
+
 /* The row of a place; ends the program if the structure has none there. */
 size_t find_degree(const struct structure *s, const struct place *p);
 

@@ -87,7 +87,7 @@ static void report_best(struct study *s, double limit)
         FILE *table = create_table(s->tables, "best");
         write_motion_head(table, s->damper->contacts);
         write_curve(table, &f.curve[0], s->damper->contacts);
-        close_table(table, "best");
+        close_table(s->tables, table, "best");
         printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude, top->motion.hz);
         write_result(s->tables, "band.limit", limit);
         write_result(s->tables, "band.amplitude", top->motion.amplitude);
@@ -95,6 +95,19 @@ static void report_best(struct study *s, double limit)
         s->gaps += gaps_of(&f.curve[0]);
     }
     free_family(&f, 1);
+}
+
+/* Why a motion was not found. */
+static const char *first_message(const struct family *f, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < f->curve[k].count; i++) {
+            if (f->curve[k].sample[i].motion.message[0]) {
+                return f->curve[k].sample[i].motion.message;
+            }
+        }
+    }
+    return "nobody looked";
 }
 
 static void find_best(struct study *s, const struct family *f, const double *limit, size_t count)
@@ -108,7 +121,11 @@ static void find_best(struct study *s, const struct family *f, const double *lim
             best = k;
         }
     }
-    if (best == 0 || best + 1 >= count) {
+    if (best == count) {
+        printf("no motion was found at any of these limits: %s\n", first_message(f, count));
+        return;
+    }
+    if (best == 0 || best + 1 == count) {
         printf("no limit within the range is better than its ends: widen --limits to find the best\n");
         return;
     }
@@ -135,7 +152,7 @@ static void write_family(struct study *s, const struct family *f, size_t count)
         }
         s->gaps += gaps_of(c);
     }
-    close_table(table, "family");
+    close_table(s->tables, table, "family");
     fflush(stdout);
 }
 

@@ -26,13 +26,27 @@ static void compare(const struct study *s, const struct motion *m, double known,
     free(analytic);
 }
 
+/* Without friction no contact has any, and stuck all are, whatever limits they have. */
+static void follow_all(struct damper *d)
+{
+    for (size_t c = 0; c < d->contacts; c++) {
+        d->limit[c] = (double)NAN;
+        d->mu[c] = 1.0;
+    }
+}
+
 void check_extremes(const struct study *s, double hz)
 {
     const struct damper *d = s->damper;
     if (!limits_vary(s->options)) {
         return;
     }
-    struct worker w = create_worker(d, s->options->march);
+    double *each = need_memory(2 * d->contacts, sizeof *each);
+    struct damper all = *d;
+    all.limit = each;
+    all.mu = each + d->contacts;
+    follow_all(&all);
+    struct worker w = create_worker(&all, s->options->march);
     double *y = need_memory(w.dimension, sizeof *y);
     const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->force, hz, NULL, y);
     const double omega = TURN * hz;
@@ -43,6 +57,7 @@ void check_extremes(const struct study *s, double hz)
     fflush(stdout);
     free(y);
     free_worker(&w);
+    free(each);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- marching */
@@ -107,7 +122,7 @@ static void report(const struct study *s, const struct marched *m, size_t count)
     write_result(s->tables, "check.amplitude", amplitude);
     write_result(s->tables, "check.power", power > 0.0 ? power / most : 0.0);
     write_result(s->tables, "check.balance", unbalanced);
-    close_table(table, "check");
+    close_table(s->tables, table, "check");
 }
 
 void check_by_marching(const struct study *s, const struct curve *c)

@@ -160,7 +160,7 @@ void study_limits(struct study *s)
     FILE *table = create_table(s->tables, "curve");
     write_motion_head(table, s->damper->contacts);
     write_curve(table, &c, s->damper->contacts);
-    close_table(table, "curve");
+    close_table(s->tables, table, "curve");
     s->gaps += gaps_of(&c);
     free_curve(&c);
 }

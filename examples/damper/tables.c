@@ -21,7 +21,9 @@ struct tables open_tables(const struct options *o)
 
 void close_tables(struct tables *t)
 {
-    close_file(t->values, "values");
+    char *name = new_text("%s/values-%s.txt", t->out, t->name);
+    close_file(t->values, name);
+    free(name);
 }
 
 FILE *create_table(const struct tables *t, const char *what)
@@ -32,9 +34,11 @@ FILE *create_table(const struct tables *t, const char *what)
     return file;
 }
 
-void close_table(FILE *file, const char *what)
+void close_table(const struct tables *t, FILE *file, const char *what)
 {
-    close_file(file, what);
+    char *name = new_text("%s/%s-%s.csv", t->out, t->name, what);
+    close_file(file, name);
+    free(name);
 }
 
 void write_result(const struct tables *t, const char *key, double value)
@@ -116,7 +120,7 @@ void write_frequencies(const struct tables *t, const struct damper *d, const cha
     if (known) {
         write_result(t, "frequency.error", worst);
     }
-    close_table(table, "frequencies");
+    close_table(t, table, "frequencies");
     fflush(stdout);
     free(hz);
 }
@@ -150,7 +154,7 @@ void write_linear(const struct tables *t, const struct damper *d, const struct r
     for (size_t k = 0; k < count; k++) {
         fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, free_amplitude(d, omega[k]), stuck_amplitude(d, omega[k]));
     }
-    close_table(table, "linear");
+    close_table(t, table, "linear");
     free(omega);
 }
 
@@ -196,7 +200,7 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
         need(tribo_get_slip(contacts, slip), tribo_message(contacts));
         write_instant(table, d, cycle, now, state, v, f, slip);
     }
-    close_table(table, what);
+    close_table(t, table, what);
     tribo_driver_destroy(marcher);
     free(v);
     free(state);

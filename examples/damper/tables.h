@@ -13,7 +13,7 @@ void close_tables(struct tables *t);
 
 /* NAME-what.csv */
 FILE *create_table(const struct tables *t, const char *what);
-void close_table(FILE *file, const char *what);
+void close_table(const struct tables *t, FILE *file, const char *what);
 
 /* Shown by NAME.key. */
 void write_result(const struct tables *t, const char *key, double value);

@@ -2,6 +2,7 @@
 #ifndef EXAMPLES_PETSC_POINT_H
 #define EXAMPLES_PETSC_POINT_H
 
+#include "contacts.h"
 #include "input.h"
 #include "tribo/tribo_gsl.h"
 

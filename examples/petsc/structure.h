@@ -4,6 +4,7 @@
 
 #include <petscksp.h>
 
+#include "contacts.h"
 #include "input.h"
 #include "islands.h"
 

@@ -1,7 +1,7 @@
 #ifndef EXAMPLES_PETSC_VTK_H
 #define EXAMPLES_PETSC_VTK_H
 
-#include "input.h"
+#include "contacts.h"
 
 /* Writes a legacy VTK file (ParaView, VisIt): a point a node, and after those a point a contact, which moves with its node; with
  * displacements, and of contacts the friction force and the slip: 0 stuck, 1 and -1 sliding, 2 open, 3 for nodes. place, q: rows

@@ -260,9 +260,9 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  *             both have the epsilon that the largest eigenvalue of their own 2x2 block of R asks for in the place of R_ii
  *   laws      those of one direction, along the direction of motion. QUINN and QUINN_REVERSAL (which remembers nothing of
  *             planar contacts) take the f that minimizes 1/2 f'Rf + (a + R_d kappa)'f, R_d being the blocks on the diagonal and
- *             kappa = (2 limit/epsilon) v, over the lens: f and f + kappa are both within the limits. On a line that is the
- *             scalar law; which tangential directions are taken does not matter; and at v = 0 it is Coulomb's law, also where
- *             R_d or limits differ by direction.
+ *             kappa = 2 limit^2 v/(the larger limit epsilon), by direction, which is (2 limit/epsilon) v for a disc, over the
+ *             lens: f and f + kappa are both within the limits. On a line that is the scalar law; which tangential directions
+ *             are taken does not matter; and at v = 0 it is Coulomb's law, also where R_d or limits differ by direction.
  *   sharing   as tribo_set_sharing says, but least norms are found to about 1e-8 of the limits only, where limits and the
  *             eigenvalues of R that are not 0 are alike; far from that f is one of the solutions, with R f right. It takes a
  *             few solutions in the place of one

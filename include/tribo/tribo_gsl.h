@@ -232,8 +232,8 @@ typedef struct tribo_driver tribo_driver;
  *               5e-6, rk1imp 4e-4), for oscillator and belt, epsilon 1e-2 to 1e-4. Contacts with Coulomb's law itself chatter
  *               about v = 0 in very short steps.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY,
- * TRIBO_ERR_UNSUPPORTED (planar or static contacts, degrees of freedom without mass, or no accelerations, where the method cannot
- * do such systems); the message is on the system's context. */
+ * TRIBO_ERR_UNSUPPORTED (planar or static contacts, tables, degrees of freedom without mass, or no accelerations, where the
+ * method cannot do such systems); the message is on the system's context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
 
@@ -258,7 +258,9 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
 /* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact, event, and auto by
  * one of the two; others return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other
  * (in energy), and there is such a motion, as symmetric as its loads, wherever motions are bounded. With it, or with static
- * limits (such that drop at once), there may be none, or several, or none is found.
+ * limits, there may be none, or several, or none is found. Of several it is one near the guess, as a rule, stable or not, see
+ * tribo_driver_get_multipliers; before it gives up the search follows the motion from the guess for a while, and begins anew.
+ * Static limits that fall with the speed: event, and auto.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
@@ -273,8 +275,8 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * dimensions.
  * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
- * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits that fall with
- * the speed, or beside elastic contacts; planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits beside elastic
+ * contacts; planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
 /* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary

@@ -49,4 +49,10 @@ static inline double product(double x, double y)
     return clamp(x, -most, most) * y;
 }
 
+/* The same, where x may be beyond TRIBO_FAR; y > 0. */
+static inline double scaled(double x, double y)
+{
+    return y > 1.0 ? product(x, y) : cut(x * y);
+}
+
 #endif

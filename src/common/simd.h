@@ -5,8 +5,15 @@
 #define TRIBO_SIMD_H
 
 #include <stddef.h>
+#include <stdint.h>
+#include <string.h>
 
 #include "compiler.h"
+
+#if defined(TRIBO_GNU_C) && defined(__SSE2__)
+#include <emmintrin.h>
+#define TRIBO_STREAMS
+#endif
 
 #if defined(TRIBO_CLONES_512)
 #define TRIBO_SIMD __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
@@ -15,6 +22,21 @@
 #else
 #define TRIBO_SIMD
 #endif
+
+/* Before a loop that does next to nothing with each number, where counting them would take as long; clang does so unasked. */
+#if defined(TRIBO_GNU_C) && !defined(__clang__)
+#define TRIBO_UNROLLED _Pragma("GCC unroll 4")
+#else
+#define TRIBO_UNROLLED
+#endif
+
+/* Where a line of cache begins, so that no vector of an array lies in two: at most TRIBO_LINE - 1 numbers on. */
+enum { TRIBO_LINE = 8 };
+static inline double *tribo_aligned(double *x)
+{
+    enum { BYTES = TRIBO_LINE * sizeof *x };
+    return x ? x + (BYTES - (uintptr_t)x % BYTES) % BYTES / sizeof *x : NULL;
+}
 
 /* So many bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
 static inline void tribo_expect(const void *from, size_t bytes, int written)
@@ -30,6 +52,33 @@ static inline void tribo_expect(const void *from, size_t bytes, int written)
     }
 #else
     (void)from, (void)bytes, (void)written;
+#endif
+}
+
+/* A copy to memory that is far away and will not be read soon, which need not come here to be written: between threads it is
+ * over with tribo_stream_end. Elsewhere a plain copy. */
+static inline void tribo_stream(double *to, const double *from, size_t n)
+{
+#if defined(TRIBO_STREAMS)
+    size_t i = 0;
+    for (; i < n && (uintptr_t)(to + i) % sizeof(__m128d) > 0; i++) {
+        to[i] = from[i];
+    }
+    for (; i + 2 <= n; i += 2) {
+        _mm_stream_pd(to + i, _mm_loadu_pd(from + i));
+    }
+    for (; i < n; i++) {
+        to[i] = from[i];
+    }
+#else
+    memcpy(to, from, n * sizeof *to);
+#endif
+}
+
+static inline void tribo_stream_end(void)
+{
+#if defined(TRIBO_STREAMS)
+    _mm_sfence();
 #endif
 }
 

@@ -79,8 +79,8 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
     }
     ctx->count.solves++;
     if (!tribo_box_solve(p)) {
-        return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contacts near stick around contact %zu",
-                          p->count, member[p->near[0]]);
+        return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no stick set found for the %zu contact%s near stick around contact %zu",
+                          p->count, plural(p->count), member[p->near[0]]);
     }
     if (g->nullity && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
         tribo_box_share(p);
@@ -166,8 +166,8 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
         return TRIBO_OK;
     }
     return tribo_fail(ctx, TRIBO_ERR_INCONSISTENT,
-                      "no f_eq balances the %zu contacts near stick around contact %zu: rank %zu, and a is outside its range",
-                      p->count, member[p->near[0]], p->sets->rank);
+                      "no f_eq balances the %zu contact%s near stick around contact %zu: rank %zu, and a is outside its range",
+                      p->count, plural(p->count), member[p->near[0]], p->sets->rank);
 }
 
 /* The law's forces of the near contacts of a group, run by run of neighbours. */

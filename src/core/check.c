@@ -21,10 +21,23 @@ TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
 {
     const int64_t limit = bits_of(&most);
     int64_t room = 0; /* negative once one is */
+    TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
         room |= limit - size_of(bits_of(x + i));
     }
     return room >= 0;
+}
+
+TRIBO_SIMD int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n)
+{
+    const int64_t limit_x = bits_of(&most_x), limit_y = bits_of(&most_y);
+    int64_t room_x = 0, room_y = 0;
+    TRIBO_UNROLLED
+    for (size_t i = 0; i < n; i++) {
+        room_x |= limit_x - size_of(bits_of(x + i));
+        room_y |= limit_y - size_of(bits_of(y + i));
+    }
+    return (room_x >= 0 ? 1 : 0) | (room_y >= 0 ? 2 : 0);
 }
 
 int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
@@ -40,22 +53,24 @@ int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const doub
     return TRIBO_OK;
 }
 
-/* And finite. -0 is not negative. */
-TRIBO_SIMD static int none_negative(const double *x, size_t n)
+/* Whether no sign is set, and all are finite. */
+TRIBO_SIMD static int all_positive(const double *x, size_t n)
 {
     const double most = DBL_MAX;
-    const int64_t limit = bits_of(&most);
-    int64_t room = 0;
+    const uint64_t limit = (uint64_t)bits_of(&most), sign = (uint64_t)1 << 63;
+    uint64_t beyond = 0; /* has that sign once one is */
+    TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        const int64_t bits = bits_of(x + i), size = size_of(bits);
-        room |= (limit - size) | (bits & -size);
+        const uint64_t bits = (uint64_t)bits_of(x + i);
+        beyond |= bits | (limit - bits);
     }
-    return room >= 0;
+    return !(beyond & sign);
 }
 
+/* -0 is not negative. */
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
-    if (x && none_negative(x, n)) {
+    if (x && all_positive(x, n)) {
         return TRIBO_OK;
     }
     const int status = tribo_fail_not_finite(ctx, name, x, n);

@@ -7,9 +7,26 @@
 
 #include "context.h"
 
+static inline int tribo_within(double x, double most)
+{
+    return isfinite(x) && fabs(x) <= most;
+}
+
 static inline int tribo_all_finite(const double *x, size_t n)
 {
     return n == 1 ? isfinite(*x) : tribo_all_within(x, n, DBL_MAX);
+}
+
+/* The same of numbers that are TRIBO_PLAIN at most. */
+static inline int tribo_all_plain(const double *x, size_t n)
+{
+    return n == 1 ? tribo_within(*x, TRIBO_PLAIN) : tribo_all_within(x, n, TRIBO_PLAIN);
+}
+
+/* 1 if all of v is finite, and 2 if all of y is so small; neither is NULL. */
+static inline int tribo_motion_within(const double *v, const double *y, double most, size_t n)
+{
+    return n == 1 ? (isfinite(*v) ? 1 : 0) | (tribo_within(*y, most) ? 2 : 0) : tribo_two_within(v, DBL_MAX, y, most, n);
 }
 
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */

@@ -4,16 +4,17 @@
 #include "check.h"
 
 /* Whether any contact is in the band, beyond which laws that ask for f_eq all say the same. */
-TRIBO_SIMD static int any_in_band(size_t n, const double *v, double band)
+TRIBO_SIMD int tribo_any_in_band(size_t n, const double *v, double band)
 {
     int64_t any = 0; /* as wide as what is compared */
+    TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
         any |= fabs(v[i]) <= band ? -1 : 0;
     }
     return any != 0;
 }
 
-TRIBO_SIMD static void find_directions(size_t n, const double *restrict v, signed char *restrict did)
+TRIBO_SIMD void tribo_find_directions(size_t n, const double *restrict v, signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
         did[i] = v[i] > 0.0 ? FORTH : BACK;
@@ -43,10 +44,17 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
 }
 
 /* f_eq of contacts that share no body. */
-TRIBO_SIMD static void feq_alone(size_t n, const double *restrict r, const double *restrict a, double *restrict feq)
+TRIBO_SIMD static void feq_alone(size_t n, const double *restrict inverse, const double *restrict a, double *restrict feq)
 {
     for (size_t i = 0; i < n; i++) {
-        feq[i] = tribo_alone(a[i], r[i]);
+        feq[i] = tribo_alone(a[i], inverse[i]);
+    }
+}
+
+static void feq_alone_far(size_t n, const double *inverse, const double *a, double *feq)
+{
+    for (size_t i = 0; i < n; i++) {
+        feq[i] = tribo_alone_far(a[i], inverse[i]);
     }
 }
 
@@ -59,8 +67,10 @@ TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, do
 
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
 {
-    feq_alone(n, ctx->op->diagonal + i, a + i, feq);
-    if (ctx->follow.chunk[i / TRIBO_CHUNK].least == 0.0) {
+    const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
+    const int plain = chunk->plain && tribo_all_plain(a + i, n);
+    (plain ? feq_alone : feq_alone_far)(n, ctx->op->inverse + chunk->like, a + i, feq);
+    if (chunk->least == 0.0) {
         no_feq_if_open(n, ctx->follow.contacts.limit + i, feq);
     }
 }
@@ -116,20 +126,32 @@ TRIBO_SIMD static void find_bounds(const double *x, struct chunk *chunk)
     chunk->largest = largest[0];
 }
 
+/* The same of a few. */
+static void find_few_bounds(size_t n, const double *x, struct chunk *chunk)
+{
+    chunk->least = chunk->largest = x[0];
+    for (size_t i = 1; i < n; i++) {
+        chunk->least = lesser(chunk->least, x[i]);
+        chunk->largest = greater(chunk->largest, x[i]);
+    }
+}
+
 void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk)
 {
+    enum { FEW = 16 };
+    double whole[TRIBO_CHUNK];
     memcpy(to, from, n * sizeof *to);
-    if (n == TRIBO_CHUNK) {
+    if (n < FEW) {
+        find_few_bounds(n, from, chunk);
+    } else if (n < TRIBO_CHUNK) {
+        memcpy(whole, from, n * sizeof *whole);
+        for (size_t k = n; k < TRIBO_CHUNK; k++) {
+            whole[k] = from[0];
+        }
+        find_bounds(whole, chunk);
+    } else {
         find_bounds(from, chunk);
-        return;
     }
-    double least = from[0], largest = from[0];
-    for (size_t i = 1; i < n; i++) {
-        least = lesser(least, from[i]);
-        largest = greater(largest, from[i]);
-    }
-    chunk->least = least;
-    chunk->largest = largest;
 }
 
 TRIBO_SIMD static void find_epsilons(size_t n, const double *restrict width, const double *restrict bound,
@@ -185,8 +207,7 @@ void tribo_store_all(tribo_context *ctx)
     }
 }
 
-/* No contact of chunk k that is faster is near stick. */
-static double widest_band(const tribo_context *ctx, size_t k)
+double tribo_widest_band(const tribo_context *ctx, size_t k)
 {
     const double band = ctx->follow.chunk[k].band;
     return ctx->set.law->sticks_in_band ? band : lesser(band, 0.0);
@@ -205,13 +226,13 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        const double band = widest_band(ctx, k);
+        const double band = tribo_widest_band(ctx, k);
         expect(ctx, v, i, 0);
         expect(ctx, a, i, 0);
         if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
             return check_motion(ctx, v, a);
         }
-        const int any = any_in_band(n, v + i, band);
+        const int any = tribo_any_in_band(n, v + i, band);
         now.stored[k] = !any ? NONE_STORED : ctx->op->groups ? SOME_STORED : ALL_STORED;
         if (now.stored[k] == ALL_STORED) {
             memset(now.of + i, STORED, n); /* or not: the law will tell */
@@ -219,7 +240,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
             find_states(n, v + i, band, now.of + i);
             narrow(ctx, v, i, i + n, now.of);
         } else {
-            find_directions(n, v + i, now.of + i);
+            tribo_find_directions(n, v + i, now.of + i);
         }
     }
     now.all_stored = 0;
@@ -248,85 +269,7 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
     }
 }
 
-/* Whether the law reads f_eq of a contact of chunk k, which begins with contact i. */
-static int reads_feq(const tribo_context *ctx, size_t k, size_t i, size_t n, const double *v)
-{
-    const double band = widest_band(ctx, k);
-    return ctx->set.law->uses_feq && (fabs(v[i]) <= band || any_in_band(n, v + i, band));
-}
-
-/* Without what many contacts are worth. */
-static void balance_one(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
-{
-    const struct contacts *c = &ctx->follow.contacts;
-    const double balancing = *c->limit > 0.0 ? tribo_alone(*a, *ctx->op->diagonal) : 0.0;
-    ctx->set.law->force(c, 1, v, &balancing, ctx->last.f);
-    if (feq) {
-        *feq = balancing;
-    }
-    if (f) {
-        *f = *ctx->last.f;
-    }
-}
-
-/* Those of chunk k, which begins with contact i, f [n]. */
-static void balance_chunk(const tribo_context *ctx, size_t k, size_t i, const double *v, const double *a, double *feq, double *f)
-{
-    const size_t n = tribo_chunk_size(ctx, i);
-    const struct contacts c = tribo_chunk_contacts(ctx, i);
-    if (feq) {
-        tribo_find_feq(ctx, i, n, a, feq + i);
-    }
-    if (!feq && reads_feq(ctx, k, i, n, v)) {
-        ctx->set.law->balance(&c, n, v + i, a + i, ctx->op->diagonal + i, f);
-    } else {
-        ctx->set.law->force(&c, n, v + i, feq ? feq + i : v + i, f);
-    }
-}
-
-/* The forces of a few contacts are kept. */
-static void balance_few(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
-{
-    if (ctx->n == 1) {
-        balance_one(ctx, v, a, feq, f);
-    } else if (ctx->n) {
-        balance_chunk(ctx, 0, 0, v, a, feq, ctx->last.f);
-        tribo_copy(f, ctx->last.f, f ? ctx->n : 0);
-    }
-    tribo_store_all(ctx);
-    ctx->last.modes = MODES_IN_FORCES;
-    ctx->last.holds = ctx->set.law->holds;
-}
-
-/* Those of many would have to be written to memory and read again: what each contact did is written down while its force is at
- * hand. */
-static void balance_many(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
-{
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        double room[TRIBO_CHUNK], *force = f ? f + i : room;
-        const struct contacts c = tribo_chunk_contacts(ctx, i);
-        balance_chunk(ctx, k, i, v, a, feq, force);
-        tribo_find_slips(&c, tribo_chunk_size(ctx, i), force, ctx->set.law->holds, ctx->last.did.of + i);
-    }
-    ctx->last.did.all_stored = 0;
-    ctx->last.modes = MODES_WRITTEN;
-}
-
-int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
-{
-    const int status = check_motion(ctx, v, a);
-    if (status) {
-        return status;
-    }
-    (ctx->n <= TRIBO_CHUNK ? balance_few : balance_many)(ctx, v, a, feq, f);
-    ctx->last.residual = 0.0;
-    ctx->last.rank = 0;
-    ctx->last.linearized = 0;
-    ctx->count.skipped += ctx->op->islands;
-    return TRIBO_OK;
-}
-
-/* The same of the n contacts of chunk k, from i on, which do not all store it. */
+/* f [n] of the n contacts of chunk k, from i on, which do not all store it. */
 static void forces_of_slips(const tribo_context *ctx, size_t k, size_t i, size_t n, double *f)
 {
     const signed char *did = ctx->last.did.of;

@@ -13,7 +13,9 @@
 #include "law/law.h"
 #include "planar.h"
 #include "../common/compiler.h"
+#include "../common/plural.h"
 #include "../common/real.h"
+#include "../common/simd.h"
 
 struct message;
 
@@ -26,9 +28,15 @@ struct chunk {
     double least, largest; /* limit */
     double widest;         /* width */
     double band;           /* no epsilon of a contact that is not open is larger; negative if all are open */
+    double quickest;       /* R_ii */
+    size_t like;           /* from this contact on 1/R_ii are the same: the first of all such chunks, which is near as a rule */
+    int plain;             /* 1/R_ii are TRIBO_PLAIN at most */
     int even;              /* all have the same width and rate */
     int alike;             /* and the same limit, above 0 */
 };
+
+/* Of so many contacts an output does not stay in any cache. */
+#define TRIBO_MANY ((size_t)1 << 22)
 
 static inline size_t tribo_chunks(size_t n)
 {
@@ -99,6 +107,7 @@ struct counters {
 struct tribo_context {
     size_t n;
     const char *owner; /* of the operator; NULL: the caller */
+    double *numbers;   /* the memory of the arrays of numbers below, but for tangents */
     struct settings set;
     struct following follow;
     struct delassus *op;   /* constant; clones have it in common */
@@ -136,9 +145,27 @@ static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, siz
     return c;
 }
 
+/* Bounds of contacts; lower NULL: -upper. */
+struct bounds {
+    const double *lower, *upper;
+};
+
+static inline double tribo_lower(const struct bounds *b, size_t i)
+{
+    return b->lower ? b->lower[i] : -b->upper[i];
+}
+
+static inline struct bounds tribo_bounds_from(const struct bounds *b, size_t i)
+{
+    return (struct bounds){b->lower ? b->lower + i : NULL, b->upper + i};
+}
+
 /* check.c: whether all numbers are finite, and none is larger than most, which is finite. Whatever they are, no floating-point
  * exception is raised. */
 int tribo_all_within(const double *x, size_t n, double most);
+
+/* The same of two arrays: 1 for x, and 2 for y. Memory gives more if it is asked for both at once. */
+int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n);
 
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
 int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
@@ -173,8 +200,23 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
 /* f_eq [n] of the contacts of the chunk that begins with i, as if all were alone; 0 for open ones. */
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq);
 
-/* The whole of tribo_balance, where no two contacts share a body and all limits are given; f_eq and f may be NULL. */
+/* No contact of chunk k that is faster is near stick; and whether any of n contacts is not. What they did if none is. */
+double tribo_widest_band(const tribo_context *ctx, size_t k);
+int tribo_any_in_band(size_t n, const double *v, double band);
+void tribo_find_directions(size_t n, const double *v, signed char *did);
+
+/* alone.c: the whole of tribo_balance and tribo_step_force, where tribo_all_alone. f_eq and f of the balance may be NULL. */
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);
+int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f);
+
+/* Forces over a step of dt of the n contacts of chunk k that share no body: what stops them, within the bounds of these n. */
+void tribo_stop_alone(const tribo_context *ctx, size_t k, double dt, const double *v, struct bounds b, double *f);
+
+/* 1/R_ii of the contacts of chunk k. */
+static inline const double *tribo_inverses(const tribo_context *ctx, size_t k)
+{
+    return ctx->op->inverse + ctx->follow.chunk[k].like;
+}
 
 /* How many contacts from *i on are near stick, where *i becomes the first before end that is: 0 if there is none. */
 size_t tribo_next_near(const signed char *did, size_t *i, size_t end);
@@ -237,10 +279,7 @@ size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
 /* The same for contacts in no group, from their forces with static limits; these become right. */
 void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
-/* queries.c: the slip [n] of contacts with forces f [n]. */
-void tribo_find_slips(const struct contacts *c, size_t n, const double *f, double holds, signed char *slip);
-
-/* Writes modes down, before limits change. */
+/* queries.c: writes modes down, before limits change. */
 void tribo_write_modes(tribo_context *ctx);
 
 /* The force of the contact at place k of a group as the solver takes it. */
@@ -249,11 +288,6 @@ static inline double tribo_carried(const tribo_context *ctx, const struct box_qp
     const double f = tribo_force_of(ctx, p->member[k]);
     return ctx->last.far ? tribo_cut(p, k, f) : f;
 }
-
-/* Bounds of all contacts; lower NULL: -upper. */
-struct bounds {
-    const double *lower, *upper;
-};
 
 /* step.c: solves v_end = v + dt R f for all contacts, f [n]; known [n], or NULL for none: not 0 for scalar contacts of
  * clusters that have a force already, there. */

@@ -75,24 +75,26 @@ static int check_used(const tribo_context *ctx, const double *v, const double *f
 /* plain: f_eq is such that laws take it as it is, wherever that matters or not. */
 static int check_force(const tribo_context *ctx, const double *v, const double *feq, int *plain)
 {
+    const int reads = ctx->set.law->uses_feq, within = v && feq && reads ? tribo_motion_within(v, feq, TRIBO_FAR, ctx->n) : 0;
     int status = tribo_need_epsilon(ctx);
-    status = status ? status : tribo_check_finite(ctx, "v", v, ctx->n);
-    *plain = !ctx->set.law->uses_feq;
-    if (status || *plain) {
+    status = status || (within & 1) ? status : tribo_check_finite(ctx, "v", v, ctx->n);
+    *plain = !reads || (within & 2);
+    if (status || !reads) {
         return status;
     }
     if (!feq && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
     }
-    *plain = tribo_all_within(feq, ctx->n, TRIBO_FAR);
     status = *plain ? TRIBO_OK : check_used(ctx, v, feq);
     return status || !ctx->planar ? status : tribo_planar_check_feq(ctx, v, feq);
 }
 
-/* Each output may be NULL. */
+/* Each output may be NULL. streams: they do not go to memory by way of the caches, which first would read what is written. This
+ * is worth it where more is written than read. */
 struct outputs {
     double *f;
     struct tangents d;
+    int streams;
 };
 
 /* Where output x of contact i goes, if anywhere; otherwise where it does not matter. */
@@ -101,11 +103,39 @@ static double *place_of(double *x, size_t i, double *elsewhere)
     return x ? x + i : elsewhere;
 }
 
-static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
+static void evaluate_chunk(const tribo_context *ctx, const struct contacts *c, size_t i, const double *v, const double *feq,
+                           const struct outputs *out)
 {
     const struct tangents *d = &out->d;
+    const size_t n = tribo_chunk_size(ctx, i);
+    double room[3][TRIBO_CHUNK];
+    if (out->f) {
+        ctx->set.law->force(c, n, v, feq, out->f + i);
+    }
+    if (d->dv || d->dfeq || d->dlimit) {
+        const struct tangents at = {place_of(d->dv, i, room[0]), place_of(d->dfeq, i, room[1]), place_of(d->dlimit, i, room[2])};
+        tribo_law_tangents(ctx, c, i, n, v, feq, &at);
+    }
+}
+
+static void stream_chunk(const tribo_context *ctx, const struct contacts *c, size_t i, const double *v, const double *feq,
+                         const struct outputs *out)
+{
+    double room[4][TRIBO_CHUNK], *const to[] = {out->f, out->d.dv, out->d.dfeq, out->d.dlimit};
+    const size_t n = tribo_chunk_size(ctx, i);
+    ctx->set.law->force(c, n, v, feq, room[0]);
+    tribo_law_tangents(ctx, c, i, n, v, feq, &(struct tangents){room[1], room[2], room[3]});
+    for (int k = 0; k < 4; k++) {
+        if (to[k]) {
+            tribo_stream(to[k] + i, room[k], n);
+        }
+    }
+}
+
+static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
+{
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double room[TRIBO_CHUNK], limit[TRIBO_CHUNK], ignored[3][TRIBO_CHUNK];
+        double room[TRIBO_CHUNK], limit[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
         const double *used = legible_feq(ctx, plain, i, n, v, feq, room);
         struct contacts c = tribo_chunk_contacts(ctx, i);
@@ -113,14 +143,10 @@ static void evaluate(const tribo_context *ctx, int plain, const double *v, const
             tribo_find_limits(ctx, i, n, v + i, used, limit);
             c.limit = c.bound = limit;
         }
-        if (out->f) {
-            ctx->set.law->force(&c, n, v + i, used, out->f + i);
-        }
-        if (d->dv || d->dfeq || d->dlimit) {
-            const struct tangents at = {place_of(d->dv, i, ignored[0]), place_of(d->dfeq, i, ignored[1]),
-                                        place_of(d->dlimit, i, ignored[2])};
-            tribo_law_tangents(ctx, &c, i, n, v + i, used, &at);
-        }
+        (out->streams ? stream_chunk : evaluate_chunk)(ctx, &c, i, v + i, used, out);
+    }
+    if (out->streams) {
+        tribo_stream_end();
     }
 }
 
@@ -137,7 +163,11 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
     if (!f && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
     }
-    evaluate(ctx, plain, v, feq, &(struct outputs){f, {NULL, NULL, NULL}});
+    if (ctx->n == 1 && plain && !ctx->set.breaking) {
+        *f = ctx->set.law->force_of_one(&ctx->follow.contacts, *v, ctx->set.law->uses_feq ? *feq : 0.0);
+        return TRIBO_OK;
+    }
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {NULL, NULL, NULL}, 0});
     return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -157,7 +187,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
                           "derivatives of planar contact %zu are no diagonals: see tribo_force_tangent_planar",
                           ctx->planar->first[0]);
     }
-    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}});
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}, ctx->n >= TRIBO_MANY});
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -182,7 +212,7 @@ int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const 
     if (status) {
         return status;
     }
-    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}});
+    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}, ctx->n >= TRIBO_MANY});
     spread(ctx->n, df_dv);
     spread(ctx->n, df_dfeq);
     spread(ctx->n, df_dlimit);

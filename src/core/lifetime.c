@@ -9,39 +9,40 @@
 
 #define DEFAULT_EPSILON 1e-6
 
+/* The arrays of n numbers, zero, in one piece of memory. Each begins a line of cache, and an odd number of lines behind the last:
+ * of arrays that are a power of two apart few would stay in cache. */
+static int allocate_numbers(tribo_context *ctx, size_t n)
+{
+    double **const array[] = {&ctx->set.limit,    &ctx->set.width,         &ctx->set.rate,   &ctx->set.ratio,
+                              &ctx->set.stribeck, &ctx->follow.cut_limit,  &ctx->follow.now, &ctx->follow.cut_factor,
+                              &ctx->follow.hold,  &ctx->follow.hold_width, &ctx->last.f,     &ctx->last.feq,
+                              &ctx->last.v};
+    enum { ARRAYS = sizeof array / sizeof *array };
+    const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);
+    ctx->numbers = calloc(ARRAYS * room + TRIBO_LINE, sizeof *ctx->numbers);
+    for (size_t k = 0; ctx->numbers && k < ARRAYS; k++) {
+        *array[k] = tribo_aligned(ctx->numbers) + k * room;
+    }
+    return ctx->numbers != NULL;
+}
+
 /* Everything but the operator. One contact more than asked for, so that no array is empty. */
 static int allocate(tribo_context *ctx, size_t n)
 {
     const size_t m = n + 1;
+    const int numbers = allocate_numbers(ctx, n);
     ctx->n = n;
     ctx->message = tribo_message_create();
-    ctx->set.limit = calloc(m, sizeof *ctx->set.limit);
-    ctx->set.width = malloc(m * sizeof *ctx->set.width);
-    ctx->set.rate = malloc(m * sizeof *ctx->set.rate);
-    ctx->follow.cut_limit = malloc(m * sizeof *ctx->follow.cut_limit);
-    ctx->follow.cut_factor = malloc(m * sizeof *ctx->follow.cut_factor);
-    ctx->set.ratio = malloc(5 * m * sizeof *ctx->set.ratio);
     ctx->moving = calloc(m, sizeof *ctx->moving);
-    ctx->last.feq = calloc(m, sizeof *ctx->last.feq);
-    ctx->last.f = calloc(m, sizeof *ctx->last.f);
-    ctx->last.v = malloc(m * sizeof *ctx->last.v);
     ctx->follow.chunk = malloc(tribo_chunks(m) * sizeof *ctx->follow.chunk);
     ctx->last.did.of = calloc(m + tribo_chunks(m), 1);
     ctx->spare.of = calloc(m + tribo_chunks(m), 1);
     ctx->last.tangent = malloc(m * sizeof *ctx->last.tangent);
-    if (ctx->set.ratio) {
-        ctx->set.stribeck = ctx->set.ratio + m;
-        ctx->follow.hold = ctx->set.ratio + 2 * m;
-        ctx->follow.hold_width = ctx->set.ratio + 3 * m;
-        ctx->follow.now = ctx->set.ratio + 4 * m;
-    }
     if (ctx->last.did.of && ctx->spare.of) {
         ctx->last.did.stored = (unsigned char *)(ctx->last.did.of + m);
         ctx->spare.stored = (unsigned char *)(ctx->spare.of + m);
     }
-    return ctx->message && ctx->follow.chunk && ctx->last.did.of && ctx->spare.of && ctx->set.limit && ctx->set.width &&
-           ctx->set.rate && ctx->set.ratio && ctx->follow.cut_limit && ctx->follow.cut_factor && ctx->moving && ctx->last.feq &&
-           ctx->last.f && ctx->last.v && ctx->last.tangent;
+    return numbers && ctx->message && ctx->moving && ctx->follow.chunk && ctx->last.did.of && ctx->spare.of && ctx->last.tangent;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -80,7 +81,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     const size_t n = ctx->n;
     tribo_context *c = malloc(sizeof *c);
     if (!c) {
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
     }
     *c = *ctx;
     c->owner = NULL;
@@ -91,7 +92,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) ||
         !tribo_plane_create(&c->plane, c->planar, n)) {
         tribo_destroy(c);
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contacts", n);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
     }
     c->last.linearized = 0;
     tribo_copy(c->set.limit, ctx->set.limit, n);
@@ -125,16 +126,8 @@ void tribo_destroy(tribo_context *ctx)
     tribo_planar_release(ctx->planar);
     tribo_plane_free(&ctx->plane);
     free(ctx->message);
-    free(ctx->set.limit);
-    free(ctx->set.width);
-    free(ctx->set.rate);
-    free(ctx->set.ratio);
-    free(ctx->follow.cut_limit);
-    free(ctx->follow.cut_factor);
+    free(ctx->numbers);
     free(ctx->moving);
-    free(ctx->last.feq);
-    free(ctx->last.f);
-    free(ctx->last.v);
     free(ctx->follow.chunk);
     free(ctx->last.did.of);
     free(ctx->spare.of);

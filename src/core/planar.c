@@ -239,8 +239,8 @@ static int check_first(const tribo_context *ctx, size_t count, const size_t *fir
     for (size_t k = 0; k < count; k++) {
         if (ctx->n < 2 || first[k] > ctx->n - 2) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE,
-                              "first[%zu] is contact %zu of %zu contacts, and a planar one takes the next one, too", k, first[k],
-                              ctx->n);
+                              "first[%zu] is contact %zu of %zu contact%s, and a planar one takes the next one, too", k, first[k],
+                              ctx->n, plural(ctx->n));
         }
         for (size_t i = first[k]; i < first[k] + 2; i++) {
             if (owner[i] != SIZE_MAX) {
@@ -279,13 +279,13 @@ int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *f
     *plane = (struct plane){0};
     int status = count ? tribo_planar_create(planar, ctx->n, count, first, op, m, &large) : TRIBO_OK;
     if (status == TRIBO_ERR_UNSUPPORTED) {
-        return tribo_fail(ctx, status, "planar contacts couple %zu directions with each other, and not more than %d can be",
-                          large, TRIBO_CLUSTER_MOST);
+        return tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be",
+                          large, plural(large), TRIBO_CLUSTER_MOST);
     }
     if (status || !tribo_plane_create(plane, *planar, ctx->n)) {
         tribo_plane_free(plane);
         tribo_planar_release(*planar);
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contacts in the plane", count);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
     }
     status = *planar ? check_spread(ctx, *planar, op) : TRIBO_OK;
     if (status) {
@@ -317,7 +317,7 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     }
     size_t *owner = malloc((ctx->n + 1) * sizeof *owner);
     if (!owner) {
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contacts in the plane", count);
+        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
     }
     struct planar *planar;
     struct plane plane;

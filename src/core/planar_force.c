@@ -141,8 +141,8 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
     if (!done) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
-                          "no forces found for the %zu directions near stick around contact %zu: %g of a limit is missing",
-                          p->size, member[near[0]], p->residual);
+                          "no forces found for the %zu direction%s near stick around contact %zu: %g of a limit is missing",
+                          p->size, plural(p->size), member[near[0]], p->residual);
     }
     ctx->last.residual = greater(ctx->last.residual, p->residual);
     for (size_t e = 0; e < p->size; e++) {

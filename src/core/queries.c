@@ -34,25 +34,6 @@ TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const doub
     }
 }
 
-/* Which way a contact slides by its force, of which an open one has none: that reaches its limit, or this part of it. */
-static inline signed char slip_of(double f, double limit, double holds)
-{
-    const double edge = holds * limit, forth = f <= -edge ? FORTH : 0.0, back = f >= edge ? BACK : 0.0;
-    return (signed char)(int)(forth + back + (limit > 0.0 ? 0.0 : OPEN)); /* numbers as wide as f: vectors of them stay whole */
-}
-
-TRIBO_SIMD void tribo_find_slips(const struct contacts *c, size_t n, const double *restrict f, double holds,
-                                 signed char *restrict slip)
-{
-    const double *limit = c->limit, one = *limit;
-    for (size_t i = 0; c->alike && i < n; i++) {
-        slip[i] = slip_of(f[i], one, holds);
-    }
-    for (size_t i = 0; !c->alike && i < n; i++) {
-        slip[i] = slip_of(f[i], limit[i], holds);
-    }
-}
-
 void tribo_write_modes(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
@@ -111,6 +92,46 @@ static size_t count_stuck(const tribo_context *ctx)
     return stuck;
 }
 
+/* 1, or 0 if there is no such count. */
+static int find_count(const tribo_context *ctx, int which, size_t *value)
+{
+    const struct work *work = &ctx->memory.problem.work;
+    switch (which) {
+    case TRIBO_COUNT_STUCK:
+        *value = count_stuck(ctx);
+        return 1;
+    case TRIBO_COUNT_RANK:
+        *value = ctx->last.rank;
+        return 1;
+    case TRIBO_COUNT_ISLANDS:
+        *value = tribo_islands(ctx);
+        return 1;
+    case TRIBO_COUNT_SOLVES:
+        *value = ctx->count.solves;
+        return 1;
+    case TRIBO_COUNT_SKIPPED:
+        *value = ctx->count.skipped;
+        return 1;
+    case TRIBO_COUNT_FACTORIZATIONS:
+        *value = work->factorizations;
+        return 1;
+    case TRIBO_COUNT_UPDATES:
+        *value = work->updates;
+        return 1;
+    case TRIBO_COUNT_REVERSALS:
+        *value = ctx->count.marks;
+        return 1;
+    case TRIBO_COUNT_REUSED:
+        *value = ctx->count.reused;
+        return 1;
+    case TRIBO_COUNT_PLANAR:
+        *value = ctx->planar ? ctx->planar->count : 0;
+        return 1;
+    default:
+        return 0;
+    }
+}
+
 int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
 {
     if (!ctx) {
@@ -119,23 +140,7 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
     if (!value) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
     }
-    const size_t counts[] = {
-        [TRIBO_COUNT_STUCK] = which == TRIBO_COUNT_STUCK ? count_stuck(ctx) : 0,
-        [TRIBO_COUNT_RANK] = ctx->last.rank,
-        [TRIBO_COUNT_ISLANDS] = tribo_islands(ctx),
-        [TRIBO_COUNT_SOLVES] = ctx->count.solves,
-        [TRIBO_COUNT_SKIPPED] = ctx->count.skipped,
-        [TRIBO_COUNT_FACTORIZATIONS] = ctx->memory.problem.work.factorizations,
-        [TRIBO_COUNT_UPDATES] = ctx->memory.problem.work.updates,
-        [TRIBO_COUNT_REVERSALS] = ctx->count.marks,
-        [TRIBO_COUNT_REUSED] = ctx->count.reused,
-        [TRIBO_COUNT_PLANAR] = ctx->planar ? ctx->planar->count : 0,
-    };
-    if (which < 0 || which >= (int)(sizeof counts / sizeof *counts)) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);
-    }
-    *value = counts[which];
-    return TRIBO_OK;
+    return find_count(ctx, which, value) ? TRIBO_OK : tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);
 }
 
 /* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =

@@ -68,6 +68,24 @@ static void find_widths(tribo_context *ctx)
     }
 }
 
+/* Whether n numbers are the same as those from like on. */
+static int repeats(const double *x, size_t like, size_t i, size_t n)
+{
+    return memcmp(x + like, x + i, n * sizeof *x) == 0;
+}
+
+static void find_inertia(tribo_context *ctx)
+{
+    const struct delassus *op = ctx->op;
+    for (size_t i = 0, k = 0; op->diagonal && i < ctx->n; i += TRIBO_CHUNK, k++) {
+        struct chunk *chunk = &ctx->follow.chunk[k];
+        const size_t n = tribo_chunk_size(ctx, i), before = k > 0 ? chunk[-1].like : 0;
+        chunk->quickest = largest_of(n, op->diagonal + i);
+        chunk->plain = largest_of(n, op->inverse + i) <= TRIBO_PLAIN;
+        chunk->like = repeats(op->inverse, before, i, n) ? before : i;
+    }
+}
+
 /* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
 static void cut_far(tribo_context *ctx)
 {
@@ -130,6 +148,7 @@ void tribo_refresh(tribo_context *ctx)
         follow_step(ctx);
     }
     find_widths(ctx);
+    find_inertia(ctx);
     tribo_refresh_limits(ctx);
 }
 

@@ -3,23 +3,6 @@
 
 #include "check.h"
 
-/* Forces of contacts that share no body. */
-TRIBO_SIMD static void box_alone(size_t n, double dt, const double *restrict v, const double *restrict r, const double *lower,
-                                 const double *upper, double *restrict f)
-{
-    for (size_t i = 0; lower && i < n; i++) {
-        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), lower[i], upper[i]);
-    }
-    for (size_t i = 0; !lower && i < n; i++) {
-        f[i] = clamp(quotient(-v[i], greater(r[i] * dt, DBL_MIN)), -upper[i], upper[i]);
-    }
-}
-
-static inline double lower_of(const struct bounds *b, size_t i)
-{
-    return b->lower ? b->lower[i] : -b->upper[i];
-}
-
 /* How hard a contact is pulled that would end a step with v, in numbers: times v, up to most. */
 struct pull {
     double times, most;
@@ -136,7 +119,7 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
     p->far = ctx->last.far;
     for (size_t k = 0; k < p->group->size; k++) {
         const size_t i = p->member[k];
-        const double lo = lower_of(&c->b, i), hi = c->b.upper[i];
+        const double lo = tribo_lower(&c->b, i), hi = c->b.upper[i];
         if (lo < hi && (c->all || within_reach(ctx, p, k, c, &l))) {
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
@@ -176,7 +159,7 @@ static int solve_for(tribo_context *ctx, struct box_qp *p, const struct call *c)
     } while (!status && c->breaks && let_go(ctx, p, c->dt));
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
-        ctx->last.f[i] = clamp(p->x[k], lower_of(b, i), b->upper[i]);
+        ctx->last.f[i] = clamp(p->x[k], tribo_lower(b, i), b->upper[i]);
     }
     return status;
 }
@@ -212,7 +195,9 @@ static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, st
     const double times = ctx->op->groups ? quotient(1.0, dt) : 0.0;
     const struct call c = {b, dt, {times, TRIBO_FAR / greater(times, 1.0)}, v, group_of, all, breaks, estimates};
     tribo_store_all(ctx);
-    box_alone(ctx->n, dt, v, ctx->op->diagonal, b.lower, b.upper, ctx->last.f);
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        tribo_stop_alone(ctx, k, dt, v + i, tribo_bounds_from(&b, i), ctx->last.f + i);
+    }
     if (breaks) {
         tribo_break_alone(ctx, dt, v);
     }
@@ -293,6 +278,9 @@ int tribo_step_force(tribo_context *ctx, double dt, const double *vfree, double 
         return TRIBO_ERR_NULL;
     }
     const int status = tribo_check_step(ctx, dt, vfree, f);
+    if (!status && tribo_all_alone(ctx)) {
+        return tribo_step_alone(ctx, dt, vfree, f);
+    }
     return status ? status : tribo_step_at_end(ctx, dt, NULL, vfree, f);
 }
 

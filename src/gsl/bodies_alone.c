@@ -9,6 +9,9 @@
 #include "../common/real.h"
 #include "../common/simd.h"
 
+/* So many degrees of freedom are few. */
+enum { FEW = 4 };
+
 /* ----------------------------------------------------------------------------------------------------------------- life */
 
 /* The only entry of contact i in J that is not 0; 0 if there are none, or more. */
@@ -91,10 +94,11 @@ static int allocate(struct bodies_alone *b, size_t n, size_t c)
 {
     b->blocks = blocks_of(n);
     b->body = malloc((c + 1) * sizeof *b->body);
+    b->rows = calloc(b->blocks + 1, sizeof *b->rows);
     b->mass = calloc(5 * n + 2 * c + 1, sizeof *b->mass);
     b->first = calloc(b->blocks + 1, sizeof *b->first);
     b->driven = calloc(4 * b->blocks + 1, 1);
-    if (!b->body || !b->mass || !b->first || !b->driven) {
+    if (!b->body || !b->rows || !b->mass || !b->first || !b->driven) {
         return 0;
     }
     b->brake = b->mass + n;
@@ -112,6 +116,7 @@ static int allocate(struct bodies_alone *b, size_t n, size_t c)
 void tribo_bodies_free(struct bodies_alone *b)
 {
     free(b->body);
+    free(b->rows);
     free(b->mass);
     free(b->first);
     free(b->around);
@@ -153,6 +158,19 @@ static int plain_contacts(struct bodies_alone *b, const tribo_system *sys)
     return !planar;
 }
 
+/* Where the masses and brakes of block k are read: where those of the block before are, if they are the same. What is not read
+ * need not come from memory. */
+static void share_rows(struct bodies_alone *b, const tribo_system *sys)
+{
+    for (size_t k = 0, i = 0; k < b->blocks; k++, i += MATRIX_BLOCK) {
+        const struct body_rows own = {b->mass + i, b->brake + i};
+        const struct body_rows *last = k ? &b->rows[k - 1] : &own;
+        const size_t bytes = tribo_bodies_of_block(sys, k) * sizeof *own.mass;
+        const int same = memcmp(last->mass, own.mass, bytes) == 0 && memcmp(last->brake, own.brake, bytes) == 0;
+        b->rows[k] = same ? *last : own;
+    }
+}
+
 static void take_limits(struct bodies_alone *b, const tribo_system *sys)
 {
     tribo_get_limit(sys->contacts, b->room);
@@ -160,6 +178,7 @@ static void take_limits(struct bodies_alone *b, const tribo_system *sys)
         const size_t d = b->body[i];
         b->brake[d] = product(fabs(tribo_matrix_get(&sys->response, d, i)), lesser(b->room[i], TRIBO_FAR));
     }
+    share_rows(b, sys);
 }
 
 /* Blocks on which something acts that changes with time, or moves; and those with a load. */
@@ -197,6 +216,12 @@ int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
     return b->fits;
 }
 
+int tribo_bodies_can_run(const struct bodies_alone *b, const tribo_system *sys)
+{
+    return b->fits && sys->ndof <= FEW && b->driven[0] && sys->foreseen && !sys->tables && !sys->base_harmonics &&
+           !tribo_system_limits_vary(sys);
+}
+
 /* ---------------------------------------------------------------------------------------------------------------- steps */
 
 static void find_bases(struct bodies_alone *b, tribo_system *sys, double t, double *velocity)
@@ -209,23 +234,42 @@ static void find_bases(struct bodies_alone *b, tribo_system *sys, double t, doub
     }
 }
 
-static void find_loads(struct bodies_alone *b, tribo_system *sys)
+static inline void find_loads(struct bodies_alone *b, const tribo_system *sys)
 {
-    for (size_t s = 0; s < sys->harmonics; s++) {
+    if (sys->tables) {
+        memset(b->load, 0, sys->ndof * sizeof *b->load);
+        tribo_system_tables(sys, 0, 1.0, b->load);
+    }
+    for (size_t s = 0; s < sys->harmonics && !sys->tables; s++) {
         const struct harmonic *h = &sys->harmonic[s];
         for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
             b->load[h->index[k]] = 0.0;
         }
     }
-    if (sys->tables) {
-        memset(b->load, 0, sys->ndof * sizeof *b->load);
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *h = &sys->harmonic[s];
+        if (h->drives == DRIVES_LOAD) {
+            tribo_system_turn(sys, s);
+        }
+        for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
+            b->load[h->index[k]] += h->cosine[k] * h->cos_t + h->sine[k] * h->sin_t;
+        }
     }
-    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, b->load);
+}
+
+void tribo_bodies_set_time(struct bodies_alone *b, tribo_system *sys, double t)
+{
+    tribo_system_set_time(sys, t);
+    find_loads(b, sys);
 }
 
 /* All that acts from outside, at the times of the step. */
 static void prepare(struct bodies_alone *b, tribo_system *sys, const struct body_step *s)
 {
+    tribo_bodies_set_time(b, sys, s->t);
+    if (tribo_system_limits_vary(sys)) {
+        take_limits(b, sys);
+    }
     if (sys->base_harmonics) {
         double *first = b->before;
         b->before = b->after;
@@ -236,48 +280,81 @@ static void prepare(struct bodies_alone *b, tribo_system *sys, const struct body
         find_bases(b, sys, s->to, b->after);
     }
     b->goes_on = 1;
-    tribo_system_set_time(sys, s->t);
-    find_loads(b, sys);
-    if (tribo_system_limits_vary(sys)) {
-        take_limits(b, sys);
-    }
 }
 
+/* What came of a step. */
 enum { STIRS = 1, GROWS = 2 };
 
-/* n degrees of freedom, from the first of those that all arrays begin with. A contact whose body would come no farther than its
- * force can bring it back rests at the end. work: the accelerations without friction, which become what friction does. */
-TRIBO_SIMD static int move(size_t n, double time, double h, const double *restrict mass, const double *restrict brake,
-                           const double *restrict before, const double *restrict after, const double *restrict q,
-                           const double *restrict u, double *restrict q_to, double *restrict u_to, double *restrict work)
+/* Its bits, of which only the sign may be set where x is 0. */
+static inline int64_t bits_of(double x)
 {
-    int64_t stirs = 0, grows = 0; /* as wide as what is compared */
-    for (size_t i = 0; i < n; i++) {
-        const double most = time * brake[i], free = u[i] + time * work[i], v = free - after[i];
-        const double change = clamp(-v, -most, most);
-        const int rests = fabs(v) < most;
-        const double end = (rests ? after[i] : free) + (rests ? 0.0 : change); /* no choice of sums: that makes loops fast */
-        const double place = q[i] + h * end;
-        work[i] = mass[i] * change * ((u[i] - before[i]) + (end - after[i]));
-        u_to[i] = end;
-        q_to[i] = place;
-        stirs |= fabs(u[i]) + fabs(end) > 0.0 ? -1 : 0;
-        grows |= fabs(end) + fabs(place) <= DBL_MAX ? 0 : -1;
-    }
-    return (stirs ? STIRS : 0) | (grows ? GROWS : 0);
+    int64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
 }
 
-TRIBO_SIMD static double sum_of(size_t n, double *x)
+/* A step of one degree of freedom: its velocity and place at the end, and what friction does, twice. */
+struct moved {
+    double u, q, work;
+};
+
+/* a: the acceleration without friction. A contact whose body would come no farther than its force can bring it back rests at the
+ * end. */
+static inline struct moved move_one(double time, double h, double mass, double brake, double before, double after, double q,
+                                    double u, double a)
 {
-    for (; n > 1; n -= n / 2) {
-        const size_t half = n - n / 2;
-        double *restrict to = x;
-        const double *restrict from = x + half;
-        for (size_t i = 0; i < n / 2; i++) {
-            to[i] += from[i];
+    const double most = time * brake, free = u + time * a, v = free - after, change = clamp(-v, -most, most);
+    const int rests = fabs(v) < most;
+    const double end = (rests ? after : free) + (rests ? 0.0 : change); /* no choice of sums: that makes loops fast */
+    return (struct moved){end, q + h * end, mass * change * ((u - before) + (end - after))};
+}
+
+/* What came of it, as wide as what is looked at: other bits than the sign if the body moves; any if it is no longer finite. */
+struct fate {
+    int64_t speeds, grows;
+};
+
+static inline void note(struct fate *f, double u, const struct moved *m)
+{
+    f->speeds |= bits_of(u) | bits_of(m->u);
+    f->grows |= fabs(m->u) + fabs(m->q) <= DBL_MAX ? 0 : -1;
+}
+
+static inline int told(const struct fate *f)
+{
+    return (f->speeds & INT64_MAX ? STIRS : 0) | (f->grows ? GROWS : 0);
+}
+
+/* n degrees of freedom, from the first of those that all arrays begin with. a: accelerations, which become what friction does. */
+TRIBO_SIMD static int move(size_t n, double time, double h, const double *restrict mass, const double *restrict brake,
+                           const double *restrict before, const double *restrict after, const double *restrict q,
+                           const double *restrict u, double *restrict q_to, double *restrict u_to, double *restrict a)
+{
+    struct fate fate = {0, 0};
+    for (size_t i = 0; i < n; i++) {
+        const struct moved to = move_one(time, h, mass[i], brake[i], before[i], after[i], q[i], u[i], a[i]);
+        note(&fate, u[i], &to);
+        a[i] = to.work;
+        u_to[i] = to.u;
+        q_to[i] = to.q;
+    }
+    return told(&fate);
+}
+
+TRIBO_SIMD static double sum_of(size_t n, const double *x)
+{
+    enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
+    double part[LANES] = {0.0}, sum = 0.0;
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[k] += x[i + k];
         }
     }
-    return x[0];
+    for (; i < n; i++) {
+        sum += x[i];
+    }
+    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
 }
 
 /* Whether anything around block k has moved, or something changes with time. */
@@ -290,20 +367,108 @@ static int awake(const struct bodies_alone *b, size_t k)
     return any;
 }
 
-/* The step of the degrees of freedom from i on; returns STIRS, GROWS. */
-static int step_block(const struct bodies_alone *b, const tribo_system *sys, const struct body_step *s, size_t i, double *energy)
+/* The acceleration of degree of freedom i without friction, by its rows. */
+static inline double free_one(const struct bodies_alone *b, const tribo_system *sys, size_t i, const double *q, const double *u)
+{
+    const double a = b->load[i] - tribo_matrix_row_dot(&sys->stiffness, i, q);
+    return sys->damping.rows ? a - tribo_matrix_row_dot(&sys->damping, i, u) : a;
+}
+
+static inline struct moved step_one(const struct bodies_alone *b, const tribo_system *sys, size_t i, double time, double h,
+                                    const double *q, const double *u)
+{
+    const int bases = sys->base_harmonics > 0;
+    return move_one(time, h, b->mass[i], b->brake[i], bases ? b->before[i] : 0.0, bases ? b->after[i] : 0.0, q[i], u[i],
+                    free_one(b, sys, i, q, u));
+}
+
+/* A few degrees of freedom are not worth vectors. to [ndof]; returns what friction does to all of them, twice. */
+static inline double step_rows(const struct bodies_alone *b, const tribo_system *sys, double time, double h, const double *q,
+                               const double *u, struct moved *to, struct fate *fate)
+{
+    double work = 0.0;
+    for (size_t i = 0; i < sys->ndof; i++) {
+        to[i] = step_one(b, sys, i, time, h, q, u);
+        note(fate, u[i], &to[i]);
+        work += to[i].work;
+    }
+    return work;
+}
+
+static inline void put(size_t n, const struct moved *to, double *q, double *u)
+{
+    for (size_t i = 0; i < n; i++) {
+        q[i] = to[i].q;
+        u[i] = to[i].u;
+    }
+}
+
+static int step_few(const struct bodies_alone *b, const tribo_system *sys, const struct body_step *s, double *energy)
+{
+    struct moved to[FEW];
+    struct fate fate = {0, 0};
+    *energy -= 0.5 * step_rows(b, sys, s->to - s->from, s->h, s->q, s->u, to, &fate);
+    put(sys->ndof, to, s->q_to, s->u_to);
+    return told(&fate);
+}
+
+size_t tribo_bodies_run(struct bodies_alone *b, tribo_system *sys, size_t count, const double *t, struct body_run *r)
+{
+    for (size_t s = 0; s < count; s++) {
+        const double h = t[s + 1] - t[s], time = (t[s] + 0.5 * h) - (t[s] - 0.5 * r->last);
+        struct moved to[FEW];
+        struct fate fate = {0, 0};
+        tribo_system_set_foreseen(sys, s);
+        find_loads(b, sys);
+        const double energy = r->energy - 0.5 * step_rows(b, sys, time, h, r->q, r->u, to, &fate);
+        if (fate.grows || !isfinite(energy)) {
+            return s;
+        }
+        put(sys->ndof, to, r->q, r->u);
+        r->energy = energy;
+        r->last = h;
+    }
+    return count;
+}
+
+static void accelerate_few(const struct bodies_alone *b, const tribo_system *sys, const double *q, const double *u, double *a)
+{
+    for (size_t i = 0; i < sys->ndof; i++) {
+        a[i] = free_one(b, sys, i, q, u);
+    }
+}
+
+static void accelerate_block(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
+                             double *a)
+{
+    static const double nothing[MATRIX_BLOCK];
+    const size_t i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
+    tribo_matrix_subtract_rows(&sys->stiffness, i, i + n, q, b->loaded[k] ? b->load + i : nothing, a);
+    if (sys->damping.rows) {
+        tribo_matrix_add_rows(&sys->damping, i, i + n, -1.0, u, a);
+    }
+}
+
+void tribo_bodies_accelerate(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
+                             double *a)
+{
+    if (sys->ndof <= FEW) {
+        accelerate_few(b, sys, q, u, a);
+    } else {
+        accelerate_block(b, sys, k, q, u, a);
+    }
+}
+
+/* Block k. */
+static int step_block(const struct bodies_alone *b, const tribo_system *sys, const struct body_step *s, size_t k, double *energy)
 {
     static const double nothing[MATRIX_BLOCK];
     double work[MATRIX_BLOCK];
-    const size_t n = sys->ndof - i < MATRIX_BLOCK ? sys->ndof - i : MATRIX_BLOCK;
+    const size_t i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
     const double *before = sys->base_harmonics ? b->before + i : nothing, *after = sys->base_harmonics ? b->after + i : nothing;
-    memcpy(work, b->loaded[i / MATRIX_BLOCK] ? b->load + i : nothing, n * sizeof *work);
-    tribo_matrix_add_rows(&sys->stiffness, i, i + n, -1.0, s->q, work);
-    if (sys->damping.rows) {
-        tribo_matrix_add_rows(&sys->damping, i, i + n, -1.0, s->u, work);
-    }
-    const int did = move(n, s->to - s->from, s->h, b->mass + i, b->brake + i, before, after, s->q + i, s->u + i, s->q_to + i,
-                         s->u_to + i, work);
+    accelerate_block(b, sys, k, s->q, s->u, work);
+    const int did = move(n, s->to - s->from, s->h, b->rows[k].mass, b->rows[k].brake, before, after, s->q + i, s->u + i,
+                         s->q_to + i, s->u_to + i, work);
     *energy -= 0.5 * sum_of(n, work);
     return did;
 }
@@ -312,14 +477,14 @@ int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct bo
 {
     int all = 0;
     prepare(b, sys, s);
-    for (size_t k = 0, i = 0; k < b->blocks; k++, i += MATRIX_BLOCK) {
+    for (size_t k = 0; k < b->blocks; k++) {
         b->stirs[k] = 0;
         if (awake(b, k)) {
-            const int did = step_block(b, sys, s, i, energy);
+            const int did = sys->ndof <= FEW ? step_few(b, sys, s, energy) : step_block(b, sys, s, k, energy);
             b->stirs[k] = did & STIRS;
             all |= did;
         } else {
-            b->skipped += sys->ndof - i < MATRIX_BLOCK ? sys->ndof - i : MATRIX_BLOCK;
+            b->skipped += tribo_bodies_of_block(sys, k);
         }
     }
     unsigned char *last = b->stirred;

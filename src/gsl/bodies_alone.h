@@ -9,11 +9,16 @@
 
 #include "system.h"
 
+struct body_rows {
+    const double *mass, *brake; /* of the degrees of freedom of a block */
+};
+
 struct bodies_alone {
     size_t *body;                   /* [ncontact] degree of freedom; NULL: contacts share bodies */
     double *turn;                   /* [ncontact] J_i there */
     double *mass;                   /* [ndof] times how often the energy counts the contact; 0 without contact */
     double *brake;                  /* [ndof] by what the contact can slow it down in a unit of time: |B| limit */
+    struct body_rows *rows;         /* [blocks] where these two are read */
     double *before, *after;         /* [ndof] velocities of the bases at both ends of a step, 0 where there are none */
     double *load;                   /* [ndof] accelerations */
     double *room;                   /* [ncontact] */
@@ -41,6 +46,33 @@ void tribo_bodies_free(struct bodies_alone *b);
 
 /* Whether steps can be taken with the settings as they are; all blocks are awake then, and what steps go on from is forgotten. */
 int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys);
+
+/* How many degrees of freedom block k has. */
+static inline size_t tribo_bodies_of_block(const tribo_system *sys, size_t k)
+{
+    const size_t left = sys->ndof - k * MATRIX_BLOCK;
+    return left < MATRIX_BLOCK ? left : MATRIX_BLOCK;
+}
+
+/* Sets the system's time, and finds the loads. */
+void tribo_bodies_set_time(struct bodies_alone *b, tribo_system *sys, double t);
+
+/* a = the accelerations of block k without friction at the time set, a from its first degree of freedom on, q and u from that of
+ * the system. */
+void tribo_bodies_accelerate(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
+                             double *a);
+
+/* A motion as steps leave it: places and velocities [ndof], what friction has dissipated, and the length of the last step. */
+struct body_run {
+    double *q, *u, energy, last;
+};
+
+/* Whether many steps can be taken at once: of a few degrees of freedom that nothing but harmonic loads drives. */
+int tribo_bodies_can_run(const struct bodies_alone *b, const tribo_system *sys);
+
+/* Steps between the times t [count + 1], of which all but the last are those that the system foresees. Returns how many were
+ * taken: after the next one the motion would no longer be finite, if that is not all. */
+size_t tribo_bodies_run(struct bodies_alone *b, tribo_system *sys, size_t count, const double *t, struct body_run *r);
 
 /* Adds what friction dissipates to the energy. 0 if the motion is no longer finite, else 1. */
 int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct body_step *s, double *energy);

@@ -9,7 +9,8 @@
 #include "system.h"
 #include "../common/real.h"
 
-/* Whether limits fall with the speed. */
+/* The first contact whose limit falls with the speed, or their number if none does; and whether there is one. */
+size_t tribo_system_first_falling(const tribo_system *sys);
 int tribo_system_falls(const tribo_system *sys);
 
 struct breakaway {

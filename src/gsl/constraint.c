@@ -399,6 +399,23 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
     return done;
 }
 
+size_t tribo_constraints_rank(const struct matrix *direction, const struct matrix *mass)
+{
+    const size_t n = direction->rows;
+    struct constraints c = {0};
+    size_t *all = malloc((n + 1) * sizeof *all);
+    unsigned char *last = calloc(n + 1, 1);
+    for (size_t i = 0; all && i < n; i++) {
+        all[i] = i;
+    }
+    const int done = all && last && tribo_constraints_create(&c, direction, mass, all, n, last);
+    const size_t rank = done ? c.rank : n + 1;
+    tribo_constraints_free(&c);
+    free(all);
+    free(last);
+    return rank;
+}
+
 /* ----------------------------------------------------------------------------------------------- displacements, forces */
 
 /* Numbers the degrees of freedom that are no slaves; those get ndof. Returns how many they are. */

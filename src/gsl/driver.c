@@ -92,7 +92,7 @@ static int check_planar(const tribo_system *sys, const struct method *m)
     const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
     return !planar ? TRIBO_OK
                    : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                       "method %s knows no planar contacts%s, and there are %zu contacts of that kind%s", m->name,
+                                       "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
                                        sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
                                        sys->massless.count ? "" : ": take event");
 }
@@ -143,9 +143,11 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     if (!d || !work) {
         free(d);
         free(work);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equations", dimension);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", dimension,
+                                 plural(dimension));
     }
     d->sys = sys;
+    d->message = d->text;
     d->method = d->at_work = m;
     d->dt = dt;
     d->abstol = abstol;
@@ -197,11 +199,11 @@ const char *tribo_driver_message(const tribo_driver *drv)
     return drv ? drv->message : "drv is NULL";
 }
 
-int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
+int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    vsnprintf(drv->message, sizeof drv->message, format, args);
+    vsnprintf(drv->message, sizeof drv->text, format, args);
     va_end(args);
     return status;
 }
@@ -239,10 +241,17 @@ int tribo_driver_set_max_step(tribo_driver *drv, double h)
     return TRIBO_OK;
 }
 
+/* Of a query. */
+static int check_query(const tribo_driver *drv, const void *value)
+{
+    return drv && value ? TRIBO_OK : drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "value is NULL") : TRIBO_ERR_NULL;
+}
+
 int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
 {
-    if (!drv || !value) {
-        return TRIBO_ERR_NULL;
+    const int status = check_query(drv, value);
+    if (status) {
+        return status;
     }
     switch (which) {
     case TRIBO_COUNT_STEPS:
@@ -273,21 +282,23 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
         *value = drv->rested;
         return TRIBO_OK;
     default:
-        return TRIBO_ERR_RANGE;
+        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
     }
 }
 
 int tribo_driver_real(const tribo_driver *drv, int which, double *value)
 {
-    if (!drv || !value) {
-        return TRIBO_ERR_NULL;
+    const int status = check_query(drv, value);
+    if (status) {
+        return status;
     }
     if (which != TRIBO_REAL_EXCESS && which != TRIBO_REAL_BACKSLIP) {
-        return TRIBO_ERR_RANGE;
+        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no real quantity of a driver", which);
     }
     const double found = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
     if (isnan(found)) {
-        return TRIBO_ERR_UNSUPPORTED;
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s does not bound how far the motion strays",
+                                 drv->method->name);
     }
     *value = found;
     return TRIBO_OK;
@@ -297,7 +308,7 @@ int tribo_driver_real(const tribo_driver *drv, int which, double *value)
 
 int tribo_driver_check(tribo_driver *drv, const double *y)
 {
-    if (tribo_dense_finite(y, tribo_system_dimension(drv->sys))) {
+    if (tribo_few_finite(y, 2 * drv->sys->ndof + 1)) {
         return TRIBO_OK;
     }
     size_t i = 0;
@@ -314,7 +325,7 @@ int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
     const int status = tribo_driver_check(drv, y);
     if (!status) {
         drv->time = t;
-        memcpy(drv->state, y, tribo_system_dimension(drv->sys) * sizeof *y);
+        memcpy(drv->state, y, (2 * drv->sys->ndof + 1) * sizeof *y);
     }
     return status;
 }
@@ -331,29 +342,74 @@ int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
     return status ? status : show(drv, t, y, event);
 }
 
-/* So many steps of length h, the last one to t1: from and to are the last good state and room for the next in turn. Returns the
- * former. */
-static double *march(tribo_driver *drv, double h, double steps, double t1, double *from, double *to, tribo_fixed_step *step,
+/* Steps of one length from begin to t1. */
+struct march {
+    double begin, h, steps, t1;
+};
+
+/* Where the k-th step ends. */
+static double end_of(const struct march *m, double k)
+{
+    return k < m->steps ? m->begin + k * m->h : m->t1;
+}
+
+/* So many steps are looked ahead. */
+enum { AHEAD = FORESIGHT / 2 };
+
+/* t [AHEAD + 1] = when the k-th step begins, it ends, and the next ones end; the system foresees them. */
+static void look_ahead(tribo_driver *drv, const struct march *m, double k, const struct fixed_method *method, double *t)
+{
+    double times[FORESIGHT];
+    size_t count = 0;
+    t[0] = drv->time;
+    for (size_t s = 0; s < AHEAD; s++) {
+        t[s + 1] = end_of(m, k + (double)s);
+        for (size_t i = 0; i < method->times; i++) {
+            times[count++] = t[s] + method->part[i] * (t[s + 1] - t[s]);
+        }
+    }
+    if (drv->sys->harmonics > drv->sys->base_harmonics + drv->sys->limit_harmonics) {
+        tribo_system_foresee(drv->sys, count, times);
+    }
+}
+
+/* Steps from the k-th on until loads have to be looked up again: from and to take each other's place after each. Returns how
+ * many. */
+static double take_steps(tribo_driver *drv, double left, const double *t, double **from, double **to,
+                         const struct fixed_method *method, int *status)
+{
+    const size_t count = left < AHEAD ? (size_t)left : AHEAD;
+    size_t s = method->run && !drv->seen ? method->run(drv, count, t, *from, status) : 0;
+    drv->time = t[s];
+    drv->steps += s;
+    for (; s < count && !*status; s++) {
+        *status = method->step(drv, t[s], t[s + 1], *from, *to);
+        if (!*status) {
+            double *last = *from;
+            *from = *to;
+            *to = last;
+            drv->time = t[s + 1];
+            drv->steps++;
+            *status = drv->seen ? show(drv, drv->time, *from, 0) : TRIBO_OK;
+        }
+    }
+    return (double)count;
+}
+
+/* All steps: from and to are the last good state and room for the next in turn. Returns the former. */
+static double *march(tribo_driver *drv, const struct march *m, double *from, double *to, const struct fixed_method *method,
                      int *status)
 {
-    const double begin = drv->time;
     *status = TRIBO_OK;
-    for (double k = 1.0; k <= steps && !*status; k++) {
-        const double next = k < steps ? begin + k * h : t1;
-        *status = step(drv, drv->time, next, from, to);
-        if (!*status) {
-            double *last = from;
-            from = to;
-            to = last;
-            drv->time = next;
-            drv->steps++;
-            *status = show(drv, next, from, 0);
-        }
+    for (double k = 1.0; k <= m->steps && !*status;) {
+        double t[AHEAD + 1];
+        look_ahead(drv, m, k, method, t);
+        k += take_steps(drv, m->steps - k + 1.0, t, &from, &to, method, status);
     }
     return from;
 }
 
-int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step)
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method)
 {
     const double begin = *t, whole = (t1 - begin) / drv->dt, resolution = DBL_EPSILON * greater(fabs(begin), fabs(t1));
     if (drv->dt < 16.0 * resolution) {
@@ -364,8 +420,9 @@ int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y,
     const double rest = greater(1e-6, 4.0 * resolution / drv->dt);
     const double steps = fabs(whole - round(whole)) < rest && whole > 0.5 ? round(whole) : greater(ceil(whole), 1.0);
     const double h = whole > steps ? (t1 - begin) / steps : drv->dt;
+    const struct march all = {begin, h, steps, t1};
     int status;
-    double *good = march(drv, h, steps, t1, drv->state, y, step, &status);
+    double *good = march(drv, &all, drv->state, y, method, &status);
     memcpy(good == y ? drv->state : y, good, tribo_system_dimension(drv->sys) * sizeof *y);
     *t = drv->time;
     return status;
@@ -406,6 +463,9 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
     drv->time = *t;
     memcpy(drv->state, y, bytes);
     status = drv->method->advance(drv, t, t1, y, continues);
+    if (sys->foreseen) {
+        tribo_system_foresee(sys, 0, t);
+    }
     status = status ? status : tribo_driver_keep(drv, *t, y);
     *t = drv->time;
     memcpy(y, drv->state, bytes);

@@ -42,11 +42,12 @@ struct tribo_driver {
     void (*free_shooting)(struct shooting *s);
     size_t freedom; /* dimension of the family of the last one */
     size_t rested;  /* degrees of freedom left out, step by step */
-    char message[240];
+    char *message;  /* is text, which a const driver keeps, too */
+    char text[240];
 };
 
 /* Keeps the message and returns status. */
-int tribo_driver_fail(tribo_driver *drv, int status, const char *format, ...)
+int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))
 #endif
@@ -70,9 +71,22 @@ int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
 /* A step from the state at t to that at next, y, all of which it writes and finds finite. */
 typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
 
+/* Steps between the times t [count + 1] at once, from the state y at t[0] to that which follows, in its place. Returns how many
+ * were taken, 0 if that is not the way; and a status if the next one fails. */
+typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y, int *status);
+
+/* A method's step; a run of steps where nobody watches, or NULL; and the times that a step asks the system for: at so many
+ * parts of it. */
+struct fixed_method {
+    tribo_fixed_step *step;
+    tribo_fixed_run *run;
+    size_t times;
+    double part[2];
+};
+
 /* Steps of drv->dt from y, which is the last good state, to t1, the last one shorter where it must be. States are kept as by
  * tribo_driver_accept, but not copied. */
-int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, tribo_fixed_step *step);
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
 
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
     tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck, tribo_method_rk8pd,

@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static void free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
+void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
 {
     const size_t n = sys->ndof;
     tribo_system_set_time(sys, t);
@@ -21,7 +21,7 @@ static void free_acceleration(tribo_system *sys, double t, const double *y, doub
 
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
 {
-    free_acceleration(sys, t, y, acceleration);
+    tribo_system_free_acceleration(sys, t, y, acceleration);
     memset(v, 0, sys->ncontact * sizeof *v);
     memset(a, 0, sys->ncontact * sizeof *a);
     if (sys->base_harmonics) {
@@ -43,7 +43,7 @@ static struct seen see(tribo_system *sys, double t, const double *y, double *acc
         tribo_system_free_motion(sys, t, y, acceleration, sys->v, sys->a);
         return (struct seen){sys->v, sys->a};
     }
-    free_acceleration(sys, t, y, acceleration);
+    tribo_system_free_acceleration(sys, t, y, acceleration);
     return (struct seen){tribo_matrix_image(&sys->direction, y + sys->ndof, sys->v),
                          tribo_matrix_image(&sys->direction, acceleration, sys->a)};
 }
@@ -281,7 +281,8 @@ int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
     done = done && tribo_system_build(&to, sys->ndof, sys->ncontact, &a[0], &a[1], &a[2], &a[3]) == TRIBO_OK;
     if (!done || !copy_rest(to, sys)) {
         tribo_system_destroy(to);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degrees of freedom", sys->ndof);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
+                                 plural(sys->ndof));
     }
     *copy = to;
     return TRIBO_OK;

@@ -12,6 +12,7 @@ static void expand_harmonics(struct event *e, double t)
     const size_t h = sys->harmonics;
     tribo_system_set_time(sys, t);
     for (size_t s = 0; s < h; s++) {
+        tribo_system_turn(sys, s);
         double c = sys->harmonic[s].cos_t, d = sys->harmonic[s].sin_t;
         for (size_t k = 0; k < e->order + 2; k++) {
             const double rate = sys->harmonic[s].omega / (double)(k + 1), next = -rate * d;
@@ -173,19 +174,25 @@ static int expand_forces(struct event *e, size_t k)
     return status;
 }
 
-/* The power of the sliding contacts: limits times velocities. */
+/* The k-th coefficient of the power of contact i, which slides: its limit times its velocity. */
+static double power_of(const struct event *e, size_t i, size_t k)
+{
+    const size_t c = e->sys->ncontact;
+    double power = 0.0;
+    for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+        power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
+    }
+    return e->events.stick_slip.slip[i] * power;
+}
+
 static void expand_energy(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const tribo_system *sys = e->sys;
-    const size_t c = sys->ncontact;
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
-        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
-            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
-            for (size_t i = 0; i < c; i++) {
-                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
-            }
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * power_of(e, i, k) : 0.0;
         }
         power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
         e->d[k + 1] = power / (double)(k + 1);
@@ -221,4 +228,26 @@ int tribo_event_expand(struct event *e, double t, const double *y)
     sys->evaluations += e->order + 1;
     expand_energy(e);
     return TRIBO_OK;
+}
+
+/* N falls from the limit at high speed by (ratio - 1) limit exp(-|v|/velocity), and so does the slope, over velocity. */
+void tribo_event_slopes(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    for (size_t k = 0; k <= e->order; k++) {
+        for (size_t i = 0; i < c; i++) {
+            const double more = e->fall[k * c + i] - e->limit[k * c + i];
+            e->slope[k * c + i] = m->slip[i] == 1 || m->slip[i] == -1 ? more / m->breakaway.velocity[i] : 0.0;
+        }
+    }
+}
+
+double tribo_event_work(const struct event *e, size_t i, double tau)
+{
+    double work = 0.0;
+    for (size_t k = e->order; k-- > 0;) {
+        work = work * tau + power_of(e, i, k) / (double)(k + 1);
+    }
+    return work * tau;
 }

@@ -15,9 +15,7 @@ struct event {
     double tolerance;         /* relative */
     double fastest;           /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
-    double tau, length;              /* where go() was; that of the step, and what bounds hold for */
-    const double *seen;              /* what was read last there; NULL: nothing yet */
-    struct sample sight;             /* and what it was */
+    double length;                   /* of the step, and what bounds hold for */
     double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
     double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */
     double *limit;                   /* [order + 1][ncontact] limits, below 0 where a contact has lifted off; */
@@ -25,6 +23,7 @@ struct event {
     double *slide;                   /* [order + 1][ncontact] limits to slide: these, unless they fall with the speed; */
     size_t slide_terms;              /* so many rows */
     double *fall, *part;             /* [order + 1][ncontact] room for such that fall, and exp(-|v|/velocity) */
+    double *slope;                   /* [order + 1][ncontact] room for how such forces grow with the velocity */
     double *d;                       /* [order + 1] dissipated energy */
     double *size, *bend;             /* [ncontact] bounds of what is watched, and of its sixth derivative; */
     double *limit_size, *limit_bend; /* [ncontact] the same of limits */
@@ -37,5 +36,11 @@ struct event {
 
 /* Coefficients of the motion from (t, y) on. Returns a status. */
 int tribo_event_expand(struct event *e, double t, const double *y);
+
+/* e->slope, of limits that fall, after that. */
+void tribo_event_slopes(struct event *e);
+
+/* What the limit of contact i, which slides, has done against its velocity at tau: energy. */
+double tribo_event_work(const struct event *e, size_t i, double tau);
 
 #endif

@@ -40,7 +40,8 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
     e->lasted = calloc(SLIPS * sys->ncontact + 1, sizeof *e->lasted);
     e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
     if (!e->next || !e->lasted || !e->search.guard) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contacts", sys->ncontact);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
+                                 plural(sys->ncontact));
     }
     e->stick_slip.abstol = drv->abstol;
     e->stick_slip.reltol = drv->reltol;
@@ -64,60 +65,52 @@ void tribo_events_clear_guards(struct events *e)
     e->search.guards = 0;
 }
 
-void tribo_events_guard(struct events *e, struct guard guard)
+struct guard *tribo_events_guard(struct events *e, const struct guard *guard)
 {
-    guard.lowest = 0.0;
-    e->search.guard[e->search.guards++] = guard;
+    struct guard *g = &e->search.guard[e->search.guards++];
+    *g = *guard;
+    g->lowest = 0.0;
+    return g;
 }
 
-static void append(struct events *e, size_t i, struct guard guard)
+/* As given, of contact i, one that slides or holds. */
+static struct guard *append(struct events *e, size_t i, int slides, double side, double allowance, const struct guard *guard)
 {
-    guard.contact = i;
-    tribo_events_guard(e, guard);
+    struct guard *g = tribo_events_guard(e, guard);
+    g->contact = i;
+    g->slides = slides;
+    g->side = side;
+    g->allowance = allowance;
+    return g;
 }
 
-void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard)
+void tribo_events_guard_slip(struct events *e, size_t i, const struct guard *guard)
 {
     const struct stick_slip *m = &e->stick_slip;
-    guard.slides = SLIDES;
-    guard.allowance = m->doubt * m->noise[i];
-    guard.side = m->slip[i];
-    append(e, i, guard);
+    append(e, i, SLIDES, m->slip[i], m->doubt * m->noise[i], guard);
 }
 
-static void append_both(struct events *e, size_t i, struct guard guard)
+void tribo_events_guard_stick(struct events *e, size_t i, const struct guard *guard)
 {
-    for (int side = -1; side <= 1; side += 2) {
-        guard.side = side;
-        append(e, i, guard);
-    }
+    append(e, i, HOLDS, -1.0, e->stick_slip.allowance[i], guard);
+    append(e, i, HOLDS, 1.0, e->stick_slip.allowance[i], guard);
 }
 
-void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard)
+void tribo_events_guard_part(struct events *e, size_t i, const struct guard *guard)
 {
-    guard.slides = HOLDS;
-    guard.allowance = e->stick_slip.allowance[i];
-    append_both(e, i, guard);
+    append(e, i, SLIDES, -1.0, e->stick_slip.parting[i], guard);
+    append(e, i, SLIDES, 1.0, e->stick_slip.parting[i], guard);
 }
 
-void tribo_events_guard_part(struct events *e, size_t i, struct guard guard)
-{
-    guard.slides = SLIDES;
-    guard.allowance = e->stick_slip.parting[i];
-    append_both(e, i, guard);
-}
-
-void tribo_events_guard_limit(struct events *e, size_t i, struct guard guard)
+void tribo_events_guard_limit(struct events *e, size_t i, const struct guard *guard)
 {
     const struct stick_slip *m = &e->stick_slip;
     const int keeps = m->slip[i] == 0 && tribo_stick_slip_follows(m, i) == 0.0;
     const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
-    guard.limit *= times;
-    guard.offset = times * guard.offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
-    guard.slides = HOLDS;
-    guard.side = 0.0;
-    guard.allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
-    append(e, i, guard);
+    const double allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
+    struct guard *g = append(e, i, HOLDS, 0.0, allowance, guard);
+    g->limit *= times;
+    g->offset = times * g->offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- events */
@@ -280,8 +273,8 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         status = tribo_driver_check(drv, e->next);
         return status ? status
                       : tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu looks", *t,
-                                          e->search.looks);
+                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s",
+                                          *t, e->search.looks, plural(e->search.looks));
     }
     when = event ? lesser(when, reach) : reach;
     status = show_between(e, drv, begin, shown, *t, when, y);

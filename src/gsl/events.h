@@ -32,6 +32,8 @@ struct events {
     int (*transition)(void *motion, double tau, size_t columns, double *v);
     /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
     int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
+    /* What a phase that has lasted tau dissipated in contact i, which slides; NULL: limits are steady, or harmonics. */
+    double (*work)(const void *motion, size_t i, double tau);
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
 
     struct company *company; /* NULL: nobody */
@@ -67,10 +69,10 @@ int tribo_events_find_periodic(tribo_driver *drv, double t, double period, doubl
  * force is side * value. Or one of its limit, which is offset + limit * value: whether the contact lifts off, or touches down, or
  * has its limit fall to the force that it keeps. */
 void tribo_events_clear_guards(struct events *e);
-void tribo_events_guard(struct events *e, struct guard guard); /* of any kind, all set */
-void tribo_events_guard_slip(struct events *e, size_t i, struct guard guard);
-void tribo_events_guard_stick(struct events *e, size_t i, struct guard guard);
-void tribo_events_guard_part(struct events *e, size_t i, struct guard guard);
-void tribo_events_guard_limit(struct events *e, size_t i, struct guard guard);
+struct guard *tribo_events_guard(struct events *e, const struct guard *guard); /* of any kind, all set */
+void tribo_events_guard_slip(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard_stick(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard_part(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard_limit(struct events *e, size_t i, const struct guard *guard);
 
 #endif

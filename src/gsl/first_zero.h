@@ -28,8 +28,8 @@ struct guard {
 struct first_zero {
     size_t guards;
     struct guard *guard;
-    void (*go)(void *motion, double tau);
-    struct sample (*read)(void *motion, const struct guard *guard); /* the guard where go went */
+    /* Sets middle of all guards to what they are at tau. */
+    void (*look)(void *motion, double tau, size_t guards, struct guard *guard);
     /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */
     double (*bound)(void *motion, double tau);
     void *motion;

@@ -66,26 +66,6 @@ static size_t large_pivots(double *r, size_t n)
     return n - left;
 }
 
-/* The rank of J; n + 1 if out of memory. */
-static size_t rank_of(const struct matrix *direction, const struct matrix *mass)
-{
-    const size_t n = direction->rows;
-    struct constraints c;
-    size_t *all = malloc(n * sizeof *all);
-    unsigned char *last = calloc(n, 1);
-    for (size_t i = 0; all && i < n; i++) {
-        all[i] = i;
-    }
-    const int done = all && last && tribo_constraints_create(&c, direction, mass, all, n, last);
-    const size_t rank = done ? c.rank : n + 1;
-    if (done) {
-        tribo_constraints_free(&c);
-    }
-    free(all);
-    free(last);
-    return rank;
-}
-
 int tribo_hidden(const struct matrix *direction, const struct matrix *mass, const double *own, const double *r,
                  struct hidden *where)
 {
@@ -101,7 +81,7 @@ int tribo_hidden(const struct matrix *direction, const struct matrix *mass, cons
         return 0;
     }
     double *work = malloc(n * n * sizeof *work);
-    const size_t rank = rank_of(direction, mass);
+    const size_t rank = tribo_constraints_rank(direction, mass);
     int hidden = -1;
     if (work && rank <= n) {
         memcpy(work, r, n * n * sizeof *work);

@@ -5,29 +5,23 @@
 #include <float.h>
 #include <math.h>
 
+/* Tells the context that finds the forces of those that hold who they are. f [ncontact] is workspace. */
+static int take_holds(struct stick_slip *m, double *f)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        f[i] = m->loose[i] ? 0.0 : 1.0;
+    }
+    m->hold_differs = 0;
+    return tribo_set_limit(m->hold, f);
+}
+
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 {
     for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
         f[i] = !m->loose[i] ? -a[i] / m->diagonal[i] : 0.0;
     }
-    return m->uncoupled ? TRIBO_OK : tribo_balance(m->hold, m->still, a, f, NULL);
-}
-
-/* Marks an independent set of the contacts at rest, those named at, as holding; rather such that are inside their limits, or go
- * there. */
-static int choose_holds(struct stick_slip *m, const tribo_system *sys, size_t rest)
-{
-    struct constraints c;
-    for (size_t p = 0; p < rest; p++) {
-        const signed char tied = m->tied[m->at[p]];
-        m->last[p] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
-    }
-    const int done = tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
-    for (size_t k = done ? c.rank : rest; k < rest; k++) {
-        m->holds[m->at[c.order[k]]] = 0;
-    }
-    tribo_constraints_free(&c);
-    return done;
+    const int status = m->hold_differs && !m->uncoupled ? take_holds(m, f) : TRIBO_OK;
+    return status || m->uncoupled ? status : tribo_balance(m->hold, m->still, a, f, NULL);
 }
 
 /* Whether the force of contact i at rest is to be found, and not known from the state, and holds. */
@@ -36,34 +30,55 @@ static int may_hold(const struct stick_slip *m, const tribo_system *sys, size_t 
     return m->diagonal[i] > 0.0 && !tribo_massless_touches(&sys->massless, i);
 }
 
-int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+/* Of the contacts at rest, marks only an independent set as holding; rather such that are inside their limits, or go there. */
+static int choose_holds(struct stick_slip *m, const tribo_system *sys)
 {
-    const size_t c = sys->ncontact;
-    size_t rest = 0, changes = 0;
-    for (size_t i = 0; i < c; i++) {
+    struct constraints c = {0};
+    size_t rest = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        const signed char tied = m->tied[i];
+        m->at[rest] = i;
+        m->last[rest] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
+        rest += m->slip[i] == 0 && may_hold(m, sys, i);
+    }
+    const int done = rest < 2 || tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
+    for (size_t k = done && rest > 1 ? c.rank : rest; k < rest; k++) {
+        m->holds[m->at[c.order[k]]] = 0;
+    }
+    tribo_constraints_free(&c);
+    return done ? TRIBO_OK
+                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
+}
+
+/* Takes down who is at rest, and tied; returns for how many that has changed. */
+static size_t take_rest(struct stick_slip *m)
+{
+    size_t changes = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
         const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
         changes += now != m->before[i];
         m->before[i] = now;
-        m->at[rest] = i;
-        rest += m->slip[i] == 0 && may_hold(m, sys, i);
     }
-    if (changes == 0 && !m->fresh) {
+    return changes;
+}
+
+int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+{
+    if (take_rest(m) == 0 && !m->fresh) {
         return TRIBO_OK;
     }
     m->fresh = 0;
-    for (size_t i = 0; i < c; i++) {
-        m->holds[i] = m->slip[i] == 0 && (may_hold(m, sys, i) || tribo_massless_touches(&sys->massless, i));
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->holds[i] = m->slip[i] == 0 && (m->diagonal[i] > 0.0 || tribo_massless_touches(&sys->massless, i));
     }
+    const int status = m->independent ? TRIBO_OK : choose_holds(m, sys);
     m->dependents = 0;
-    if (!m->uncoupled && rest > 1 && !choose_holds(m, sys, rest)) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contacts at rest", rest);
-    }
-    for (size_t i = 0; i < c; i++) {
+    for (size_t i = 0; i < m->contacts; i++) {
         m->dependents += m->slip[i] == 0 && !m->holds[i];
         m->loose[i] = !m->holds[i] || tribo_massless_touches(&sys->massless, i);
-        m->lo[i] = m->loose[i] ? 0.0 : 1.0;
     }
-    return m->uncoupled ? TRIBO_OK : tribo_set_limit(m->hold, m->lo);
+    m->hold_differs = 1;
+    return status;
 }
 
 /* 1 if J x - base is more than the rounding of x for a contact that holds. */

@@ -291,7 +291,7 @@ static int count_modes(const struct lanczos *l, const struct matrix *k, double s
         for (size_t i = 0; i < k->rows; i++) {
             size[i] = tribo_matrix_get(k, i, i) + fabs(sigma) * tribo_matrix_get(m, i, i);
         }
-        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, size, found);
+        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, &shifted, size, found);
         tribo_matrix_free(&shifted);
     }
     free(size);

@@ -90,6 +90,15 @@ void tribo_transpose(size_t rows, size_t cols, const double *a, double *to)
     }
 }
 
+void tribo_even_out(size_t n, double *a)
+{
+    for (size_t i = 0; i < n; i++) {
+        for (size_t j = 0; j < i; j++) {
+            a[i * n + j] = a[j * n + i] = 0.5 * (a[i * n + j] + a[j * n + i]);
+        }
+    }
+}
+
 void tribo_cholesky_free(struct cholesky *c)
 {
     free(c->factor);
@@ -109,14 +118,15 @@ int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
     return done & tribo_sparse_factor_copy(&c->sparse, from->sparse);
 }
 
-int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot)
+/* As tribo_cholesky_create; spent as tribo_sparse_factor_create has it. */
+static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *spent, size_t *where, double *pivot)
 {
     const int diagonal = tribo_matrix_is_diagonal(a);
     memset(c, 0, sizeof *c);
     c->n = a->rows;
     if (!diagonal && tribo_sparse_available() && c->n >= SPARSE_LEAST) {
         *pivot = NAN;
-        return tribo_sparse_factor_create(&c->sparse, a, where);
+        return tribo_sparse_factor_create(&c->sparse, a, spent, where);
     }
     if (!diagonal && c->n > DENSE_MOST) {
         return TRIBO_ERR_SIZE;
@@ -148,6 +158,18 @@ int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *wh
         }
     }
     return TRIBO_OK;
+}
+
+int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot)
+{
+    return factorize(c, a, NULL, where, pivot);
+}
+
+int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot)
+{
+    const int status = factorize(c, a, a, where, pivot);
+    tribo_matrix_free(a);
+    return status;
 }
 
 int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x)

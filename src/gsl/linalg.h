@@ -11,10 +11,23 @@ double tribo_largest(const double *x, size_t n);
 void tribo_add(double *to, double factor, const double *x, size_t n);
 int tribo_dense_finite(const double *x, size_t n);
 
+/* The same, without a call where there are few. */
+static inline int tribo_few_finite(const double *x, size_t n)
+{
+    double sum = 0.0;
+    for (size_t i = 0; n < 8 && i < n; i++) {
+        sum += x[i] - x[i];
+    }
+    return n < 8 ? sum == 0.0 : tribo_dense_finite(x, n);
+}
+
 /* c [rows][cols] += factor a b, a [rows][inner], b [inner][cols], skipping zeros of a, of which diagonal operators have many;
  * to [cols][rows] = the transpose of a [rows][cols]. */
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
+
+/* a [n][n], symmetric but for rounding, becomes exactly so. */
+void tribo_even_out(size_t n, double *a);
 
 /* Matrices that are not diagonal are factored as sparse ones from SPARSE_LEAST rows on, if the library can do that; if not, dense
  * ones may have DENSE_MOST. */
@@ -34,7 +47,8 @@ struct cholesky {
 /* Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with the place of a
  * pivot that is not positive, and its value, NaN if that is not known. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
-int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from); /* 1, or 0 if out of memory */
+int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot); /* frees a early, in any case */
+int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);                       /* 1, or 0 if out of memory */
 void tribo_cholesky_free(struct cholesky *c);
 
 /* count vectors x [count][n] = A^-1 x. 1, or 0 if out of memory, which does not happen to a single one. */

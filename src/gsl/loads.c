@@ -1,7 +1,6 @@
 /* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
 #include "system.h"
 #include "../common/real.h"
-#include "../common/twofold.h"
 
 #include <float.h>
 #include <math.h>
@@ -51,6 +50,7 @@ static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
 {
     int done = 1;
     *to = *from;
+    to->time = NAN;
     to->index = tribo_copy_of(from->index, from->count, sizeof *to->index, &done);
     to->cosine = tribo_copy_of(from->cosine, from->count, sizeof *to->cosine, &done);
     to->sine = tribo_copy_of(from->sine, from->count, sizeof *to->sine, &done);
@@ -110,11 +110,6 @@ static double look_up(const tribo_system *sys, const struct table *table, size_t
     return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
 }
 
-int tribo_system_limits_vary(const tribo_system *sys)
-{
-    return sys->limits.knots || sys->limit_harmonics;
-}
-
 /* Finds out which limits are given in the context: those that it has before they vary, and those that it gets while harmonics,
  * but no table, change them. */
 static void find_given_limits(tribo_system *sys)
@@ -150,37 +145,11 @@ static void follow_limits(tribo_system *sys)
     tribo_system_put_limits(sys, 0.0);
 }
 
-/* An angle so small has the cosine 1 and is its own sine. */
-#define TINY_ANGLE 1e-8
-
-/* The harmonic at t + low. What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
-static void turn(struct harmonic *h, double t, double low)
-{
-    const double angle = h->omega * t,
-                 rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(h->omega, t).lo : 0.0) + h->omega * low;
-    const double c = cos(angle), s = sin(angle);
-    const int tiny = fabs(rest) < TINY_ANGLE;
-    const double x = tiny ? 1.0 : cos(rest), y = tiny ? rest : sin(rest);
-    h->cos_t = c * x - s * y;
-    h->sin_t = s * x + c * y;
-}
-
-static void set_loads(tribo_system *sys, double t)
-{
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        turn(&sys->harmonic[k], t, sys->low);
-    }
-    for (size_t k = 0; k < sys->tables; k++) {
-        sys->table[k].at = knot_at(&sys->table[k], t);
-    }
-    sys->time = t;
-}
-
 void tribo_system_set_low(tribo_system *sys, double low)
 {
     if (low != sys->low) {
         sys->low = low;
-        sys->time = NAN;
+        tribo_system_forget_time(sys);
     }
 }
 
@@ -188,7 +157,10 @@ void tribo_system_set_time(tribo_system *sys, double t)
 {
     const int moves = t != sys->time;
     if (moves) {
-        set_loads(sys, t);
+        sys->time = t;
+        for (size_t k = 0; k < sys->tables; k++) {
+            sys->table[k].at = knot_at(&sys->table[k], t);
+        }
     }
     if (tribo_system_limits_vary(sys) && (moves || sys->seen != tribo_revision(sys->contacts))) {
         follow_limits(sys);
@@ -240,6 +212,7 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
             continue;
         }
         double c, s;
+        tribo_system_turn(sys, k);
         differentiate(h, order, &c, &s);
         for (size_t i = 0; i < h->count; i++) {
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
@@ -312,6 +285,7 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
             const struct harmonic *h = &sys->harmonic[k];
             double c, s;
             if (h->drives == DRIVES_LIMIT) {
+                tribo_system_turn(sys, k);
                 differentiate(h, order, &c, &s);
                 sum += h->cosine[i] * c + h->sine[i] * s;
                 size += hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
@@ -408,7 +382,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     if (status) {
         return status;
     }
-    struct harmonic h = {.omega = omega, .drives = drives};
+    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
     double *parts = calloc(2 * n + 1, sizeof *parts);
     struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
     sys->harmonic = all ? all : sys->harmonic;
@@ -425,13 +399,13 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     free(parts);
     if (!done) {
         free_harmonic(&h);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu entries", n);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
     }
     sys->harmonic[sys->harmonics++] = h;
     sys->base_harmonics += drives == DRIVES_BASE;
     sys->limit_harmonics += drives == DRIVES_LIMIT;
     sys->revision++;
-    sys->time = NAN;
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -464,7 +438,7 @@ int tribo_system_clear_loads(tribo_system *sys)
     }
     sys->tables = 0;
     sys->revision++;
-    sys->time = NAN;
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -524,12 +498,12 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
     }
     if (!t.pattern) {
         free_table(&t);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
     }
     tribo_system_accelerate(sys, pattern, t.pattern);
     sys->table[sys->tables++] = t;
     sys->revision++;
-    sys->time = NAN;
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }
 
@@ -555,7 +529,7 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
         }
         if (!create_table(&t, knots, sys->ncontact, time, limit)) {
             free_table(&t);
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knots", knots);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
         }
     }
     find_given_limits(sys);
@@ -567,6 +541,6 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     free_table(&sys->limits);
     sys->limits = t;
     sys->revision++;
-    sys->time = NAN;
+    tribo_system_forget_time(sys);
     return TRIBO_OK;
 }

@@ -71,8 +71,8 @@ static int search_failed(const struct model *m, int status, const struct low_mod
     case TRIBO_ERR_MEMORY:
         return tribo_model_no_memory(m);
     case TRIBO_ERR_SIZE:
-        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu modes only", m->nmode,
-                                low->count);
+        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only", m->nmode,
+                                low->count, plural(low->count));
     default:
         return tribo_model_fail(
             m, status, "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more", m->nmode);
@@ -101,9 +101,7 @@ static int factorize_sum(const struct model *m, double factor, double other, str
     if (!tribo_matrix_sum(&sum, factor, &m->stiffness, other, &m->mass)) {
         return TRIBO_ERR_MEMORY;
     }
-    const int status = tribo_cholesky_create(c, &sum, where, &pivot);
-    tribo_matrix_free(&sum);
-    return status;
+    return tribo_cholesky_consume(c, &sum, where, &pivot);
 }
 
 static int factor_failed(const struct model *m, int status, const char *what, size_t where)
@@ -111,8 +109,9 @@ static int factor_failed(const struct model *m, int status, const char *what, si
     return status == TRIBO_ERR_INDEFINITE
                ? tribo_model_fail(m, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what, where)
            : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
-           : status ? tribo_model_fail(m, status, "out of memory for the factor of %zu degrees of freedom", m->ndof)
-                    : TRIBO_OK;
+           : status
+               ? tribo_model_fail(m, status, "out of memory for the factor of %zu degree%s of freedom", m->ndof, plural(m->ndof))
+               : TRIBO_OK;
 }
 
 static int factorize_shifted(const struct model *m, struct shifted *s)
@@ -273,8 +272,7 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
     return status ? status : check_modes(m, s, &low, r);
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- the
- * contacts */
+/* --------------------------------------------------------------------------------------------------------------- contacts */
 
 /* x -= the part of it in each of count motions, orthonormal in M, twice. mx [ndof] is workspace. Returns the norm of the rest. */
 static double separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
@@ -400,8 +398,7 @@ static int find_statics(const struct model *m, const struct shifted *s, struct r
     return status || r->count == m->nmode ? status : finish_statics(m, r);
 }
 
-/* ------------------------------------------------------------------------------------------------------------------------
- * calls */
+/* ------------------------------------------------------------------------------------------------------------------ calls */
 
 void tribo_reduced_free(struct reduced *r)
 {
@@ -431,7 +428,8 @@ static int find_lowest(const struct model *m, struct shifted *s, struct reduced 
             return status;
         }
     }
-    int status = factor_failed(m, check_mass(m, &where), "mass", where);
+    int status = check_mass(m, &where);
+    status = factor_failed(m, status, "mass", where);
     status = status ? status : factorize_shifted(m, s);
     return status ? status : find_sparsely(m, s, r);
 }

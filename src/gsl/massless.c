@@ -377,9 +377,9 @@ static int check_size(const struct model *m, const struct massless *w)
     return m->ndof <= DENSE_MOST || tribo_matrix_is_diagonal(&m->mass)
                ? TRIBO_OK
                : tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                  "%zu degrees of freedom have no mass: with a mass matrix that is not diagonal there may be %d "
-                                  "in all, not %zu degrees of freedom",
-                                  w->count, DENSE_MOST, m->ndof);
+                                  "%zu degree%s of freedom have no mass: with a mass matrix that is not diagonal there may be %d "
+                                  "in all, not %zu degree%s of freedom",
+                                  w->count, plural(w->count), DENSE_MOST, m->ndof, plural(m->ndof));
 }
 
 int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)

@@ -16,6 +16,7 @@ void tribo_matrix_free(struct matrix *a)
     free(a->col);
     free(a->val);
     free(a->offset);
+    free(a->block);
     free(a->fast);
     memset(a, 0, sizeof *a);
 }
@@ -41,6 +42,59 @@ static size_t diagonal(const struct matrix *a, size_t i, size_t j)
     return j + a->rows - i;
 }
 
+static size_t blocks_of(const struct matrix *a)
+{
+    return (a->rows + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
+}
+
+/* to [diagonals][MATRIX_BLOCK] = block b of the diagonals. */
+static void take_block(const struct matrix *a, size_t b, double *to)
+{
+    const size_t begin = b * MATRIX_BLOCK, end = begin + MATRIX_BLOCK < a->rows ? begin + MATRIX_BLOCK : a->rows;
+    memset(to, 0, a->diagonals * MATRIX_BLOCK * sizeof *to);
+    for (size_t i = begin; i < end; i++) {
+        size_t d = 0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            while (a->offset[d] != (ptrdiff_t)a->col[k] - (ptrdiff_t)i) {
+                d++;
+            }
+            to[d * MATRIX_BLOCK + i - begin] = a->val[k];
+        }
+    }
+}
+
+/* A block that is like the one before it is not stored again: what is not stored is not read either. */
+static void take_diagonals(struct matrix *a)
+{
+    const size_t size = a->diagonals * MATRIX_BLOCK;
+    size_t used = (size_t)(tribo_aligned(a->fast) - a->fast);
+    for (size_t b = 0; b < blocks_of(a); b++) {
+        take_block(a, b, a->fast + used);
+        const int same = b > 0 && memcmp(a->fast + a->block[b - 1], a->fast + used, size * sizeof *a->fast) == 0;
+        a->block[b] = same ? a->block[b - 1] : used;
+        used += same ? 0 : size;
+    }
+}
+
+/* The diagonals that place numbers, from 1 on. 1, or 0 if out of memory. */
+static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *place)
+{
+    a->diagonals = diagonals;
+    a->offset = malloc(diagonals * sizeof *a->offset);
+    a->block = malloc(blocks_of(a) * sizeof *a->block);
+    a->fast = malloc((blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
+    if (!a->offset || !a->block || !a->fast) {
+        return 0;
+    }
+    for (size_t d = 0; d < a->rows + a->cols + 1; d++) {
+        if (place[d]) {
+            a->offset[place[d] - 1] = (ptrdiff_t)d - (ptrdiff_t)a->rows;
+        }
+    }
+    take_diagonals(a);
+    return 1;
+}
+
 /* Fills `fast` if that pays: with diagonals if half of their entries are not zero, with all entries if a third of them is not. */
 static int speed_up(struct matrix *a)
 {
@@ -61,17 +115,7 @@ static int speed_up(struct matrix *a)
     }
     int done = 1;
     if (entries && diagonals * a->rows <= 2 * entries && diagonals <= 16) {
-        a->diagonals = diagonals;
-        a->offset = malloc(diagonals * sizeof *a->offset);
-        a->fast = calloc(diagonals * a->rows, sizeof *a->fast);
-        done = a->offset && a->fast;
-        for (size_t i = 0; done && i < a->rows; i++) {
-            for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-                const size_t d = place[diagonal(a, i, a->col[k])] - 1;
-                a->offset[d] = (ptrdiff_t)a->col[k] - (ptrdiff_t)i;
-                a->fast[d * a->rows + i] = a->val[k];
-            }
-        }
+        done = create_diagonals(a, diagonals, place);
     } else if (entries >= a->rows * a->cols / 3) {
         a->fast = tribo_matrix_to_dense(a);
         done = a->fast != NULL;
@@ -91,7 +135,7 @@ static int finish(struct matrix *a)
     }
     a->identity = a->rows == a->cols && a->diagonals == 1 && a->offset[0] == 0;
     for (size_t i = 0; a->identity && i < a->rows; i++) {
-        a->identity = a->fast[i] == 1.0;
+        a->identity = a->first[i + 1] == i + 1 && a->val[i] == 1.0;
     }
     return 1;
 }
@@ -286,6 +330,34 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
     return dense;
 }
 
+/* An array of count entries in no more memory than these take, if that is to be had. */
+static void *shrink(void *x, size_t count, size_t size)
+{
+    void *less = realloc(x, (count + 1) * size);
+    return less ? less : x;
+}
+
+void tribo_matrix_keep_lower(struct matrix *a)
+{
+    size_t count = 0;
+    for (size_t i = 0, k = 0; i < a->rows; i++) {
+        for (; k < a->first[i + 1]; k++) {
+            if (a->col[k] <= i) {
+                a->col[count] = a->col[k];
+                a->val[count++] = a->val[k];
+            }
+        }
+        a->first[i + 1] = count;
+    }
+    a->col = shrink(a->col, count, sizeof *a->col);
+    a->val = shrink(a->val, count, sizeof *a->val);
+    free(a->offset);
+    free(a->fast);
+    a->offset = NULL;
+    a->fast = NULL;
+    a->diagonals = 0;
+}
+
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
 {
     a->identity = 0;
@@ -293,12 +365,12 @@ void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             a->val[k] *= factor[i];
         }
-        for (size_t d = 0; d < a->diagonals; d++) {
-            a->fast[d * a->rows + i] *= factor[i];
-        }
         for (size_t j = 0; a->fast && !a->diagonals && j < a->cols; j++) {
             a->fast[i * a->cols + j] *= factor[i];
         }
+    }
+    if (a->diagonals) {
+        take_diagonals(a);
     }
 }
 

@@ -3,9 +3,13 @@
 #ifndef TRIBO_MATRIX_H
 #define TRIBO_MATRIX_H
 
+#include <math.h>
 #include <stddef.h>
 
 #include <gsl/gsl_spmatrix.h>
+
+/* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
+enum { MATRIX_BLOCK = 128 };
 
 struct matrix {
     size_t rows, cols;
@@ -13,8 +17,9 @@ struct matrix {
     double *val;
     size_t diagonals; /* number of diagonals in `fast`, 0 if it holds no diagonals */
     ptrdiff_t *offset;
-    double *fast; /* [diagonals][rows] or [rows][cols] or NULL */
-    int identity; /* multiplying with it changes nothing */
+    size_t *block; /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
+    double *fast;  /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */
+    int identity;  /* multiplying with it changes nothing */
 };
 
 /* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */
@@ -45,11 +50,21 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
     return sum;
 }
 
-/* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
-enum { MATRIX_BLOCK = 128 };
+/* The same of absolute values. */
+static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, const double *x)
+{
+    double sum = 0.0;
+    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        sum += fabs(a->val[k] * x[a->col[k]]);
+    }
+    return sum;
+}
 
-/* y [end - begin] += factor times rows begin to end - 1 of A x. */
+/* y [end - begin] += factor times rows begin to end - 1 of A x, which are of one block. */
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y);
+
+/* The same with y = z - A x, z [end - begin] apart from y. */
+void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y);
 
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
@@ -81,6 +96,9 @@ double *tribo_matrix_to_dense(const struct matrix *a);
 
 /* The same of the transpose: [cols][rows]. */
 double *tribo_matrix_transpose_to_dense(const struct matrix *a);
+
+/* Leaves nothing of a symmetric matrix but the lower triangle, and its memory. */
+void tribo_matrix_keep_lower(struct matrix *a);
 
 /* Multiplies row i by factor[i]. */
 void tribo_matrix_scale_rows(struct matrix *a, const double *factor);

@@ -11,26 +11,51 @@
 /* So few rows are multiplied with sooner entry by entry. */
 #define FEW_ROWS 4
 
-/* y [rows] += factor times rows `begin` and following of A x, all of whose diagonals lie inside the matrix: three diagonals at a
- * time, so that y is passed over as seldom as can be, but in the order of one after the other. */
-TRIBO_SIMD static void add_inner_rows(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
-                                      double *restrict y)
+/* y [rows] = z + factor times rows `begin` and following of A x, all of one block and with all diagonals inside the matrix; z
+ * NULL: y. Three diagonals at a time, so that y is passed over as seldom as can be, but in the order of one after the other. */
+static inline void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
+                                 const double *restrict z, double *restrict y)
 {
-    const double *restrict val = a->fast + begin, *restrict at = x + begin;
+    const double *restrict val = a->fast + a->block[begin / MATRIX_BLOCK] + begin % MATRIX_BLOCK, *restrict at = x + begin;
     size_t d = 0;
     for (; d + 3 <= a->diagonals; d += 3) {
-        const double *restrict u = val + d * a->rows, *restrict v = u + a->rows, *restrict w = v + a->rows;
+        const double *restrict u = val + d * MATRIX_BLOCK, *restrict v = u + MATRIX_BLOCK, *restrict w = v + MATRIX_BLOCK;
         const double *restrict p = at + a->offset[d], *restrict q = at + a->offset[d + 1], *restrict r = at + a->offset[d + 2];
-        for (size_t i = 0; i < rows; i++) {
+        for (size_t i = 0; z && d == 0 && i < rows; i++) {
+            y[i] = ((z[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
+        }
+        for (size_t i = 0; !(z && d == 0) && i < rows; i++) {
             y[i] = ((y[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
         }
     }
     for (; d < a->diagonals; d++) {
-        const double *restrict u = val + d * a->rows, *restrict p = at + a->offset[d];
-        for (size_t i = 0; i < rows; i++) {
+        const double *restrict u = val + d * MATRIX_BLOCK, *restrict p = at + a->offset[d];
+        for (size_t i = 0; z && d == 0 && i < rows; i++) {
+            y[i] = z[i] + factor * u[i] * p[i];
+        }
+        for (size_t i = 0; !(z && d == 0) && i < rows; i++) {
             y[i] += factor * u[i] * p[i];
         }
     }
+}
+
+/* A factor of 1 or -1 is no product, and the compiler knows. */
+TRIBO_SIMD static void add_inner_rows(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
+                                      double *restrict y)
+{
+    if (factor == -1.0) {
+        add_diagonals(a, begin, rows, -1.0, x, NULL, y);
+    } else if (factor == 1.0) {
+        add_diagonals(a, begin, rows, 1.0, x, NULL, y);
+    } else {
+        add_diagonals(a, begin, rows, factor, x, NULL, y);
+    }
+}
+
+TRIBO_SIMD static void subtract_inner_rows(const struct matrix *a, size_t begin, size_t rows, const double *x,
+                                           const double *restrict z, double *restrict y)
+{
+    add_diagonals(a, begin, rows, -1.0, x, z, y);
 }
 
 /* The first row, and the one behind the last, all of whose diagonals lie inside the matrix. */
@@ -88,17 +113,64 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
     }
 }
 
+static void subtract_outer_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y)
+{
+    for (size_t i = begin; i < end; i++, y++, z++) {
+        *y = *z;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            *y -= a->val[k] * x[a->col[k]];
+        }
+    }
+}
+
+void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y)
+{
+    const int banded = a->diagonals && end - begin > FEW_ROWS;
+    const size_t first = banded ? between(inner_begin(a), begin, end) : end,
+                 last = banded ? between(inner_end(a), first, end) : end;
+    if (!banded && a->fast && !a->diagonals) {
+        for (size_t i = begin; i < end; i++) {
+            y[i - begin] = z[i - begin] - dense_dot(a->cols, a->fast + i * a->cols, x);
+        }
+        return;
+    }
+    subtract_outer_rows(a, begin, first, x, z, y);
+    if (last > first) {
+        subtract_inner_rows(a, first, last - first, x, z + (first - begin), y + (first - begin));
+    }
+    subtract_outer_rows(a, last, end, x, z + (last - begin), y + (last - begin));
+}
+
 void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
 {
     for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            y[i] += fabs(a->val[k] * x[a->col[k]]);
-        }
+        y[i] += tribo_matrix_row_size(a, i, x);
+    }
+}
+
+static int is_small(const struct matrix *a)
+{
+    return a->rows <= FEW_ROWS && a->cols <= 4 * FEW_ROWS;
+}
+
+/* y += factor A x of a small matrix. */
+static void add_few_rows(const struct matrix *a, double factor, const double *x, double *y)
+{
+    if (a->diagonals) {
+        add_outer_rows(a, 0, a->rows, factor, x, y);
+        return;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        y[i] += factor * tribo_matrix_row_dot(a, i, x);
     }
 }
 
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
+    if (is_small(a)) {
+        add_few_rows(a, factor, x, y);
+        return;
+    }
     for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
         const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
         tribo_matrix_add_rows(a, i, end, factor, x, y + i);
@@ -107,7 +179,14 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
 {
-    for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
+    const int small = is_small(a);
+    for (size_t i = 0; a->identity && i < a->rows; i++) {
+        y[i] = x[i];
+    }
+    for (size_t i = 0; !a->identity && small && i < a->rows; i++) {
+        y[i] = tribo_matrix_row_dot(a, i, x);
+    }
+    for (size_t i = 0; !a->identity && !small && i < a->rows; i += MATRIX_BLOCK) {
         const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
         memset(y + i, 0, (end - i) * sizeof *y);
         tribo_matrix_add_rows(a, i, end, 1.0, x, y + i);

@@ -146,9 +146,11 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
     struct step_form *s = &x->common;
     const double h = next - t;
     const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, h, from, s->u, y, x->next};
-    const int same = x->alone.revision == tribo_system_revision(drv->sys);
-    const int alone = same ? x->alone.fits : tribo_bodies_begin(&x->alone, drv->sys);
-    const int status = alone ? step_alone(drv, &k, y) : step_all(drv, &k, y);
+    /* nobody but the observer changes anything meanwhile */
+    if (drv->seen && x->alone.revision != tribo_system_revision(drv->sys)) {
+        tribo_bodies_begin(&x->alone, drv->sys);
+    }
+    const int status = x->alone.fits ? step_alone(drv, &k, y) : step_all(drv, &k, y);
     if (status) {
         return status;
     }
@@ -156,6 +158,24 @@ static int central_step(tribo_driver *drv, double t, double next, const double *
     s->u = k.u_to;
     x->last = h;
     return drv->seen ? synchronise(drv, next, y) : TRIBO_OK;
+}
+
+/* As many of the steps between the times t [count + 1] as can be taken at once. */
+static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y, int *status)
+{
+    struct central *x = drv->own;
+    tribo_system *sys = drv->sys;
+    if (!tribo_bodies_can_run(&x->alone, sys)) {
+        return 0;
+    }
+    struct body_run run = {y, x->common.u, x->energy, x->last};
+    const size_t taken = tribo_bodies_run(&x->alone, sys, count, t, &run);
+    x->common.goes_on = 0;
+    x->last = run.last;
+    y[2 * sys->ndof] = x->energy = run.energy;
+    sys->evaluations += taken;
+    *status = taken < count ? tribo_step_form_grew(drv, t[taken]) : TRIBO_OK;
+    return taken;
 }
 
 /* Refuses steps with which the motion would grow without bound: steps of h are stable while h^2 AK + 2 h AC has no eigenvalue of
@@ -188,6 +208,7 @@ static int check_step(tribo_driver *drv, double h)
 
 static int central_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
+    static const struct fixed_method method = {central_step, central_run, 1, {0.0, 0.0}};
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
@@ -204,7 +225,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
     }
     tribo_bodies_begin(&x->alone, drv->sys);
     tribo_step_form_start(s, drv->sys);
-    status = tribo_driver_fixed_steps(drv, t, t1, y, central_step);
+    status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
     if (status && *t > begin && !drv->seen) {
         memcpy(drv->state + n, s->u, n * sizeof *y);
     }

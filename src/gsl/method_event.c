@@ -72,13 +72,6 @@ static double step_length(const struct event *e)
 
 /* --------------------------------------------------------------------------------------------------------- guards */
 
-static void go(void *motion, double tau)
-{
-    struct event *e = motion;
-    e->tau = tau;
-    e->seen = NULL;
-}
-
 /* Adds factor times a polynomial at s with so many terms, c apart, and its derivatives. */
 static void add_polynomial(struct sample *to, double factor, size_t terms, size_t c, const double *term, double s)
 {
@@ -93,25 +86,35 @@ static void add_polynomial(struct sample *to, double factor, size_t terms, size_
     to->e += 2.0 * factor * v2;
 }
 
-/* The two sides of what is watched follow one another, and are computed once. */
-static struct sample read_guard(void *motion, const struct guard *g)
+/* What a guard watches, at tau. */
+static struct sample watch(const struct event *e, const struct guard *g, double tau)
 {
-    struct event *e = motion;
-    const size_t c = e->sys->ncontact;
-    struct sample x = {g->offset, 0.0, 0.0};
-    if (g->side != 0.0 && e->seen != g->output) {
-        const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
-        e->seen = g->output;
-        e->sight = (struct sample){0.0, 0.0, 0.0};
-        add_polynomial(&e->sight, 1.0, plane ? 2 * e->order + 1 : e->order + 1, plane ? e->planar.room : c, g->output, e->tau);
+    const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
+    const size_t terms = plane ? 2 * e->order + 1 : e->order + 1;
+    struct sample v = {0.0, 0.0, 0.0};
+    add_polynomial(&v, 1.0, terms, plane ? e->planar.room : e->sys->ncontact, g->output, tau);
+    return v;
+}
+
+/* The two sides of what is watched follow one another, and are computed once. */
+static void look(void *motion, double tau, size_t guards, struct guard *guard)
+{
+    const struct event *e = motion;
+    const void *seen = NULL;
+    struct sample v = {0.0, 0.0, 0.0};
+    for (struct guard *g = guard; g < guard + guards; g++) {
+        if (g->side != 0.0 && seen != g->output) {
+            seen = g->output;
+            v = watch(e, g, tau);
+        }
+        g->middle = (struct sample){g->offset, 0.0, 0.0};
+        if (g->side != 0.0) {
+            g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+        }
+        if (g->limit != 0.0) {
+            add_polynomial(&g->middle, g->limit, e->terms, e->sys->ncontact, e->limit + g->contact, tau);
+        }
     }
-    if (g->side != 0.0) {
-        x = (struct sample){x.g + g->side * e->sight.g, g->side * e->sight.d, g->side * e->sight.e};
-    }
-    if (g->limit != 0.0) {
-        add_polynomial(&x, g->limit, e->terms, c, e->limit + g->contact, e->tau);
-    }
-    return x;
 }
 
 /* Bounds of so many terms of all that is watched, or of limits, over [0, h]. */
@@ -190,7 +193,7 @@ static void set_planar_guards(struct event *e)
         e->size[p->at] = line->size;
         e->bend[p->at] = line->bend;
         if (moves || line->size >= 0.5 * limit) {
-            tribo_events_guard(&e->events, g);
+            tribo_events_guard(&e->events, &g);
         }
     }
 }
@@ -209,21 +212,24 @@ static void set_guards(struct event *e)
     for (size_t i = 0; i < m->contacts; i++) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct guard g = {.output = e->watch + i};
+        if (m->slip[i] == 2) { /* not guarded, but when it touches down, rounding of its velocity counts */
+            e->events.stick_slip.seen[i] = e->size[i];
+        }
         if (m->plane && m->plane->in_plane[i]) {
             continue;
         }
         if (m->slip[i] == 1 || m->slip[i] == -1) {
-            tribo_events_guard_slip(&e->events, i, g);
+            tribo_events_guard_slip(&e->events, i, &g);
         } else if (tribo_stick_slip_may_part(m, i)) {
             e->size[i] = parts_of_velocity(e, i, h);
-            tribo_events_guard_part(&e->events, i, g);
+            tribo_events_guard_part(&e->events, i, &g);
         }
         g.limit = varies ? ratio : 0.0;
         g.offset = (varies ? 0.0 : ratio * e->limit[i]) + tribo_stick_slip_slack(m, i);
         if (m->holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
-            tribo_events_guard_stick(&e->events, i, g);
+            tribo_events_guard_stick(&e->events, i, &g);
         } else if (limit_tells(m, i, varies)) {
-            tribo_events_guard_limit(&e->events, i, (struct guard){.limit = 1.0});
+            tribo_events_guard_limit(&e->events, i, &(struct guard){.limit = 1.0});
         }
     }
 }
@@ -246,6 +252,7 @@ static void destroy(tribo_driver *drv)
 static int begin(void *motion, double t, const double *y, double *reach);
 static int transition(void *motion, double tau, size_t columns, double *v);
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
+static double work(const void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
 
 static int create(tribo_driver *drv)
@@ -265,19 +272,20 @@ static int create(tribo_driver *drv)
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
     e->order = e->most_order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
     const size_t terms = e->order + 1;
-    double *work = malloc((terms * (2 * n + 4 * c + 1) + 2 * n + 9 * c + 1) * sizeof *work);
-    if (!work) {
+    double *all = malloc((terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
+    if (!all) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
     e->drv = drv;
     e->sys = sys;
-    e->q = work;
+    e->q = all;
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
     e->limit = e->watch + terms * c;
     e->fall = e->limit + terms * c;
     e->part = e->fall + terms * c;
-    e->d = e->part + terms * c;
+    e->slope = e->part + terms * c;
+    e->d = e->slope + terms * c;
     e->acceleration = e->d + terms;
     e->base = e->acceleration + n;
     e->a = e->base + c;
@@ -289,14 +297,14 @@ static int create(tribo_driver *drv)
     e->limit_bend = e->limit_size + c;
     e->spring = e->limit_bend + c;
     e->work = e->spring + c;
-    e->events.search.go = go;
-    e->events.search.read = read_guard;
+    e->events.search.look = look;
     e->events.search.bound = bound;
     e->events.search.motion = e->events.motion = e;
     e->events.begin = begin;
     e->events.state = state;
     e->events.transition = transition;
     e->events.signal = combine;
+    e->events.work = work;
     return TRIBO_OK;
 }
 
@@ -310,7 +318,8 @@ static int prepare(struct event *e)
     const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", sys->harmonics);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", sys->harmonics,
+                                 plural(sys->harmonics));
     }
     e->cosine = more;
     e->sine = more + room;
@@ -369,7 +378,12 @@ static int begin(void *motion, double t, const double *y, double *reach)
 static int transition(void *motion, double tau, size_t columns, double *v)
 {
     struct event *e = motion;
-    return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, tau, columns, v);
+    const int falls = e->events.stick_slip.breakaway.falls;
+    const struct slopes slopes = {falls ? e->order + 1 : 0, e->slope};
+    if (falls) {
+        tribo_event_slopes(e);
+    }
+    return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, &slopes, tau, columns, v);
 }
 
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
@@ -378,13 +392,18 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     const size_t n = e->sys->ndof;
     (void)end;
     if (!tribo_signal_reserve(to, 0, e->order)) {
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu powers", e->order);
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu power%s", e->order, plural(e->order));
     }
     to->tau = tau;
     for (size_t k = 0; k <= e->order; k++) {
         to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
     }
     return TRIBO_OK;
+}
+
+static double work(const void *motion, size_t i, double tau)
+{
+    return tribo_event_work(motion, i, tau);
 }
 
 static int open_events(tribo_driver *drv, struct events **events)

@@ -22,8 +22,6 @@ struct exact {
     size_t helds, room, bytes, revision;
 
     struct modal_motion motion; /* of the phase */
-    const struct output *seen;  /* what was read last where go() was; NULL: nothing yet */
-    struct sample sight;        /* and what it was */
     double *work;               /* of transitions, allocated when one is first asked for */
     size_t columns;             /* for so many */
 };
@@ -56,8 +54,10 @@ static int find_held(struct exact *x, const struct modal **found)
     for (size_t i = x->helds; i-- > 0;) {
         struct modal *h = x->held[i];
         if (rests_like(h, &x->events.stick_slip, sys->ncontact)) {
-            memmove(x->held + i, x->held + i + 1, (x->helds - 1 - i) * sizeof *x->held);
-            x->held[x->helds - 1] = h;
+            for (; i + 1 < x->helds; i++) {
+                x->held[i] = x->held[i + 1];
+            }
+            x->held[i] = h;
             *found = h;
             return TRIBO_OK;
         }
@@ -69,7 +69,7 @@ static int find_held(struct exact *x, const struct modal **found)
         const size_t room = 2 * x->room + 16;
         struct modal **more = realloc(x->held, room * sizeof *more);
         if (!more) {
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structures", room);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structure%s", room, plural(room));
         }
         x->held = more;
         x->room = room;
@@ -87,37 +87,34 @@ static int find_held(struct exact *x, const struct modal **found)
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */
 
-static void go(void *motion, double tau)
+/* All guards at tau. The two sides of an output follow one another, and are computed once. */
+static void look(void *motion, double tau, size_t guards, struct guard *guard)
 {
-    struct exact *x = motion;
-    tribo_modal_motion_go(&x->motion, tau);
-    x->seen = NULL;
+    struct modal_motion *x = &((struct exact *)motion)->motion;
+    const void *seen = NULL;
+    struct sample v = {0.0, 0.0, 0.0};
+    tribo_modal_motion_go(x, tau);
+    for (struct guard *g = guard; g < guard + guards; g++) {
+        g->middle = (struct sample){g->offset, 0.0, 0.0};
+        if (g->output && g->output != seen) {
+            seen = g->output;
+            v = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
+        }
+        if (g->output) {
+            g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+        }
+        if (g->limit != 0.0) {
+            const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+            g->middle.g += g->limit * limit.g;
+            g->middle.d += g->limit * limit.d;
+            g->middle.e += g->limit * limit.e;
+        }
+    }
 }
 
 static void move_to(void *motion, double tau, const double *from, double *to)
 {
     tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
-}
-
-/* A guard where go() was. The two sides of an output follow one another, and are computed once. */
-static struct sample read_guard(void *motion, const struct guard *g)
-{
-    struct exact *e = motion;
-    const struct modal_motion *x = &e->motion;
-    struct sample v = {0.0, 0.0, 0.0};
-    if (g->output && e->seen != g->output) {
-        e->seen = g->output;
-        e->sight = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
-    }
-    if (g->output) {
-        v = e->sight;
-    }
-    v = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
-    if (g->limit != 0.0) {
-        const struct sample limit = tribo_modal_motion_limit(x, g->contact);
-        v = (struct sample){v.g + g->limit * limit.g, v.d + g->limit * limit.d, v.e + g->limit * limit.e};
-    }
-    return v;
 }
 
 /* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */
@@ -139,11 +136,7 @@ static void bound_guard(const struct exact *x, struct guard *g)
 static double bound(void *motion, double tau)
 {
     struct exact *x = motion;
-    double decay = 0.0;
-    const struct modal *h = x->motion.h;
-    for (size_t p = 0; p < h->exponents; p++) {
-        decay = greater(decay, -h->lr[p]);
-    }
+    const double decay = x->motion.h->decay;
     tribo_modal_motion_bound(&x->motion, tau);
     for (size_t k = 0; k < x->events.search.guards; k++) {
         struct guard *g = &x->events.search.guard[k];
@@ -171,9 +164,9 @@ static void add_guards(struct exact *x, const struct output *w, int of_velocity,
     struct guard g = {.output = w, .contact = i};
     tribo_modal_motion_line(&x->motion, w, of_velocity, now, &g.start, &g.ramp);
     if (of_velocity && m->slip[i] == 0) {
-        tribo_events_guard_part(&x->events, i, g);
+        tribo_events_guard_part(&x->events, i, &g);
     } else if (of_velocity) {
-        tribo_events_guard_slip(&x->events, i, g);
+        tribo_events_guard_slip(&x->events, i, &g);
     } else {
         bound_guard(x, &g);
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
@@ -181,9 +174,18 @@ static void add_guards(struct exact *x, const struct output *w, int of_velocity,
         g.offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
         /* nothing to guard if it is far from the limit for the whole phase */
         if (g.size >= g.offset - ratio * m->swing[i]) {
-            tribo_events_guard_stick(&x->events, i, g);
+            tribo_events_guard_stick(&x->events, i, &g);
         }
     }
+}
+
+/* The velocity v of an open contact is not guarded, but when it touches down its rounding counts. */
+static void note_size(struct exact *x, const struct output *w, double v)
+{
+    struct guard g = {.output = w, .contact = w->contact};
+    tribo_modal_motion_line(&x->motion, w, 1, v, &g.start, &g.ramp);
+    bound_guard(x, &g);
+    x->events.stick_slip.seen[w->contact] = g.size;
 }
 
 /* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
@@ -193,7 +195,7 @@ static void add_limit_guard(struct exact *x, size_t i)
     const struct stick_slip *m = &x->events.stick_slip;
     if (m->swing[i] > 0.0 && !m->holds[i]) {
         const struct guard g = {.offset = x->sys->given_limit[i], .limit = 1.0};
-        tribo_events_guard_limit(&x->events, i, g);
+        tribo_events_guard_limit(&x->events, i, &g);
     }
 }
 
@@ -206,8 +208,10 @@ static void set_guards(struct exact *x, const double *y)
         const struct output *w = &h->output[k];
         const size_t i = w->contact;
         const int of_velocity = k < h->sliding;
-        if (m->slip[i] != 2) {
-            const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+        const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+        if (m->slip[i] == 2) {
+            note_size(x, w, v);
+        } else {
             add_guards(x, w, of_velocity, of_velocity ? v : m->force[i]);
         }
     }
@@ -225,7 +229,8 @@ static int begin(void *motion, double t, const double *y, double *reach)
         return status;
     }
     if (!tribo_modal_motion_reserve(&x->motion, h->harmonics)) {
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonics", h->harmonics);
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", h->harmonics,
+                                 plural(h->harmonics));
     }
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     set_guards(x, y);
@@ -238,7 +243,7 @@ static int transition(void *motion, double tau, size_t columns, double *v)
     if (columns > x->columns) {
         double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
         if (!more) {
-            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", columns);
+            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
         }
         x->work = more;
         x->columns = columns;
@@ -267,8 +272,28 @@ static void destroy(tribo_driver *drv)
     }
 }
 
+/* What the system has become since a driver was created is looked at again by every advance. */
+static int check_system(const tribo_system *sys)
+{
+    if (sys->tables || sys->limits.knots) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "%s follow a table, and method exact takes harmonic ones only: take event or auto",
+                                 sys->tables ? "loads" : "limits");
+    }
+    const size_t i = tribo_system_first_falling(sys);
+    return i == sys->ncontact ? TRIBO_OK
+                              : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                                  "contact %zu has a static limit that falls with the speed, and method exact "
+                                                  "takes such that drop at once only: take event or auto",
+                                                  i);
+}
+
 static int create(tribo_driver *drv)
 {
+    const int unsupported = check_system(drv->sys);
+    if (unsupported) {
+        return unsupported;
+    }
     struct exact *x = calloc(1, sizeof *x);
     drv->own = x;
     if (!x) {
@@ -279,8 +304,7 @@ static int create(tribo_driver *drv)
     if (status) {
         return status;
     }
-    x->events.search.go = go;
-    x->events.search.read = read_guard;
+    x->events.search.look = look;
     x->events.search.bound = bound;
     x->events.search.motion = x->events.motion = x;
     x->events.begin = begin;
@@ -298,14 +322,8 @@ static int open_events(tribo_driver *drv, struct events **events)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
-    if (sys->tables || sys->limits.knots) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes harmonic loads and limits only; method event takes tables too");
-    }
-    if (tribo_system_falls(sys)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                 "method exact takes static limits that drop at once; method event takes such that fall with "
-                                 "the speed too");
+    if (check_system(sys)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_message(sys->contacts));
     }
     if (x->revision != sys->revision) {
         drop_helds(x);

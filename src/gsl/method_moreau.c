@@ -6,15 +6,16 @@
 #include <string.h>
 
 #include "breakaway.h"
+#include "delassus.h"
 #include "elastic.h"
 #include "hidden.h"
 #include "step_band.h"
 #include "step_form.h"
 #include "step_matrix.h"
 
-/* For steps of length h: the matrix A, A^-1 B, and the contacts that see it.
+/* For steps of length h: the matrix S of forces over accelerations, S^-1 J', and the contacts that see J S^-1 J'.
  *
- * What has no mass starts each step without velocity, and what it ends it with is twice the mean; its rows of A are K. Elastic
+ * What has no mass starts each step without velocity, and what it ends it with is twice the mean. Elastic
  * contacts have in every step the mean of their forces at both ends, of which the later is within the limit, and slides by what J
  * moves over the step: half the later force is what the contacts find, within half the limit. */
 struct moreau {
@@ -27,8 +28,8 @@ struct moreau {
     double *push;             /* [ndof] for that */
     double *limit;            /* [ncontact] */
     double *ratio, *velocity; /* [ncontact] of static limits */
-    size_t statics;           /* revision of the system's contacts that these came from */
-    int breaks, tell;         /* some limits are static; contacts have not got them yet */
+    int taken, tell, breaks;  /* these are known; contacts have not got them yet; some are static */
+    size_t settings_taken;    /* revision of the system's contacts that these came from */
     double *load;             /* [ndof] at the end of the step before */
     double *spring, *rate;    /* [ncontact] forces of elastic contacts at the end of the step before; workspace */
     double *work;             /* [ndof] */
@@ -74,7 +75,7 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* A is diagonal: the operator is that of the bodies one by one. */
+/* S is diagonal: the operator is that of the bodies one by one. */
 static int set_bodies(struct moreau *m, const tribo_system *sys, const double *own)
 {
     const struct matrix *j = &sys->direction;
@@ -143,51 +144,53 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     return !status;
 }
 
-/* A^-1 B is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
+/* S^-1 J' is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
 static int keeps_response(const struct moreau *m, const tribo_system *sys)
 {
     return !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
 }
 
-/* The force of contact i pulls at what has no mass. */
-static void pull_massless(const tribo_system *sys, double h, size_t i, double *x)
-{
-    const struct matrix *j = &sys->direction;
-    for (size_t k = j->first[i]; sys->massless.count && k < j->first[i + 1]; k++) {
-        x[j->col[k]] = tribo_has_mass(&sys->massless, j->col[k]) ? x[j->col[k]] : 4.0 / (h * h) * j->val[k];
-    }
-}
-
-/* r [ncontact][ncontact] = J A^-1 B, and own as in hidden.h; b = B'. */
-static void find_operator(struct moreau *m, const tribo_system *sys, double h, const struct matrix *b, double *r, double *own)
+/* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] = S^-1 J'. */
+static void find_by_halves(const struct moreau *m, const tribo_system *sys, double *x, double *r, double *own)
 {
     const size_t n = sys->ndof, c = sys->ncontact;
-    const struct matrix *direction = &sys->direction;
-    double *x = m->push;
-    for (size_t j = 0; j < c; j++) {
-        memset(x, 0, n * sizeof *x);
-        for (size_t k = b->first[j]; k < b->first[j + 1]; k++) {
-            x[b->col[k]] = b->val[k];
+    for (size_t i = 0; i < c; i++) {
+        tribo_delassus_put_row(&sys->direction, i, x + i * n);
+        tribo_step_matrix_half_solve(&m->matrix, x + i * n);
+        for (size_t k = 0; k <= i; k++) {
+            r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
         }
-        pull_massless(sys, h, j, x);
-        tribo_step_matrix_solve(&m->matrix, n, x);
-        for (size_t i = 0; i < c; i++) {
-            r[i * c + j] = tribo_matrix_row_dot(direction, i, x);
-        }
-        for (size_t k = direction->first[j]; k < direction->first[j + 1]; k++) {
-            own[k] = x[direction->col[k]];
-        }
-        if (m->response) {
-            memcpy(m->response + j * n, x, n * sizeof *x);
-        }
+    }
+    for (size_t i = 0; i < c; i++) {
+        tribo_step_matrix_half_solve_back(&m->matrix, x + i * n);
+        tribo_delassus_note_own(&sys->direction, i, x + i * n, own);
     }
 }
 
-/* The factor, A^-1 B, and a context with the operator J A^-1 B. */
+static int solve_steps(const void *matrix, size_t count, double *x)
+{
+    return tribo_step_matrix_solve(matrix, count, x);
+}
+
+/* r [ncontact][ncontact] = J S^-1 J', and own as in hidden.h. 0 if out of memory. */
+static int find_operator(const struct moreau *m, const tribo_system *sys, double *r, double *own)
+{
+    const int symmetric = tribo_step_matrix_has_halves(&m->matrix);
+    if (symmetric && m->response) {
+        find_by_halves(m, sys, m->response, r, own);
+        return 1;
+    }
+    const int done = tribo_delassus_by_columns(&sys->direction, solve_steps, &m->matrix, m->response, r, own);
+    if (symmetric) {
+        tribo_even_out(sys->ncontact, r);
+    }
+    return done;
+}
+
+/* The factor, S^-1 J', and a context with the operator J S^-1 J'. */
 static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
 {
     const size_t c = sys->ncontact;
-    struct matrix b = {0};
     int status = tribo_step_matrix_factorize(&m->matrix, sys, h);
     if (status) {
         return status;
@@ -196,23 +199,20 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     free(m->response);
     m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
-    if (r && own && (m->response || !keeps) && make_contacts(m, sys) && tribo_matrix_transpose(&b, &sys->response)) {
-        find_operator(m, sys, h, &b, r, own);
-        status = set_operator(m, sys, r, own, h);
-    } else {
-        status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
-    }
-    tribo_matrix_free(&b);
+    const int done = r && own && (m->response || !keeps) && make_contacts(m, sys) && find_operator(m, sys, r, own);
+    status = done ? set_operator(m, sys, r, own, h)
+                  : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
     free(r);
     free(own);
     m->whole = !status;
     return status;
 }
 
-/* u += h A^-1 B f. */
+/* u += h S^-1 J' f. */
 static void push(struct moreau *m, const tribo_system *sys, double h, const double *f, double *u)
 {
     const size_t n = sys->ndof;
+    const struct matrix *j = &sys->direction;
     for (size_t i = 0; m->response && i < sys->ncontact; i++) {
         for (size_t d = 0; d < n; d++) {
             u[d] += h * f[i] * m->response[i * n + d];
@@ -220,8 +220,12 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
     }
     if (!m->response) {
         memset(m->push, 0, n * sizeof *m->push);
-        tribo_matrix_multiply_add(&sys->response, h, f, m->push);
-        tribo_step_matrix_solve(&m->matrix, n, m->push);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+                m->push[j->col[k]] += h * f[i] * j->val[k];
+            }
+        }
+        tribo_step_matrix_solve(&m->matrix, 1, m->push);
         tribo_add(u, 1.0, m->push, n);
     }
 }
@@ -234,7 +238,7 @@ static int prepare(struct moreau *m, const tribo_system *sys, double h)
     m->whole = 0;
     m->held.n = 0;
     int status = planar_of(sys->contacts) ? TRIBO_OK : tribo_step_band_create(&m->held, sys, h, &where);
-    status = status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_singular(sys, h, where)
+    status = status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_indefinite(sys, h, where)
              : status                       ? tribo_step_matrix_no_memory(sys)
              : m->held.n                    ? TRIBO_OK
                                             : prepare_whole(m, sys, h);
@@ -252,28 +256,28 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
 }
 
+/* Limits as the contacts of a step have them, and static ones, if they may be others than in the step before. */
 static void take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_revision(sys->contacts);
+    if (m->taken && m->settings_taken == revision) {
+        return;
+    }
+    m->taken = m->tell = 1;
+    m->settings_taken = revision;
+    m->breaks = 0;
     tribo_get_limit(sys->contacts, m->limit);
+    tribo_get_static(sys->contacts, m->ratio, m->velocity);
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->limit[i] *= tribo_massless_touches(&sys->massless, i) ? 0.5 : 1.0;
-    }
-    if (m->statics != revision) {
-        m->statics = revision;
-        m->breaks = 0;
-        m->tell = 1;
-        tribo_get_static(sys->contacts, m->ratio, m->velocity);
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            m->breaks |= m->ratio[i] > 1.0;
-        }
+        m->breaks |= m->ratio[i] > 1.0;
     }
 }
 
 static void give_limits(struct moreau *m, const tribo_system *sys)
 {
-    tribo_set_limit(m->contacts, m->limit);
     if (m->tell) {
+        tribo_set_limit(m->contacts, m->limit);
         tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
         m->tell = 0;
     }
@@ -287,20 +291,8 @@ static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
         y[sys->ndof + d] = tribo_has_mass(&sys->massless, d) ? y[sys->ndof + d] : 0.0;
     }
     if (!m->common.goes_on) {
-        tribo_get_limit(sys->contacts, m->limit);
-        tribo_elastic_enter(sys, m->limit, m->work, m->spring, y);
-    }
-}
-
-/* What K makes of places q in the middle of a step. */
-static void follow_statically(struct moreau *m, const tribo_system *sys, double h, const double *q, double *du)
-{
-    if (sys->massless.count) {
-        memset(m->work, 0, sys->ndof * sizeof *m->work);
-        tribo_matrix_multiply_add(&sys->elastic, -4.0 / h, q, m->work);
-    }
-    for (size_t d = 0; sys->massless.count && d < sys->ndof; d++) {
-        du[d] = tribo_has_mass(&sys->massless, d) ? du[d] : m->work[d];
+        tribo_get_limit(sys->contacts, m->rate);
+        tribo_elastic_enter(sys, m->rate, m->work, m->spring, y);
     }
 }
 
@@ -343,8 +335,20 @@ static void end_elastic(struct moreau *m, const tribo_system *sys, double *y)
 
 /* ------------------------------------------------------------------------------------------------------------ a step */
 
-/* What loads and structure do to the velocities in a step, but for the inverse of A; s->u is where half of a step leads to. */
-static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *du)
+/* Of what M is to be multiplied with, or of the rest. */
+static void pull_back(const tribo_system *sys, int weighed, double h, const double *q, const double *u, double *p)
+{
+    const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
+    if (k.weighed == weighed) {
+        tribo_matrix_multiply_add(k.of, -h, q, p);
+    }
+    if (c.weighed == weighed && c.of->rows) {
+        tribo_matrix_multiply_add(c.of, -h, u, p);
+    }
+}
+
+/* The impulse p of loads and structure in a step; s->u is where half of a step leads to. */
+static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *p)
 {
     struct step_form *s = &m->common;
     const size_t n = sys->ndof;
@@ -354,17 +358,18 @@ static void find_push(struct moreau *m, tribo_system *sys, double t, double next
     }
     for (size_t i = 0; i < n; i++) {
         s->u[i] = from[i] + 0.5 * h * u[i];
-        du[i] = 0.5 * h * m->load[i];
+        p[i] = 0.5 * h * m->load[i];
     }
     find_load(m, sys, next);
     for (size_t i = 0; i < n; i++) {
-        du[i] += 0.5 * h * m->load[i];
+        p[i] += 0.5 * h * m->load[i];
     }
-    tribo_matrix_multiply_add(&sys->stiffness, -h, s->u, du);
-    if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -h, u, du);
+    pull_back(sys, 1, h, s->u, u, p);
+    if (sys->mass.rows && !sys->mass.identity && !sys->unsolved) {
+        tribo_matrix_multiply(&sys->mass, p, m->work);
+        memcpy(p, m->work, n * sizeof *p);
     }
-    follow_statically(m, sys, h, s->u, du);
+    pull_back(sys, 0, h, s->u, u, p);
     sys->evaluations++;
 }
 
@@ -373,7 +378,7 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
 {
     struct step_form *s = &m->common;
     const size_t n = sys->ndof;
-    tribo_step_matrix_solve(&m->matrix, n, du);
+    tribo_step_matrix_solve(&m->matrix, 1, du);
     for (size_t i = 0; i < n; i++) {
         s->u[i] = u[i] + du[i];
     }
@@ -465,9 +470,10 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
 {
     struct moreau *m = drv->own;
     struct step_form *s = &m->common;
+    static const struct fixed_method method = {moreau_step, NULL, 1, {1.0, 0.0}};
     s->goes_on = continues && s->goes_on;
     tribo_step_form_start(s, drv->sys);
-    return tribo_driver_fixed_steps(drv, t, t1, y, moreau_step);
+    return tribo_driver_fixed_steps(drv, t, t1, y, &method);
 }
 
 const struct method tribo_method_moreau_fixed = {

@@ -14,11 +14,12 @@
  * + ramp t. */
 struct output {
     size_t contact;
-    double *cr, *ci;          /* [exponents] c_p */
-    double *size;             /* [exponents] |c_p| */
-    double *bend;             /* [exponents] |c_p| |lambda_p|^6 */
-    double *rr, *ri;          /* [harmonics] response */
-    double *wave, *wave_bend; /* [harmonics] its size, and that of its sixth derivative */
+    double *cr, *ci;               /* [exponents] c_p, */
+    double *c1r, *c1i, *c2r, *c2i; /* and c_p lambda_p, c_p lambda_p^2 */
+    double *size;                  /* [exponents] |c_p| */
+    double *bend;                  /* [exponents] |c_p| |lambda_p|^6 */
+    double *rr, *ri;               /* [harmonics] response */
+    double *wave, *wave_bend;      /* [harmonics] its size, and that of its sixth derivative */
     double *on_rate; /* [modes] held contacts: what a constant eta' adds to the ramp; sliding ones: what a constant eta'' does */
     double ramp;     /* from belts of constant speed */
 };
@@ -52,15 +53,16 @@ struct modal {
     double *gr, *gi, *xr, *xi; /* [harmonics][modes] forcing and response of eta */
     double *yr, *yi;           /* [given][moving] velocities from the belts that hold */
     double *y0;                /* [moving] the same from belts of constant speed */
-    double *drag;              /* [modes] forcing by damping, from belts of constant speed */
+    double *constant;          /* [modes] forcing by constant loads, and by damping, from belts of constant speed */
     double *ramp;              /* [modes] forcing per unit of time, from belts of constant speed */
     int any_resonant;
     unsigned char *resonant; /* [harmonics][modes] the response is not in x, since it would be close to infinite */
 
     size_t outputs, sliding; /* the first ones are of sliding contacts, the others of held ones */
     struct output *output;
-    double fastest; /* largest |lambda| */
-    void *memory;   /* all arrays */
+    double fastest;         /* largest |lambda| */
+    double quickest, decay; /* the largest of these and the frequencies of harmonics; the largest decay rate */
+    void *memory;           /* all arrays */
     size_t bytes;
 };
 

@@ -283,8 +283,13 @@ static int build(struct modal_build *b, const signed char *mode, const unsigned 
     for (size_t p = 0; h->size && p < h->exponents; p++) {
         h->size[p] = hypot(h->lr[p], h->li[p]);
         h->fastest = greater(h->fastest, h->size[p]);
+        h->decay = greater(h->decay, -h->lr[p]);
     }
     const int done = h->size && tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b);
+    h->quickest = h->fastest;
+    for (size_t s = 0; done && s < h->harmonics; s++) {
+        h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
+    }
     return done ? TRIBO_OK : b->status ? b->status : TRIBO_ERR_MEMORY;
 }
 

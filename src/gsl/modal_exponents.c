@@ -187,7 +187,7 @@ static int exponents_coupled(struct modal_build *b)
     first_order(h, s, a);
     int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_system_fail(b->sys, status, "method exact: exponents of %zu modes that damping couples: %s", m,
+        return tribo_system_fail(b->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m, plural(m),
                                  tribo_strerror(status));
     }
     status = status ? status : invert(b, x, a, pivot, inverse);

@@ -1,6 +1,8 @@
 #include "modal_motion.h"
 #include "divided.h"
+#include "turn.h"
 #include "../common/real.h"
+#include "../common/simd.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -9,28 +11,30 @@
 /* Over a time this short, in terms of the fastest exponent, three terms of a series are all of it. */
 #define CLOSE 1e-6
 
-/* Over a time this short a change is less than what it is a difference of. */
-#define SHORT 0.1
+/* And over one as short as this an exponent is hardly another one. */
+#define LITTLE 0.1
 
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
 {
     const size_t n = sys->ndof;
-    double **const by_mode[] = {&x->eta, &x->rate, &x->off, &x->vel, &x->acc, &x->now, &x->work, &x->drift_rate, &x->dq};
-    double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1r, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
-    double *work = malloc((9 * n + 20 * n + 3 * sys->ncontact + 1) * sizeof *work);
+    double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
+                                &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
+    double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
+    const size_t modes = sizeof by_mode / sizeof *by_mode, exponents = sizeof by_exponent / sizeof *by_exponent;
+    double *work = malloc(((modes + 2 * exponents) * n + 3 * sys->ncontact + 1) * sizeof *work);
     if (!work) {
         return 0;
     }
-    for (size_t k = 0; k < 9; k++) {
+    for (size_t k = 0; k < modes; k++) {
         *by_mode[k] = work + k * n;
     }
-    for (size_t k = 0; k < 10; k++) {
-        *by_exponent[k] = work + (9 + 2 * k) * n;
+    for (size_t k = 0; k < exponents; k++) {
+        *by_exponent[k] = work + (modes + 2 * k) * n;
     }
     x->sys = sys;
-    x->start = work + 29 * n;
+    x->start = work + (modes + 2 * exponents) * n;
     x->ramp = x->start + sys->ncontact;
-    x->steady = x->ramp + sys->ncontact;
+    x->room_for_steady = x->ramp + sys->ncontact;
     x->contacts = contacts;
     return 1;
 }
@@ -47,7 +51,7 @@ int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics)
     if (room <= x->room) {
         return 1;
     }
-    double *more = realloc(x->cos_t, 4 * room * sizeof *more);
+    double *more = realloc(x->cos_t, 5 * room * sizeof *more);
     if (!more) {
         return 0;
     }
@@ -56,14 +60,8 @@ int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics)
     x->sin_t = more + room;
     x->cos_0 = more + 2 * room;
     x->sin_0 = more + 3 * room;
+    x->side = more + 4 * room;
     return 1;
-}
-
-/* How many times a harmonic is in what happens: those of limits as many times as the force of their contact follows it. */
-static double side_of(const struct modal_motion *x, size_t s)
-{
-    const size_t contact = x->h->forcing[s].contact;
-    return contact < x->sys->ncontact ? tribo_stick_slip_follows(x->contacts, contact) : 1.0;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- later on */
@@ -90,18 +88,19 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
     const double yr = zi / nu, yi = -zr / nu; /* times -i/nu */
     const double ct = x->cos_t[s], st = x->sin_t[s];
     const double force = -(gr * ct - gi * st) / nu, rate = omega * (gr * st + gi * ct) / nu;
-    const double y1r = h->lr[p] * yr - nu * yi, y1i = h->lr[p] * yi + nu * yr + force;
     x->wr[p] += yr;
     x->wi[p] += yi;
-    x->w1r[p] += y1r;
-    x->w1i[p] += y1i;
-    x->w2r[p] += h->lr[p] * y1r - nu * y1i;
-    x->w2i[p] += h->lr[p] * y1i + nu * y1r + rate;
+    x->w1i[p] += force;
+    x->w2r[p] -= nu * force;
+    x->w2i[p] += h->lr[p] * force + rate;
 }
 
 static void for_resonances(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
+    for (size_t p = 0; p < h->exponents && h->any_resonant; p++) {
+        x->w1i[p] = x->w2r[p] = x->w2i[p] = 0.0;
+    }
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         for (size_t p = 0; p < h->exponents; p++) {
             if (h->resonant[s * h->modes + h->owner[p]]) {
@@ -114,10 +113,12 @@ static void for_resonances(struct modal_motion *x, double tau)
 /* e^{lambda delta} of an exponent. */
 static void grow(const struct modal *h, size_t p, double delta, double *re, double *im)
 {
-    const double size = h->lr[p] != 0.0 ? exp(h->lr[p] * delta) : 1.0, angle = h->li[p] * delta;
-    const double c = cos(angle), s = sin(angle); /* at once, where the compiler can */
-    *re = size * c;
-    *im = size * s;
+    tribo_turn(h->li[p] * delta, re, im);
+    if (h->lr[p] != 0.0) {
+        const double size = exp(h->lr[p] * delta);
+        *re *= size;
+        *im *= size;
+    }
 }
 
 /* The same where |lambda delta| is tiny. */
@@ -128,54 +129,114 @@ static void grow_little(const struct modal *h, size_t p, double delta, double *r
     *im = y + x * y;
 }
 
-/* From t0, or, if that is close, from where it was. */
-void tribo_modal_motion_go(struct modal_motion *x, double tau)
+/* Turns the harmonics that were at `from` (cosines, sines) on by a time, a little one or not; those of single contacts are what
+ * the system's are. */
+static void turn_harmonics(struct modal_motion *x, const double *const *from, double delta, int little)
 {
     const struct modal *h = x->h;
-    const double delta = tau - x->tau;
-    const int close = fabs(delta) * x->fastest < CLOSE && !h->any_resonant;
-    const double *cos_from = close ? x->cos_t : x->cos_0, *sin_from = close ? x->sin_t : x->sin_0;
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double angle = h->forcing[s].omega * (close ? delta : tau);
-        /* far ones from t0, since what rounding leaves of a late time must not tremble within a phase */
-        const double c = close ? 1.0 - 0.5 * angle * angle : cos(angle), d = close ? angle : sin(angle);
-        const double ct = cos_from[s], st = sin_from[s];
+    for (size_t s = 0; s < h->given; s++) {
+        const double angle = h->forcing[s].omega * delta, ct = from[0][s], st = from[1][s];
+        double c = 1.0 - 0.5 * angle * angle, d = angle;
+        if (!little) {
+            tribo_turn(angle, &c, &d);
+        }
         x->cos_t[s] = c * ct - d * st;
         x->sin_t[s] = d * ct + c * st;
     }
-    for (size_t p = 0; p < h->exponents; p++) {
-        const double lr = h->lr[p], li = h->li[p], zr = close ? x->wr[p] : x->zr[p], zi = close ? x->wi[p] : x->zi[p];
-        double er, ei;
-        (close ? grow_little : grow)(h, p, close ? delta : tau, &er, &ei);
-        const double wr = zr * er - zi * ei, wi = zr * ei + zi * er;
-        const double w1r = lr * wr - li * wi, w1i = lr * wi + li * wr;
-        x->wr[p] = wr;
-        x->wi[p] = wi;
-        x->w1r[p] = w1r;
-        x->w1i[p] = w1i;
-        x->w2r[p] = lr * w1r - li * w1i;
-        x->w2i[p] = lr * w1i + li * w1r;
+    for (size_t s = h->given; s < h->harmonics; s++) {
+        x->cos_t[s] = x->side[s] * x->cos_t[h->forcing[s].harmonic];
+        x->sin_t[s] = x->side[s] * x->sin_t[h->forcing[s].harmonic];
     }
+}
+
+/* Lets exponentials that were at `from` (real, imaginary parts) grow for a time, a little one or not. */
+static void grow_all(struct modal_motion *x, const double *const *from, double delta, int little)
+{
+    const struct modal *h = x->h;
+    for (size_t p = 0; p < h->exponents; p++) {
+        const double zr = from[0][p], zi = from[1][p];
+        double er, ei;
+        if (little) {
+            grow_little(h, p, delta, &er, &ei);
+        } else {
+            grow(h, p, delta, &er, &ei);
+        }
+        x->wr[p] = zr * er - zi * ei;
+        x->wi[p] = zr * ei + zi * er;
+    }
+}
+
+/* From t0, or, if that is close, from where it was. Far ones from t0, since what rounding leaves of a late time must not tremble
+ * within a phase. */
+void tribo_modal_motion_go(struct modal_motion *x, double tau)
+{
+    const double delta = tau - x->tau;
+    const int little = fabs(delta) * x->h->quickest < CLOSE && !x->h->any_resonant, on = little && !x->unmoved;
+    const double *const wave[] = {on ? x->cos_t : x->cos_0, on ? x->sin_t : x->sin_0};
+    const double *const z[] = {on ? x->wr : x->zr, on ? x->wi : x->zi};
+    turn_harmonics(x, wave, little ? delta : tau, little);
+    grow_all(x, z, little ? delta : tau, little);
     for_resonances(x, tau);
     x->tau = tau;
+    x->unmoved = 0;
+}
+
+enum { LANES = 4 }; /* side by side, since one sum would wait for itself */
+
+/* What n exponentials make of an output, as far as they fill lanes: v, v', v'' += Re(c w), Re(c lambda w), Re(c lambda^2 w).
+ * Returns how many are done. */
+TRIBO_SIMD static size_t add_lanes(const struct output *c, size_t n, const double *restrict wr, const double *restrict wi,
+                                   double *restrict v)
+{
+    double g[LANES] = {0.0}, d[LANES] = {0.0}, e[LANES] = {0.0};
+    size_t p = 0;
+    for (; p + LANES <= n; p += LANES) {
+        const double *restrict r = wr + p, *restrict i = wi + p;
+        const double *restrict cr = c->cr + p, *restrict ci = c->ci + p, *restrict c1r = c->c1r + p, *restrict c1i = c->c1i + p,
+                               *restrict c2r = c->c2r + p, *restrict c2i = c->c2i + p;
+        for (size_t k = 0; k < LANES; k++) {
+            g[k] += cr[k] * r[k] - ci[k] * i[k];
+            d[k] += c1r[k] * r[k] - c1i[k] * i[k];
+            e[k] += c2r[k] * r[k] - c2i[k] * i[k];
+        }
+    }
+    v[0] += (g[0] + g[2]) + (g[1] + g[3]);
+    v[1] += (d[0] + d[2]) + (d[1] + d[3]);
+    v[2] += (e[0] + e[2]) + (e[1] + e[3]);
+    return p;
+}
+
+/* What resonances add to the derivatives of an output. */
+static void add_resonances(const struct modal_motion *x, const struct output *w, double *v)
+{
+    for (size_t p = 0; p < x->h->exponents; p++) {
+        v[1] -= w->ci[p] * x->w1i[p];
+        v[2] += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
+    }
 }
 
 struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, double start, double ramp)
 {
-    double v0 = start + ramp * x->tau, v1 = ramp, v2 = 0.0;
-    for (size_t p = 0; p < x->h->exponents; p++) {
-        v0 += w->cr[p] * x->wr[p] - w->ci[p] * x->wi[p];
-        v1 += w->cr[p] * x->w1r[p] - w->ci[p] * x->w1i[p];
-        v2 += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
+    const struct modal *h = x->h;
+    const size_t n = h->exponents;
+    double v[] = {start + ramp * x->tau, ramp, 0.0};
+    for (size_t p = n < LANES ? 0 : add_lanes(w, n, x->wr, x->wi, v); p < n; p++) {
+        const double wr = x->wr[p], wi = x->wi[p];
+        v[0] += w->cr[p] * wr - w->ci[p] * wi;
+        v[1] += w->c1r[p] * wr - w->c1i[p] * wi;
+        v[2] += w->c2r[p] * wr - w->c2i[p] * wi;
     }
-    for (size_t s = 0; s < x->h->harmonics; s++) {
-        const double omega = x->h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
-        const double re = w->rr[s] * ct - w->ri[s] * st, im = -w->rr[s] * st - w->ri[s] * ct;
-        v0 += re;
-        v1 += omega * im;
-        v2 -= omega * omega * re;
+    if (h->any_resonant) {
+        add_resonances(x, w, v);
     }
-    return (struct sample){v0, v1, v2};
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
+        const double re = w->rr[s] * ct - w->ri[s] * st, im = w->rr[s] * st + w->ri[s] * ct;
+        v[0] += re;
+        v[1] -= omega * im;
+        v[2] -= omega * omega * re;
+    }
+    return (struct sample){v[0], v[1], v[2]};
 }
 
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
@@ -229,59 +290,50 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
         *size += w->size[p] * x->growth[p];
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double side = fabs(side_of(x, s));
+        const double side = fabs(x->side[s]);
         *size += side * w->wave[s];
         *bend += side * w->wave_bend[s];
     }
 }
 
-/* How far what goes as e^{(lr + li i) t} has come, from z to w: way [2]; alone: nothing else is in w. In a short time it is
- * what is left of far larger numbers, where a limit far above all other forces stops a contact. */
-static inline void find_way(int alone, double tau, double lr, double li, const double *z, const double *w, double *way)
+/* By how much an exponent has moved where go() was. In a time short beside its own it moves by little of what it is, which with a
+ * load far above its frequency is all that there is. */
+static double complex moved(const struct modal_motion *x, size_t p)
 {
-    way[0] = w[0] - z[0];
-    way[1] = w[1] - z[1];
-    if (alone && (fabs(lr) + fabs(li)) * tau < SHORT) {
-        const double complex turn = tau * (lr + li * I), change = (z[0] + z[1] * I) * (turn * tribo_exp_1(turn));
-        way[0] = creal(change);
-        way[1] = cimag(change);
+    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I), z = x->zr[p] + x->zi[p] * I;
+    if (x->tau * x->h->size[p] < LITTLE && !x->h->any_resonant) {
+        return z * lambda_tau * tribo_exp_1(lambda_tau);
     }
+    return x->wr[p] + x->wi[p] * I - z;
 }
 
-/* By how much eta has changed (into now), and eta' (into work), where go() was. */
+/* By how much eta has changed (into now), and eta' (into work) where go() was. */
 static void amplitudes(struct modal_motion *x)
 {
     const struct modal *h = x->h;
     const size_t m = h->modes, e = h->exponents;
     for (size_t k = 0; k < m; k++) {
         const double drift = h->drifts[k] ? x->drift_rate[k] : 0.0;
-        x->now[k] = x->tau * (x->vel[k] + 0.5 * x->acc[k] * x->tau + drift);
+        x->now[k] = x->tau * (x->vel[k] + drift + 0.5 * x->acc[k] * x->tau);
         x->work[k] = x->vel[k] + x->acc[k] * x->tau + drift;
     }
-    for (size_t p = 0; p < e; p++) {
-        const double z[2] = {x->zr[p], x->zi[p]}, w[2] = {x->wr[p], x->wi[p]};
-        double way[2];
-        /* resonance adds to z from nothing on */
-        find_way(!h->any_resonant, x->tau, h->lr[p], h->li[p], z, w, way);
-        const double ur = h->lr[p] * x->wr[p] - h->li[p] * x->wi[p], ui = h->lr[p] * x->wi[p] + h->li[p] * x->wr[p];
-        if (h->owner) {
-            x->now[h->owner[p]] += way[0];
-            x->work[h->owner[p]] += ur;
-        }
-        for (size_t k = 0; !h->owner && k < m; k++) {
+    for (size_t p = 0; h->owner && p < e; p++) {
+        x->now[h->owner[p]] += creal(moved(x, p));
+        x->work[h->owner[p]] += h->lr[p] * x->wr[p] - h->li[p] * x->wi[p];
+    }
+    for (size_t p = 0; !h->owner && p < e; p++) {
+        const double complex z = moved(x, p);
+        for (size_t k = 0; k < m; k++) {
             const double rr = h->rr[k * e + p], ri = h->ri[k * e + p];
-            x->now[k] += rr * way[0] - ri * way[1];
-            x->work[k] += rr * ur - ri * ui;
+            x->now[k] += rr * creal(z) - ri * cimag(z);
+            x->work[k] += rr * (h->lr[p] * x->wr[p] - h->li[p] * x->wi[p]) - ri * (h->lr[p] * x->wi[p] + h->li[p] * x->wr[p]);
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {
         const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
-        const double z[2] = {x->cos_0[s], x->sin_0[s]}, w[2] = {ct, st};
-        double way[2];
-        find_way(1, x->tau, 0.0, omega, z, w, way);
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * way[0] - xi * way[1];
+            x->now[k] += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
             x->work[k] -= omega * (xr * st + xi * ct);
         }
     }
@@ -296,7 +348,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     amplitudes(x);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
-        memcpy(to, from, tribo_system_dimension(sys) * sizeof *to);
+        memcpy(to, from, (2 * n + 1) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         double dq = h->y0[i] * tau, u = h->y0[i];
@@ -309,9 +361,9 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
         to[n + h->dof[i]] = u;
     }
     for (size_t k = 0; k < h->modes; k++) {
-        const double *phi = h->phi + k * h->moving;
+        const double *phi = h->phi + k * h->moving, change = x->now[k];
         for (size_t i = 0; i < h->moving; i++) {
-            x->dq[h->dof[i]] += phi[i] * x->now[k];
+            x->dq[h->dof[i]] += phi[i] * change;
             to[n + h->dof[i]] += phi[i] * x->work[k];
         }
     }
@@ -342,95 +394,129 @@ static void find_constant(struct modal_motion *x, const tribo_system *sys, const
 {
     const struct modal *h = x->h;
     const size_t m = h->modes;
-    memcpy(x->now, h->drag, m * sizeof *x->now);
-    for (size_t o = 0; o < h->outputs; o++) {
+    for (size_t k = 0; k < m; k++) {
+        x->now[k] = h->constant[k];
+    }
+    for (size_t o = 0; m > 0 && o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         const double push = o < h->sliding ? x->steady[out->contact] : -offset(sys, out->contact, y);
         for (size_t k = 0; k < m; k++) {
             x->now[k] += push * out->on_rate[k];
         }
     }
-    for (size_t s = 0; s < h->given; s++) {
-        for (size_t k = 0; h->forcing[s].omega == 0.0 && k < m; k++) {
-            x->now[k] += h->gr[s * m + k];
-        }
-    }
 }
 
 /* The forces of contacts but for harmonics of limits that they follow. */
-static void find_steady_forces(struct modal_motion *x, const tribo_system *sys)
+static const double *find_steady_forces(const struct modal_motion *x, const tribo_system *sys)
 {
-    memcpy(x->steady, x->contacts->force, sys->ncontact * sizeof *x->steady);
+    double *steady = x->room_for_steady;
     for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
         double limit = sys->given_limit[i];
         for (size_t s = 0; s < sys->harmonics; s++) {
             const struct harmonic *w = &sys->harmonic[s];
             limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
         }
-        x->steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
+        steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
     }
+    return sys->limit_harmonics ? steady : x->contacts->force;
 }
 
-/* Amplitudes of eta at t0, split into what the right-hand side makes of it and exponentials. */
-static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
+/* The harmonics at t0, those of limits as many times as the force of their contact follows them. */
+static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
     const struct modal *h = x->h;
-    const size_t n = sys->ndof, m = h->modes;
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
-        const double side = side_of(x, s);
+        const double side = s < h->given ? 1.0 : tribo_stick_slip_follows(x->contacts, f->contact);
+        x->side[s] = side;
+        tribo_system_turn(sys, f->harmonic);
         x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
         x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
     }
-    for (size_t k = 0; k < m; k++) {
+}
+
+/* Amplitudes of eta at t0. */
+static void find_amplitudes(struct modal_motion *x, const double *y)
+{
+    const struct modal *h = x->h;
+    const double *velocity = y + x->sys->ndof;
+    for (size_t k = 0; k < h->modes; k++) {
         const double *psi = h->psi + k * h->moving;
         double q = 0.0, u = 0.0;
         for (size_t i = 0; i < h->moving; i++) {
             q += psi[i] * y[h->dof[i]];
-            u += psi[i] * y[n + h->dof[i]];
+            u += psi[i] * velocity[h->dof[i]];
         }
         x->eta[k] = q;
         x->rate[k] = u;
     }
-    find_steady_forces(x, sys);
+}
+
+/* What the constant part of the right-hand side, and what of it grows with time, make of mode k. */
+static void find_course(struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    const double force = x->now[k], stiffness = h->omega2[k];
+    x->off[k] = x->vel[k] = x->acc[k] = 0.0;
+    if (h->drifts[k]) {
+        x->acc[k] = force;
+    } else if (stiffness == 0.0) {
+        x->vel[k] = force / h->damping[k];
+    } else {
+        x->vel[k] = h->ramp[k] / stiffness;
+        x->off[k] = force / stiffness;
+    }
+}
+
+/* What damping of that makes of a mode with stiffness. */
+static void correct_course(struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    const size_t m = h->modes;
+    if (h->omega2[k] != 0.0) {
+        x->off[k] -= (h->coupling ? tribo_dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
+    }
+}
+
+/* What all of that, and harmonics, do not explain of mode k at t0. */
+static void find_rest(struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    double q = x->off[k], u = x->vel[k];
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double xr = h->xr[s * h->modes + k], xi = h->xi[s * h->modes + k];
+        q += xr * x->cos_0[s] - xi * x->sin_0[s];
+        u -= h->forcing[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
+    }
+    x->drift[k] = x->eta[k] - q;
+    x->drift_rate[k] = x->rate[k] - u;
+}
+
+/* Splits the motion into what the right-hand side makes of it and exponentials. */
+static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
+{
+    const struct modal *h = x->h;
+    const size_t m = h->modes;
+    start_harmonics(x, sys);
+    x->steady = find_steady_forces(x, sys);
+    find_amplitudes(x, y);
     find_constant(x, sys, y);
     for (size_t k = 0; k < m; k++) {
-        const double force = x->now[k];
-        x->off[k] = x->vel[k] = x->acc[k] = 0.0;
-        if (h->drifts[k]) {
-            x->acc[k] = force;
-        } else if (h->omega2[k] == 0.0) {
-            x->vel[k] = force / h->damping[k];
-        } else {
-            x->vel[k] = h->ramp[k] / h->omega2[k];
-            x->off[k] = force / h->omega2[k];
-        }
+        find_course(x, k);
     }
     for (size_t k = 0; k < m; k++) {
-        if (h->omega2[k] != 0.0) {
-            x->off[k] -= (h->coupling ? tribo_dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
-        }
-    }
-    for (size_t k = 0; k < m; k++) {
-        double q = x->off[k], u = x->vel[k];
-        for (size_t s = 0; s < h->harmonics; s++) {
-            const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            q += xr * x->cos_0[s] - xi * x->sin_0[s];
-            u -= h->forcing[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
-        }
-        x->now[k] = x->eta[k] - q;
-        x->work[k] = x->rate[k] - u;
-        x->drift_rate[k] = x->work[k];
+        correct_course(x, k);
+        find_rest(x, k);
     }
     for (size_t p = 0; p < h->exponents; p++) {
         if (h->owner) {
-            const double q = x->now[h->owner[p]], u = x->work[h->owner[p]];
+            const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
             x->zr[p] = h->ar[p] * q + h->br[p] * u;
             x->zi[p] = h->ai[p] * q + h->bi[p] * u;
         } else {
-            x->zr[p] = tribo_dot(h->ar + p * m, x->now, m) + tribo_dot(h->br + p * m, x->work, m);
-            x->zi[p] = tribo_dot(h->ai + p * m, x->now, m) + tribo_dot(h->bi + p * m, x->work, m);
+            x->zr[p] = tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m);
+            x->zi[p] = tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m);
         }
     }
 }
@@ -483,14 +569,7 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
         find_lines(x, y);
     }
     x->tau = 0.0;
-    x->fastest = h->fastest;
-    for (size_t s = 0; s < h->harmonics; s++) {
-        x->fastest = greater(x->fastest, fabs(h->forcing[s].omega));
-        x->cos_t[s] = x->cos_0[s];
-        x->sin_t[s] = x->sin_0[s];
-    }
-    memcpy(x->wr, x->zr, h->exponents * sizeof *x->wr);
-    memcpy(x->wi, x->zi, h->exponents * sizeof *x->wi);
+    x->unmoved = 1;
     x->longest = longest_phase(h, longest);
     tribo_modal_motion_bound(x, 0.0);
     return x->longest;

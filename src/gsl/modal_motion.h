@@ -12,19 +12,22 @@ struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
     const struct modal *h;
-    double t0, tau;                          /* tau: where w is */
-    double fastest;                          /* exponent or harmonic */
-    double *eta, *rate, *off, *vel, *acc;    /* [modes] at t0 */
-    double *drift_rate;                      /* [modes] of those that drift: what harmonics do not explain of eta', at t0 */
-    double *zr, *zi;                         /* [exponents] at t0 */
-    double *wr, *wi, *w1r, *w1i, *w2r, *w2i; /* [exponents] z and its derivatives at tau */
-    double *growth, *growth6;                /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
+    double t0, tau;                       /* tau: where w is */
+    int unmoved;                          /* but at t0 it is z, and harmonics are those of t0 */
+    double *eta, *rate, *off, *vel, *acc; /* [modes] at t0 */
+    double *drift, *drift_rate;           /* [modes] of those that drift: what harmonics do not explain, at t0 */
+    double *zr, *zi;                      /* [exponents] at t0 */
+    double *wr, *wi;                      /* [exponents] z at tau */
+    double *w1i, *w2r, *w2i;              /* [exponents] what resonances add to lambda z and lambda^2 z in its derivatives */
+    double *growth, *growth6;             /* [exponents] bounds of |z| and of its sixth derivative over lambda^6 */
     size_t room;
-    double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] at t0 + tau, at t0; of contacts times the direction of the force */
-    double *now, *work;                    /* [modes] change of eta until tau, eta' there; workspace */
+    double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] at t0 + tau, at t0; of contacts times */
+    double *side;                          /* [harmonics] how many times their force follows the limit; others 1 */
+    double *now, *work;                    /* [modes] eta and eta' at tau; workspace */
     double *dq;                            /* [ndof] by how much q has changed at tau */
-    double *steady;                        /* [ncontact] force of a sliding contact, without harmonics of its limit; */
+    const double *steady;                  /* [ncontact] force of a sliding contact, without harmonics of its limit; */
     double *start, *ramp;                  /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
+    double *room_for_steady;               /* [ncontact] where steady stands if limits have any */
     double longest;                        /* so long do bounds hold */
 };
 

@@ -33,12 +33,13 @@ static void output_mode(const struct modal_build *b, struct output *w, size_t k,
 static int create_output(struct modal_build *b, struct output *w, size_t contact)
 {
     const size_t p = b->h->exponents, s = b->h->harmonics, m = b->h->modes;
-    double *x = tribo_modal_keep(b, 4 * p + 4 * s + m);
+    double *x = tribo_modal_keep(b, 8 * p + 4 * s + m);
     if (!x) {
         return 0;
     }
-    double *y = x + 4 * p;
-    *w = (struct output){contact, x, x + p, x + 2 * p, x + 3 * p, y, y + s, y + 2 * s, y + 3 * s, y + 4 * s, 0.0};
+    double *y = x + 8 * p;
+    *w = (struct output){contact,   x, x + p, x + 2 * p, x + 3 * p, x + 4 * p, x + 5 * p, x + 6 * p,
+                         x + 7 * p, y, y + s, y + 2 * s, y + 3 * s, y + 4 * s, 0.0};
     return 1;
 }
 
@@ -50,6 +51,11 @@ static double sixth_power(double x)
 static void finish_output(const struct modal_build *b, struct output *w)
 {
     for (size_t p = 0; p < b->h->exponents; p++) {
+        const double lr = b->h->lr[p], li = b->h->li[p];
+        w->c1r[p] = w->cr[p] * lr - w->ci[p] * li;
+        w->c1i[p] = w->cr[p] * li + w->ci[p] * lr;
+        w->c2r[p] = w->c1r[p] * lr - w->c1i[p] * li;
+        w->c2i[p] = w->c1r[p] * li + w->c1i[p] * lr;
         w->size[p] = hypot(w->cr[p], w->ci[p]);
         w->bend[p] = w->size[p] * sixth_power(b->h->size[p]);
     }

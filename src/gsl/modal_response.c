@@ -84,12 +84,12 @@ int tribo_modal_forcing(struct modal_build *b)
     h->gr = tribo_modal_keep(b, h->harmonics * m);
     h->gi = tribo_modal_keep(b, h->harmonics * m);
     h->ramp = tribo_modal_keep(b, m);
-    h->drag = tribo_modal_keep(b, m);
+    h->constant = tribo_modal_keep(b, m);
     b->yr = tribo_modal_scratch(b, count * n);
     b->yi = tribo_modal_scratch(b, count * n);
     b->y0 = tribo_modal_scratch(b, n);
     double *x = tribo_modal_scratch(b, h->rest), *pull = tribo_modal_scratch(b, n), *drag = tribo_modal_scratch(b, n);
-    if (!h->gr || !h->gi || !h->ramp || !h->drag || !b->yr || !b->yi || !b->y0 || !x || !pull || !drag) {
+    if (!h->gr || !h->gi || !h->ramp || !h->constant || !b->yr || !b->yi || !b->y0 || !x || !pull || !drag) {
         return 0;
     }
     for (size_t w = 0; w < count; w++) {
@@ -140,7 +140,10 @@ int tribo_modal_forcing(struct modal_build *b)
     }
     for (size_t k = 0; k < m; k++) {
         h->ramp[k] = tribo_dot(b->phi + k * n, pull, n);
-        h->drag[k] = tribo_dot(b->phi + k * n, drag, n);
+        h->constant[k] = tribo_dot(b->phi + k * n, drag, n);
+        for (size_t w = 0; w < count; w++) {
+            h->constant[k] += h->forcing[w].omega == 0.0 ? h->gr[w * m + k] : 0.0;
+        }
     }
     return 1;
 }

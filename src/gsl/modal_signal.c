@@ -139,7 +139,8 @@ int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, dou
                                  "method exact: a load is in resonance with an undamped mode; method event can do it");
     }
     if (!tribo_signal_reserve(to, h->exponents + h->harmonics, 2)) {
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu exponents", h->exponents);
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu exponent%s", h->exponents,
+                                 plural(h->exponents));
     }
     to->tau = tau;
     add_exponents(x, c, to);

@@ -1,6 +1,7 @@
 /* Sliding forces and loads do not depend on the state, so that amplitudes of the modes move as without them. What contacts at
  * rest hold does: a perturbed place of theirs pulls at the modes with a constant force. */
 #include "modal_transition.h"
+#include "turn.h"
 #include "variation.h"
 
 #include <math.h>
@@ -65,8 +66,9 @@ static void split(const struct transition *x, const double *v)
 static void growth_of(const struct transition *x, size_t p, double *re, double *im)
 {
     const double size = exp(x->h->lr[p] * x->tau);
-    *re = size * cos(x->h->li[p] * x->tau);
-    *im = size * sin(x->h->li[p] * x->tau);
+    tribo_turn(x->h->li[p] * x->tau, re, im);
+    *re *= size;
+    *im *= size;
 }
 
 /* x' = [[aa, ab], [ba, bb]] x of an amplitude and its rate, by its exponents p to end - 1. */

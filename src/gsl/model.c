@@ -20,16 +20,16 @@ int tribo_model_fail(const struct model *m, int status, const char *format, ...)
 
 int tribo_model_no_memory(const struct model *m)
 {
-    return tribo_model_fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degrees of freedom and %zu contacts", m->ndof,
-                            m->ncontact);
+    return tribo_model_fail(m, TRIBO_ERR_MEMORY, "out of memory for %zu degree%s of freedom and %zu contact%s", m->ndof,
+                            plural(m->ndof), m->ncontact, plural(m->ncontact));
 }
 
 int tribo_model_too_large(const struct model *m)
 {
     return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                            "%zu degrees of freedom are more than the %d that dense matrices are for: build tribo with "
+                            "%zu degree%s of freedom are more than the %d that dense matrices are for: build tribo with "
                             "TRIBO_SPARSE=ON, which needs CHOLMOD",
-                            m->ndof, DENSE_MOST);
+                            m->ndof, plural(m->ndof), DENSE_MOST);
 }
 
 int tribo_model_factorize(const struct model *m, struct cholesky *c)

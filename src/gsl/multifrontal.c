@@ -19,9 +19,8 @@ struct rest {
 };
 
 struct fronts {
-    const struct matrix *a;
+    const struct lower_columns *a;
     const struct supernodes *s;
-    size_t *given;     /* [n] the row of L that each row of the matrix is */
     size_t *group;     /* [n] of each column */
     size_t *place;     /* [n] of the rows of L in the front at hand */
     size_t *child;     /* [count] the first group whose rest goes into this one, or none */
@@ -143,12 +142,8 @@ static void add_entries(struct fronts *f, size_t g)
 {
     const struct supernodes *s = f->s;
     for (size_t c = s->first[g]; c < s->first[g + 1]; c++) {
-        const size_t i = s->order[c];
-        for (size_t k = f->a->first[i]; k < f->a->first[i + 1]; k++) {
-            const size_t r = f->given[f->a->col[k]];
-            if (r >= c) {
-                f->x[f->place[r] * f->stride + c - s->first[g]] += f->a->val[k];
-            }
+        for (size_t k = f->a->first[c]; k < f->a->first[c + 1]; k++) {
+            f->x[f->place[f->a->row[k]] * f->stride + c - s->first[g]] += f->a->val[k];
         }
     }
 }
@@ -212,20 +207,16 @@ static int begin(struct fronts *f)
     for (size_t g = 0; g < s->count; g++) {
         most = rows_of(s, g) > most ? rows_of(s, g) : most;
     }
-    f->given = malloc((3 * s->n + s->count + 1) * sizeof *f->given);
+    f->group = malloc((2 * s->n + s->count + 1) * sizeof *f->group);
     f->rest = calloc(s->count + 1, sizeof *f->rest);
     f->sum = calloc(s->n + 1, sizeof *f->sum);
     f->x = malloc((most + TALL) * (most + WIDE) * sizeof *f->x);
     f->tile = malloc((most + WIDE) * PANEL * sizeof *f->tile);
-    if (!f->given || !f->rest || !f->sum || !f->x || !f->tile) {
+    if (!f->group || !f->rest || !f->sum || !f->x || !f->tile) {
         return 0;
     }
-    f->group = f->given + s->n;
     f->place = f->group + s->n;
     f->child = f->place + s->n;
-    for (size_t i = 0; i < s->n; i++) {
-        f->given[s->order[i]] = i;
-    }
     for (size_t g = 0; g < s->count; g++) {
         f->child[g] = s->count;
         for (size_t c = s->first[g]; c < s->first[g + 1]; c++) {
@@ -240,14 +231,15 @@ static void end(struct fronts *f)
     for (size_t g = 0; f->rest && g < f->s->count; g++) {
         free(f->rest[g].x);
     }
-    free(f->given);
+    free(f->group);
     free(f->rest);
     free(f->sum);
     free(f->x);
     free(f->tile);
 }
 
-int tribo_multifrontal_inertia(const struct matrix *a, const struct supernodes *s, const double *size, struct inertia *found)
+int tribo_multifrontal_inertia(const struct lower_columns *a, const struct supernodes *s, const double *size,
+                               struct inertia *found)
 {
     struct fronts f = {.a = a, .s = s};
     int status = begin(&f) ? TRIBO_OK : TRIBO_ERR_MEMORY;

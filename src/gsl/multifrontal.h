@@ -16,7 +16,14 @@ struct supernodes {
     const size_t *row;   /* the rows of all groups, each ascending, its own columns first */
 };
 
+/* The lower triangle of the matrix in the order of L: column j has rows row[first[j]] to row[first[j + 1] - 1], as they come. */
+struct lower_columns {
+    const size_t *first, *row;
+    const double *val;
+};
+
 /* As tribo_sparse_inertia. */
-int tribo_multifrontal_inertia(const struct matrix *a, const struct supernodes *s, const double *size, struct inertia *found);
+int tribo_multifrontal_inertia(const struct lower_columns *a, const struct supernodes *s, const double *size,
+                               struct inertia *found);
 
 #endif

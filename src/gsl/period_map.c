@@ -58,7 +58,7 @@ static int integrate(struct period_map *m, double t, double end, struct company 
 {
     tribo_driver *drv = m->drv;
     int (*const seen)(double, const double *, int, void *) = drv->seen;
-    const size_t evaluations = m->sys->evaluations;
+    const size_t evaluations = m->sys->evaluations, halves = end - t < 0.75 * m->period ? 1 : 2;
     m->y[m->n] = 0.0;
     drv->time = t;
     drv->knows = 0;
@@ -75,7 +75,7 @@ static int integrate(struct period_map *m, double t, double end, struct company 
     m->events->sharp = 0;
     drv->seen = seen;
     drv->evaluations += m->sys->evaluations - evaluations;
-    m->halves += m->odd ? 1 : 2;
+    m->halves += halves;
     return status ? status : tribo_driver_check(drv, m->y);
 }
 
@@ -84,6 +84,17 @@ int tribo_period_map_replay(struct period_map *m, const double *y, struct compan
     const int status = m->drv->method->open(m->drv, &m->events);
     memcpy(m->y, y, m->n * sizeof *y);
     return status ? status : integrate(m, m->t, m->t + m->period, company);
+}
+
+int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
+{
+    int status = TRIBO_OK;
+    tribo_energy_norm_state(&m->norm, 1, x, m->y);
+    for (size_t k = 0; !status && k < periods; k++) {
+        status = integrate(m, m->t, m->t + m->period, NULL);
+    }
+    tribo_energy_norm_of(&m->norm, 1, m->y, x);
+    return status;
 }
 
 /* What rests where an integration ends does so where the next one begins: rounding is taken away. */
@@ -248,7 +259,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period)
     int status = m->drv->method->open(m->drv, &m->events);
     status = status ? status : prepare_norm(m, period);
     if (!status && !m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, m->n)) {
-        status = tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", m->n);
+        status = tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
     }
     if (!status) {
         m->t = t;

@@ -221,20 +221,31 @@ static int add_swing(struct replay *r, const struct way *steady, const double *e
 }
 
 /* A sliding force dissipates its size times the way. */
-static int add_energy(struct replay *r, double tau, const double *end)
+static int find_work(struct replay *r, size_t i, double tau, const double *end, double *work)
 {
     const tribo_system *sys = r->map->sys;
     const struct stick_slip *m = &r->map->events->stick_slip;
+    const struct way x = {i, r->map->t + r->elapsed, tau, NULL, 0.0};
+    double limit = m->limit[i], swung = 0.0;
+    const int status = m->swing[i] > 0.0 ? add_swing(r, &x, end, &swung, &limit) : TRIBO_OK;
+    const double way = tribo_matrix_row_dot(&sys->direction, i, end) - tribo_matrix_row_dot(&sys->direction, i, r->map->x);
+    *work = m->slip[i] * (swung + limit * (way + way_of_base(sys, &x)));
+    return status;
+}
+
+static int add_energy(struct replay *r, double tau, const double *end)
+{
+    const struct events *e = r->map->events;
     int status = TRIBO_OK;
-    for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        if (m->slip[i] == 1 || m->slip[i] == -1) {
-            const struct way x = {i, r->map->t + r->elapsed, tau, NULL, 0.0};
-            double work = 0.0, limit = m->limit[i];
-            status = m->swing[i] > 0.0 ? add_swing(r, &x, end, &work, &limit) : TRIBO_OK;
-            const double way =
-                tribo_matrix_row_dot(&sys->direction, i, end) - tribo_matrix_row_dot(&sys->direction, i, r->map->x);
-            work += limit * (way + way_of_base(sys, &x));
-            r->sum[i] += sys->tally[i] * m->slip[i] * work;
+    for (size_t i = 0; !status && i < r->map->sys->ncontact; i++) {
+        if (e->stick_slip.slip[i] == 1 || e->stick_slip.slip[i] == -1) {
+            double work = 0.0;
+            if (e->work) {
+                work = e->work(e->motion, i, tau);
+            } else {
+                status = find_work(r, i, tau, end, &work);
+            }
+            r->sum[i] += r->map->sys->tally[i] * work;
         }
     }
     return status;
@@ -261,8 +272,8 @@ static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct repla
     const size_t count = drv->sys->ncontact;
     struct replay r = {.phase = phase, .sum = calloc(count + 2 * drv->sys->ndof + 1, sizeof *to)};
     r.row = r.sum ? r.sum + count : NULL;
-    const int status =
-        r.sum ? replay(drv, &r) : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contacts", count);
+    const int status = r.sum ? replay(drv, &r)
+                             : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
     if (!status) {
         memcpy(to, r.sum, count * sizeof *to);
     }

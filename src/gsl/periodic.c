@@ -1,5 +1,4 @@
 /* Periodic motions: what callers see of them. */
-#include "breakaway.h"
 #include "shooting.h"
 
 #include <math.h>
@@ -37,8 +36,8 @@ static int check_loads(tribo_driver *drv, double period)
     }
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *w = &sys->harmonic[k];
-        const double turns = w->omega / (2.0 * acos(-1.0)) * period;
-        if (w->count > 0 && !(fabs(turns - round(turns)) <= WHOLE)) {
+        const double turns = fabs(w->omega) / (2.0 * acos(-1.0)) * period, whole = fmax(round(turns), w->omega != 0.0);
+        if (w->count > 0 && !(fabs(turns - whole) <= WHOLE)) {
             return tribo_driver_fail(drv, TRIBO_ERR_RANGE,
                                      "%s[%zu], omega = %.17g, is not periodic in period = %.17g: %.12g turns", kind[w->drives],
                                      of_kind[w->drives], w->omega, period, turns);
@@ -48,18 +47,7 @@ static int check_loads(tribo_driver *drv, double period)
     return TRIBO_OK;
 }
 
-/* Derivatives of motions know nothing of forces that follow the speed. */
-static int check_falling(tribo_driver *drv)
-{
-    return !tribo_system_falls(drv->sys)
-               ? TRIBO_OK
-               : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                   "periodic motions are found with static limits that drop at once, and velocity[0] = %g: set "
-                                   "ratios without velocities",
-                                   drv->sys->feq[0]);
-}
-
-/* Nor of forces that jump beside springs without mass, */
+/* Derivatives of motions know nothing of forces that jump beside springs without mass, */
 static int check_massless(tribo_driver *drv)
 {
     double *ratio = drv->sys->feq;
@@ -81,8 +69,7 @@ static int check_planar(tribo_driver *drv)
 {
     const size_t planar = tribo_system_planar(drv->sys);
     return planar ? tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED,
-                                      "periodic motions are found of scalar contacts, and there are %zu contacts that are planar",
-                                      planar)
+                                      "periodic motions are found without planar contacts, of which the system has %zu", planar)
                   : TRIBO_OK;
 }
 
@@ -96,9 +83,10 @@ int tribo_events_find_periodic(tribo_driver *drv, double t, double period, doubl
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     drv->free_shooting = tribo_shooting_free;
-    return drv->shooting ? tribo_shooting_find(drv->shooting, t, period, y)
-                         : tribo_driver_fail(drv, TRIBO_ERR_MEMORY,
-                                             "out of memory for periodic motions of %zu degrees of freedom", drv->sys->ndof);
+    return drv->shooting
+               ? tribo_shooting_find(drv->shooting, t, period, y)
+               : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                                   drv->sys->ndof, plural(drv->sys->ndof));
 }
 
 int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y)
@@ -109,7 +97,6 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     int status = drv->method->find_periodic ? check_state(drv, t, y) : unsupported(drv);
     status = status ? status : check_period(drv, t, period);
     status = status ? status : check_loads(drv, period);
-    status = status ? status : check_falling(drv);
     status = status ? status : check_massless(drv);
     status = status ? status : check_planar(drv);
     return status ? status : drv->method->find_periodic(drv, t, period, y);
@@ -118,11 +105,11 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
 int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im)
 {
     if (!drv || !re || !im) {
-        return TRIBO_ERR_NULL;
+        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", re ? "im" : "re") : TRIBO_ERR_NULL;
     }
     const struct shooting *s = drv->shooting;
     if (!s || !s->found) {
-        return TRIBO_ERR_STATE;
+        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
     }
     memcpy(re, s->re, s->map.n * sizeof *re);
     memcpy(im, s->im, s->map.n * sizeof *im);

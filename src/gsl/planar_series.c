@@ -132,7 +132,8 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
         begins += slides(m, &plane->contact[k]) && plane->contact[k].begins != SLIDES_ON;
     }
     if ((plane->count && !reserve(s, order + 1, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contacts in a plane", plane->count);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", plane->count,
+                                 plural(plane->count));
     }
     s->order = find_order(order, m, sys, y);
     s->begins = 0;

@@ -145,8 +145,7 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     if (tribo_system_limits_vary(sys)) {
         return tribo_system_fail(
             sys, TRIBO_ERR_UNSUPPORTED,
-            "method event knows no limits that change with time beside planar contacts: there are %zu contacts of that kind",
-            planar);
+            "method event knows no limits that change with time beside planar contacts, of which the system has %zu", planar);
     }
     const int status = create(m, sys);
     for (size_t k = 0; !status && k < m->plane->count; k++) {
@@ -263,10 +262,7 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys, const doub
     for (size_t i = 0; i < m->contacts; i++) {
         m->hi[i] = m->slip[i] == 0 ? m->limit[i] : 0.0;
     }
-    const int status = solve(m, sys, m->a, m->force);
-    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
-    return status;
+    return solve(m, sys, m->a, m->force);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- who slides */
@@ -368,7 +364,7 @@ static void set_limits_ahead(struct stick_slip *m)
 /* Who of those that are tied slides by the forces of a moment later. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
 {
-    tribo_stick_slip_contact_accelerations(sys, m->acceleration, 1, m->f);
+    tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->f);
     const double turn = given_forces(m, sys, y, m->f), h = lesser(m->horizon, turn > 0.0 ? TURN / turn : m->horizon);
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
@@ -410,8 +406,6 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     status = ties ? look_ahead(m, sys, y) : TRIBO_OK;
     m->reached = m->contacts;
     memset(m->tied, 0, m->contacts);
-    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
     status = status ? status : tribo_stick_slip_find_holds(m, sys);
     return status ? status : check_holds(m, sys);
 }

@@ -110,7 +110,8 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     }
     struct matrix damping;
     if (!diagonal_matrix(&damping, sys->omega, 2.0 * zeta, sys->ndof)) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu modes", sys->ndof);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu mode%s", sys->ndof,
+                                 plural(sys->ndof));
     }
     tribo_matrix_free(&sys->damping);
     sys->damping = damping;

@@ -1,5 +1,6 @@
 #include "elastic.h"
 #include "series_transition.h"
+#include "variation.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -12,6 +13,7 @@ void tribo_series_transition_free(struct series_transition *x)
 {
     free(x->project);
     free(x->holds);
+    free(x->push);
     memset(x, 0, sizeof *x);
 }
 
@@ -22,7 +24,7 @@ static int reserve(struct series_transition *x, const tribo_system *sys, size_t 
     x->project = malloc((3 * n * n + 3 * n * columns + 1) * sizeof *x->project);
     if (!x->holds || !x->project) {
         tribo_series_transition_free(x);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbations", columns);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     }
     x->stiff = x->project + n * n;
     x->damp = x->stiff + n * n;
@@ -30,6 +32,20 @@ static int reserve(struct series_transition *x, const tribo_system *sys, size_t 
     x->u = x->q + n * columns;
     x->next = x->u + n * columns;
     x->columns = columns;
+    return TRIBO_OK;
+}
+
+static int reserve_slopes(struct series_transition *x, const tribo_system *sys, size_t terms)
+{
+    const size_t c = sys->ncontact;
+    x->push = malloc((sys->ndof * c + (terms + 1) * c * x->columns + 1) * sizeof *x->push);
+    if (!x->push) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", x->columns, plural(x->columns));
+    }
+    x->force = x->push + sys->ndof * c;
+    x->row = x->force + c * x->columns;
+    x->terms = terms;
+    x->known = 0;
     return TRIBO_OK;
 }
 
@@ -52,7 +68,7 @@ static int project(struct stick_slip *m, const tribo_system *sys, const struct m
 {
     const size_t n = sys->ndof;
     double *columns = a ? tribo_matrix_transpose_to_dense(a) : calloc(n * n + 1, sizeof *columns);
-    int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu columns", n);
+    int status = columns ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu column%s", n, plural(n));
     for (size_t j = 0; !status && j < n; j++) {
         columns[j * n + j] += a ? 0.0 : 1.0;
         if (sys->massless.count && a == &sys->stiffness) {
@@ -70,6 +86,24 @@ static int project(struct stick_slip *m, const tribo_system *sys, const struct m
     return status;
 }
 
+/* x->push = P B */
+static int project_response(struct series_transition *x, struct stick_slip *m, const tribo_system *sys)
+{
+    const size_t n = sys->ndof, c = sys->ncontact;
+    double *column = m->size;
+    int status = TRIBO_OK;
+    for (size_t i = 0; !status && i < c; i++) {
+        for (size_t d = 0; d < n; d++) {
+            column[d] = tribo_matrix_get(&sys->response, d, i);
+        }
+        status = tribo_stick_slip_project(m, sys, m->still, column);
+        for (size_t d = 0; d < n; d++) {
+            x->push[d * c + i] = column[d];
+        }
+    }
+    return status;
+}
+
 /* The matrices for the contacts that hold. */
 static int update(struct series_transition *x, struct stick_slip *m, const tribo_system *sys)
 {
@@ -83,18 +117,44 @@ static int update(struct series_transition *x, struct stick_slip *m, const tribo
     if (!status && sys->damping.rows) {
         status = project(m, sys, &sys->damping, -1.0, x->damp);
     }
+    if (!status && x->terms) {
+        status = project_response(x, m, sys);
+    }
     x->known = !status;
     return status;
 }
 
-/* The next terms, x^(k+1)/(k+1)!, from those before. */
-static void differentiate(struct series_transition *x, const tribo_system *sys, double part)
+/* Term k of the forces that follow from the terms of velocities up to u, which is the k-th, to x->force. */
+static void find_forces(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes, size_t k, double tau)
+{
+    const size_t c = sys->ncontact, columns = x->columns;
+    double power = 1.0;
+    memset(x->force, 0, c * columns * sizeof *x->force);
+    for (size_t i = 0; i < c; i++) {
+        tribo_contact_row(sys, i, x->u, columns, x->row + ((k % x->terms) * c + i) * columns);
+    }
+    for (size_t j = 0; j <= k && j < x->terms; j++) {
+        const double *row = x->row + ((k - j) % x->terms) * c * columns;
+        for (size_t i = 0; i < c; i++) {
+            tribo_add(x->force + i * columns, power * slopes->term[j * c + i], row + i * columns, columns);
+        }
+        power *= tau;
+    }
+}
+
+/* The k-th terms, x^(k) tau^k/k!, from those before. */
+static void differentiate(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes, size_t k, double tau)
 {
     const size_t n = sys->ndof, c = x->columns;
+    const double part = tau / (double)k;
     memset(x->next, 0, n * c * sizeof *x->next);
     tribo_multiply_add(n, n, c, part, x->stiff, x->q, x->next);
     if (sys->damping.rows) {
         tribo_multiply_add(n, n, c, part, x->damp, x->u, x->next);
+    }
+    if (slopes->terms) {
+        find_forces(x, sys, slopes, k - 1, tau);
+        tribo_multiply_add(n, sys->ncontact, c, part, x->push, x->force, x->next);
     }
     for (size_t i = 0; i < n * c; i++) {
         x->q[i] = part * x->u[i];
@@ -102,11 +162,12 @@ static void differentiate(struct series_transition *x, const tribo_system *sys, 
     memcpy(x->u, x->next, n * c * sizeof *x->u);
 }
 
-int tribo_series_transition(struct series_transition *x, struct stick_slip *m, const tribo_system *sys, double tau,
-                            size_t columns, double *v)
+int tribo_series_transition(struct series_transition *x, struct stick_slip *m, const tribo_system *sys,
+                            const struct slopes *slopes, double tau, size_t columns, double *v)
 {
     const size_t n = sys->ndof, half = n * columns;
     int status = x->project ? TRIBO_OK : reserve(x, sys, columns);
+    status = status || !slopes->terms || x->push ? status : reserve_slopes(x, sys, slopes->terms);
     status = status ? status : update(x, m, sys);
     if (status) {
         return status;
@@ -116,7 +177,7 @@ int tribo_series_transition(struct series_transition *x, struct stick_slip *m, c
     tribo_multiply_add(n, n, columns, 1.0, x->project, v + half, x->u);
     memcpy(v + half, x->u, half * sizeof *v);
     for (size_t k = 1, small = 0; small < 2 && k < MOST_TERMS; k++) {
-        differentiate(x, sys, tau / (double)k);
+        differentiate(x, sys, slopes, k, tau);
         tribo_add(v, 1.0, x->q, half);
         tribo_add(v + half, 1.0, x->u, half);
         small = tribo_largest(x->q, half) <= DBL_EPSILON * tribo_largest(v, half) &&

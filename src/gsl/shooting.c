@@ -27,8 +27,12 @@
 #define TOLERANCE 1e-10
 #define AIM 1e-12
 
-/* Half periods at most. */
+/* Half periods at most of the search from the guess; and of another one from what so many periods of marching come to, where
+ * static limits may need more of them. */
+#define FIRST 120
 #define MOST 200
+#define MARCHED 20
+#define MARCHED_STATIC 100
 
 /* A step pays if the residual falls to this part. */
 #define PAYS 0.9
@@ -68,8 +72,8 @@ static double length(const double *x, size_t n)
 
 static int no_memory(const struct shooting *s)
 {
-    return tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degrees of freedom",
-                             s->map.sys->ndof);
+    return tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
+                             s->map.sys->ndof, plural(s->map.sys->ndof));
 }
 
 /* -------------------------------------------------------------------------------------------------------------- points */
@@ -240,8 +244,9 @@ static int proceed(struct shooting *s)
 }
 
 /* From s->here on: s->best. */
-static int search(struct shooting *s)
+static int search(struct shooting *s, size_t halves)
 {
+    const size_t most = s->map.halves + halves;
     int status = tribo_period_map_follow(&s->map, &s->here);
     if (status) {
         return status;
@@ -250,12 +255,33 @@ static int search(struct shooting *s)
     s->astray = s->setbacks = 0;
     s->rate = s->stride = 0.0;
     s->nearest = s->here.residual / s->here.size;
-    while (!status && !close_enough(&s->best, AIM) && s->map.halves < MOST) {
+    while (!status && !close_enough(&s->best, AIM) && s->map.halves < most) {
         status = newton(s);
         if (!status && close_enough(&s->best, TOLERANCE) && !(s->there.residual < PAYS * s->best.residual)) {
             break; /* rounding allows no more */
         }
         status = status ? status : proceed(s);
+    }
+    return status;
+}
+
+/* Where contacts hardly slip, or, by static limits, motions part from each other, steps of Newton's may lead nowhere. What
+ * marching from the guess comes to is then where to look. */
+static int search_again(struct shooting *s, size_t periods)
+{
+    memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
+    const int status = tribo_period_map_march(&s->map, periods, s->here.x);
+    return status ? status : search(s, MOST);
+}
+
+static int search_all(struct shooting *s)
+{
+    int status = search(s, FIRST);
+    if (!status && !close_enough(&s->best, TOLERANCE)) {
+        status = search_again(s, MARCHED);
+    }
+    if (!status && !close_enough(&s->best, TOLERANCE) && s->map.events->stick_slip.breakaway.some) {
+        status = search_again(s, MARCHED_STATIC);
     }
     return status;
 }
@@ -346,8 +372,9 @@ static int find_multipliers(struct shooting *s)
     whole_derivative(s);
     const int status = tribo_eigen(s->b, n, s->re, s->im, s->a);
     sort(s);
-    return status ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equations: %s", n, tribo_strerror(status))
-                  : TRIBO_OK;
+    return status
+               ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status))
+               : TRIBO_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- the whole */
@@ -365,7 +392,7 @@ static int find(struct shooting *s, double *y)
     double residual = 0.0;
     tribo_energy_norm_of(&s->map.norm, 1, y, s->here.x);
     memcpy(s->guess, s->here.x, s->map.n * sizeof *s->guess);
-    int status = search(s);
+    int status = search_all(s);
     if (!status && !close_enough(&s->best, TOLERANCE)) {
         return no_convergence(s, s->nearest);
     }

@@ -73,23 +73,17 @@ void tribo_signal_at(const struct signal *s, double at, double *to)
 /* A signal from a time on, that must not fall below zero on one side. */
 struct course {
     const struct signal *s;
-    double from, at, side;
+    double from, side;
     struct first_zero *search;
 };
 
-static void go(void *motion, double tau)
-{
-    struct course *c = motion;
-    c->at = c->from + tau;
-}
-
-static struct sample read_slope(void *motion, const struct guard *guard)
+static void look_at_slope(void *motion, double tau, size_t guards, struct guard *guard)
 {
     const struct course *c = motion;
     double v[3];
-    (void)guard;
-    tribo_signal_at(c->s, c->at, v);
-    return (struct sample){c->side * v[0], c->side * v[1], c->side * v[2]};
+    (void)guards;
+    tribo_signal_at(c->s, c->from + tau, v);
+    guard->middle = (struct sample){c->side * v[0], c->side * v[1], c->side * v[2]};
 }
 
 static double sixth(double x)
@@ -156,7 +150,7 @@ int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t
         return 0;
     }
     struct guard guard = {0};
-    struct first_zero search = {.guards = 1, .guard = &guard, .go = go, .read = read_slope, .bound = bound};
+    struct first_zero search = {.guards = 1, .guard = &guard, .look = look_at_slope, .bound = bound};
     struct course course = {.s = slope, .search = &search};
     const struct guard *met = &guard;
     double v[3], when = 0.0;

@@ -36,7 +36,7 @@ static int status_of(const cholmod_common *common)
                                                                                           : TRIBO_OK;
 }
 
-/* The matrix as CHOLMOD sees it: its rows are columns there, which is the same for a symmetric one. */
+/* The matrix as CHOLMOD sees it: its rows are columns there, and its lower triangle the upper one. */
 static cholmod_sparse view_of(const struct matrix *a)
 {
     return (cholmod_sparse){.nrow = a->rows,
@@ -65,14 +65,37 @@ static void start(cholmod_common *common)
     common->quick_return_if_not_posdef = 1;
 }
 
-/* NULL with common->status if out of memory; a factor that stops at row l->minor if a pivot says so. */
-static cholmod_factor *factorize(const struct matrix *a, cholmod_common *common)
+/* The lower triangle of P A P', NULL if out of memory, after which a is of no more use if it is spent. */
+static cholmod_sparse *half_of(cholmod_sparse *a, struct matrix *spent, const cholmod_factor *l, cholmod_common *common)
 {
-    cholmod_sparse view = view_of(a);
-    cholmod_factor *l = cholmod_l_analyze(&view, common);
-    if (l) {
-        cholmod_l_factorize(&view, l, common);
+    cholmod_sparse *half = l ? cholmod_l_ptranspose(a, 1, l->Perm, NULL, 0, common) : NULL;
+    if (spent) {
+        tribo_matrix_free(spent);
     }
+    return half;
+}
+
+/* As view_of; of what may be spent half is enough. */
+static cholmod_sparse view_to_spend(const struct matrix *a, struct matrix *spent)
+{
+    if (spent) {
+        tribo_matrix_keep_lower(spent);
+    }
+    return view_of(a);
+}
+
+/* NULL with common->status if out of memory; a factor that stops at row l->minor if a pivot says so. cholmod_l_factorize would
+ * make the half of a, too, but keep all of a beside it. */
+static cholmod_factor *factorize(const struct matrix *a, struct matrix *spent, cholmod_common *common)
+{
+    double nothing[2] = {0.0, 0.0};
+    cholmod_sparse view = view_to_spend(a, spent);
+    cholmod_factor *l = cholmod_l_analyze(&view, common);
+    cholmod_sparse *half = half_of(&view, spent, l, common);
+    if (half) {
+        cholmod_l_super_numeric(half, NULL, nothing, l, common);
+    }
+    cholmod_l_free_sparse(&half, common);
     return l;
 }
 
@@ -101,14 +124,14 @@ static int prepare(struct sparse_factor *f)
     return f->column && solve(f, CHOLMOD_A, 1, f->column);
 }
 
-int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where)
+int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
 {
     struct sparse_factor *f = calloc(1, sizeof *f);
     if (!f) {
         return TRIBO_ERR_MEMORY;
     }
     start(&f->common);
-    f->l = factorize(a, &f->common);
+    f->l = factorize(a, spent, &f->common);
     int status = status_of(&f->common);
     status = status || (f->l && prepare(f)) ? status : TRIBO_ERR_MEMORY;
     if (status) {
@@ -193,18 +216,22 @@ void tribo_sparse_factor_half_solve_back(struct sparse_factor *f, double *x, siz
     solve_columns(f, CHOLMOD_Lt, CHOLMOD_Pt, x, cols);
 }
 
-int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, const double *size, struct inertia *found)
+int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
+                         struct inertia *found)
 {
     cholmod_common common;
-    cholmod_sparse view = view_of(a);
+    cholmod_sparse view = view_to_spend(a, spent);
     start(&common);
     cholmod_factor *own = like ? NULL : cholmod_l_analyze(&view, &common);
     const cholmod_factor *l = like ? like->l : own;
+    cholmod_sparse *half = half_of(&view, spent, l, &common);
     int status = TRIBO_ERR_MEMORY;
-    if (l) {
+    if (half) {
         const struct supernodes groups = {l->n, l->nsuper, l->Perm, l->super, l->pi, l->s};
-        status = tribo_multifrontal_inertia(a, &groups, size, found);
+        const struct lower_columns columns = {half->p, half->i, half->x};
+        status = tribo_multifrontal_inertia(&columns, &groups, size, found);
     }
+    cholmod_l_free_sparse(&half, &common);
     cholmod_l_free_factor(&own, &common);
     cholmod_l_finish(&common);
     return status;
@@ -217,10 +244,11 @@ int tribo_sparse_available(void)
     return 0;
 }
 
-int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where)
+int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
 {
     (void)factor;
     (void)a;
+    (void)spent;
     (void)where;
     return TRIBO_ERR_UNSUPPORTED;
 }
@@ -264,10 +292,12 @@ void tribo_sparse_factor_half_solve_back(struct sparse_factor *factor, double *x
     (void)cols;
 }
 
-int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, const double *size, struct inertia *found)
+int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
+                         struct inertia *found)
 {
     (void)like;
     (void)a;
+    (void)spent;
     (void)size;
     (void)found;
     return TRIBO_ERR_UNSUPPORTED;

@@ -12,9 +12,11 @@ struct sparse_factor;
 /* 0: the library has been built without CHOLMOD, and the calls below return TRIBO_ERR_UNSUPPORTED. */
 int tribo_sparse_available(void);
 
-/* Of a positive definite matrix, of which the upper triangle counts. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED,
+/* Of a positive definite matrix, of which the lower triangle counts. spent is a again if that may be freed as soon as it has
+ * been read, before the factor takes its memory, or NULL; if an error comes first, the
+ * caller frees it. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED,
  * or TRIBO_ERR_INDEFINITE with the row where it shows. */
-int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, size_t *where);
+int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where);
 int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from); /* 1, or 0 if out of memory */
 void tribo_sparse_factor_free(struct sparse_factor *factor);
 size_t tribo_sparse_factor_entries(const struct sparse_factor *factor);
@@ -33,8 +35,10 @@ struct inertia {
 };
 
 /* like      in  the factor of a matrix with the same places of entries, which saves the search for an order, or NULL
+ * spent     in  as above
  * size [n]  in  what the diagonal of A has come out of
  * Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED, or TRIBO_ERR_INDEFINITE: a pivot is zero, or no number. */
-int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, const double *size, struct inertia *found);
+int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *a, struct matrix *spent, const double *size,
+                         struct inertia *found);
 
 #endif

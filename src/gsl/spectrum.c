@@ -159,7 +159,8 @@ int tribo_system_highest(const tribo_system *sys, double stiffness, double dampi
     struct lanczos l = {.sys = sys, .stiffness = stiffness / bound, .damping = damping / bound, .n = n};
     double *work = malloc((5 * n + 2 * MOST_VECTORS) * sizeof *work);
     if (!work) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the frequencies of %zu degrees of freedom", n);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the frequencies of %zu degree%s of freedom", n,
+                                 plural(n));
     }
     l.v = work;
     l.mv = work + n;

@@ -8,6 +8,7 @@
  * it. So as long as contacts only begin to slide, twice as many neighbours slide along from round to round; who did so too early
  * is found to be pushed by its force, and holds again. */
 #include "step_band.h"
+#include "band.h"
 
 #include <float.h>
 #include <math.h>
@@ -21,11 +22,6 @@ enum { FREE, HOLDS, FOLLOWS };
 
 /* A round costs as much as the band has entries, and a step hardly ever takes more than 10. */
 enum { ROUNDS = 100 };
-
-static double *row_of(double *a, const struct step_band *b, size_t i)
-{
-    return a + i * (b->width + 1);
-}
 
 /* The first column of row i. */
 static size_t begin_of(const struct step_band *b, size_t i)
@@ -85,7 +81,7 @@ static int allocate(struct step_band *b, size_t n, size_t count)
         return 1;
     }
     b->body = malloc((count + n + 1) * sizeof *b->body);
-    b->mass = calloc(3 * n + 2 * count + 1, sizeof *b->mass);
+    b->mass = calloc(3 * n + 3 * count + 1, sizeof *b->mass);
     b->at = calloc(count + n + 1, 1);
     if (!b->body || !b->mass || !b->at) {
         return 0;
@@ -94,7 +90,8 @@ static int allocate(struct step_band *b, size_t n, size_t count)
     b->push = b->mass + n;
     b->move = b->push + n;
     b->lever = b->move + n;
-    b->noise = b->lever + count;
+    b->inverse = b->lever + count;
+    b->noise = b->inverse + count;
     b->held = b->at + count;
     return 1;
 }
@@ -118,68 +115,12 @@ static int applies(struct step_band *b, const tribo_system *sys)
 
 /* ------------------------------------------------------------------------------------------------------------ the factor */
 
-static void add(const struct step_band *b, const struct matrix *part, double factor)
-{
-    for (size_t i = 0; i < part->rows; i++) {
-        double *row = row_of(b->a, b, i);
-        for (size_t k = part->first[i]; k < part->first[i + 1] && part->col[k] <= i; k++) {
-            row[part->col[k] + b->width - i] += factor * b->mass[i] * part->val[k];
-        }
-    }
-}
-
-/* L D L' of A without who is held, D in place of ones on the diagonal. Returns the place of a pivot that is not positive, or n. */
+/* Of A without who is held; the place of a pivot that is not positive, or n. */
 static size_t factorize(struct step_band *b)
 {
-    const size_t w = b->width;
-    for (size_t i = 0; i < b->n; i++) {
-        const double *a = row_of(b->a, b, i);
-        double *l = row_of(b->l, b, i), pivot = a[w];
-        memset(l, 0, w * sizeof *l);
-        l[w] = 1.0;
-        if (b->held[i]) {
-            continue;
-        }
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            const double *other = row_of(b->l, b, j);
-            double x = b->held[j] ? 0.0 : a[j + w - i];
-            for (size_t k = begin_of(b, i); k < j; k++) {
-                x -= l[k + w - i] * other[k + w - j];
-            }
-            l[j + w - i] = x;
-        }
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            const double x = l[j + w - i];
-            l[j + w - i] = x / b->l[j * (w + 1) + w];
-            pivot -= x * l[j + w - i];
-        }
-        if (!(pivot > 0.0)) {
-            return i;
-        }
-        l[w] = pivot;
-    }
-    b->factored = 1;
-    return b->n;
-}
-
-static void solve(struct step_band *b, double *x)
-{
-    const size_t w = b->width;
-    for (size_t i = 0; i < b->n; i++) {
-        const double *l = row_of(b->l, b, i);
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            x[i] -= l[j + w - i] * x[j];
-        }
-    }
-    for (size_t i = 0; i < b->n; i++) {
-        x[i] /= b->l[i * (w + 1) + w];
-    }
-    for (size_t i = b->n; i-- > 0;) {
-        const double *l = row_of(b->l, b, i);
-        for (size_t j = begin_of(b, i); j < i; j++) {
-            x[j] -= l[j + w - i] * x[i];
-        }
-    }
+    const size_t where = tribo_band_factorize(b->n, b->width, b->a, b->held, b->l);
+    b->factored = where == b->n;
+    return where;
 }
 
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double h, size_t *where)
@@ -202,8 +143,8 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
     for (size_t i = 0; i < n; i++) {
         b->a[i * (b->width + 1) + b->width] = b->mass[i];
     }
-    add(b, &sys->stiffness, 0.25 * h * h);
-    add(b, &sys->damping, 0.5 * h);
+    tribo_band_add(b->a, b->width, &sys->stiffness, 0.25 * h * h, b->mass);
+    tribo_band_add(b->a, b->width, &sys->damping, 0.5 * h, b->mass);
     for (size_t d = 0; d < n; d++) {
         b->contact[d] = b->count;
     }
@@ -211,6 +152,7 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
         b->body[i] = sys->direction.col[sys->direction.first[i]];
         b->contact[b->body[i]] = i;
         b->lever[i] = sys->direction.val[sys->direction.first[i]];
+        b->inverse[i] = 1.0 / b->lever[i];
     }
     b->n = n;
     memset(b->held, 0, n);
@@ -221,17 +163,23 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
 
 /* --------------------------------------------------------------------------------------------------------------- the step */
 
-/* Row i of A times x, and the size of its terms. */
+/* Row i of A times x, and the size of its terms. A is symmetric: right of the diagonal its rows are columns of what is stored. */
 static double row_dot(const struct step_band *b, size_t i, const double *x, double *size)
 {
     const size_t w = b->width, end = i + w < b->n ? i + w : b->n - 1;
-    double sum = 0.0;
-    *size = 0.0;
-    for (size_t j = begin_of(b, i); j <= end; j++) {
-        const double term = x[j] * (j <= i ? b->a[i * (w + 1) + j + w - i] : b->a[j * (w + 1) + i + w - j]);
+    const double *row = b->a + i * (w + 1);
+    double sum = 0.0, sizes = 0.0;
+    for (size_t j = begin_of(b, i); j <= i; j++) {
+        const double term = x[j] * row[j + w - i];
         sum += term;
-        *size += fabs(term);
+        sizes += fabs(term);
     }
+    for (size_t j = i + 1, at = j * (w + 1) + w - 1; j <= end; j++, at += w) {
+        const double term = x[j] * b->a[at];
+        sum += term;
+        sizes += fabs(term);
+    }
+    *size = sizes;
     return sum;
 }
 
@@ -257,12 +205,15 @@ static int find_moves(struct step_band *b, const double *base, const double *u)
     return any;
 }
 
-/* What of x comes from the moves goes to the other side. */
+/* What of x comes from the moves of held bodies, and those near them, goes to the other side. */
 static void take_moves(const struct step_band *b, double *x)
 {
-    double ignored;
-    for (size_t d = 0; d < b->n; d++) {
-        x[d] -= row_dot(b, d, b->move, &ignored);
+    const size_t w = b->width;
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i], end = d + w < b->n ? d + w : b->n - 1;
+        for (size_t j = begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
+            x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
+        }
     }
 }
 
@@ -286,27 +237,28 @@ static void solve_sets(struct step_band *b, double h, const double *limit, const
     for (size_t d = 0; d < b->n; d++) {
         x[d] = b->held[d] ? 0.0 : x[d];
     }
-    solve(b, x);
+    tribo_band_solve(b->n, b->width, b->l, x);
     for (size_t i = 0; i < b->count; i++) {
         x[b->body[i]] = b->at[i] ? x[b->body[i]] : b->move[b->body[i]];
     }
+    const double rate = 1.0 / h;
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
         double size;
-        const double sum = row_dot(b, d, x, &size), unit = 1.0 / (h * fabs(b->lever[i]));
-        b->noise[i] = doubt * unit * (size + fabs(b->push[d]) + fabs(b->a[d * (b->width + 1) + b->width] * u[d]));
-        f[i] = b->at[i] ? f[i] : (sum - b->push[d]) / (h * b->lever[i]);
+        const double sum = row_dot(b, d, x, &size), unit = rate * b->inverse[i];
+        b->noise[i] = doubt * fabs(unit) * (size + fabs(b->push[d]) + fabs(b->a[d * (b->width + 1) + b->width] * u[d]));
+        f[i] = b->at[i] ? f[i] : unit * (sum - b->push[d]);
     }
 }
 
 /* Where a contact wants to be. */
-static signed char wants(const struct step_band *b, size_t i, double h, double limit, double v, double f)
+static signed char wants(const struct step_band *b, size_t i, double rate, double limit, double v, double f)
 {
     if (b->at[i] == 0) {
         return (signed char)((f > limit + b->noise[i]) - (f < -limit - b->noise[i]));
     }
     /* a velocity counts by the force that would take it away within the step */
-    const double pull = v * b->a[b->body[i] * (b->width + 1) + b->width] / (h * b->lever[i] * b->lever[i]);
+    const double pull = v * b->a[b->body[i] * (b->width + 1) + b->width] * (rate * b->inverse[i] * b->inverse[i]);
     return pull * b->at[i] > b->noise[i] ? 0 : b->at[i];
 }
 
@@ -314,10 +266,11 @@ static signed char wants(const struct step_band *b, size_t i, double h, double l
 static void revise(struct step_band *b, double h, const double *limit, const double *base, const double *u, const double *du,
                    const double *f, size_t *freed, size_t *caught)
 {
+    const double rate = 1.0 / h;
     *freed = *caught = 0;
     for (size_t i = 0; i < b->count; i++) {
         const size_t d = b->body[i];
-        const signed char to = wants(b, i, h, limit[i], b->lever[i] * (u[d] + du[d]) - base[i], f[i]);
+        const signed char to = wants(b, i, rate, limit[i], b->lever[i] * (u[d] + du[d]) - base[i], f[i]);
         *freed += !b->at[i] && to;
         *caught += b->at[i] && !to;
         b->at[i] = to;
@@ -356,9 +309,7 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
                           double *f)
 {
     size_t reach = 0, freed, caught;
-    for (size_t d = 0; d < b->n; d++) {
-        b->push[d] = b->mass[d] * du[d];
-    }
+    memcpy(b->push, du, b->n * sizeof *du);
     for (int round = 0; round < ROUNDS; round++) {
         solve_sets(b, h, limit, base, u, du, f);
         revise(b, h, limit, base, u, du, f, &freed, &caught);
@@ -372,8 +323,6 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
             sweep(b, reach, 0);
         }
     }
-    for (size_t d = 0; d < b->n; d++) {
-        du[d] = b->push[d] / b->mass[d];
-    }
+    memcpy(du, b->push, b->n * sizeof *du);
     return 0;
 }

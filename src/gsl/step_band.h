@@ -9,12 +9,13 @@
 struct step_band {
     size_t n, width;     /* n = 0: the system is not of that kind; entries left of the diagonal */
     size_t count;        /* contacts */
-    double *a, *l;       /* [n][width + 1] A = M + h/2 C + h^2/4 K, row i from column i - width on; L D L' of what is not held */
+    double *a, *l;       /* [n][width + 1] A = M + h/2 C + h^2/4 K, and its factors without who is held (band.h) */
     size_t *body;        /* [count] whom a contact holds */
     size_t *contact;     /* [n] who does that; count: nobody */
     double *lever;       /* [count] its entry of J */
+    double *inverse;     /* [count] one over it */
     double *mass;        /* [n] */
-    double *push, *move; /* [n] what accelerates the bodies; how held ones move */
+    double *push, *move; /* [n] what pushes the bodies; how held ones move */
     double *noise;       /* [count] how much force may be rounding */
     signed char *at;     /* [count] 0: holds; else the sign of its force */
     signed char *held;   /* [n] whether a contact holds the body, in the factor */
@@ -26,7 +27,7 @@ struct step_band {
 int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double h, size_t *where);
 void tribo_step_band_free(struct step_band *b);
 
-/* In: du, what loads and structure do to the velocities u in the step but for the inverse of A; out: how they change, and the
+/* In: du, the impulse of loads and structure in the step, which the velocities u begin; out: how these change, and the
  * forces f, |f| <= limit, with which v = J (u + du) - base is zero or against f. 1; or 0 if that has not been found: then du is
  * as before. */
 int tribo_step_band_solve(struct step_band *b, double h, const double *limit, const double *base, const double *u, double *du,

@@ -4,10 +4,12 @@
 
 #include <gsl/gsl_linalg.h>
 
-int tribo_step_matrix_singular(const tribo_system *sys, double h, size_t where)
+#include "band.h"
+
+int tribo_step_matrix_indefinite(const tribo_system *sys, double h, size_t where)
 {
-    return tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "the matrix of a step of length %g is singular at degree of freedom %zu",
-                             h, where);
+    return tribo_system_fail(sys, TRIBO_ERR_INDEFINITE,
+                             "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where);
 }
 
 int tribo_step_matrix_no_memory(const tribo_system *sys)
@@ -19,7 +21,6 @@ void tribo_step_matrix_free(struct step_matrix *m)
 {
     free(m->band);
     free(m->pivot);
-    free(m->weight);
     tribo_cholesky_free(&m->sparse);
     *m = (struct step_matrix){0};
 }
@@ -29,126 +30,105 @@ int tribo_step_matrix_is_diagonal(const struct step_matrix *m)
     return !m->below && !m->above && !m->sparse.n;
 }
 
-void tribo_step_matrix_solve(const struct step_matrix *m, size_t n, double *x)
+/* ------------------------------------------------------------------------------------------------------------- the matrix */
+
+struct step_part tribo_step_stiffness(const tribo_system *sys)
 {
-    if (m->sparse.n) {
-        for (size_t i = 0; m->weight && i < n; i++) {
-            x[i] *= m->weight[i];
-        }
-        tribo_cholesky_solve(&m->sparse, 1, x);
-        return;
-    }
-    gsl_matrix_view a = gsl_matrix_view_array(m->band, n, 2 * m->below + m->above + 1);
-    gsl_vector_view b = gsl_vector_view_array(x, n);
-    const gsl_vector_uint pivot = {n, 1, m->pivot, NULL, 0};
-    gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
+    return sys->elastic.rows ? (struct step_part){&sys->elastic, 0} : (struct step_part){&sys->stiffness, !sys->unsolved};
 }
 
-/* ------------------------------------------------------------------------------------------------------- sparse factors */
-
-/* a = M A, of which the rows of an unsolved system are, and those of others are weighed with diagonal masses. */
-static int sum_up(const tribo_system *sys, double h, struct matrix *a)
+struct step_part tribo_step_damping(const tribo_system *sys)
 {
-    struct matrix mass = {0}, viscous = {0};
-    const int damped = sys->damping.rows > 0;
-    int done = sys->unsolved || tribo_matrix_diagonal(&mass, sys->ndof, NULL);
-    const struct matrix *first = sys->unsolved ? &sys->mass : &mass;
-    done = done && (!damped || tribo_matrix_sum(&viscous, 1.0, first, 0.5 * h, &sys->damping)) &&
-           tribo_matrix_sum(a, 1.0, damped ? &viscous : first, 0.25 * h * h, &sys->stiffness);
-    tribo_matrix_free(&viscous);
-    tribo_matrix_free(&mass);
+    return sys->viscous.rows ? (struct step_part){&sys->viscous, 0} : (struct step_part){&sys->damping, !sys->unsolved};
+}
+
+/* a += factor b. 0 if out of memory. */
+static int add(struct matrix *a, double factor, const struct matrix *b)
+{
+    struct matrix sum;
+    if (b->rows == 0) {
+        return 1;
+    }
+    const int done = tribo_matrix_sum(&sum, 1.0, a, factor, b);
+    tribo_matrix_free(a);
+    *a = sum;
     return done;
 }
 
-/* The sparse factor of M A. TRIBO_ERR_INDEFINITE, with the place, or TRIBO_ERR_NOT_SYMMETRIC if it has none. */
-static int factorize_sparsely(struct step_matrix *m, const tribo_system *sys, double h, size_t *where)
+/* a = M a for a diagonal M. */
+static int weigh(struct matrix *a, const struct matrix *mass)
 {
-    struct matrix a = {0};
-    size_t i, j;
-    double pivot, x, y;
-    if (!sum_up(sys, h, &a)) {
-        return TRIBO_ERR_MEMORY;
+    double *factor = malloc((a->rows + 1) * sizeof *factor);
+    for (size_t i = 0; factor && i < a->rows; i++) {
+        factor[i] = tribo_matrix_get(mass, i, i);
     }
-    if (m->weight) {
-        tribo_matrix_scale_rows(&a, m->weight);
+    if (factor) {
+        tribo_matrix_scale_rows(a, factor);
     }
-    const int lopsided = m->weight && tribo_matrix_flaw(&a, 1, &i, &j, &x, &y); /* an unsolved system's has been looked at */
-    const int status = lopsided ? TRIBO_ERR_NOT_SYMMETRIC : tribo_cholesky_create(&m->sparse, &a, where, &pivot);
-    tribo_matrix_free(&a);
-    if (status) {
-        tribo_cholesky_free(&m->sparse);
+    free(factor);
+    return factor != NULL;
+}
+
+/* a = S: what is weighed begins as a sum with the identity. Zeroed if out of memory. */
+static int sum_up(const tribo_system *sys, double h, struct matrix *a)
+{
+    const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
+    const double of_k = 0.25 * h * h, of_c = 0.5 * h;
+    const int weighed = !sys->mass.rows || (k.weighed && k.of->rows) || (c.weighed && c.of->rows);
+    int done = weighed ? tribo_matrix_diagonal(a, sys->ndof, NULL) : tribo_matrix_copy(a, &sys->mass);
+    done = done && (!k.weighed || add(a, of_k, k.of)) && (!c.weighed || add(a, of_c, c.of));
+    done = done && (!weighed || !sys->mass.rows || weigh(a, &sys->mass));
+    done = done && (k.weighed || add(a, of_k, k.of)) && (c.weighed || add(a, of_c, c.of));
+    if (!done) {
+        tribo_matrix_free(a);
     }
+    return done;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ its factor */
+
+/* A band that holds far more than there is, or that is a whole matrix, gives way to a sparse factor. */
+static int suits_sparse(const struct step_matrix *m, const struct matrix *a)
+{
+    const size_t width = m->below > m->above ? m->below : m->above;
+    return tribo_sparse_available() && m->n >= SPARSE_LEAST && (width > 5 * (a->first[m->n] / m->n + 1) || 2 * width > m->n);
+}
+
+static int factorize_band(struct step_matrix *m, const struct matrix *a, size_t *where)
+{
+    const size_t n = m->n, width = m->below;
+    double *band = calloc(n * (width + 1), sizeof *band);
+    m->band = malloc(n * (width + 1) * sizeof *m->band);
+    int status = band && m->band ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    if (!status) {
+        tribo_band_add(band, width, a, 1.0, NULL);
+        *where = tribo_band_factorize(n, width, band, NULL, m->band);
+        status = *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+    }
+    free(band);
     return status;
 }
 
-static int factorize_unsolved(struct step_matrix *m, const tribo_system *sys, double h)
+/* With exchange of rows: definite or not, it only must not be singular. */
+static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, size_t *where)
 {
-    size_t where = 0;
-    const int status = factorize_sparsely(m, sys, h, &where);
-    return status == TRIBO_ERR_INDEFINITE
-               ? tribo_system_fail(
-                     sys, status, "the matrix of a step of length %g is not positive definite at degree of freedom %zu", h, where)
-           : status ? tribo_step_matrix_no_memory(sys)
-                    : TRIBO_OK;
-}
-
-/* A band that holds far more than there is gives way to a sparse factor, where masses are diagonal. */
-static int suits_sparse(const struct step_matrix *m, const tribo_system *sys)
-{
-    const size_t n = sys->ndof, width = 2 * m->below + m->above + 1;
-    return tribo_sparse_available() && sys->massless.count == 0 && sys->mass.rows && tribo_matrix_is_diagonal(&sys->mass) &&
-           width > 16 * (sys->stiffness.first[n] / n + 1);
-}
-
-/* TRIBO_OK also if there is no such factor: then m->sparse.n is 0. */
-static int try_sparse(struct step_matrix *m, const tribo_system *sys, double h)
-{
-    size_t where;
-    m->weight = malloc(sys->ndof * sizeof *m->weight);
-    if (!m->weight) {
-        return tribo_step_matrix_no_memory(sys);
-    }
-    for (size_t i = 0; i < sys->ndof; i++) {
-        m->weight[i] = tribo_matrix_get(&sys->mass, i, i);
-    }
-    return factorize_sparsely(m, sys, h, &where) == TRIBO_ERR_MEMORY ? tribo_step_matrix_no_memory(sys) : TRIBO_OK;
-}
-
-/* --------------------------------------------------------------------------------------------------------------- bands */
-
-/* Adds factor a to the band, rows of what has mass or of what has none. */
-static void add_band(struct step_matrix *m, const tribo_system *sys, const struct matrix *a, double factor, int with_mass)
-{
-    const size_t width = 2 * m->below + m->above + 1, middle = m->below + m->above;
-    for (size_t i = 0; i < a->rows; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1] && tribo_has_mass(&sys->massless, i) == with_mass; k++) {
-            m->band[a->col[k] * width + middle + i - a->col[k]] += factor * a->val[k];
-        }
-    }
-}
-
-static int factorize_band(struct step_matrix *m, const tribo_system *sys, double h)
-{
-    const size_t n = sys->ndof, width = 2 * m->below + m->above + 1, middle = m->below + m->above;
+    const size_t n = m->n, width = 2 * m->below + m->above + 1, middle = m->below + m->above;
     m->band = calloc(n * width, sizeof *m->band);
     m->pivot = malloc(n * sizeof *m->pivot);
     if (!m->band || !m->pivot) {
-        return tribo_step_matrix_no_memory(sys);
+        return TRIBO_ERR_MEMORY;
     }
     for (size_t i = 0; i < n; i++) {
-        m->band[i * width + middle] = tribo_has_mass(&sys->massless, i) ? 1.0 : 0.0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            m->band[a->col[k] * width + middle + i - a->col[k]] = a->val[k];
+        }
     }
-    add_band(m, sys, &sys->stiffness, 0.25 * h * h, 1);
-    add_band(m, sys, &sys->damping, 0.5 * h, 1);
-    if (sys->massless.count) {
-        add_band(m, sys, &sys->elastic, 1.0, 0);
-    }
-    gsl_matrix_view a = gsl_matrix_view_array(m->band, n, width);
+    gsl_matrix_view view = gsl_matrix_view_array(m->band, n, width);
     gsl_vector_uint pivot = {n, 1, m->pivot, NULL, 0};
-    gsl_linalg_LU_band_decomp(n, m->below, m->above, &a.matrix, &pivot);
-    for (size_t i = 0; i < n; i++) {
-        if (m->band[i * width + middle] == 0.0) {
-            return tribo_step_matrix_singular(sys, h, i);
+    gsl_linalg_LU_band_decomp(n, m->below, m->above, &view.matrix, &pivot);
+    for (*where = 0; *where < n; ++*where) {
+        if (m->band[*where * width + middle] == 0.0) {
+            return TRIBO_ERR_INDEFINITE;
         }
     }
     return TRIBO_OK;
@@ -156,15 +136,69 @@ static int factorize_band(struct step_matrix *m, const tribo_system *sys, double
 
 int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h)
 {
+    struct matrix a;
+    size_t where = 0, j;
+    double x, y;
     tribo_step_matrix_free(m);
-    if (sys->unsolved) {
-        return factorize_unsolved(m, sys, h);
+    if (!sum_up(sys, h, &a)) {
+        return tribo_step_matrix_no_memory(sys);
     }
-    tribo_matrix_widen(&sys->stiffness, &m->below, &m->above);
-    tribo_matrix_widen(&sys->damping, &m->below, &m->above);
-    if (sys->massless.count) {
-        tribo_matrix_widen(&sys->elastic, &m->below, &m->above);
+    m->n = sys->ndof;
+    tribo_matrix_widen(&a, &m->below, &m->above);
+    const int lopsided = tribo_step_damping(sys).of->rows && tribo_matrix_flaw(&a, 1, &where, &j, &x, &y);
+    const int status = lopsided              ? factorize_lopsided(m, &a, &where)
+                       : suits_sparse(m, &a) ? tribo_cholesky_consume(&m->sparse, &a, &where, &x)
+                                             : factorize_band(m, &a, &where);
+    tribo_matrix_free(&a);
+    return status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_indefinite(sys, h, where)
+           : status                       ? tribo_step_matrix_no_memory(sys)
+                                          : TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- solutions */
+
+static void solve_lopsided(const struct step_matrix *m, double *x)
+{
+    gsl_matrix_view a = gsl_matrix_view_array(m->band, m->n, 2 * m->below + m->above + 1);
+    gsl_vector_view b = gsl_vector_view_array(x, m->n);
+    const gsl_vector_uint pivot = {m->n, 1, m->pivot, NULL, 0};
+    gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
+}
+
+int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x)
+{
+    if (m->sparse.n) {
+        return tribo_cholesky_solve(&m->sparse, count, x);
     }
-    const int status = suits_sparse(m, sys) ? try_sparse(m, sys, h) : TRIBO_OK;
-    return status || m->sparse.n ? status : factorize_band(m, sys, h);
+    for (size_t k = 0; k < count; k++) {
+        if (m->pivot) {
+            solve_lopsided(m, x + k * m->n);
+        } else {
+            tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
+        }
+    }
+    return 1;
+}
+
+int tribo_step_matrix_has_halves(const struct step_matrix *m)
+{
+    return !m->pivot;
+}
+
+void tribo_step_matrix_half_solve(const struct step_matrix *m, double *x)
+{
+    if (m->sparse.n) {
+        tribo_half_solve(&m->sparse, x, 1);
+    } else {
+        tribo_band_half_solve(m->n, m->below, m->band, x);
+    }
+}
+
+void tribo_step_matrix_half_solve_back(const struct step_matrix *m, double *x)
+{
+    if (m->sparse.n) {
+        tribo_half_solve_back(&m->sparse, x, 1);
+    } else {
+        tribo_band_half_solve_back(m->n, m->below, m->band, x);
+    }
 }

@@ -1,15 +1,5 @@
-/* How it is decided, at an instant:
- *
- *     contacts without velocity, or with none left in the direction of their slip, are at rest
- *     repeat
- *         find the forces: min 1/2 f'Rf + a'f, with |f| <= limit at rest, and f at its limit where a contact slides
- *         contacts at rest slide if their force is at the limit and their acceleration is more than rounding
- *         if none does, but some are just at their limit: solve for a moment later, and contacts at their limit then slide
- *         if still none does: of the forces that hold all at rest, the one most beyond its limit makes its contact slide
- *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on, and
- *         others that began to slide are at rest again
- *     until none begins to slide
- *     an independent set of those at rest holds: it keeps all of them where they are */
+/* What decisions are made of, whatever kind of contacts they are about: scalar_slip.c, planar_slip.c. */
+#include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"
 
@@ -22,21 +12,9 @@
 #define NOISE 2e-14
 #define VELOCITY_NOISE 2e-14
 
-/* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
-#define ALLOWED 8.0
-
-/* Of redundant contacts the solver may leave so many times the noise of accelerations. */
-#define CERTAIN 1e3
-
 /* The moment later, in parts of one over the highest frequency. What has changed by then is far above noise, as a rule, and
  * nearly linear in time. */
 #define LOOK_AHEAD 1e-4
-
-/* A force this close to the limit might be taken beyond it by rounding, or in a moment. */
-#define CLOSE 0.1
-
-/* A contact that is close to its limit, but not at it, does not reach it in a moment: its bounds are wider by this part. */
-#define WIDER 0.02
 
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
@@ -46,11 +24,12 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit,    &m->limit_rate,  &m->force,   &m->allowance, &m->base,  &m->noise,
-                                   &m->diagonal, &m->seen,        &m->parting, &m->excess,    &m->v,     &m->a,
-                                   &m->gain,     &m->lo,          &m->hi,      &m->f,         &m->still, &m->swing,
-                                   &m->spring,   &m->spring_rate, &m->slack};
-    double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size};
+    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force,         &m->allowance, &m->base,
+                                   &m->noise, &m->diagonal,   &m->seen,          &m->parting,   &m->excess,
+                                   &m->v,     &m->a,          &m->gain,          &m->lo,        &m->hi,
+                                   &m->f,     &m->still,      &m->swing,         &m->spring,    &m->spring_rate,
+                                   &m->slack, &m->base_size,  &m->base_rate_size};
+    double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
     m->slip = calloc(8, c);
@@ -60,7 +39,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
     if (status || !work || !m->slip || !m->at || !m->last || !statics) {
         tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stick and slip of %zu contacts", sys->ncontact);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
     }
     for (size_t k = 0; k < contact_arrays; k++) {
         *by_contact[k] = work + k * c;
@@ -86,6 +65,12 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     size_t islands;
     tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
     m->uncoupled = islands == sys->ncontact;
+    const size_t rank = m->uncoupled ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
+    if (rank > sys->ncontact) {
+        tribo_stick_slip_free(m);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
+    }
+    m->independent = rank == sys->ncontact;
     /* a contact that has reached its limit stays there while others take over */
     tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
     tribo_set_static(m->box, NULL, NULL);
@@ -121,15 +106,38 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
     }
 }
 
+/* The sizes of all that comes from outside, whenever: of b, of its rate, and of the accelerations by loads. */
+static void find_outer_sizes(struct stick_slip *m, const tribo_system *sys)
+{
+    memset(m->base_size, 0, sys->ncontact * sizeof *m->base_size);
+    memset(m->base_rate_size, 0, sys->ncontact * sizeof *m->base_rate_size);
+    memset(m->load_size, 0, sys->ndof * sizeof *m->load_size);
+    add_amplitudes(sys, DRIVES_BASE, 0, m->base_size);
+    add_amplitudes(sys, DRIVES_BASE, 1, m->base_rate_size);
+    add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
+}
+
 /* What of the velocities may be rounding, as far as the state tells, and the phase before. */
 static void find_noise(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    memset(m->noise, 0, sys->ncontact * sizeof *m->noise);
-    add_amplitudes(sys, DRIVES_BASE, 0, m->noise);
-    tribo_matrix_add_sizes(&sys->direction, y + sys->ndof, m->noise);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->noise[i] = VELOCITY_NOISE * greater(m->noise[i], m->seen[i]);
+        const double size = m->base_size[i] + tribo_matrix_row_size(&sys->direction, i, y + sys->ndof);
+        m->noise[i] = VELOCITY_NOISE * greater(size, m->seen[i]);
         m->seen[i] = 0.0;
+    }
+}
+
+/* The sizes of all that q'' is the sum of. */
+static void find_sizes(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    memset(m->size, 0, sys->ndof * sizeof *m->size);
+    tribo_system_tables(sys, 0, 1.0, m->size);
+    for (size_t d = 0; d < sys->ndof; d++) {
+        m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                     tribo_matrix_row_size(&sys->response, d, m->force);
+    }
+    if (sys->damping.rows) {
+        tribo_matrix_add_sizes(&sys->damping, y + sys->ndof, m->size);
     }
 }
 
@@ -141,23 +149,11 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
         return;
     }
     m->sized = 1;
-    memset(m->size, 0, sys->ndof * sizeof *m->size);
-    tribo_system_tables(sys, 0, 1.0, m->size);
-    for (size_t d = 0; d < sys->ndof; d++) {
-        m->size[d] = fabs(m->size[d]);
-    }
-    add_amplitudes(sys, DRIVES_LOAD, 0, m->size);
-    tribo_matrix_add_sizes(&sys->stiffness, y, m->size);
-    if (sys->damping.rows) {
-        tribo_matrix_add_sizes(&sys->damping, y + sys->ndof, m->size);
-    }
-    tribo_matrix_add_sizes(&sys->response, m->force, m->size);
-    memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
-    add_amplitudes(sys, DRIVES_BASE, 1, m->gain);
-    tribo_matrix_add_sizes(&sys->direction, m->size, m->gain);
+    find_sizes(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->gain[i] *= NOISE * m->doubt;
-        m->allowance[i] = m->diagonal[i] > 0.0 ? ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+        const double size = m->base_rate_size[i] + tribo_matrix_row_size(&sys->direction, i, m->size);
+        m->gain[i] = NOISE * m->doubt * size;
+        m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
         m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
         m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
     }
@@ -204,8 +200,7 @@ static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i
     return m->swing[i] > 0.0 ? tribo_system_presses(sys, i, m->doubt) : m->limit[i] != 0.0 || m->limit_rate[i] != 0.0;
 }
 
-/* Brings limits, and with them which contacts are open, up to the time set. */
-static void update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
+void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     if (tribo_system_limits_vary(sys) || m->breakaway.some) {
         tribo_system_limits(sys, m->limit, m->limit_rate);
@@ -219,7 +214,9 @@ static void update_limits(struct stick_slip *m, const tribo_system *sys, const d
         }
         m->limit[i] = greater(m->limit[i], 0.0);
     }
-    tribo_breakaway_take(&m->breakaway, sys->ncontact, m->limit, m->limit_rate);
+    if (m->breakaway.some) {
+        tribo_breakaway_take(&m->breakaway, sys->ncontact, m->limit, m->limit_rate);
+    }
 }
 
 /* A static limit that is lost does not come back: it must not go with who of those that tie each other is held. */
@@ -259,160 +256,25 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- forces */
-
-/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
-int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
-{
-    return m->slip[i] == 0 && !tribo_massless_touches(&sys->massless, i);
-}
-
-/* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
-static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
-{
-    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        /* one that friction cannot move takes all that it can of any pull */
-        const double pull = m->diagonal[i] > 0.0 ? a[i] / m->diagonal[i] : a[i] != 0.0 ? copysign(HUGE_VAL, a[i]) : 0.0;
-        f[i] = clamp(-pull, m->lo[i], m->hi[i]);
-    }
-    const int status = m->uncoupled ? TRIBO_OK : tribo_solve_box(m->box, a, m->lo, m->hi, f);
-    return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
-}
-
-/* Forces and accelerations, with contacts at rest as they are marked. */
-int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
-{
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
-        m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
-        m->hi[i] = m->slip[i] == 1 ? -limit : limit;
-        if (tribo_massless_touches(&sys->massless, i)) {
-            m->lo[i] = m->hi[i] = m->spring[i];
-        }
-    }
-    const int status = solve(m, sys, m->a, m->force);
-    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
-    return status;
-}
+/* ------------------------------------------------------------------------------------------------------------ motion */
 
 /* to = J acceleration - order-th derivative of b. */
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
+    if (sys->base_harmonics == 0) {
+        tribo_matrix_multiply(&sys->direction, acceleration, to);
+        return;
+    }
     memset(to, 0, sys->ncontact * sizeof *to);
     tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
-/* A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
-void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
+const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys)
 {
-    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
-    m->slip[i] = again ? 0 : direction;
-    m->tied[i] = 0;
-    m->again |= again;
-}
-
-/* Where static limits were lost, all that began to slide while they held are decided about once more, too: the other way they
- * might go, or none. */
-static void rest_again(struct stick_slip *m)
-{
-    for (size_t i = 0; m->again && i < m->contacts; i++) {
-        m->slip[i] = m->rested[i] ? 0 : m->slip[i];
-    }
-    m->again = 0;
-}
-
-/* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
- * than rounding, slides. */
-static int breaks_away(struct stick_slip *m, size_t i, signed char direction, double acceleration)
-{
-    if (direction * acceleration <= m->gain[i]) {
-        return 0;
-    }
-    tribo_stick_slip_let_go(m, i, direction);
-    return 1;
-}
-
-/* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
-static signed char direction_of(const struct stick_slip *m, size_t i, double force)
-{
-    return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
-}
-
-/* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
-static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
-{
-    size_t close = 0, changes = 0;
-    *ties = 0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->tied[i] = 0;
-        close += tribo_stick_slip_searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
-    }
-    if (close == 0) {
-        return 0;
-    }
-    tribo_stick_slip_find_gains(m, sys, y);
-    tribo_stick_slip_contact_accelerations(sys, m->acceleration, 1, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double room = m->stick[i] - fabs(m->force[i]);
-        const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / ALLOWED;
-        if (tribo_stick_slip_searches(m, sys, i) && room <= within) {
-            const signed char direction = direction_of(m, i, m->force[i]);
-            const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
-            m->tied[i] = 1;
-            changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure);
-            *ties += m->tied[i] != 0;
-        }
-    }
-    return changes;
-}
-
-/* ---------------------------------------------------------------------------------------------------------- look ahead */
-
-static double limit_ahead(const struct stick_slip *m, size_t i)
-{
-    const double now = m->slip[i] ? m->limit[i] : m->stick[i], rate = m->slip[i] ? m->limit_rate[i] : m->stick_rate[i];
-    return m->slip[i] == 2 ? 0.0 : greater(now + m->horizon * rate, 0.0);
-}
-
-/* The limits of this instant, where there are static ones. */
-static void find_static(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    if (m->breakaway.some) {
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            m->v[i] = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
-        }
-        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->slip, m->v, m->limit, m->limit_rate);
-    }
-}
-
-/* How the limits of sliding contacts fall, as they gain speed. */
-static void find_falling(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    find_static(m, sys, y);
-    tribo_stick_slip_contact_accelerations(sys, m->acceleration, 1, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
-        m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
-    }
-}
-
-static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
-{
-    for (size_t i = 0; i < m->contacts; i++) {
-        const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
-        if (tribo_massless_touches(&sys->massless, i)) {
-            m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
-            continue;
-        }
-        if (m->slip[i] != 0) {
-            m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
-            continue;
-        }
-        m->hi[i] = limit + (!m->tied[i] && now - m->force[i] < wider ? wider : 0.0);
-        m->lo[i] = -limit - (!m->tied[i] && now + m->force[i] < wider ? wider : 0.0);
-    }
+    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
+    return m->acceleration;
 }
 
 /* rate = the rate of q'' while the forces of contacts at rest are what they are. */
@@ -422,43 +284,8 @@ void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, c
     tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->rate);
     tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->rate);
     if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, m->acceleration, m->rate);
+        tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->rate);
     }
-}
-
-/* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
-static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
-{
-    tribo_stick_slip_find_gains(m, sys, y);
-    if (m->breakaway.falls) {
-        find_falling(m, sys, y);
-    }
-    tribo_stick_slip_find_rate(m, sys, y);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->v[i] = m->a[i] + m->horizon * m->v[i];
-    }
-    set_bounds_ahead(m, sys);
-    const int status = solve(m, sys, m->v, m->f);
-    if (status) {
-        return status;
-    }
-    memset(m->pulled, 0, sys->ncontact);
-    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, m->rate);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (tribo_stick_slip_searches(m, sys, i) && room >= 0.0) {
-            const signed char direction = direction_of(m, i, m->f[i]);
-            const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
-            const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
-            m->pulled[i] = (signed char)(m->tied[i] && room <= 0.0 && direction * m->v[i] > m->gain[i] ? direction : 0);
-            *changes += (size_t)leaves;
-            m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
-        }
-    }
-    return TRIBO_OK;
 }
 
 /* lo = the limits by which contacts slide at the time set with velocities v: others than those that were last decided with, if
@@ -495,53 +322,22 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
+/* b(t), which is zero throughout where no base moves. */
+static void find_base(struct stick_slip *m, const tribo_system *sys)
+{
+    if (sys->base_harmonics) {
+        memset(m->base, 0, sys->ncontact * sizeof *m->base);
+        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
+    }
+}
+
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_system_set_time(sys, t);
-    memset(m->base, 0, sys->ncontact * sizeof *m->base);
-    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
+    find_base(m, sys);
     memset(m->tied, 0, sys->ncontact);
     tribo_elastic_release(sys, y);
     find_noise(m, sys, y);
-}
-
-int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
-{
-    tribo_stick_slip_begin_decision(m, sys, t, y);
-    update_limits(m, sys, y);
-    tribo_elastic_place(m, sys, y);
-    int status = tribo_stick_slip_find_resting(m, sys, y);
-    find_static(m, sys, y);
-    if (!status) {
-        tribo_elastic_hold(m, sys, y);
-        tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
-        m->sized = 0;
-        memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
-        memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
-    }
-    for (size_t changes = 1; !status && changes;) {
-        size_t ties;
-        status = tribo_stick_slip_find_forces(m, sys);
-        changes = status ? 0 : let_slide(m, sys, y, &ties);
-        if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
-            status = look_ahead(m, sys, y, &changes);
-        }
-        if (!status && !changes && ties) {
-            status = tribo_stick_slip_relieve(m, sys, &changes);
-        }
-        rest_again(m);
-    }
-    m->reached = m->contacts;
-    if (m->breakaway.some && !status) {
-        tribo_stick_slip_find_gains(m, sys, y);
-    }
-    for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
-        m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
-    }
-    if (!status) {
-        tribo_elastic_finish(m, sys);
-    }
-    return status ? status : tribo_stick_slip_find_holds(m, sys);
 }
 
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
@@ -551,8 +347,8 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     tribo_breakaway_start(&m->breakaway, sys, m->rate, m->v);
     m->stick = m->breakaway.some ? m->breakaway.stick : m->limit;
     m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
-    memset(m->base, 0, sys->ncontact * sizeof *m->base);
-    tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
+    find_base(m, sys);
+    find_outer_sizes(m, sys);
     find_noise(m, sys, y);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
         m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));

@@ -12,11 +12,15 @@
 #include "first_zero.h"
 #include "planar_slip.h"
 
+/* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
+#define TRIBO_ALLOWED 8.0
+
 struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
     tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */
     size_t contacts;
-    int uncoupled; /* R is diagonal */
+    int uncoupled;   /* R is diagonal */
+    int independent; /* the contacts at rest hold, whoever they are: none depends on others */
     int base_moves;
     int simple;     /* no contact has more than one degree of freedom */
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
@@ -36,8 +40,7 @@ struct stick_slip {
     struct planar_slip *plane;  /* of planar contacts; NULL if there are none */
     double abstol, reltol;      /* of the driver */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
-    double *acceleration;       /* [ndof] and q'' */
-    double *allowance;          /* [ncontact] and by how much forces may exceed their limits before that counts */
+    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts */
     double *excess;             /* [ncontact] and by how much they do where this begins */
     double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
     double *base, *noise;       /* [ncontact] b(t); what of v may be rounding */
@@ -45,12 +48,15 @@ struct stick_slip {
     double *diagonal;           /* [ncontact] R_ii */
     double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
     double *gain, *lo, *hi, *f; /* [ncontact] workspace: what accelerations of contacts may be rounding; bounds, forces */
-    double *free, *rate, *size; /* [ndof] workspace: q'' without friction, its rate, the sizes of its parts */
-    int sized;                  /* size is that of now */
-    signed char *tied;          /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
-    signed char *pulled;        /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
-    signed char *before;        /* [ncontact] what find_holds saw last */
-    int fresh;                  /* it saw nothing yet */
+    double *free, *acceleration, *rate, *size; /* [ndof] workspace: q'' without friction, with it, its rate, sizes of its parts */
+    double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
+    double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
+    int sized;                                 /* size is that of now */
+    signed char *tied;                    /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    signed char *pulled;                  /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
+    signed char *before;                  /* [ncontact] what find_holds saw last */
+    int fresh;                            /* it saw nothing yet */
+    int hold_differs;                     /* hold was not told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */
@@ -66,25 +72,29 @@ void tribo_stick_slip_free(struct stick_slip *m);
  * rounding. A decision must follow. */
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
-/* Decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out of their
- * velocities in y. Sets slip, holds, force, acceleration and allowance. */
+/* scalar_slip.c: decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out
+ * of their velocities in y. Sets slip, holds, force and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* What a decision is made of. It begins at time t, with base and noise there. Then whoever has no velocity, or none in the
- * direction of its slip any more, is at rest; a status. What accelerations of contacts may be rounding, and how far forces may
- * go; the rate of q'' while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
+/* What a decision is made of. It begins at time t, with base and noise there. Limits, and with them which contacts are open, are
+ * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status.
+ * What accelerations of contacts may be rounding, and how far forces may go; q'' [ndof] with the forces found, also after a
+ * decision; its rate while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
  * derivative of b. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
+void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
+const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 
-/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. Forces and accelerations, with
- * contacts at rest as they are marked; a status. A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other
- * one. */
+/* scalar_slip.c: whether contact i is at rest by a force that is to be found; that of elastic ones is known. Forces, with
+ * contacts at rest as they are marked; a status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. A
+ * contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
 int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
+void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction);
 
 /* stick_slip_relieve.c: whether contact i would lose a static limit, and the forces at rest are not unique. Then, and where

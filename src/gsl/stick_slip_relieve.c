@@ -7,9 +7,9 @@
  * A static limit that is lost does not come back. So as long as any forces within the limits hold all where they are, none is
  * lost; and the solver's own rounding, which may be more than that of the forces, does not decide. */
 #include "stick_slip.h"
+#include "../common/real.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Forces beyond static limits are an event as soon as they are so by the allowance of the phase, which may have been smaller than
  * that of its end: there it has to be decided, by what is more than noise. */
@@ -20,11 +20,9 @@ static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
     int status = tribo_stick_slip_find_holds(m, sys);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        m->v[i] = m->loose[i] ? m->force[i] : 0.0;
+        m->f[i] = m->loose[i] ? m->force[i] : 0.0;
     }
-    memcpy(m->rate, m->free, sys->ndof * sizeof *m->rate);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->v, m->rate);
-    tribo_stick_slip_contact_accelerations(sys, m->rate, 1, m->v);
+    tribo_stick_slip_accelerate(m, sys, m->a, m->f, m->v);
     status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
@@ -80,14 +78,12 @@ static void let_overloaded_go(struct stick_slip *m, size_t worst, signed char di
 }
 
 /* f are the forces. */
-static void keep_forces(struct stick_slip *m, const tribo_system *sys)
+static void keep_forces(struct stick_slip *m)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t i = 0; i < m->contacts; i++) {
         m->force[i] = m->loose[i] ? m->force[i] : clamp(m->f[i], -m->stick[i], m->stick[i]);
         m->excess[i] = m->loose[i] ? 0.0 : fabs(m->f[i] - m->force[i]);
     }
-    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
 }
 
 int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes)
@@ -103,7 +99,7 @@ int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *ch
         let_overloaded_go(m, worst, direction);
         *changes = 1;
     } else if (!status) {
-        keep_forces(m, sys);
+        keep_forces(m);
     }
     return status;
 }

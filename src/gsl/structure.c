@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "delassus.h"
 #include "model.h"
 
 static int check(const struct model *m)
@@ -126,25 +127,9 @@ static int build_solved(struct model *m, tribo_system **sys)
     return status;
 }
 
-/* R = J M^-1 J', and what forces of contacts do to the degrees of freedom that they touch. x [ndof] is workspace. */
-static void find_operator(const struct matrix *j, const struct cholesky *mass, double *x, double *r, double *own)
+static int solve_masses(const void *mass, size_t count, double *x)
 {
-    for (size_t i = 0; i < j->rows; i++) {
-        memset(x, 0, j->cols * sizeof *x);
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            x[j->col[k]] = j->val[k];
-        }
-        tribo_cholesky_solve(mass, 1, x);
-        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-            own[k] = x[j->col[k]];
-        }
-        tribo_matrix_multiply_add(j, 1.0, x, r + i * j->rows);
-    }
-    for (size_t i = 0; i < j->rows; i++) {
-        for (size_t k = 0; k < i; k++) {
-            r[i * j->rows + k] = r[k * j->rows + i] = 0.5 * (r[i * j->rows + k] + r[k * j->rows + i]);
-        }
-    }
+    return tribo_cholesky_solve(mass, count, x);
 }
 
 static int check_unsolved(const struct model *m)
@@ -174,11 +159,11 @@ static int build_unsolved(struct model *m, tribo_system **sys)
     if (status) {
         return status;
     }
-    double *x = malloc(n * sizeof *x), *r = calloc(contacts * contacts + 1, sizeof *r),
-           *own = malloc((m->direction.first[contacts] + 1) * sizeof *own);
-    int done = x && r && own && tribo_matrix_transpose(&b, &m->direction);
+    double *r = calloc(contacts * contacts + 1, sizeof *r), *own = malloc((m->direction.first[contacts] + 1) * sizeof *own);
+    int done = r && own && tribo_delassus_by_columns(&m->direction, solve_masses, &c, NULL, r, own) &&
+               tribo_matrix_transpose(&b, &m->direction);
     if (done) {
-        find_operator(&m->direction, &c, x, r, own);
+        tribo_even_out(contacts, r);
         done = tribo_system_build(sys, n, contacts, &m->stiffness, &m->damping, &m->direction, &b) == TRIBO_OK;
         m->stiffness = m->damping = m->direction = (struct matrix){0};
     }
@@ -189,7 +174,6 @@ static int build_unsolved(struct model *m, tribo_system **sys)
         give_mass(m, *sys, &c);
         status = tribo_model_give_operator(m, *sys, r, own);
     }
-    free(x);
     free(r);
     free(own);
     return status;
@@ -229,10 +213,12 @@ int tribo_model_build(struct model *m, tribo_system **sys)
 static int check_sizes(const struct model *m, int damped)
 {
     if (m->ndof == 0 || m->ndof > (size_t)1 << 24 || m->ncontact > (size_t)1 << 24) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%zu degrees of freedom and %zu contacts", m->ndof, m->ncontact);
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%zu degree%s of freedom and %zu contact%s", m->ndof, plural(m->ndof),
+                                m->ncontact, plural(m->ncontact));
     }
     if (m->nmode > m->ndof) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degrees of freedom", m->nmode, m->ndof);
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", m->nmode, m->ndof,
+                                plural(m->ndof));
     }
     if (m->nmode && damped) {
         return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED, "damping of a reduced system is set by tribo_system_set_damping_ratio");

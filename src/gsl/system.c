@@ -32,9 +32,9 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what)
 {
     return sys->unsolved ? tribo_system_fail(
                                sys, TRIBO_ERR_UNSUPPORTED,
-                               "%s needs accelerations: %zu degrees of freedom are more than the %d that are solved for with a "
+                               "%s needs accelerations: %zu degree%s of freedom are more than the %d that are solved for with a "
                                "mass matrix that is not diagonal; take moreau/fixed, or tribo_system_reduced",
-                               what, sys->ndof, DENSE_MOST)
+                               what, sys->ndof, plural(sys->ndof), DENSE_MOST)
                          : TRIBO_OK;
 }
 

@@ -7,13 +7,19 @@
 
 #include "linalg.h"
 #include "massless.h"
+#include "../common/plural.h"
 
 /* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
 
+/* So many times can be foreseen. */
+enum { FORESIGHT = 16 };
+
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
 struct harmonic {
-    double omega, cos_t, sin_t; /* at the time sys->time */
+    double omega, time, cos_t, sin_t;                  /* the latter are those of this time */
+    double cos_ahead[FORESIGHT], sin_ahead[FORESIGHT]; /* those of times foreseen */
+    size_t next;                                       /* which of them may be asked for next */
     enum drives drives;
     size_t count;
     size_t *index;
@@ -45,12 +51,14 @@ struct tribo_system {
     struct harmonic *harmonic;
     size_t tables;
     struct table *table;
-    struct table limits; /* knots 0: the limits are those given in the context, and harmonics on top */
-    double *given_limit; /* [ncontact] while limits vary: those given in the context, */
-    double *put_limit;   /* [ncontact] and those that it was told last, to see whether others have been given since */
-    size_t revision;     /* counts changes of loads, tables and damping */
-    size_t ours, seen;   /* of the context's revision: how much varying limits added, and where they left it */
-    double time, low;    /* that cos_t and sin_t belong to (NaN: none yet), and what rounding left of it (below) */
+    struct table limits;         /* knots 0: the limits are those given in the context, and harmonics on top */
+    double *given_limit;         /* [ncontact] while limits vary: those given in the context, */
+    double *put_limit;           /* [ncontact] and those that it was told last, to see whether others have been given since */
+    size_t revision;             /* counts changes of loads, tables and damping */
+    size_t ours, seen;           /* of the context's revision: how much varying limits added, and where they left it */
+    double time, low;            /* that is set (NaN: none yet), and what rounding left of it (below) */
+    size_t foreseen;             /* times in foresight */
+    double foresight[FORESIGHT]; /* ascending */
 
     /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: M AK and M AC are
      * K and C to rounding of every entry. */
@@ -99,6 +107,40 @@ int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 /* Prepares the loads for time t, and sets the limits of the context if they vary. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
+/* ---- foresight.c */
+
+/* Times t, at most FORESIGHT and ascending, that will probably be set next: the loads' harmonics are found side by side. From
+ * then on those of other times are found in the same way, until no times (0) are foreseen: so a motion is the same to the last
+ * bit whatever its steps were foreseen with. low is 0 meanwhile. */
+void tribo_system_foresee(tribo_system *sys, size_t count, const double *t);
+
+/* What is set, or foreseen, is of loads or times that are others now. */
+void tribo_system_forget_time(tribo_system *sys);
+
+/* Prepares the loads for the k-th of the times foreseen, where nothing but harmonic loads changes with time. */
+static inline void tribo_system_set_foreseen(tribo_system *sys, size_t k)
+{
+    sys->time = sys->foresight[k];
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        struct harmonic *h = &sys->harmonic[s];
+        h->time = sys->time;
+        h->cos_t = h->cos_ahead[k];
+        h->sin_t = h->sin_ahead[k];
+    }
+}
+
+/* Harmonic k becomes that of the time set, if it is not: whoever reads cos_t and sin_t asks for it first. */
+void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
+
+static inline void tribo_system_turn(const tribo_system *sys, size_t k)
+{
+    if (sys->harmonic[k].time != sys->time) {
+        tribo_harmonic_turn(sys, &sys->harmonic[k]);
+    }
+}
+
+/* ---- loads.c */
+
 /* From here on every time means t + low, at which events happen between two numbers t. */
 void tribo_system_set_low(tribo_system *sys, double low);
 
@@ -110,7 +152,10 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to);
 
 /* Whether limits change with time, by a table or harmonics. */
-int tribo_system_limits_vary(const tribo_system *sys);
+static inline int tribo_system_limits_vary(const tribo_system *sys)
+{
+    return sys->limits.knots || sys->limit_harmonics;
+}
 
 /* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
@@ -145,6 +190,9 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 /* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0) and have one degree of freedom, or
  * the difference of two. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
+
+/* q'' without friction, [ndof]. */
+void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
 
 /* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
 void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);

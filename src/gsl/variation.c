@@ -83,7 +83,7 @@ static int find_pulled(struct variation *x, const double *y)
     const struct guard *g = x->events->met;
     const struct stick_slip *m = &x->events->stick_slip;
     x->pulled = x->sys->ncontact;
-    if (!g || g->slides || !m->holds[g->contact] || !tribo_breakaway_is_sudden(&m->breakaway, g->contact)) {
+    if (!g || g->slides || m->breakaway.falls || !m->holds[g->contact] || !tribo_breakaway_is_sudden(&m->breakaway, g->contact)) {
         return TRIBO_OK;
     }
     x->pulled = g->contact;
@@ -107,20 +107,33 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     return status ? status : find_pulled(x, y);
 }
 
+/* 1 if contact i, which slid, comes to rest for an instant only, since the force of that pulls another one loose: accelerations
+ * jump where it stops, and it goes on. */
+static int pulls_loose(const struct variation *x, size_t i)
+{
+    const struct guard *met = x->events->met;
+    const signed char *now = x->events->stick_slip.slip;
+    int loose = 0;
+    for (size_t k = 0; k < x->sys->ncontact; k++) {
+        loose |= x->before[k] == 0 && (now[k] == 1 || now[k] == -1);
+    }
+    return loose && met && met->slides == SLIDES && met->contact == i;
+}
+
 /* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there; an elastic
  * one has the same force before and after. */
 static int stops(const struct variation *x, size_t i)
 {
     const signed char before = x->before[i], now = x->events->stick_slip.slip[i];
     const int slid = (before == 1 || before == -1) && !tribo_massless_touches(&x->sys->massless, i);
-    return slid && now != before && now != 2 && before * x->slope[i] < 0.0;
+    return slid && now != 2 && before * x->slope[i] < 0.0 && (now != before || pulls_loose(x, i));
 }
 
 /* u += jump of accelerations, dt earlier: slope dt = row. */
 static void jump_earlier(struct variation *x, double slope, const double *row)
 {
     const size_t n = x->sys->ndof;
-    const double *after = x->events->stick_slip.acceleration;
+    const double *after = tribo_stick_slip_find_acceleration(&x->events->stick_slip, x->sys);
     for (size_t d = 0; d < n; d++) {
         tribo_add(x->v + (n + d) * x->columns, (after[d] - x->acceleration[d]) / slope, row, x->columns);
     }

@@ -106,7 +106,7 @@ static double progress(const struct motion *m, int which)
     return (double)value;
 }
 
-/* Counts 200 steps, or the events of a time, after as much that is not counted. */
+/* Counts the steps of a stretch of time, or its events, after as much that is not counted. */
 static double count_motion(tribo_system *sys, size_t n, const char *method, double dt, double stretch)
 {
     struct motion m = {.stretch = stretch, .y = need_memory(2 * n + 1, sizeof *m.y)};
@@ -133,18 +133,29 @@ static double count_chain(const char *method, size_t n)
     return count_motion(sys, n, method, dt, 200.0 * dt);
 }
 
-static double count_oscillator(double alpha, double omega)
+/* Steps of 0.01, or the events of this time. */
+static double count_small(tribo_system *sys, size_t n, const char *method, double time)
+{
+    const double dt = 0.01;
+    if (strcmp(method, "exact") == 0) {
+        return count_motion(sys, n, method, 0.0, time);
+    }
+    need(tribo_set_epsilon_step(tribo_system_context(sys), dt, 0.4), NULL);
+    return count_motion(sys, n, method, dt, 2000.0 * dt);
+}
+
+static double count_oscillator(const char *method, double alpha, double omega)
 {
     tribo_system *sys;
     need(tribo_system_oscillator(&sys, 1.0, alpha, omega), NULL);
-    return count_motion(sys, 1, "exact", 0.0, 200.0);
+    return count_small(sys, 1, method, 200.0);
 }
 
-static double count_belt(void)
+static double count_belt(const char *method)
 {
     tribo_system *sys;
     need(tribo_system_belt(&sys, 2.0, 0.5, 0.25, 1.0, 0.5), NULL);
-    return count_motion(sys, 2, "exact", 0.0, 60.0);
+    return count_small(sys, 2, method, 60.0);
 }
 
 /* --------------------------------------------------------------------------------------------------------------- scenes */
@@ -167,9 +178,13 @@ static const struct scene {
     {"balance-alike", "contact", KERNEL, BALANCE, 1000, 1, NULL, 0.0, 0.0},
     {"balance", "contact", KERNEL, BALANCE, 1000, 0, NULL, 0.0, 0.0},
     {"balance-stuck", "contact", KERNEL, BALANCE_STUCK, 1000, 0, NULL, 0.0, 0.0},
+    {"step-alike", "contact", KERNEL, STEP, 1000, 1, NULL, 0.0, 0.0},
+    {"step", "contact", KERNEL, STEP, 1000, 0, NULL, 0.0, 0.0},
+    {"step-stuck", "contact", KERNEL, STEP_STUCK, 1000, 0, NULL, 0.0, 0.0},
     {"set-limit", "contact", KERNEL, SET_LIMIT, 1000, 0, NULL, 0.0, 0.0},
     {"force-one", "call", KERNEL, FORCE, 1, 0, NULL, 0.0, 0.0},
     {"balance-one", "call", KERNEL, BALANCE, 1, 0, NULL, 0.0, 0.0},
+    {"step-one", "call", KERNEL, STEP, 1, 0, NULL, 0.0, 0.0},
     {"set-limit-one", "call", KERNEL, SET_LIMIT, 1, 0, NULL, 0.0, 0.0},
 #if defined(HAVE_FORTRAN)
     {"trbbal-one", "call", FIXED_FORM, FORCE, 1, 0, NULL, 0.0, 0.0},
@@ -179,9 +194,15 @@ static const struct scene {
     {"rk4-32", "step", CHAIN, FORCE, 32, 0, "rk4/fixed", 0.0, 0.0},
     {"rk4-1000", "step", CHAIN, FORCE, 1000, 0, "rk4/fixed", 0.0, 0.0},
     {"moreau-32", "step", CHAIN, FORCE, 32, 0, "moreau/fixed", 0.0, 0.0},
-    {"exact-7a", "event", OSCILLATOR, FORCE, 1, 0, NULL, 1.5, 0.5},
-    {"exact-7b", "event", OSCILLATOR, FORCE, 1, 0, NULL, 2.0, 2.0},
-    {"exact-belt", "event", BELT, FORCE, 2, 0, NULL, 0.0, 0.0},
+    {"central-7a", "step", OSCILLATOR, FORCE, 1, 0, "central/fixed", 1.5, 0.5},
+    {"rk4-7a", "step", OSCILLATOR, FORCE, 1, 0, "rk4/fixed", 1.5, 0.5},
+    {"moreau-7a", "step", OSCILLATOR, FORCE, 1, 0, "moreau/fixed", 1.5, 0.5},
+    {"central-belt", "step", BELT, FORCE, 2, 0, "central/fixed", 0.0, 0.0},
+    {"rk4-belt", "step", BELT, FORCE, 2, 0, "rk4/fixed", 0.0, 0.0},
+    {"moreau-belt", "step", BELT, FORCE, 2, 0, "moreau/fixed", 0.0, 0.0},
+    {"exact-7a", "event", OSCILLATOR, FORCE, 1, 0, "exact", 1.5, 0.5},
+    {"exact-7b", "event", OSCILLATOR, FORCE, 1, 0, "exact", 2.0, 2.0},
+    {"exact-belt", "event", BELT, FORCE, 2, 0, "exact", 0.0, 0.0},
 };
 enum { SCENES = sizeof scenes / sizeof *scenes };
 
@@ -193,9 +214,9 @@ static double run_scene(const struct scene *s)
     case CHAIN:
         return count_chain(s->method, s->n);
     case OSCILLATOR:
-        return count_oscillator(s->alpha, s->omega);
+        return count_oscillator(s->method, s->alpha, s->omega);
     case BELT:
-        return count_belt();
+        return count_belt(s->method);
     default:
         break;
     }

@@ -14,8 +14,9 @@ struct steady {
 
 struct harmonic_balance;
 
-/* For the model of a beam, loaded by sin(omega t); harmonics: 1, 2, 3, ... of omega. Ends the program if there is no memory. */
-struct harmonic_balance *balance_create(const struct model *m, size_t harmonics);
+/* For the model of a beam, loaded by sin(omega t), with harmonics 1, 3, 5, ... highest of omega. Ends the program if there is no
+ * memory. */
+struct harmonic_balance *balance_create(const struct model *m, size_t highest);
 void balance_free(struct harmonic_balance *b);
 
 /* The steady motion at frequency omega, beginning from the last one found, at any frequency or limit. epsilon is in terms of the

@@ -5,8 +5,13 @@
 
 #include "../../examples/common/output.h"
 
-const char *const kernel_name[KERNELS] = {"tribo_force", "tribo_force_tangent", "tribo_balance, diagonal R",
-                                          "tribo_balance, all inside epsilon", "tribo_set_limit"};
+const char *const kernel_name[KERNELS] = {"tribo_force",
+                                          "tribo_force_tangent",
+                                          "tribo_balance, diagonal R",
+                                          "tribo_balance, all inside epsilon",
+                                          "tribo_step_force, all slide",
+                                          "tribo_step_force, all stop",
+                                          "tribo_set_limit"};
 
 void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, int alike)
 {
@@ -22,7 +27,7 @@ void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, i
         const double x = sin((double)i), y = sin(1.7 * (double)i);
         s->limit[i] = alike ? 1.0 : 1.5 + x;
         width[i] = alike ? 1e-3 : 1e-3 * (1.5 + y);
-        s->v[i] = width[i] * (kernel == BALANCE_STUCK ? 1.0 : 2.0) * sin(3.1 * (double)i);
+        s->v[i] = kernel == STEP ? 1.0 + 0.5 * y : width[i] * (kernel == BALANCE_STUCK ? 1.0 : 2.0) * sin(3.1 * (double)i);
         s->a[i] = 2.0 * sin(0.6 * (double)i);
         s->out[1][i] = s->out[2][i] = 1.0 + 0.5 * x;
     }
@@ -54,6 +59,10 @@ void kernel_call(struct kernel_scene *s)
         break;
     case FORCE_TANGENT:
         status = tribo_force_tangent(s->ctx, s->v, s->a, s->out[0], s->out[1], s->out[2], s->out[3]);
+        break;
+    case STEP:
+    case STEP_STUCK:
+        status = tribo_step_force(s->ctx, s->kernel == STEP ? 1e-3 : 1.0, s->v, s->out[0]);
         break;
     case SET_LIMIT:
         status = tribo_set_limit(s->ctx, s->limit);

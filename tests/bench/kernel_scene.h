@@ -4,7 +4,7 @@
 
 #include "tribo/tribo.h"
 
-enum kernel { FORCE, FORCE_TANGENT, BALANCE, BALANCE_STUCK, SET_LIMIT, KERNELS };
+enum kernel { FORCE, FORCE_TANGENT, BALANCE, BALANCE_STUCK, STEP, STEP_STUCK, SET_LIMIT, KERNELS };
 extern const char *const kernel_name[KERNELS];
 
 struct kernel_scene {
@@ -15,7 +15,8 @@ struct kernel_scene {
     double *out[4];
 };
 
-/* alike: one limit and one epsilon for all. Velocities are within two epsilons, or of BALANCE_STUCK within one. */
+/* alike: one limit and one epsilon for all. Velocities are within two epsilons, or of BALANCE_STUCK within one; a step stops
+ * none, or of STEP_STUCK all. */
 void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, int alike);
 void kernel_scene_destroy(struct kernel_scene *s);
 

@@ -1,5 +1,6 @@
 /* What calls on contacts that share no body cost, beside a loop over arrays that is compiled the same way, in the same process:
  * the least of many short repetitions of both, since others use the machine too. bench_kernels --help tells the options. */
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,6 +35,90 @@ static void run_arrays(void *data)
     add_products(s->n, s->o, s->a, s->b, s->c, s->d);
 }
 
+/* The memory that a call has to pass over: what it is given is looked at as a whole before anything is written; then it is read
+ * again, with what the context knows of each contact. */
+struct traffic {
+    size_t n, checked, read, written;
+    const double *in[8];
+    double *out[4];
+    int streams, odd;
+};
+
+TRIBO_SIMD static int any_odd(size_t n, const double *x)
+{
+    int64_t any = 0;
+    for (size_t i = 0; i < n; i++) {
+        int64_t bits;
+        memcpy(&bits, x + i, sizeof bits);
+        any |= bits;
+    }
+    return (int)(any & 1);
+}
+
+TRIBO_SIMD static void add_to(size_t n, double *restrict sum, const double *restrict x)
+{
+    for (size_t i = 0; i < n; i++) {
+        sum[i] += x[i];
+    }
+}
+
+static void put(const struct traffic *t, double *to, const double *from, size_t n)
+{
+    if (t->streams) {
+        tribo_stream(to, from, n);
+    } else {
+        memcpy(to, from, n * sizeof *to);
+    }
+}
+
+static void run_traffic(void *data)
+{
+    enum { CHUNK = 128 };
+    struct traffic *t = data;
+    for (size_t i = 0; i < t->n; i += CHUNK) {
+        for (size_t k = 0; k < t->checked; k++) {
+            t->odd += any_odd(t->n - i < CHUNK ? t->n - i : CHUNK, t->in[k] + i);
+        }
+    }
+    for (size_t i = 0; i < t->n; i += CHUNK) {
+        double sum[CHUNK] = {0};
+        const size_t n = t->n - i < CHUNK ? t->n - i : CHUNK;
+        for (size_t k = 0; k < t->read; k++) {
+            add_to(n, sum, t->in[k] + i);
+        }
+        for (size_t k = 0; k < t->written; k++) {
+            put(t, t->out[k] + i, sum, n);
+        }
+    }
+}
+
+/* How many arrays a call is given, how many of what the context knows of each contact it reads, and how many it writes. */
+static const struct passes {
+    size_t given, known, differing, written;
+} passes[KERNELS] = {
+    [FORCE] = {2, 0, 3, 1}, [FORCE_TANGENT] = {2, 0, 3, 4}, [BALANCE] = {2, 1, 3, 1},  [BALANCE_STUCK] = {2, 1, 3, 1},
+    [STEP] = {1, 0, 1, 1},  [STEP_STUCK] = {1, 1, 1, 1},    [SET_LIMIT] = {1, 0, 0, 1}};
+
+static struct traffic traffic_of(const struct kernel_scene *s, int alike, double *known)
+{
+    const struct passes *p = &passes[s->kernel];
+    struct traffic t = {s->n,
+                        p->given,
+                        p->given + p->known + (alike ? 0 : p->differing),
+                        p->written,
+                        {s->v, s->a},
+                        {NULL},
+                        p->written > 1 && s->n > 1000000,
+                        0};
+    for (size_t k = p->given; k < t.read; k++) {
+        t.in[k] = known + (k - p->given) * s->n;
+    }
+    for (size_t k = 0; k < t.written; k++) {
+        t.out[k] = s->out[k];
+    }
+    return t;
+}
+
 static void run_kernel(void *data)
 {
     kernel_call(data);
@@ -56,21 +141,28 @@ static double lesser_of(double x, double y)
 
 static void measure(size_t n, int alike, size_t contacts, int repeats)
 {
-    printf("\n| n = %zu, %s | ns a contact | times the array loop |\n|---|---|---|\n", n,
+    enum { MOST_KNOWN = 4 };
+    double *known = need_memory(MOST_KNOWN * n, sizeof *known);
+    memset(known, 0, MOST_KNOWN * n * sizeof *known);
+    printf("\n| n = %zu, %s | ns a contact | times the array loop | times its own traffic |\n|---|---|---|---|\n", n,
            alike ? "one limit, one epsilon" : "limits and epsilons that differ");
     for (int k = 0; k < KERNELS; k++) {
         struct kernel_scene s;
         kernel_scene_create(&s, (enum kernel)k, n, alike);
         struct arrays w = {n, s.out[0], s.out[1], s.out[2], s.limit, s.v};
+        struct traffic t = traffic_of(&s, alike, known);
         const size_t times = contacts / n + 1;
-        double loop = 1.0, kernel = 1.0;
+        double loop = 1.0, kernel = 1.0, traffic = 1.0;
         for (int j = 0; j < repeats; j++) {
             loop = lesser_of(loop, seconds_a_contact(run_arrays, &w, n, times));
+            traffic = lesser_of(traffic, seconds_a_contact(run_traffic, &t, n, times));
             kernel = lesser_of(kernel, seconds_a_contact(run_kernel, &s, n, times));
         }
-        printf("| %s | %.2f | %.2f of %.2f |\n", kernel_name[k], 1e9 * kernel, kernel / loop, 1e9 * loop);
+        printf("| %s | %.2f | %.2f of %.2f | %.2f of %.2f |\n", kernel_name[k], 1e9 * kernel, kernel / loop, 1e9 * loop,
+               kernel / traffic, 1e9 * traffic);
         kernel_scene_destroy(&s);
     }
+    free(known);
 }
 
 int main(int count, char **argument)

@@ -26,6 +26,11 @@ double memory_begin(void)
     return status_of("VmRSS: %lu");
 }
 
+double memory_held(void)
+{
+    return status_of("VmRSS: %lu");
+}
+
 double memory_peak(void)
 {
     return status_of("VmHWM: %lu");

@@ -5,7 +5,8 @@
 /* MB at this moment, from where on the peak counts. */
 double memory_begin(void);
 
-/* The most since then. */
+/* The same, of which nothing begins; the most since memory_begin. */
+double memory_held(void);
 double memory_peak(void);
 
 #endif

@@ -77,8 +77,8 @@ static tribo_system *create(const struct scene *x, size_t modes)
     return sys;
 }
 
-/* Displacements of the load after each step into place [STEPS]. */
-static void march(tribo_system *sys, const struct scene *x, int reduced, double *place)
+/* Displacements of the load after each step into place [STEPS]; before is what was in memory without the system. */
+static void march(tribo_system *sys, const struct scene *x, int reduced, double before, double *place)
 {
     const double h = 1.0 / (PER_PERIOD * x->hz);
     tribo_driver *drv;
@@ -102,6 +102,7 @@ static void march(tribo_system *sys, const struct scene *x, int reduced, double 
         }
     }
     printf("%s step %.3f ms\n", reduced ? "reduced" : "whole", 1e3 * (cpu_seconds() - begin) / (STEPS - 1));
+    printf("%s held %.0f MB\n", reduced ? "reduced" : "whole", memory_held() - before);
     tribo_driver_destroy(drv);
     free(y);
     free(full);
@@ -113,7 +114,7 @@ static void run(const struct scene *x, size_t modes, double *place)
     const double before = memory_begin(), begin = cpu_seconds();
     tribo_system *sys = create(x, modes);
     printf("%s system %.2f s\n", name, cpu_seconds() - begin);
-    march(sys, x, modes > 0, place);
+    march(sys, x, modes > 0, before, place);
     printf("%s memory %.0f MB\n", name, memory_peak() - before);
     tribo_system_destroy(sys);
 }

@@ -243,6 +243,8 @@ C     Values
       CALL TRBPLN(IH, 2, IPL, IERR)
       CALL WANTED('TRBPLN', IH, IERR, 22,
      1            'first(2) takes contact 2, which first(1) has taken')
+      CALL TRBPLN(IH, -1, IPL, IERR)
+      CALL WANTED('TRBPLN', IH, IERR, 6, 'NPL = -1 is less than 0')
       CALL TRBNLD(IH, N, NEG, X, IERR)
       CALL WANTED('TRBNLD', IH, IERR, 3, 'mu(3) = -1 is negative')
       CALL TRBSTA(IH, N, NEG, X, IERR)

@@ -408,7 +408,7 @@ contains
     call s%add_load_table([0.0_dp, 1.0_dp], [0.0_dp, 1.0_dp], [1.0_dp])
     call d%advance(t, 2.0_dp, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, &
-      'method exact takes harmonic loads and limits only; method event takes tables too')
+      'loads follow a table, and method exact takes harmonic ones only: take event or auto')
   end subroutine drivers
 
   !> A borrowed context does what its system does, and goes with it.

@@ -1,9 +1,12 @@
 /* tribo-damper from outside: damaged files and wrong options, each of which must end it with status 1 and one line that names
  * file, line and value; and structures as small as can be. Works in the current folder. TRIBO_CASES: how many random damages of
  * each kind. */
+#define _POSIX_C_SOURCE 200809L
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "support.h"
 #include "tool.h"
@@ -276,6 +279,14 @@ TEST(the_same)
         const struct outcome o = assert_runs(CHAIN);
         require(strcmp(o.out, plain.out) == 0, "%zu: %s\nnot\n%s", k, o.out, plain.out);
     }
+    struct text file[FILES];
+    make_chain(file);
+    for (int f = 0; f < FILES; f++) {
+        replace(&file[f], 0, 0, "\xEF\xBB\xBF", 3);
+    }
+    write_files(file);
+    const struct outcome o = assert_runs(CHAIN);
+    require(strcmp(o.out, plain.out) == 0, "with the mark of UTF-8: %s\nnot\n%s", o.out, plain.out);
 }
 END_TEST
 
@@ -301,6 +312,12 @@ TEST(no_files)
     assert_refused(CHAIN " --mass /dev/zero", "endless", "/dev/zero:1: ");
     assert_refused(CHAIN " --dofs /", "a folder", "/:1: cannot be read");
     assert_refused(CHAIN " --out nowhere", "no folder", "nowhere/");
+    if (symlink("/dev/full", "damper-curve.csv") == 0) {
+        assert_refused(CHAIN, "a full disk", "cannot write ./damper-curve.csv: No space left");
+        remove("damper-curve.csv");
+    }
+    write_text("options.txt", "\x1b[2J\xff 1\n");
+    assert_refused(CHAIN " --read options.txt", "no option", "options.txt:1: there is no option \"?[2J?\"");
 }
 END_TEST
 
@@ -317,11 +334,12 @@ TEST(options)
         {"--drive", "-1 nan inf 5Hz 1:2 1:2:0 2:1:3 1:1:2 0:1:3 1:2:x"},
         {"--limits", "0 1:2 1:2:0 1:2:1.5 2:1:3 1:1:2 0:1:3 -1:1:3 nan:1:3 1:inf:3 1:2:3:4 1:2:1e300 :: 1;2;3"},
         {"--step", "0 -1 1.1 nan 1/4"},
-        {"--law", "quin quinnn 4"},
+        {"--law", "quin quinnn 4 coulomb karnopp"},
         {"--contact",
          "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x 2,0,0,xy 2,0,0,x:stiffness=0 "
          "2,0,0,x:stiffness=nan "
-         "2,0,0,x:limit=-1 2,0,0,x:limit= 2,0,0,x:limit 2,0,0,x:load=1 2,0,0,x:mu=1:limit=1 2,0,0,x:mu=0 2,0,0,x:mu=1:load=0 "
+         "2,0,0,x:limit=-1 2,0,0,x:limit= 2,0,0,x:limit 2,0,0,x:load=1 2,0,0,x:mu=1:limit=1 2,0,0,x:mu=1:mu=1 "
+         "2,0,0,x:to=1,0,0:to=1,0,0 2,0,0,x:mu=0 2,0,0,x:mu=1:load=0 "
          "2,0,0,x:to=2,0,0 2,0,0,x:to=9,0,0 2,0,0,x:to=1,0 2,0,0,x:to=1,0,0,x 2,0,0,x:limit=1:foo"},
         {"--method", "shoot Exact -1"},
         {"--check", "-1 x 0.5"},

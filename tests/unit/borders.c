@@ -4,9 +4,9 @@
 
 #include "support.h"
 
-#define MOST 300
+#define MOST 1300 /* forces of so many are not kept */
 
-static const size_t counts[] = {1, 2, 7, 8, 9, 127, 128, 129, 255, 256, 257, MOST};
+static const size_t counts[] = {1, 2, 7, 8, 9, 127, 128, 129, 255, 256, 257, 1024, 1025, MOST};
 static const size_t places[] = {0, 1, 3, 7, 8, 9, 126, 127, 128, 129, 255, 256, 299};
 
 /* -------------------------------------------------------------------------------------------------------------- errors */
@@ -188,4 +188,77 @@ TEST(as_alone)
     }
 }
 
-TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 8})
+/* Velocities around those that a step stops; in some chunks all are faster. */
+static struct scene draw_step(struct random *g, double dt, double scale)
+{
+    struct scene s;
+    for (size_t i = 0; i < MOST; i++) {
+        const int fast = i / 128 % 3 == 1;
+        s.r[i] = i % 50 ? scale * (i < 600 ? 3.0 : log_uniform(g, 2.0)) : 0.0;
+        s.limit[i] = i < 400 ? 1.25 : fast || below(g, 9) ? log_uniform(g, 1.0) : 0.0;
+        const double stopped = (fast ? 3.0 * scale : s.r[i]) * dt * s.limit[i];
+        s.v[i] = (below(g, 2) ? 1.0 : -1.0) * (fast ? uniform(g, 0.95, 9.0) : uniform(g, 0.0, 2.0)) * stopped;
+        s.v[i] = below(g, 9) || fast ? s.v[i] : 0.0;
+    }
+    return s;
+}
+
+static void step(const struct scene *s, double dt, size_t i, size_t n, double *f, signed char *slip)
+{
+    tribo_context *c;
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_limit(c, s->limit + i));
+    assert_ok(tribo_set_operator_diagonal(c, s->r + i));
+    assert_ok(tribo_step_force(c, dt, s->v + i, f + i));
+    assert_ok(tribo_get_slip(c, slip + i));
+    tribo_destroy(c);
+}
+
+/* What stops a contact, as far as its limit allows: to a few roundings, and the same bits wherever it stands. */
+TEST(steps_as_alone)
+{
+    const double steps[] = {1e-3, 1.0, 1e150, 1e-120, 1e-305}, scales[] = {1.0, 1e150, 1e-150, 1e-130};
+    const double dt = steps[(size_t)_i % COUNT(steps)], scale = scales[(size_t)_i / COUNT(steps) % COUNT(scales)];
+    struct random g = random_of(_i);
+    const struct scene s = draw_step(&g, dt, scale);
+    double many[MOST], each[MOST];
+    signed char slip[2][MOST];
+    step(&s, dt, 0, MOST, many, slip[0]);
+    for (size_t i = 0; i < MOST; i++) {
+        step(&s, dt, i, 1, each, slip[1]);
+        const long double stops = -(long double)s.v[i] / ((long double)dt * fmax(s.r[i], DBL_MIN));
+        const double want = (double)fminl(fmaxl(stops, -s.limit[i]), s.limit[i]);
+        require(fabs(many[i] - want) <= 1e-15 * fabs(want), "f[%zu] = %.17g, not %.17g", i, many[i], want);
+        require(fabs(want) < 0.999 * s.limit[i] ? slip[0][i] == 0 : 1, "contact %zu slips by %d", i, slip[0][i]);
+    }
+    ck_assert_mem_eq(many, each, sizeof many);
+    ck_assert_mem_eq(slip[0], slip[1], MOST);
+}
+
+/* f_eq = -a/R_ii for numbers of any size, which are not looked at like others. */
+TEST(feq_of_any_size)
+{
+    static const double sizes[] = {0.0, 1e-300, 1e-120, 1e-3, 1.0, 1e10, 1e99, 1e101, 1e250, 1e305, DBL_MAX};
+    enum { SIZES = sizeof sizes / sizeof *sizes, N = SIZES * SIZES };
+    const double zero[N] = {0};
+    double r[N], a[N], feq[N], f[N];
+    tribo_context *c;
+    for (size_t i = 0; i < N; i++) {
+        r[i] = sizes[i / SIZES];
+        a[i] = sizes[i % SIZES];
+    }
+    assert_ok(tribo_create(&c, N));
+    assert_ok(tribo_set_limit_all(c, 1e200));
+    assert_ok(tribo_set_operator_diagonal(c, r));
+    assert_ok(tribo_balance(c, zero, a, feq, f));
+    for (size_t i = 0; i < N; i++) {
+        const double want = (double)fmaxl(-(long double)a[i] / fmax(r[i], DBL_MIN), -1e300);
+        require(fabs(feq[i] - want) <= 1e-15 * fabs(want) + DBL_MIN, "f_eq = %.17g, not %.17g, at %g/%g", feq[i], want, a[i],
+                r[i]);
+        require(fabs(f[i] - fmax(want, -1e200)) <= 1e-15 * fabs(want) + DBL_MIN, "f = %.17g of f_eq = %.17g", f[i], feq[i]);
+    }
+    tribo_destroy(c);
+}
+
+TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 8}, {steps_as_alone, 20},
+          {feq_of_any_size, 1})

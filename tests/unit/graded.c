@@ -98,6 +98,22 @@ TEST(everything_holds)
     tribo_destroy(p.c);
 }
 
+/* Twins that are pulled apart cannot follow: least squares is what balances the mean of their accelerations. */
+TEST(twins_pulled_apart)
+{
+    double a[2 * MOST], want[2 * MOST], v[2 * MOST] = {0.0}, feq[2 * MOST];
+    struct pile p = any_pile(_i, a, want);
+    const size_t twins = p.contacts - p.n;
+    for (size_t i = 0; i < twins; i++) {
+        a[i] += 0.5;
+        a[p.n + i] -= 0.5;
+    }
+    assert_ok(tribo_set_coupling(p.c, TRIBO_PARTITION));
+    assert_status(tribo_balance(p.c, v, a, feq, NULL), twins ? TRIBO_ERR_INCONSISTENT : TRIBO_OK);
+    assert_all_close(feq, want, p.contacts, 1e-12 * largest(want, p.contacts));
+    tribo_destroy(p.c);
+}
+
 /* The lowest contact gives way: what lies on it goes with it, and holds together by what moves the bodies above. */
 TEST(the_lowest_slides)
 {
@@ -167,4 +183,5 @@ TEST(too_far_apart)
     tribo_destroy(p.c);
 }
 
-TEST_MAIN("graded", {everything_holds, RUNS}, {the_lowest_slides, RUNS}, {derivatives, RUNS}, {history, RUNS}, {too_far_apart, 1})
+TEST_MAIN("graded", {everything_holds, RUNS}, {twins_pulled_apart, RUNS}, {the_lowest_slides, RUNS}, {derivatives, RUNS},
+          {history, RUNS}, {too_far_apart, 1})

@@ -242,5 +242,32 @@ TEST(shares_after_sliding)
     tribo_destroy(c);
 }
 
-TEST_MAIN("sharing", {identical_contacts_share, 100}, {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40},
-          {shares_after_sliding, 1})
+/* Fourteen contacts between nine bodies, two pairs of which are twins. Of the pair 4 and 11 both are at their limits, where they
+ * cannot share but as they do; the pair 0 and 7 shares in halves. */
+TEST(twins_share_beside_twins_at_limits)
+{
+    static const size_t body[14][2] = {{0, 7}, {4, 1}, {1, 7}, {3, 7}, {8, 5}, {8, 6}, {8, 7},
+                                       {0, 7}, {8, 2}, {5, 0}, {2, 6}, {8, 5}, {3, 7}, {1, 6}};
+    static const double inverse[9] = {0.5, 3.0, 1.0, 2.0, 1.0, 0.5, 3.0, 2.0, 1.0};
+    static const double limit[14] = {2.0, 2.0, 2.0, 0.0, 2.0, 1.0, 2.0, 2.0, 1.0, 1.0, 1.0, 1.0, 2.0, 2.0};
+    size_t rowptr[15] = {0};
+    double sign[28], vfree[14], f[14];
+    tribo_context *c;
+    for (size_t i = 0; i < 14; i++) {
+        rowptr[i + 1] = 2 * (i + 1);
+        sign[2 * i] = 1.0;
+        sign[2 * i + 1] = -1.0;
+        vfree[i] = -2.0;
+    }
+    assert_ok(tribo_create(&c, 14));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_set_operator_mass(c, 9, inverse, rowptr, &body[0][0], sign));
+    assert_ok(tribo_step_force(c, 1.0, vfree, f));
+    assert_close(f[0], f[7], 1e-13);
+    assert_close(f[4], 2.0, 1e-13);
+    assert_close(f[11], 1.0, 1e-13);
+    tribo_destroy(c);
+}
+
+TEST_MAIN("sharing", {identical_contacts_share, 100}, {twins_share_beside_twins_at_limits, 1}, {share_without_order, 200},
+          {least_norm, 200}, {shares_that_last, 40}, {shares_after_sliding, 1})

@@ -1,5 +1,6 @@
-/* Method "central/fixed" goes its own way where contacts share no body, and leaves out what is at rest: the motion is the one of
- * contacts that are solved for together, which a contact that is open ties into one group. */
+/* Methods "central/fixed" and "rk4/fixed" go their own ways where contacts share no body, and the former leaves out what is at
+ * rest: the motion is the one of contacts that are solved for together, which a contact that is open ties into one group. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -123,18 +124,24 @@ static int seen(double t, const double *y, int event, void *data)
     return 0;
 }
 
+/* What a motion is counted by. */
+struct counts {
+    size_t rested, stuck, evaluations;
+};
+
 /* From springs that strain the contacts a little, in three advances; watched: by an observer. */
-static double *motion(const struct row *r, int setting, int watched, size_t *rested)
+static double *motion(const char *method, const struct row *r, int setting, int watched, struct counts *counts)
 {
     tribo_system *sys = row_create(r);
     const size_t n = r->n, c = tribo_system_ncontact(sys);
     double *y = calloc(2 * n + 2, sizeof *y), *x = malloc((4 * (c + n) + 1) * sizeof *x), t = 0.0;
     act(sys, r, setting, x);
+    assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), 0.1, 0.4));
     for (size_t i = 0; i < n; i++) {
         y[i] = 0.01 * (double)((i * 37) % 11) * (double)(has_contact(r, i));
     }
     y[n + n / 4] = 0.8;
-    tribo_driver *drv = driver_create(sys, "central/fixed", 0.1, 0.0);
+    tribo_driver *drv = driver_create(sys, method, 0.1, 0.0);
     assert_ok(tribo_driver_set_observer(drv, watched ? seen : NULL, &y[2 * n + 1]));
     driver_advance(drv, &t, 10.0, y);
     driver_advance(drv, &t, 20.05, y);
@@ -143,7 +150,9 @@ static double *motion(const struct row *r, int setting, int watched, size_t *res
         assert_ok(tribo_set_limit(tribo_system_context(sys), x));
     }
     driver_advance(drv, &t, 30.0, y);
-    *rested = driver_count(drv, TRIBO_COUNT_RESTED);
+    counts->rested = driver_count(drv, TRIBO_COUNT_RESTED);
+    counts->evaluations = driver_count(drv, TRIBO_COUNT_EVALUATIONS);
+    assert_ok(tribo_get_count(tribo_system_context(sys), TRIBO_COUNT_STUCK, &counts->stuck));
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
     free(x);
@@ -152,25 +161,80 @@ static double *motion(const struct row *r, int setting, int watched, size_t *res
 
 static const struct row rows[] = {{1, 0, 0, 0}, {2, 0, 0, 0}, {5, 0, 0, 0}, {131, 4, 0, 0}, {400, 3, 0, 0}, {1500, 0, 0, 0}};
 
+static const char *const methods[] = {"central/fixed", "rk4/fixed"};
+enum { CASES = (int)COUNT(rows) * SETTINGS };
+
+/* Case k; 0 if there is none. */
+static int pick(int k, struct row *r, int *setting)
+{
+    *r = rows[k / SETTINGS];
+    *setting = k % SETTINGS;
+    r->damped = *setting == DAMPED;
+    return r->n >= 5 || *setting != BELTS;
+}
+
 TEST(as_solved_for_together)
 {
-    struct row r = rows[_i / SETTINGS % (int)COUNT(rows)];
-    const int setting = _i % SETTINGS, watched = _i / SETTINGS >= (int)COUNT(rows);
-    size_t rested, none;
-    if (r.n < 5 && setting == BELTS) {
+    const char *method = methods[_i / (2 * CASES)];
+    const int watched = _i / CASES % 2, central = _i < 2 * CASES;
+    struct row r;
+    int setting;
+    struct counts apart, together;
+    if (!pick(_i % CASES, &r, &setting)) {
         return;
     }
-    r.damped = setting == DAMPED;
-    double *alone = motion(&r, setting, watched, &rested);
+    double *alone = motion(method, &r, setting, watched, &apart);
     r.tied = 1;
-    double *tied = motion(&r, setting, watched, &none);
+    double *tied = motion(method, &r, setting, watched, &together);
     assert_all_close(alone, tied, 2 * r.n + 1, 1e-12);
     assert_close(alone[2 * r.n + 1], tied[2 * r.n + 1], 1e-12 * tied[2 * r.n + 1]);
-    ck_assert_uint_eq(none, 0);
-    require(r.n < 1500 || setting == SWINGING || setting == LIMIT_TABLE || rested > 0, "n = %zu, setting %d: none at rest", r.n,
-            setting);
+    ck_assert_uint_eq(together.rested, 0);
+    ck_assert_uint_eq(apart.stuck, together.stuck);
+    ck_assert_uint_eq(apart.evaluations, together.evaluations);
+    require(!central || r.n < 1500 || setting == SWINGING || setting == LIMIT_TABLE || apart.rested > 0,
+            "n = %zu, setting %d: none at rest", r.n, setting);
     free(alone);
     free(tied);
+}
+
+/* Who watches changes nothing, to the last bit. */
+TEST(watched_or_not)
+{
+    const char *method = methods[_i / CASES];
+    struct row r;
+    int setting;
+    struct counts counts;
+    if (!pick(_i % CASES, &r, &setting)) {
+        return;
+    }
+    double *alone = motion(method, &r, setting, 0, &counts), *watched = motion(method, &r, setting, 1, &counts);
+    for (size_t i = 0; i < 2 * r.n + 1; i++) {
+        assert_exact(alone[i], watched[i]);
+    }
+    free(alone);
+    free(watched);
+}
+
+/* Steps that are too long end with an error that says so, and with the last good state. */
+TEST(grows)
+{
+    const struct row r = {131, 4, 0, 0};
+    double y[2 * 131 + 1] = {0}, t = 0.0, x[4 * 2 * 131];
+    tribo_system *sys = row_create(&r);
+    act(sys, &r, PLAIN, x);
+    assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), 0.1, 0.4));
+    tribo_driver *drv = driver_create(sys, "rk4/fixed", 20.0, 0.0);
+    assert_status(tribo_driver_advance(drv, &t, 1e6, y), TRIBO_ERR_NOT_FINITE);
+    require(strstr(tribo_driver_message(drv), "in a step of 20: a[") != NULL ||
+                strstr(tribo_driver_message(drv), "in a step of 20: v[") != NULL ||
+                strstr(tribo_driver_message(drv), "the motion grows without bound") != NULL,
+            "%s", tribo_driver_message(drv));
+    for (size_t i = 0; i < COUNT(y); i++) {
+        require(isfinite(y[i]), "y[%zu] = %g", i, y[i]);
+    }
+    ck_assert_uint_eq(driver_count(drv, TRIBO_COUNT_STEPS), (size_t)(t / 20.0 + 0.5));
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
 }
 
 /* Of the paper's chain a load moves 1%: its blocks are all that steps look at, from beginning to end, and the few beside them. */
@@ -195,4 +259,5 @@ TEST(steps_cost_what_moves)
     free(y);
 }
 
-TEST_MAIN("bodies_alone", {as_solved_for_together, 2 * (int)COUNT(rows) * SETTINGS}, {steps_cost_what_moves, 1})
+TEST_MAIN("bodies_alone", {as_solved_for_together, 4 * CASES}, {watched_or_not, 2 * CASES}, {grows, 1},
+          {steps_cost_what_moves, 1})

@@ -440,10 +440,14 @@ TEST(refusal)
 {
     double y[3] = {0.5, 0.2, 0.0}, t = 0.0, want[3] = {0.5, 0.2, 0.0};
     tribo_system *sys = block(1, 0.6, 0.2);
+    tribo_driver *drv = driver_create(sys, "exact", 0.1, 0.0), *none = NULL;
     set_static(sys, 1.5, 0.3);
-    tribo_driver *drv = driver_create(sys, "exact", 0.1, 0.0);
+    assert_status(tribo_driver_create(&none, sys, "exact", 0.1, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_message(tribo_system_context(sys)), "contact 0 has a static limit that falls with the speed");
+    ck_assert_ptr_null(none);
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(drv), "method exact takes static limits that drop at once");
+    assert_says(tribo_driver_message(drv), "contact 0 has a static limit that falls with the speed");
+    assert_says(tribo_driver_message(drv), "take event or auto");
     assert_exact(t, 0.0);
     assert_exact(y[0], 0.5);
     tribo_driver_destroy(drv);

@@ -60,6 +60,44 @@ TEST(spring)
 }
 END_TEST
 
+/* Masses that hang together, the last of which has no spring: said, with the reason why no motion is found. */
+TEST(loose_row)
+{
+#define MATRIX "%%MatrixMarket matrix coordinate real symmetric\n4 4 "
+#define STRUCTURE " --stiffness loose.mtx --dofs loose.txt --load 2,0,0,x --contact 1,0,0,x"
+    write_text("loose.mtx", MATRIX "4\n1 1 1.0\n2 2 2.0\n3 3 7.0\n4 4 0.0\n");
+    write_text("together.mtx", MATRIX "10\n1 1 2\n2 1 1\n3 1 0.5\n4 1 0.7\n2 2 3\n3 2 0.4\n4 2 1\n3 3 2\n4 3 0.6\n4 4 2\n");
+    write_text("minus.mtx", MATRIX "4\n1 1 1.0\n2 2 -1.0\n3 3 1.0\n4 4 1.0\n");
+    write_text("loose.txt", "1 1 1 1 0 0\n2 2 1 2 0 0\n3 3 1 3 0 0\n4 7 3 4 0 0\n");
+    const struct outcome o = assert_runs("--mass together.mtx" STRUCTURE " --damping 0.05 --drive 0.1:0.2:3 --limits 0.1:1:3");
+    require(strstr(o.out, "loose.mtx: no stiffness holds row 4 (node 7, direction z)\n") != NULL, "%s", o.out);
+    require(strstr(o.out, "no motion was found at any of these limits: not available here") != NULL, "%s", o.out);
+    const struct outcome minus = run_tool("--mass minus.mtx" STRUCTURE);
+    ck_assert_int_eq(minus.status, 1);
+    require(strstr(minus.err, "at degree of freedom 1 (counted from 0)") != NULL, "%s", minus.err);
+}
+END_TEST
+
+/* Without friction and stuck are those that closed forms know, also where a contact has its own limit, or none. */
+TEST(own_limit)
+{
+    static const char *const own[] = {"limit=3", "limit=0"};
+    char options[400];
+    write_text("own-m.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 2\n1 1 1.0\n2 2 1.0\n");
+    write_text("own-k.mtx", "%%MatrixMarket matrix coordinate real symmetric\n2 2 3\n1 1 2.0\n2 1 -1.0\n2 2 2.0\n");
+    write_text("own.txt", "1 1 1 0 0 0\n2 2 1 1 0 0\n");
+    for (size_t k = 0; k < 2; k++) {
+        snprintf(options, sizeof options,
+                 "--mass own-m.mtx --stiffness own-k.mtx --dofs own.txt --load 1,0,0,x --damping 0.05 --contact 0,0,0,x:%s "
+                 "--contact 1,0,0,x --limits 0.1:1:3",
+                 own[k]);
+        assert_runs(options);
+        assert_close(value_of("damper.free"), value_of("damper.free.analytic"), 1e-9);
+        assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), 1e-12);
+    }
+}
+END_TEST
+
 /* The stiffer the springs, the more they are like none; a rigid contact among them. */
 TEST(stiff_springs)
 {
@@ -168,4 +206,4 @@ TEST(interrupted)
 }
 END_TEST
 
-TEST_MAIN("damper", {beam, 1}, {spring, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})
+TEST_MAIN("damper", {beam, 1}, {spring, 1}, {loose_row, 1}, {own_limit, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})

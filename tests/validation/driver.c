@@ -218,13 +218,26 @@ TEST(advance_errors)
 TEST(other_errors)
 {
     size_t count;
+    double value;
     tribo_system *sys = chain(TRIBO_QUINN);
     tribo_driver *drv = driver_create(sys, "rk4/fixed", STEP, 0.0);
     stain(&count, sizeof count);
+    stain(&value, sizeof value);
     assert_status(tribo_driver_count(NULL, TRIBO_COUNT_STEPS, &count), TRIBO_ERR_NULL);
     assert_status(tribo_driver_count(drv, TRIBO_COUNT_STEPS, NULL), TRIBO_ERR_NULL);
+    assert_says(tribo_driver_message(drv), "value is NULL");
     assert_status(tribo_driver_count(drv, TRIBO_COUNT_STUCK, &count), TRIBO_ERR_RANGE);
     assert_status(tribo_driver_count(drv, TRIBO_COUNT_RESTED + 1, &count), TRIBO_ERR_RANGE);
+    assert_says(tribo_driver_message(drv), "which = 109");
+    assert_status(tribo_driver_real(drv, TRIBO_REAL_RESIDUAL, &value), TRIBO_ERR_RANGE);
+    assert_says(tribo_driver_message(drv), "which = 0");
+    assert_status(tribo_driver_real(drv, TRIBO_REAL_EXCESS, &value), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(drv), "method rk4/fixed");
+    assert_status(tribo_driver_get_multipliers(drv, &value, &value), TRIBO_ERR_STATE);
+    assert_says(tribo_driver_message(drv), "no periodic motion");
+    assert_status(tribo_driver_get_multipliers(drv, &value, NULL), TRIBO_ERR_NULL);
+    assert_says(tribo_driver_message(drv), "im is NULL");
+    ck_assert(stained(&value, sizeof value));
     assert_status(tribo_driver_set_observer(NULL, see, NULL), TRIBO_ERR_NULL);
     ck_assert(stained(&count, sizeof count));
     ck_assert_uint_gt(strlen(tribo_driver_message(NULL)), 0);

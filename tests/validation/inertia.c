@@ -6,7 +6,7 @@
 #include "linalg.h"
 #include "support.h"
 
-/* a is freed. */
+/* a is freed: early, if there is a factor like it. */
 static struct inertia inertia_of(struct matrix *a, const struct sparse_factor *like)
 {
     struct inertia found = {0, 0.0};
@@ -14,7 +14,7 @@ static struct inertia inertia_of(struct matrix *a, const struct sparse_factor *l
     for (size_t i = 0; i < a->rows; i++) {
         size[i] = tribo_matrix_get(a, i, i);
     }
-    assert_ok(tribo_sparse_inertia(like, a, size, &found));
+    assert_ok(tribo_sparse_inertia(like, a, like ? a : NULL, size, &found));
     free(size);
     tribo_matrix_free(a);
     return found;
@@ -72,7 +72,7 @@ TEST(grids)
     if (!tribo_sparse_available()) {
         return;
     }
-    assert_ok(tribo_sparse_factor_create(&like, &definite, &where));
+    assert_ok(tribo_sparse_factor_create(&like, &definite, &definite, &where));
     for (size_t k = 0; k < COUNT(shift); k++) {
         struct matrix a = dense(r * c, grid(r, c, shift[k])), b = dense(r * c, grid(r, c, shift[k]));
         const struct inertia alone = inertia_of(&a, NULL), with = inertia_of(&b, like);
@@ -137,7 +137,7 @@ TEST(growth)
     struct matrix a;
     require(tribo_matrix_from_dense(&a, 2, 2, entries), "out of memory");
     if (tribo_sparse_available()) {
-        assert_ok(tribo_sparse_inertia(NULL, &a, size, &found));
+        assert_ok(tribo_sparse_inertia(NULL, &a, NULL, size, &found));
         ck_assert_uint_eq(found.negative, 1);
         assert_close(found.growth, 2.0 / e - e, 1e-12 * found.growth);
     }
@@ -189,7 +189,7 @@ TEST(no_pivot)
     struct inertia found = {7, 7.0};
     struct matrix a;
     require(tribo_matrix_from_dense(&a, 2, 2, entries[_i]), "out of memory");
-    assert_status(tribo_sparse_inertia(NULL, &a, size, &found),
+    assert_status(tribo_sparse_inertia(NULL, &a, NULL, size, &found),
                   tribo_sparse_available() ? TRIBO_ERR_INDEFINITE : TRIBO_ERR_UNSUPPORTED);
     ck_assert_uint_eq(found.negative, 7);
     tribo_matrix_free(&a);

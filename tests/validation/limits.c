@@ -525,10 +525,12 @@ TEST(automatic)
     tribo_driver *drv = driver_create(sys, "auto", 1.0, 0.0);
     ck_assert_str_eq(tribo_driver_method(drv), "exact");
     tribo_driver_destroy(drv);
-    assert_ok(tribo_system_set_limit_table(sys, 2, time, limit));
     drv = driver_create(sys, "exact", 1.0, 0.0);
+    assert_ok(tribo_system_set_limit_table(sys, 2, time, limit));
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
     tribo_driver_destroy(drv);
+    assert_status(tribo_driver_create(&drv, sys, "exact", 1.0, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_message(tribo_system_context(sys)), "table");
     tribo_system_destroy(sys);
 }
 

@@ -275,6 +275,51 @@ TEST(beam)
     gsl_spmatrix_free(direction);
 }
 
+/* All of the beam, or its modes, all of them; its mass matrix or the diagonal of that. */
+static tribo_system *whole_beam(size_t count, int diagonal)
+{
+    const size_t rows[] = {3, 117, 189, 261, 120, 123, 126, 270, 273}, tip = 264;
+    gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"),
+                 *direction = gsl_spmatrix_alloc(COUNT(rows), BEAM_DOFS);
+    double load[BEAM_DOFS] = {0};
+    char text[200] = "";
+    tribo_system *sys = NULL;
+    for (size_t k = 0; diagonal && k < mass->nz; k++) {
+        mass->data[k] *= mass->i[k] == mass->p[k] ? 1.0 : 0.0;
+    }
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        gsl_spmatrix_set(direction, i, rows[i] - 1, 1.0);
+    }
+    const int status = tribo_system_linear_sparse(&sys, mass, NULL, stiffness, direction, count, text, sizeof text);
+    require(status == TRIBO_OK, "%s", text);
+    load[tip - 1] = 0.1;
+    assert_ok(tribo_system_add_load(sys, 168.0, NULL, load));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.02));
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+    return sys;
+}
+
+/* Steps so long that h^2/4 K is a million times M: contacts of the matrices as they are and of modes see the same. */
+TEST(beam_in_long_steps)
+{
+    const double step[] = {2.5e-4, 2e-3}, end = 0.02;
+    tribo_system *whole = whole_beam(0, _i), *modal = whole_beam(BEAM_DOFS, _i);
+    double y[2 * BEAM_DOFS + 1] = {0}, z[2 * BEAM_DOFS + 1] = {0}, want[BEAM_DOFS];
+    run(whole, "moreau/fixed", step[_i], 0.0, end, y);
+    run(modal, "moreau/fixed", step[_i], 0.0, end, z);
+    assert_ok(tribo_system_expand(modal, z, want));
+    const double size = fabs(want[BEAM_DOFS - 25]);
+    require(z[2 * BEAM_DOFS] > 1e-4, "no friction, no test");
+    for (size_t i = 0; i < BEAM_DOFS; i++) {
+        assert_close(y[i], want[i], 1e-7 * size);
+    }
+    assert_close(y[2 * BEAM_DOFS], z[2 * BEAM_DOFS], 1e-7 * z[2 * BEAM_DOFS]);
+    tribo_system_destroy(whole);
+    tribo_system_destroy(modal);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ errors */
 
 /* Two degrees of freedom, one contact, all well unless a case says otherwise. */
@@ -393,5 +438,5 @@ TEST(sparse_errors)
 }
 
 TEST_MAIN("linear", {oscillator_by_matrices, 1}, {belt_by_matrices, 1}, {sparse_forms, 4}, {star, 1}, {full_mass, 6},
-          {all_modes, 6}, {modes, 6}, {damping_ratio, 3}, {rigid_body, 1}, {beam, 1}, {dense_errors, 1}, {null_matrices, 1},
-          {sparse_errors, 1})
+          {all_modes, 6}, {modes, 6}, {damping_ratio, 3}, {rigid_body, 1}, {beam, 1}, {beam_in_long_steps, 2}, {dense_errors, 1},
+          {null_matrices, 1}, {sparse_errors, 1})

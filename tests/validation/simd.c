@@ -41,6 +41,8 @@ static void print_contacts(struct random *g, int law)
     assert_ok(tribo_balance(c, v, a, feq, f));
     print("balance", feq, CONTACTS);
     print("f", f, CONTACTS);
+    assert_ok(tribo_step_force(c, 1.0, v, f));
+    print("step", f, CONTACTS);
     tribo_destroy(c);
 }
 

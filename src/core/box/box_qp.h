@@ -264,6 +264,9 @@ void tribo_box_gradients(struct box_qp *p, int first);
 /* step = the move of the independent x that takes their gradient to zero; dependent ones stay. */
 void tribo_box_newton(struct box_qp *p);
 
+/* The same for the gradient as it stands, which the caller has projected: of a graded group to the digits of a double. */
+void tribo_box_downhill(struct box_qp *p);
+
 /* Returns where the step takes x. */
 double tribo_box_moved(struct box_qp *p, size_t i);
 

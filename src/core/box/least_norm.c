@@ -95,6 +95,21 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
     memset(u, 0, vectors * sizeof *u);
 }
 
+/* Whether the first vectors move contact i by more than rounding. If not they let it rest from here on: held, it would take one of
+ * them along in which others can still share. */
+static int can_move(struct box_qp *p, size_t vectors, size_t i)
+{
+    double square = 0.0;
+    for (size_t j = 0; j < vectors; j++) {
+        square += p->basis[j * p->group->size + i] * p->basis[j * p->group->size + i];
+    }
+    const int can = sqrt(square) > tribo_resolution(p->group->size);
+    for (size_t j = 0; !can && j < vectors; j++) {
+        p->basis[j * p->group->size + i] = 0.0;
+    }
+    return can;
+}
+
 /* step = the way to least norm that the first vectors leave. */
 static void aim_at_least(struct box_qp *p, size_t vectors)
 {
@@ -158,8 +173,10 @@ int tribo_least_norm(struct box_qp *p)
         aim_at_least(p, vectors - held);
         const size_t hit = tribo_box_advance(p, 1.0);
         if (hit < size && held < vectors) {
-            hold_contact(p, vectors - held, hit);
-            p->held[held++] = hit;
+            if (can_move(p, vectors - held, hit)) {
+                hold_contact(p, vectors - held, hit);
+                p->held[held++] = hit;
+            }
         } else if (!release_contact(p, vectors, &held)) {
             break;
         }

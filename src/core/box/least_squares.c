@@ -30,7 +30,7 @@ static int minimum_norm(struct box_qp *p)
         } else if (pass > 0 && tribo_box_settled(p, 1.0)) {
             break;
         }
-        tribo_box_newton(p);
+        (vectors ? tribo_box_downhill : tribo_box_newton)(p);
         tribo_null_project(p, vectors, p->step);
         for (size_t e = 0; e < p->count; e++) {
             const size_t i = p->near[e];

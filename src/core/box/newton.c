@@ -47,19 +47,30 @@ void tribo_box_gradients(struct box_qp *p, int first)
     }
 }
 
+static void rest_dependents(struct box_qp *p)
+{
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
+        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
+    }
+}
+
+void tribo_box_downhill(struct box_qp *p)
+{
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        p->step[p->order[k]] = -p->gradient[p->order[k]];
+        p->step_low[p->order[k]] = 0.0;
+    }
+    tribo_factor_solve(p, p->step);
+    rest_dependents(p);
+}
+
 void tribo_box_newton(struct box_qp *p)
 {
-    const size_t rank = p->sets->rank;
     if (p->twofold) {
         tribo_graded_newton(p);
+        rest_dependents(p);
     } else {
-        for (size_t k = 0; k < rank; k++) {
-            p->step[p->order[k]] = -p->gradient[p->order[k]];
-        }
-        tribo_factor_solve(p, p->step);
-    }
-    for (size_t k = rank; k < rank + p->sets->dependents; k++) {
-        p->step[p->order[k]] = p->step_low[p->order[k]] = 0.0;
+        tribo_box_downhill(p);
     }
 }
 

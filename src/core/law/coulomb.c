@@ -29,4 +29,5 @@ const struct law tribo_law_coulomb = {
     .force = coulomb_force_all,
     .balance = coulomb_balance_all,
     .tangent = coulomb_tangent_all,
+    .force_of_one = coulomb_force_of_one,
 };

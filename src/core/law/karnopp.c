@@ -29,4 +29,5 @@ const struct law tribo_law_karnopp = {
     .force = karnopp_force_all,
     .balance = karnopp_balance_all,
     .tangent = karnopp_tangent_all,
+    .force_of_one = karnopp_force_of_one,
 };

@@ -87,9 +87,10 @@ struct law {
     /* f_eq is finite, also where it does not matter, and TRIBO_FAR at most; v is any finite number. A law that does not use f_eq
      * gets numbers all the same. */
     void (*force)(const struct contacts *c, size_t n, const double *v, const double *feq, double *f);
-    /* the same with the f_eq of contacts that share no body: a and R_ii are finite, and R_ii above 0 */
-    void (*balance)(const struct contacts *c, size_t n, const double *v, const double *a, const double *r, double *f);
+    /* the same with the f_eq of contacts that share no body; a and 1/R_ii are TRIBO_PLAIN at most */
+    void (*balance)(const struct contacts *c, size_t n, const double *v, const double *a, const double *inverse, double *f);
     void (*tangent)(const struct contacts *c, size_t n, const double *v, const double *feq, const struct tangents *d);
+    double (*force_of_one)(const struct contacts *c, double v, double feq); /* the force of the first */
 };
 
 extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law_smooth, tribo_law_karnopp, tribo_law_quinn,
@@ -97,10 +98,17 @@ extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law
 
 const struct law *tribo_law(int id); /* NULL if there is none */
 
-/* f_eq of a contact that shares no body. */
-static inline double tribo_alone(double a, double r)
+/* f_eq of a contact that shares no body, from 1/R_ii, which takes a tenth of a division. Where products might be no numbers,
+ * tribo_alone_far says the same, with the same bits elsewhere. */
+#define TRIBO_PLAIN 1e100
+static inline double tribo_alone(double a, double inverse)
 {
-    return quotient(-a, r);
+    return -a * inverse;
+}
+
+static inline double tribo_alone_far(double a, double inverse)
+{
+    return scaled(-a, inverse);
 }
 
 static inline double sign(double x)
@@ -133,17 +141,16 @@ static inline double held_rate(double feq, int held)
     return held ? 0.0 : sign(feq);
 }
 
-/* Defines <name>_force_all, <name>_balance_all and <name>_tangent_all from the law's functions of one contact, <name>_force and
- * <name>_tangent. */
+/* Defines <name>_force_all, <name>_balance_all, <name>_tangent_all and <name>_force_of_one from the law's functions of one
+ * contact, <name>_force and <name>_tangent. */
 #define TRIBO_FORCE_EACH(name, limit, epsilon, slope)                                                                            \
     for (size_t i = 0; i < n; i++) {                                                                                             \
         f[i] = name##_force(v[i], feq[i], limit, epsilon, slope, moving[i]);                                                     \
     }
 
-/* In one loop, since divisions take long and the rest is done meanwhile. */
 #define TRIBO_BALANCE_EACH(name, limit, epsilon, slope)                                                                          \
     for (size_t i = 0; i < n; i++) {                                                                                             \
-        f[i] = name##_force(v[i], tribo_alone(a[i], r[i]), limit, epsilon, slope, moving[i]);                                    \
+        f[i] = name##_force(v[i], tribo_alone(a[i], inverse[i]), limit, epsilon, slope, moving[i]);                              \
     }
 
 #define TRIBO_TANGENT_EACH(name, limit, epsilon, slope)                                                                          \
@@ -168,13 +175,17 @@ static inline double held_rate(double feq, int held)
     }
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
+    static double name##_force_of_one(const struct contacts *c, double v, double feq)                                            \
+    {                                                                                                                            \
+        return name##_force(v, feq, *c->limit, tribo_epsilon_of(c, 0), tribo_slope_of(c, 0), *c->moving);                        \
+    }                                                                                                                            \
     TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
                                             const double *restrict feq, double *restrict f)                                      \
     {                                                                                                                            \
         TRIBO_LAW_LOOP(TRIBO_FORCE_EACH, name);                                                                                  \
     }                                                                                                                            \
     TRIBO_SIMD static void name##_balance_all(const struct contacts *c, size_t n, const double *restrict v,                      \
-                                              const double *restrict a, const double *restrict r, double *restrict f)            \
+                                              const double *restrict a, const double *restrict inverse, double *restrict f)      \
     {                                                                                                                            \
         TRIBO_LAW_LOOP(TRIBO_BALANCE_EACH, name);                                                                                \
     }                                                                                                                            \

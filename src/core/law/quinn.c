@@ -36,4 +36,5 @@ const struct law tribo_law_quinn = {
     .force = quinn_force_all,
     .balance = quinn_balance_all,
     .tangent = quinn_tangent_all,
+    .force_of_one = quinn_force_of_one,
 };

@@ -51,12 +51,20 @@ static void reversal_force_all(const struct contacts *c, size_t n, const double 
     }
 }
 
-static void reversal_balance_all(const struct contacts *c, size_t n, const double *v, const double *a, const double *r, double *f)
+static double reversal_force_of_one(const struct contacts *c, double v, double feq)
 {
-    tribo_law_quinn.balance(c, n, v, a, r, f);
+    double f = tribo_law_quinn.force_of_one(c, v, feq);
+    cross(c, 0, v, feq, &f);
+    return f;
+}
+
+static void reversal_balance_all(const struct contacts *c, size_t n, const double *v, const double *a, const double *inverse,
+                                 double *f)
+{
+    tribo_law_quinn.balance(c, n, v, a, inverse, f);
     for (size_t i = 0; i < n; i++) {
         if (c->moving[i]) {
-            cross(c, i, v[i], tribo_alone(a[i], r[i]), f + i);
+            cross(c, i, v[i], tribo_alone(a[i], inverse[i]), f + i);
         }
     }
 }
@@ -96,4 +104,5 @@ const struct law tribo_law_quinn_reversal = {
     .force = reversal_force_all,
     .balance = reversal_balance_all,
     .tangent = reversal_tangent_all,
+    .force_of_one = reversal_force_of_one,
 };

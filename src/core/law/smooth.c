@@ -27,4 +27,5 @@ const struct law tribo_law_smooth = {
     .force = smooth_force_all,
     .balance = smooth_balance_all,
     .tangent = smooth_tangent_all,
+    .force_of_one = smooth_force_of_one,
 };

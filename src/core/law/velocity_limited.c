@@ -29,4 +29,5 @@ const struct law tribo_law_velocity_limited = {
     .force = limited_force_all,
     .balance = limited_balance_all,
     .tangent = limited_tangent_all,
+    .force_of_one = limited_force_of_one,
 };

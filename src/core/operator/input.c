@@ -56,7 +56,7 @@ static int symmetrize(const tribo_context *ctx, const struct csr *a, double *dia
 
 static int out_of_memory(const tribo_context *ctx)
 {
-    return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contacts", ctx->n);
+    return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contact%s", ctx->n, plural(ctx->n));
 }
 
 /* The new operator is right: it takes the old one's place, and its memory that of the old one's, if there is room for what it
@@ -126,11 +126,11 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
         status = tribo_operator_create(&op, &m, a, from, &flaw);
         if (status == TRIBO_ERR_UNSUPPORTED) {
             tribo_fail(ctx, status,
-                       "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contacts",
-                       flaw.contact, flaw.pivot, flaw.group);
+                       "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contact%s",
+                       flaw.contact, flaw.pivot, flaw.group, plural(flaw.group));
         } else if (status == TRIBO_ERR_INDEFINITE) {
-            tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contacts",
-                       flaw.pivot, flaw.contact, flaw.group);
+            tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contact%s",
+                       flaw.pivot, flaw.contact, flaw.group, plural(flaw.group));
         } else {
             status = status ? out_of_memory(ctx) : install(ctx, op, &m);
         }

@@ -76,11 +76,16 @@ int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
     if (!r) {
         return 1;
     }
-    o->diagonal = malloc((n + 1) * sizeof *o->diagonal);
-    for (size_t i = 0; o->diagonal && i < n; i++) {
-        o->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
+    o->diagonal = malloc((2 * n + TRIBO_LINE) * sizeof *o->diagonal);
+    if (!o->diagonal) {
+        return 0;
     }
-    return o->diagonal != NULL;
+    o->inverse = tribo_aligned(o->diagonal + n);
+    for (size_t i = 0; i < n; i++) {
+        o->diagonal[i] = greater(r[i], TRIBO_IMMOVABLE);
+        o->inverse[i] = 1.0 / o->diagonal[i];
+    }
+    return 1;
 }
 
 /* What is constant of a group, and what a memory keeps of it, in doubles, which are as large as everything else. */

@@ -19,6 +19,7 @@
 struct delassus {
     size_t references;            /* contexts */
     double *diagonal;             /* [n] R_ii, at least TRIBO_IMMOVABLE; NULL: there is no operator yet */
+    double *inverse;              /* [n] 1/R_ii, in the same piece of memory */
     double growth;                /* at least the largest eigenvalue of D^-1 R, D being the diagonal */
     size_t islands;               /* groups and single contacts */
     size_t groups;                /* of two contacts and more */

@@ -1,0 +1,295 @@
+/* How it is decided, at an instant:
+ *
+ *     contacts without velocity, or with none left in the direction of their slip, are at rest
+ *     repeat
+ *         find the forces: min 1/2 f'Rf + a'f, with |f| <= limit at rest, and f at its limit where a contact slides
+ *         contacts at rest slide if their force is at the limit and their acceleration is more than rounding
+ *         if none does, but some are just at their limit: solve for a moment later, and contacts at their limit then slide
+ *         if still none does: of the forces that hold all at rest, the one most beyond its limit makes its contact slide
+ *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on, and
+ *         others that began to slide are at rest again
+ *     until none begins to slide
+ *     an independent set of those at rest holds: it keeps all of them where they are */
+#include "stick_slip.h"
+#include "../common/real.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A force this close to the limit might be taken beyond it by rounding, or in a moment. */
+#define CLOSE 0.1
+
+/* Of redundant contacts the solver may leave so many times the noise of accelerations. */
+#define CERTAIN 1e3
+
+/* A contact that is close to its limit, but not at it, does not reach it in a moment: its bounds are wider by this part. */
+#define WIDER 0.02
+
+/* ------------------------------------------------------------------------------------------------------------- forces */
+
+int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    return m->slip[i] == 0 && !tribo_massless_touches(&sys->massless, i);
+}
+
+/* The force within bounds that lets contact i go on as it does, where without it the acceleration is a. One that friction cannot
+ * move takes all that it can of any pull. */
+static double force_alone(const struct stick_slip *m, size_t i, double a)
+{
+    const double pull = m->diagonal[i] > 0.0 ? a / m->diagonal[i] : a != 0.0 ? copysign(HUGE_VAL, a) : 0.0;
+    return clamp(-pull, m->lo[i], m->hi[i]);
+}
+
+/* Rounding of R may hide a heavy body, that of its factors does not. */
+void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        v[i] = a[i] + (m->uncoupled ? m->diagonal[i] * f[i] : 0.0);
+    }
+    if (!m->uncoupled) {
+        tribo_matrix_multiply(&sys->response, f, m->rate);
+        tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, v);
+    }
+}
+
+/* The only contact whose bounds leave it a choice, ncontact if there is none; 0 if there are more. */
+static int find_only(const struct stick_slip *m, size_t *only)
+{
+    *only = m->contacts;
+    for (size_t i = 0; i < m->contacts; i++) {
+        if (m->lo[i] < m->hi[i]) {
+            if (*only < m->contacts) {
+                return 0;
+            }
+            *only = i;
+        }
+    }
+    return 1;
+}
+
+/* The solution where the forces of all contacts but one are known. */
+static void solve_only(struct stick_slip *m, const tribo_system *sys, size_t only, const double *a, double *f)
+{
+    memcpy(f, m->lo, m->contacts * sizeof *f);
+    if (only < m->contacts) {
+        f[only] = 0.0;
+        tribo_matrix_multiply(&sys->response, f, m->rate);
+        f[only] = force_alone(m, only, a[only] + tribo_matrix_row_dot(&sys->direction, only, m->rate));
+    }
+}
+
+/* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
+static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+{
+    size_t only;
+    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
+        f[i] = force_alone(m, i, a[i]);
+    }
+    if (m->uncoupled) {
+        return TRIBO_OK;
+    }
+    if (m->independent && find_only(m, &only)) {
+        solve_only(m, sys, only, a, f);
+        return TRIBO_OK;
+    }
+    const int status = tribo_solve_box(m->box, a, m->lo, m->hi, f);
+    return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
+}
+
+int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
+        m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
+        m->hi[i] = m->slip[i] == 1 ? -limit : limit;
+        if (tribo_massless_touches(&sys->massless, i)) {
+            m->lo[i] = m->hi[i] = m->spring[i];
+        }
+    }
+    return solve(m, sys, m->a, m->force);
+}
+
+void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
+{
+    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
+    m->slip[i] = again ? 0 : direction;
+    m->tied[i] = 0;
+    m->again |= again;
+}
+
+/* Where static limits were lost, all that began to slide while they held are decided about once more, too: the other way they
+ * might go, or none. */
+static void rest_again(struct stick_slip *m)
+{
+    for (size_t i = 0; m->again && i < m->contacts; i++) {
+        m->slip[i] = m->rested[i] ? 0 : m->slip[i];
+    }
+    m->again = 0;
+}
+
+/* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
+ * than rounding, slides. */
+static int breaks_away(struct stick_slip *m, size_t i, signed char direction, double acceleration)
+{
+    if (direction * acceleration <= m->gain[i]) {
+        return 0;
+    }
+    tribo_stick_slip_let_go(m, i, direction);
+    return 1;
+}
+
+/* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
+static signed char direction_of(const struct stick_slip *m, size_t i, double force)
+{
+    return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
+}
+
+/* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
+static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
+{
+    size_t close = 0, changes = 0;
+    *ties = 0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->tied[i] = 0;
+        close += tribo_stick_slip_searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
+    }
+    if (close == 0) {
+        return 0;
+    }
+    tribo_stick_slip_find_gains(m, sys, y);
+    tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double room = m->stick[i] - fabs(m->force[i]);
+        const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
+        if (tribo_stick_slip_searches(m, sys, i) && room <= within) {
+            const signed char direction = direction_of(m, i, m->force[i]);
+            const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
+            m->tied[i] = 1;
+            changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure);
+            *ties += m->tied[i] != 0;
+        }
+    }
+    return changes;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- look ahead */
+
+static double limit_ahead(const struct stick_slip *m, size_t i)
+{
+    const double now = m->slip[i] ? m->limit[i] : m->stick[i], rate = m->slip[i] ? m->limit_rate[i] : m->stick_rate[i];
+    return m->slip[i] == 2 ? 0.0 : greater(now + m->horizon * rate, 0.0);
+}
+
+/* The limits of this instant, where there are static ones. */
+static void find_static(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    if (m->breakaway.some) {
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            m->v[i] = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        }
+        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->slip, m->v, m->limit, m->limit_rate);
+    }
+}
+
+/* How the limits of sliding contacts fall, as they gain speed. */
+static void find_falling(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    find_static(m, sys, y);
+    tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
+        m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
+    }
+}
+
+static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
+        if (tribo_massless_touches(&sys->massless, i)) {
+            m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
+            continue;
+        }
+        if (m->slip[i] != 0) {
+            m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
+            continue;
+        }
+        m->hi[i] = limit + (!m->tied[i] && now - m->force[i] < wider ? wider : 0.0);
+        m->lo[i] = -limit - (!m->tied[i] && now + m->force[i] < wider ? wider : 0.0);
+    }
+}
+
+/* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
+static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
+{
+    tribo_stick_slip_find_gains(m, sys, y);
+    if (m->breakaway.falls) {
+        find_falling(m, sys, y);
+    }
+    tribo_stick_slip_find_rate(m, sys, y);
+    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = m->a[i] + m->horizon * m->v[i];
+    }
+    set_bounds_ahead(m, sys);
+    const int status = solve(m, sys, m->v, m->f);
+    if (status) {
+        return status;
+    }
+    memset(m->pulled, 0, sys->ncontact);
+    tribo_stick_slip_accelerate(m, sys, m->v, m->f, m->v);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
+        if (tribo_stick_slip_searches(m, sys, i) && room >= 0.0) {
+            const signed char direction = direction_of(m, i, m->f[i]);
+            const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
+            const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            m->pulled[i] = (signed char)(m->tied[i] && room <= 0.0 && direction * m->v[i] > m->gain[i] ? direction : 0);
+            *changes += (size_t)leaves;
+            m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ decision */
+
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    tribo_stick_slip_begin_decision(m, sys, t, y);
+    tribo_stick_slip_update_limits(m, sys, y);
+    tribo_elastic_place(m, sys, y);
+    int status = tribo_stick_slip_find_resting(m, sys, y);
+    find_static(m, sys, y);
+    if (!status) {
+        tribo_elastic_hold(m, sys, y);
+        tribo_system_free_acceleration(sys, t, y, m->free);
+        tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->a);
+        m->sized = 0;
+        memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
+        memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
+    }
+    for (size_t changes = 1; !status && changes;) {
+        size_t ties;
+        status = tribo_stick_slip_find_forces(m, sys);
+        changes = status ? 0 : let_slide(m, sys, y, &ties);
+        if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
+            status = look_ahead(m, sys, y, &changes);
+        }
+        if (!status && !changes && ties) {
+            status = tribo_stick_slip_relieve(m, sys, &changes);
+        }
+        rest_again(m);
+    }
+    m->reached = m->contacts;
+    if (m->breakaway.some && !status) {
+        tribo_stick_slip_find_gains(m, sys, y);
+    }
+    for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
+        m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
+    }
+    if (!status) {
+        tribo_elastic_finish(m, sys);
+    }
+    return status ? status : tribo_stick_slip_find_holds(m, sys);
+}

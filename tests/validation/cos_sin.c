@@ -1,0 +1,86 @@
+/* Cosine and sine of omega t: right to rounding, and the same bits for one time and for many. */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+
+#include "../support.h"
+#include "../../src/gsl/cos_sin.h"
+
+enum { TIMES = 16 };
+
+/* An even sequence of numbers in (0, 1), the same in each run. */
+static double next(uint32_t *state)
+{
+    *state = *state * 1664525u + 1013904223u;
+    return (*state >> 8) / 16777216.0 + 1.0 / 33554432.0;
+}
+
+/* Off by no more than this, and by what long double leaves of the angle; both ways. */
+static void compare(double omega, double t, double most)
+{
+    double c[2], s[2];
+    const long double angle = (long double)omega * t, doubt = LDBL_EPSILON * fabsl(angle);
+    tribo_cos_sin_all(omega, 1, &t, c, s);
+    tribo_cos_sin(omega, t, 0.0, c + 1, s + 1);
+    for (int k = 0; k < 2; k++) {
+        const long double off = hypotl(c[k] - cosl(angle), s[k] - sinl(angle));
+        require(off <= (k ? 2.5e-16 : most) + doubt, "omega = %.17g, t = %.17g: off by %Lg", omega, t, off);
+    }
+}
+
+TEST(right_to_rounding)
+{
+    uint32_t state = 1;
+    for (int k = 0; k < 100000; k++) {
+        const double omega = exp(6.0 * next(&state) - 3.0), t = 200.0 * next(&state) - 100.0;
+        compare(omega, t, 1.2e-16);
+    }
+}
+
+/* On either side of COS_SIN_NEAR. */
+TEST(late_times)
+{
+    uint32_t state = 2;
+    for (int k = 0; k < 10000; k++) {
+        const double omega = 3.0 + next(&state), t = 3e5 * next(&state) * (k % 2 ? 1.0 : -1.0);
+        compare(omega, t, 2.5e-16);
+        compare(omega, 1e3 * t, 2.5e-16);
+    }
+}
+
+/* Near whole quarter turns one of the two is small. */
+TEST(quarter_turns)
+{
+    const double quarter = 1.5707963267948966;
+    for (int k = -400000; k <= 400000; k += 997) {
+        double c, s;
+        const double t = k * quarter;
+        tribo_cos_sin_all(1.0, 1, &t, &c, &s);
+        assert_close(c, cos(t), 1.2e-16);
+        assert_close(s, sin(t), 1.2e-16);
+        require(fabs(k % 2 ? c : s) < 1e-9 && fabs(hypot(c, s) - 1.0) < 4e-16, "quarter %d: %.17g, %.17g", k, c, s);
+    }
+}
+
+/* However many times there are, and though one of them is far away. */
+TEST(one_by_one)
+{
+    uint32_t state = 3;
+    double t[TIMES], c[TIMES], s[TIMES];
+    for (int round = 0; round < 100; round++) {
+        const double omega = 40.0 * next(&state);
+        const size_t n = 1 + (size_t)(TIMES * next(&state)) % TIMES;
+        for (size_t k = 0; k < n; k++) {
+            t[k] = (round % 2 ? 1e6 : 10.0) * next(&state);
+        }
+        tribo_cos_sin_all(omega, n, t, c, s);
+        for (size_t k = 0; k < n; k++) {
+            double one_c, one_s;
+            tribo_cos_sin_all(omega, 1, t + k, &one_c, &one_s);
+            require(one_c == c[k] && one_s == s[k], "omega = %g, t = %g: %.17g, %.17g and %.17g, %.17g", omega, t[k], one_c,
+                    one_s, c[k], s[k]);
+        }
+    }
+}
+
+TEST_MAIN("cos_sin", {right_to_rounding, 1}, {late_times, 1}, {quarter_turns, 1}, {one_by_one, 1})
