@@ -331,7 +331,7 @@ static void fill(struct elimination *e, const struct source *s)
                 most = greater(most, weighted(e, p, l));
             }
         }
-        e->scale[p] = 1.0 / most;
+        e->scale[p] = most > 0.0 ? 1.0 / most : 0.0; /* a row of zeros has no pivot */
     }
 }
 
