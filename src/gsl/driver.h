@@ -65,8 +65,9 @@ int tribo_driver_check(tribo_driver *drv, const double *y);
  * event: 0 for a step, 1 for an event. */
 int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event);
 
-/* The same without telling the observer. */
+/* The two halves of that: the state is kept; the observer is told. */
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
+int tribo_driver_show(tribo_driver *drv, double t, const double *y, int event);
 
 /* A step from the state at t to that at next, y, all of which it writes and finds finite. */
 typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);

@@ -362,5 +362,5 @@ TEST(event)
     tribo_system_destroy(s.sys);
 }
 
-TEST_MAIN("periodic_random", {comes_back, 500}, {marched_first, 1}, {marching, 12}, {multipliers, 40}, {static_limits, 100}, {falling_limits, 40},
-          {event, 12})
+TEST_MAIN("periodic_random", {comes_back, 500}, {marched_first, 1}, {marching, 12}, {multipliers, 40}, {static_limits, 100},
+          {falling_limits, 40}, {event, 12})
