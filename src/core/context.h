@@ -264,8 +264,9 @@ double tribo_limit_rate(const tribo_context *ctx, size_t i, double v);
 void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size_t i, size_t n, const double *v,
                         const double *feq, const struct tangents *d);
 
-/* All contacts hold over a step of dt, for now, but those that come in sliding at v [n]; at NULL none is known to do. Where f [n],
- * or NULL, does not act against v, a contact has come to a stop on the way, and holds from there on. Whether any does so. */
+/* static.c. The second: over a step of dt all contacts hold, for now, but those that come in sliding at v [n]; v NULL: nobody
+ * knows who does. Where f [n], or NULL, does not act against v, a contact has come to a stop on the way, and holds from there on.
+ * The first: whether there is one. */
 int tribo_any_turns(const tribo_context *ctx, double dt, const double *v, const double *f);
 void tribo_hold_for_step(const tribo_context *ctx, double dt, const double *v, const double *f);
 

@@ -1,7 +1,6 @@
-/* Of many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of a
+/* For many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of a
  * turn: there Taylor's series end soon. Nothing is chosen, so that loops over times become vectors. */
 #include "cos_sin.h"
-#include "turn.h"
 #include "../common/simd.h"
 #include "../common/twofold.h"
 
@@ -67,6 +66,13 @@ static size_t near_run(double omega, size_t n, const double *t)
         k++;
     }
     return k;
+}
+
+void tribo_turn(double angle, double *cosine, double *sine)
+{
+    const double c = cos(angle), s = sin(angle);
+    *cosine = c;
+    *sine = s;
 }
 
 void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s)

@@ -1,8 +1,12 @@
-/* Cosine and sine of omega t: for one time, and for many, which loops of steps foresee. */
+/* Cosine and sine at once: of an angle, and of omega t, for one time or for many, which loops of steps foresee. */
 #ifndef TRIBO_COS_SIN_H
 #define TRIBO_COS_SIN_H
 
 #include <stddef.h>
+
+/* By the functions of math.h. A call of its own, in which compilers see that both are of the same angle: among branches they may
+ * not. */
+void tribo_turn(double angle, double *cosine, double *sine);
 
 /* c [n] and s [n] at the times t [n]: each pair is a function of omega and its t to the last bit, however many times there are: a
  * point that is right to 1.2e-16, of the exact product of omega and t. Up to |omega t| = COS_SIN_NEAR it takes some 100

@@ -1,5 +1,6 @@
-#include "driver.h"
 /* Integration in time: a method by name, and what is around it. */
+#include "driver.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* The Taylor series of the motion of driver "event": while the modes of the contacts last it is smooth, and its coefficients follow
- * from the equations of motion, one product with the structure's matrices and one solve for the held contacts an order. */
+/* The Taylor series of the motion of driver "event": while the modes of the contacts last it is smooth, and its coefficients
+ * follow from the equations of motion, one product with the structure's matrices and one solve for the held contacts an order. */
 #ifndef TRIBO_EVENT_SERIES_H
 #define TRIBO_EVENT_SERIES_H
 

@@ -47,7 +47,7 @@ struct cholesky {
 /* Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_SIZE (more than DENSE_MOST rows), or TRIBO_ERR_INDEFINITE with the place of a
  * pivot that is not positive, and its value, NaN if that is not known. */
 int tribo_cholesky_create(struct cholesky *c, const struct matrix *a, size_t *where, double *pivot);
-int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot); /* frees a early, in any case */
+int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, double *pivot); /* and frees a, error or not */
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);                       /* 1, or 0 if out of memory */
 void tribo_cholesky_free(struct cholesky *c);
 

@@ -201,8 +201,8 @@ static int find_densely(const struct model *m, const struct cholesky *mass, stru
     return modes_failed(m, status, &doubt);
 }
 
-/* Norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi, change [count], for modes from first on. work [2 count][ndof]. 0 if
- * out of memory. */
+/* Norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi, change [count], for modes from first on. work [2 count][ndof]. 0
+ * if out of memory. */
 static int find_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, size_t first, size_t count,
                           double *work, double *change)
 {

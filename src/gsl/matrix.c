@@ -352,8 +352,10 @@ void tribo_matrix_keep_lower(struct matrix *a)
     a->col = shrink(a->col, count, sizeof *a->col);
     a->val = shrink(a->val, count, sizeof *a->val);
     free(a->offset);
+    free(a->block);
     free(a->fast);
     a->offset = NULL;
+    a->block = NULL;
     a->fast = NULL;
     a->diagonals = 0;
 }

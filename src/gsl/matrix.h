@@ -97,7 +97,7 @@ double *tribo_matrix_to_dense(const struct matrix *a);
 /* The same of the transpose: [cols][rows]. */
 double *tribo_matrix_transpose_to_dense(const struct matrix *a);
 
-/* Leaves nothing of a symmetric matrix but the lower triangle, and its memory. */
+/* Leaves nothing of a symmetric matrix but the lower triangle, and gives back the memory of the rest. */
 void tribo_matrix_keep_lower(struct matrix *a);
 
 /* Multiplies row i by factor[i]. */

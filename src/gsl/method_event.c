@@ -344,8 +344,8 @@ static void state(void *motion, double tau, const double *from, double *to)
     }
 }
 
-/* The same where contacts slide in the plane, whose series may end sooner than their last terms tell: shorter where the velocities
- * and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
+/* The same where contacts slide in the plane, whose series may end sooner than their last terms tell: shorter where the
+ * velocities and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
 #define LONGEST 3.0
 
 static double planar_length(struct event *e, double most)

@@ -13,11 +13,11 @@
 #include "step_form.h"
 #include "step_matrix.h"
 
-/* For steps of length h: the matrix S of forces over accelerations, S^-1 J', and the contacts that see J S^-1 J'.
+/* For steps of length h: the matrix S = M + h/2 C + h^2/4 K, S^-1 J', and the contacts, whose operator is J S^-1 J'.
  *
- * What has no mass starts each step without velocity, and what it ends it with is twice the mean. Elastic
- * contacts have in every step the mean of their forces at both ends, of which the later is within the limit, and slides by what J
- * moves over the step: half the later force is what the contacts find, within half the limit. */
+ * What has no mass starts each step without velocity, and ends it with twice the mean. Elastic contacts have in every step the
+ * mean of their forces at both ends, of which the later is within the limit, and slides by what J moves over the step: half the
+ * later force is what the contacts find, within half the limit. */
 struct moreau {
     struct step_form common;
     double h;              /* 0: nothing is prepared */

@@ -1,6 +1,6 @@
 #include "modal_motion.h"
+#include "cos_sin.h"
 #include "divided.h"
-#include "turn.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -11,7 +11,8 @@
 /* Over a time this short, in terms of the fastest exponent, three terms of a series are all of it. */
 #define CLOSE 1e-6
 
-/* And over one as short as this an exponent is hardly another one. */
+/* Over a time this short, in terms of its exponent, an exponential moves by a small part of itself: by how much is not found as a
+ * difference, which would lose digits. */
 #define LITTLE 0.1
 
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
@@ -296,8 +297,8 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
     }
 }
 
-/* By how much an exponent has moved where go() was. In a time short beside its own it moves by little of what it is, which with a
- * load far above its frequency is all that there is. */
+/* By how much the exponential p has moved from t0 to where go() was. With a load far above its frequency the little by which it
+ * moves is all of the motion. */
 static double complex moved(const struct modal_motion *x, size_t p)
 {
     const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I), z = x->zr[p] + x->zi[p] * I;

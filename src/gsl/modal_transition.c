@@ -1,7 +1,7 @@
 /* Sliding forces and loads do not depend on the state, so that amplitudes of the modes move as without them. What contacts at
  * rest hold does: a perturbed place of theirs pulls at the modes with a constant force. */
 #include "modal_transition.h"
-#include "turn.h"
+#include "cos_sin.h"
 #include "variation.h"
 
 #include <math.h>

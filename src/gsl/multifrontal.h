@@ -1,6 +1,6 @@
-/* The inertia of sparse symmetric matrices that may be indefinite, by the multifrontal method (Duff and Reid 1983, ACM Trans. Math.
- * Softw. 9, 302, doi:10.1145/356044.356047): columns with the same rows are eliminated together, in a dense matrix, and what that
- * leaves of their rows is added to the matrix of the columns that come next. No factor is kept. */
+/* The inertia of sparse symmetric matrices that may be indefinite, by the multifrontal method (Duff and Reid 1983, ACM Trans.
+ * Math. Softw. 9, 302, doi:10.1145/356044.356047): columns with the same rows are eliminated together, in a dense matrix, and
+ * what that leaves of their rows is added to the matrix of the columns that come next. No factor is kept. */
 #ifndef TRIBO_MULTIFRONTAL_H
 #define TRIBO_MULTIFRONTAL_H
 

@@ -51,8 +51,8 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
 /* The k-th coefficient of the power that contacts take. */
 double tribo_planar_series_power(const struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k);
 
-/* For guards over [0, h]: squares of |x|, but for tau^2s, or half the larger limit times |force/limit|^2 of contacts at rest, whose
- * forces are f [order + 1][ncontact]. All terms count: those of x, or force, end where their squares' are not small yet. */
+/* For guards over [0, h]: squares of |x|, but for tau^2s, or half the larger limit times |force/limit|^2 of contacts at rest,
+ * whose forces are f [order + 1][ncontact]. All terms count: those of x, or force, end where their squares' are not small yet. */
 void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h);
 
 /* The errors that velocities of contacts may have, [ncontact], besides that of the driver's tolerance. */

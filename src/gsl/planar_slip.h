@@ -33,8 +33,8 @@ struct planar_slip {
 
 void tribo_planar_slip_free(struct planar_slip *p); /* NULL is fine */
 
-/* After tribo_stick_slip_start: takes the planar contacts from the system, unless it continues. Returns a status, its message on the
- * system's context. */
+/* After tribo_stick_slip_start: takes the planar contacts from the system, unless it continues. Returns a status, its message on
+ * the system's context. */
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues);
 
 /* In the place of tribo_stick_slip_decide where there are planar contacts. */

@@ -12,10 +12,10 @@ struct sparse_factor;
 /* 0: the library has been built without CHOLMOD, and the calls below return TRIBO_ERR_UNSUPPORTED. */
 int tribo_sparse_available(void);
 
-/* Of a positive definite matrix, of which the lower triangle counts. spent is a again if that may be freed as soon as it has
- * been read, before the factor takes its memory, or NULL; if an error comes first, the
- * caller frees it. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED,
- * or TRIBO_ERR_INDEFINITE with the row where it shows. */
+/* The factor of a positive definite matrix a, of which the lower triangle counts. spent is NULL; or a once more, if nobody needs
+ * it any longer: it is freed as soon as it has been read, before the factor takes its memory. tribo_matrix_free of it is fine
+ * afterwards, and needed if an error came first. Returns TRIBO_OK, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED, or
+ * TRIBO_ERR_INDEFINITE with the row where it shows. */
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where);
 int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_factor *from); /* 1, or 0 if out of memory */
 void tribo_sparse_factor_free(struct sparse_factor *factor);

@@ -1,6 +1,7 @@
-/* A step of "moreau/fixed" where every contact holds a body of its own to the base and the matrix A of the step is a band: the
- * operator that contacts see, J A^-1 J', would be dense, but A itself is not. Contacts that hold are rows and columns taken out of
- * A, so that a step costs as much as the band has entries, and a new factor where other contacts hold. */
+/* A step of "moreau/fixed" where every contact holds a body of its own to the base and the matrix of the step, A here and S in
+ * step_matrix.h, is a band: the operator that contacts see, J A^-1 J', would be dense, but A itself is not. Contacts that hold
+ * are rows and columns taken out of A, so that a step costs as much as the band has entries, and a new factor where other
+ * contacts hold. */
 #ifndef TRIBO_STEP_BAND_H
 #define TRIBO_STEP_BAND_H
 

@@ -19,7 +19,7 @@ struct step_form {
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys);
 void tribo_step_form_free(struct step_form *s);
 
-/* An advance begins. */
+/* At the beginning of an advance: looks whether limits are static. */
 void tribo_step_form_start(struct step_form *s, const tribo_system *sys);
 
 /* base = b(t), if the base moves at all. */
@@ -34,9 +34,9 @@ void tribo_step_form_turn(struct step_form *s);
 /* v = the velocity that a step begins with, at t. What has no mass may begin with another one than it ended with. */
 void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, const double *u);
 
-/* f over a step of h, from v and end. Where contacts are planar, the mean over the step, and where they have static limits, by
- * those of contacts that slide; else that which stops contacts where they reverse: with the mean, light bodies between heavy ones
- * come out worse. */
+/* f over a step of h, from v and end. By tribo_step_force_mean if there are planar contacts, or static limits, of which it knows
+ * who has lost them; else by tribo_step_force, which stops contacts where they reverse: with the mean, light bodies between heavy
+ * ones come out worse. */
 int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h);
 
 /* The power that f dissipates at the mean of two velocities. */

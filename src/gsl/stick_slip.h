@@ -51,12 +51,12 @@ struct stick_slip {
     double *free, *acceleration, *rate, *size; /* [ndof] workspace: q'' without friction, with it, its rate, sizes of its parts */
     double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
-    int sized;                                 /* size is that of now */
+    int sized;                                 /* size is that of this decision */
     signed char *tied;   /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
     signed char *before; /* [ncontact] what find_holds saw last */
     int fresh;           /* it saw nothing yet */
-    int hold_differs;    /* hold was not told who holds */
+    int hold_differs;    /* hold has not been told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */

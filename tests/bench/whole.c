@@ -1,7 +1,7 @@
 /* Steps of moreau/fixed on a structure as it is, and reduced: what they take, and how far the motions are from each other.
  *   bench_whole mass stiffness dofs contacts modes
- * Contacts are spread over the degrees of freedom in direction z, the last of which has the load. modes 0: not reduced alone. Prints
- * values by name; status 1 if the two differ by more than 1e-3 of the largest displacement of the load. */
+ * Contacts are spread over the degrees of freedom in direction z, the last of which has the load. modes 0: not reduced alone.
+ * Prints values by name; status 1 if the two differ by more than 1e-3 of the largest displacement of the load. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

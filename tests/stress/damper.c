@@ -457,8 +457,8 @@ TEST(between)
 }
 END_TEST
 
-/* A mass of 1 kg on springs that couple x and y, driven along x at 2.5 Hz with 5% damping: the amplitude along x with a contact of
- * limit 0.4 in the plane, by small steps of their own. */
+/* A mass of 1 kg on springs that couple x and y, driven along x at 2.5 Hz with 5% damping: the amplitude along x with a contact
+ * of limit 0.4 in the plane, by small steps of their own. */
 static double plane_amplitude(void)
 {
     const double w[2] = {20.0, sqrt(200.0)}, c[2] = {0.05 * (w[0] + w[1]), 0.05 * (w[0] - w[1])}, period = 0.4, limit = 0.4;

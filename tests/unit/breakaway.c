@@ -463,8 +463,8 @@ TEST(stops_within_a_step)
     tribo_destroy(c);
 }
 
-/* A contact that slides past brings its own limit to one that rests beside it, which holds by 0.7; by the static limit, or by that
- * of a step whose start is not known, it would have to hold by 1.2. Scalar contacts alone, and beside a planar one. */
+/* A contact that slides past brings its own limit to one that rests beside it, which holds by 0.7; by the static limit, or by
+ * that of a step whose start is not known, it would have to hold by 1.2. Scalar contacts alone, and beside a planar one. */
 TEST(sliding_beside)
 {
     const double r[] = {1.0, 0.5, 0.0, 0.0, 0.5, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0};

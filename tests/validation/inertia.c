@@ -1,4 +1,5 @@
-/* How many eigenvalues are negative, from sparse factors, and how far rounding grows in them, of matrices where both are known. */
+/* How many eigenvalues are negative, from sparse factors, and how far rounding grows in them, of matrices where both are
+ * known. */
 #include <float.h>
 #include <stdlib.h>
 #include <string.h>

@@ -304,8 +304,8 @@ static void march_in_vain(const struct structure *s, tribo_driver *drv)
     require(off > 1e-6, "marching comes to a motion that comes back within %g, which is not found", off);
 }
 
-/* Static limits that drop at once, and such that fall with the speed: there may be no motion that comes back, or unstable ones, or
- * several; and where contacts tie each other who loses such a limit may not be unique, which ends the search. */
+/* Static limits that drop at once, and such that fall with the speed: there may be no motion that comes back, or unstable ones,
+ * or several; and where contacts tie each other who loses such a limit may not be unique, which ends the search. */
 static void check_static_limits(int seed, const char *method)
 {
     struct structure s;

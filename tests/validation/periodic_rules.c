@@ -1,4 +1,5 @@
-/* What may be asked of searches for periodic motions, and of what they found: errors, other methods, static limits, and hard cases. */
+/* What may be asked of searches for periodic motions, and of what they found: errors, other methods, static limits, and hard
+ * cases. */
 #include "search.h"
 
 #include <string.h>
@@ -178,8 +179,8 @@ TEST(nearly_stuck)
     }
 }
 
-/* A load 1e4 times as fast as the mode: what 0.3 of friction would do to the mode in time is 1e8 times the motion, of which closed
- * forms have digits enough. Nearly rigid: x'' = cos(omega t) + f. */
+/* A load 1e4 times as fast as the mode: what 0.3 of friction would do to the mode in time is 1e8 times the motion, of which
+ * closed forms have digits enough. Nearly rigid: x'' = cos(omega t) + f. */
 TEST(fast_load)
 {
     const double omega = 1e4, n = 0.3;

@@ -8,8 +8,8 @@
 #define CONTACTS 6
 #define SCENES 100
 
-/* Bodies on springs of their own, pulled ever harder from rest; contacts with the ground and each other, more than bodies, so that
- * some are redundant. */
+/* Bodies on springs of their own, pulled ever harder from rest; contacts with the ground and each other, more than bodies, so
+ * that some are redundant. */
 struct scene {
     size_t bodies, contacts;
     double mass[BODIES * BODIES], stiffness[BODIES * BODIES], direction[CONTACTS * BODIES], limit[CONTACTS], ratio[CONTACTS];

@@ -95,8 +95,8 @@ static void hold_contact(struct box_qp *p, size_t vectors, size_t i)
     memset(u, 0, vectors * sizeof *u);
 }
 
-/* Whether the first vectors move contact i by more than rounding. If not they let it rest from here on: held, it would take one of
- * them along in which others can still share. */
+/* Whether the first vectors move contact i by more than rounding. If not they let it rest from here on: to hold it would take one
+ * of them away, in which others can still share. */
 static int can_move(struct box_qp *p, size_t vectors, size_t i)
 {
     double square = 0.0;

@@ -98,8 +98,8 @@ extern const struct law tribo_law_coulomb, tribo_law_velocity_limited, tribo_law
 
 const struct law *tribo_law(int id); /* NULL if there is none */
 
-/* f_eq of a contact that shares no body, from 1/R_ii, which takes a tenth of a division. Where products might be no numbers,
- * tribo_alone_far says the same, with the same bits elsewhere. */
+/* f_eq of a contact that shares no body, from 1/R_ii: a product takes a tenth of the time of a division. Where that might be no
+ * number, tribo_alone_far is for it; where both are numbers they have the same bits. */
 #define TRIBO_PLAIN 1e100
 static inline double tribo_alone(double a, double inverse)
 {
