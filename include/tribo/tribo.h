@@ -212,8 +212,9 @@ TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const 
  * A limit that drops at once. Contacts near stick (|v| <= epsilon; COULOMB: v = 0) go by ratio*limit in the place of limit, and
  * the others by limit. tribo_balance finds the forces, and those near stick whose |f_eq| is above ratio*limit break away: they go
  * by limit from there on, all of them at the same time, and the forces are found again, until none breaks away. So contacts only
- * leave, their order does not matter, and where several answers are possible this is the one. What has broken away may yet be
- * held by the others, with |f| <= limit. A contact whose load just reaches its static limit holds; it counts as sliding in
+ * leave, their order does not matter, and where several answers are possible this is the one. Redundant contacts at rest hold as
+ * long as any forces within ratio*limit hold all of them. What has broken away may yet be held by the others, with |f| <= limit.
+ * A contact whose load just reaches its static limit holds; it counts as sliding in
  * tribo_get_slip. In the partition coupling nothing is found again: each contact goes by its own f_eq, and so it does in
  * tribo_force. Forces jump at |v| = epsilon, so that integrators are of first order there. VELOCITY_LIMITED and SMOOTH know no
  * stick, and need velocities.
@@ -373,9 +374,9 @@ TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a
 
 /* The same, and how f follows v and a: what Newton's method of an implicit integrator asks for.
  * df_dv, df_da  [n][n] out, each or NULL; row i is the derivative of f_i. One-sided at a kink: of a planar contact that is pulled
- * beyond its limits at v = 0, towards where it is about to slide. Of redundant contacts only R times
- * it is unique: it is then the least in norm (with planar contacts: in parts of limits). Where the band of a planar contact ends
- * they grow beyond all bounds from inside, like 1/sqrt(1 - |v|/epsilon); there and outside they are those of sliding. On
+ * beyond its limits at v = 0, towards where it is about to slide. Of redundant contacts only R times it is unique: it is then the
+ * least in norm (with planar contacts: in parts of limits). Where the band of a planar contact ends they grow beyond all bounds
+ * from inside, like 1/sqrt(1 - |v|/epsilon); there and outside they are those of sliding. On
  * TRIBO_ERR_INCONSISTENT they are not written. Returns what tribo_balance does. */
 TRIBO_API int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, double *feq, double *f, double *df_dv,
                                     double *df_da);
@@ -401,9 +402,9 @@ TRIBO_API int tribo_limit_product(tribo_context *ctx, const double *dlimit, doub
  * that leaves the contacts in Coulomb's law at its end: v_end = vfree + dt R f, and v_end_i = 0 or f_i = -limit_i sgn v_end_i.
  * With static limits (tribo_set_static) a contact sticks if it can: v_end is found with |f| <= ratio*limit; contacts that slide
  * then go by limit, or by N(|v_end|), all of them at the same time, and v_end is found again, until all others stick. Of first
- * order in dt, since contacts break away, and their limits fall, from the beginning of a step on. Who slides already is not known
- * here: a contact at rest that shares a body with one that slides may break away by what the static limit of that one would
- * bring it. tribo_step_force_mean knows.
+ * order in dt, since contacts break away, and their limits fall, from the beginning of a step on. vfree alone does not tell who
+ * slides already: a contact at rest that shares a body with one that slides may break away by the static limit of that one, which
+ * it has lost. So with static limits take tribo_step_force_mean, which is given v.
  * dt     in       step, > 0
  * vfree  [n] in   relative velocity that the step would end with without friction
  * f      [n] out  friction force, |f| <= limit; of a planar contact f = -limit^2 v_end/|limit v_end|, or v_end = 0
@@ -417,7 +418,8 @@ TRIBO_API int tribo_step_force(tribo_context *ctx, double dt, const double *vfre
  *   scalar ones      that come in sliding and are driven through v = 0, against more than their limit, carry it one way until
  *                    then and the other way after: f is the mean of that, and tribo_get_slip tells the direction of the end
  * All others are as there. It costs up to two solutions. With static limits (tribo_set_static) all are as there, of first order,
- * but that contacts which come in sliding, |v| > 1e-4 dt R_ii ratio limit, go by limit, or N(|v|), unless they come to a stop.
+ * except that contacts which come in sliding, |v| > 1e-4 dt R_ii ratio limit, go by limit, or N(|v|), unless they come to a stop
+ * within the step, where they stick if they can.
  * v  [n] in  relative velocity at the start of the step
  * Returns what tribo_step_force does. */
 TRIBO_API int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const double *vfree, double *f);

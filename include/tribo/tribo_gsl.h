@@ -197,11 +197,13 @@ typedef struct tribo_driver tribo_driver;
  * method   in   in any case of letters. Coulomb's law itself, epsilon -> 0:
  *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads and limits
  *               "event": high-order steps between events, with the tolerances; any system
- *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt
- *               that is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule
- *               (Moreau and Jean). Second order, with planar contacts as tribo_step_force_mean; but for scalar contacts
- *               that reverse without sticking, and central with damping: there first order. Where no two contacts share a
- *               body, central leaves out bodies that rest among others at rest, and TRIBO_COUNT_RESTED counts them
+ *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt that
+ *               is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule (Moreau and
+ *               Jean; a dt with which its matrix is not positive definite, since stiffness or damping is negative, is refused).
+ *               Second order; but for scalar contacts that reverse without sticking, and central with damping: there first order.
+ *               With planar contacts, and with static limits, by tribo_step_force_mean, else by tribo_step_force. Where no two
+ *               contacts share a body, central leaves out bodies that rest among others at rest, and TRIBO_COUNT_RESTED counts
+ *               them
  *               "auto": exact where it can do the system, of up to 200 degrees of freedom, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
  *               Planar contacts: event, and not exact. They must have limits that do not change, and those at rest must not be
@@ -209,8 +211,8 @@ typedef struct tribo_driver tribo_driver;
  *               event follows its direction in steps of that short time
  *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at
  *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
- *               more than rounding. Contacts at rest that tie each other hold as long as any forces within their limits hold
- *               all of them; of the forces that then come nearest to it, those at limits that are too small break away together.
+ *               more than rounding. Redundant contacts at rest hold as long as any forces within their limits hold all of them;
+ *               when none do any more, those that move all the same under the forces that come nearest break away together.
  *               Where contacts that tie each other come to rest on bases that part in the same instant, which of them keeps its
  *               limit is not unique, and event and exact refuse to choose (TRIBO_ERR_UNSUPPORTED). All methods with steps are
  *               of first order then.
@@ -232,7 +234,7 @@ typedef struct tribo_driver tribo_driver;
  *               5e-6, rk1imp 4e-4), for oscillator and belt, epsilon 1e-2 to 1e-4. Contacts with Coulomb's law itself chatter
  *               about v = 0 in very short steps.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY,
- * TRIBO_ERR_UNSUPPORTED (planar or static contacts, tables, degrees of freedom without mass, or no accelerations, where the
+ * TRIBO_ERR_UNSUPPORTED (planar contacts, static limits, tables, degrees of freedom without mass, or no accelerations, where the
  * method cannot do such systems); the message is on the system's context. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
                                   double reltol);
@@ -252,15 +254,16 @@ TRIBO_API const char *tribo_method_name(int method);
  * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP (a step below what time resolves, or a dt that is not stable), TRIBO_ERR_CHATTER,
  * TRIBO_ERR_UNSUPPORTED (loads and contacts that the method does not take, see tribo_driver_create), TRIBO_ERR_UNSUPPORTED and
  * TRIBO_ERR_INDEFINITE (exact: a structure with contacts held whose motion has no closed form, or is not known to two digits),
- * TRIBO_ERR_MEMORY, and what tribo_balance returns. */
+ * TRIBO_ERR_INDEFINITE (moreau/fixed: the matrix of a step of dt), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
 /* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact, event, and auto by
  * one of the two; others return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other
  * (in energy), and there is such a motion, as symmetric as its loads, wherever motions are bounded. With it, or with static
- * limits, there may be none, or several, or none is found. Of several it is one near the guess, as a rule, stable or not, see
- * tribo_driver_get_multipliers; before it gives up the search follows the motion from the guess for a while, and begins anew.
- * Static limits that fall with the speed: event, and auto.
+ * limits, there may be none, or several, or none is found. Of several it is one near the guess, as a rule, stable or not (see
+ * tribo_driver_get_multipliers). Before the search gives up, it follows the motion from the guess for a while, and begins anew
+ * there. With static limits that fall with the speed take event or auto: exact cannot be created for them, and refuses such that
+ * are set later.
  * t       in       time at which the period begins
  * period  in       > 0; that of the loads, or a multiple of it
  * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0

@@ -47,7 +47,7 @@ static int check_loads(tribo_driver *drv, double period)
     return TRIBO_OK;
 }
 
-/* Derivatives of motions know nothing of forces that jump beside springs without mass, */
+/* Derivatives of motions do not know of forces that jump beside springs without mass. */
 static int check_massless(tribo_driver *drv)
 {
     double *ratio = drv->sys->feq;
@@ -64,7 +64,7 @@ static int check_massless(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* nor that sliding forces turn. */
+/* Nor do they know that sliding forces turn. */
 static int check_planar(tribo_driver *drv)
 {
     const size_t planar = tribo_system_planar(drv->sys);
