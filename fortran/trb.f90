@@ -1,5 +1,5 @@
-!> tribo for fixed-form Fortran: external routines that need no module and no interface block. Those for structures, with GSL, are in
-!> trb_gsl.f90.
+!> tribo for fixed-form Fortran: external routines that need no module and no interface block. Those for structures, with GSL, are
+!> in trb_gsl.f90.
 !>
 !> I... are default INTEGER, as are N, NDOF, LDR, LDJ, LAW and NLAW; all other numbers are DOUBLE PRECISION; NAME and TEXT are
 !> CHARACTER*(*); MINV is a subroutine. Arrays hold one value a contact, N of them, unless said otherwise; an element of a bigger
@@ -85,8 +85,8 @@
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
 
 !> What they share. A handle stands for a context of the library, the object of minus its number, see handle.h. Doubles go to the
-!> library as they are; where Fortran counts or stores otherwise (indices, matrices, integers, texts) a routine borrows the context
-!> as a tribo_context, and calls what module tribo has.
+!> library as they are; where Fortran counts or stores otherwise (indices, matrices, integers, texts) a routine borrows the
+!> context as a tribo_context, and calls what module tribo has.
 module tribo_fixed
   use tribo_c
   use tribo

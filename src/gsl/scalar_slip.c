@@ -1,4 +1,4 @@
-/* How it is decided, at an instant:
+/* How it is decided, at an instant, which scalar contacts stick and which slide:
  *
  *     contacts without velocity, or with none left in the direction of their slip, are at rest
  *     repeat

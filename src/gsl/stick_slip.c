@@ -1,4 +1,4 @@
-/* What decisions are made of, whatever kind of contacts they are about: scalar_slip.c, planar_slip.c. */
+/* What decisions about contacts are made of; they are made in scalar_slip.c and planar_slip.c. */
 #include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"

@@ -1,8 +1,8 @@
 #!/bin/sh
-# sh tests/bench/modes.sh build results [--quick]: plates of 10,680, 41,520 and 163,680 degrees of freedom (--quick: the first two)
-# that CalculiX makes of what TRIBO_PLATES/plate.py writes; 20 modes of each by bench_modes and, where
-# python3 has scipy, by eigsh(sigma=0), in turn, with each BLAS that is installed; frequencies beside those that CalculiX finds. One
-# thread each. Prints a table; what cannot run here is named and left out.
+# sh tests/bench/modes.sh build results [--quick]: plates of 10,680, 41,520 and 163,680 degrees of freedom (--quick: the first
+# two) that CalculiX makes of what TRIBO_PLATES/plate.py writes; 20 modes of each by bench_modes and, where python3 has scipy, by
+# eigsh(sigma=0), in turn, with each BLAS that is installed; frequencies beside those that CalculiX finds. One thread each. Prints
+# a table; what cannot run here is named and left out.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
 here=$PWD bench=$PWD/$1/tests/bench results=$2 sizes='40,12 80,24 160,48'
@@ -18,7 +18,8 @@ skip() {
 command -v ccx >/dev/null || skip "there is no ccx (Debian: calculix-ccx)"
 command -v python3 >/dev/null || skip "there is no python3"
 python=${TRIBO_PYTHON:-python3}
-"$python" -c 'import scipy.sparse.linalg' 2>/dev/null || { echo "bench_modes: $python has no scipy (Debian: python3-scipy)"; python=; }
+"$python" -c 'import scipy.sparse.linalg' 2>/dev/null ||
+    { echo "bench_modes: $python has no scipy (Debian: python3-scipy)"; python=; }
 mkdir -p "$results/plates"
 cd "$results/plates"
 
@@ -55,11 +56,11 @@ for blas in $(libraries); do
         : >scipy.txt
         [ -z "$python" ] || LD_LIBRARY_PATH=$blas "$python" "$here/tests/bench/peer_scipy.py" "$name" 20 >scipy.txt
         LD_LIBRARY_PATH=$blas "$bench/bench_modes" "$name.mas" "$name.sti" "$name.dof" 20 "$PWD/frequencies$nx.txt" >tribo.txt
+        ratio=$(cat tribo.txt scipy.txt | awk '$1 == "modes" { t[++n] = $2 } END { if (n == 2) printf "%.2f", t[1] / t[2] }')
         now="$(value ndof tribo.txt) $(value modes tribo.txt)"
         growth=$(echo "$before $now" | awk 'NF == 4 { printf "%.2f", log($4 / $2) / log($3 / $1) }')
         printf '%-18s %8s %10s %8s %8s %10s %10s %8s\n' "$(basename "$blas")" $now "$(value memory tribo.txt)" "${growth:--}" \
-            "$(value modes scipy.txt | grep . || echo -)" "$(value memory scipy.txt | grep . || echo -)" \
-            "$(cat tribo.txt scipy.txt | awk '$1 == "modes" { t[++n] = $2 } END { if (n == 2) printf "%.2f", t[1] / t[2]; else print "-" }')"
+            "$(value modes scipy.txt | grep . || echo -)" "$(value memory scipy.txt | grep . || echo -)" "${ratio:--}"
         before=$now
         echo "    largest difference from CalculiX's 20 frequencies: $(value difference tribo.txt)"
     done
