@@ -1,5 +1,4 @@
 /* Life of a context, and its settings. */
-#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

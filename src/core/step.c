@@ -1,5 +1,4 @@
 /* The force over a time step, and the box-constrained problem for laws of the caller's own. */
-#include <float.h>
 
 #include "check.h"
 

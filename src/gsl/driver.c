@@ -9,7 +9,6 @@
 
 #include "breakaway.h"
 #include "../common/real.h"
-#include "../common/simd.h"
 
 static const struct method automatic;
 

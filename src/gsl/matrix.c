@@ -2,7 +2,6 @@
 #include "../common/real.h"
 #include "../common/simd.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,6 @@
  * closed too (modal_energy.c). */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "events.h"
 #include "modal_motion.h"

@@ -4,7 +4,6 @@
 #include "eigen.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A mode this close to critical damping has no two exponents that could be told apart to 12 digits. */
 #define CRITICAL 1e-8

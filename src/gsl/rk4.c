@@ -4,7 +4,6 @@
  * From one evaluation follows the state of the next, or of the end, place by place: so where contacts share no body all is done
  * block by block. What neighbours pull at has to stay meanwhile: stages take turns in two places. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "driver.h"
 #include "rates_alone.h"

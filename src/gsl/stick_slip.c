@@ -3,7 +3,6 @@
 #include "stick_slip.h"
 #include "../common/real.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

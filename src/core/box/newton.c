@@ -4,7 +4,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 /* So much of the first terms is no gradient at all, though it may be all that there is. */
 #define NOTHING 1e-45

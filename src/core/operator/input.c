@@ -1,10 +1,8 @@
 /* The operator R: its forms of input and their checks. Every form becomes sorted compressed rows first; the new operator replaces
  * the old one only when everything about it is known to be right. */
-#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "../context.h"
 #include "../../common/csr.h"

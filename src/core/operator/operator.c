@@ -1,5 +1,4 @@
 /* The operator as it is kept, the connected parts of R's graph found once; and the memory of contexts that goes with it. */
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
