@@ -113,7 +113,7 @@ static int allocate(struct bodies_alone *b, size_t n, size_t c)
     b->body = malloc((c + 1) * sizeof *b->body);
     b->rows = calloc(b->blocks + 1, sizeof *b->rows);
     b->mass = calloc(5 * n + 2 * c + 1, sizeof *b->mass);
-    b->first = calloc(b->blocks + 2, sizeof *b->first);
+    b->first = calloc(2 * b->blocks + 2, sizeof *b->first);
     b->driven = calloc(4 * b->blocks + 1, 1);
     if (!b->body || !b->rows || !b->mass || !b->first || !b->driven) {
         return 0;
@@ -124,6 +124,7 @@ static int allocate(struct bodies_alone *b, size_t n, size_t c)
     b->load = b->after + n;
     b->turn = b->load + n;
     b->room = b->turn + c;
+    b->still = b->first + b->blocks + 2;
     b->awake = b->driven + b->blocks;
     b->wakes = b->awake + b->blocks;
     b->loaded = b->wakes + b->blocks;
@@ -226,6 +227,7 @@ int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
     b->fits = b->body && plain_contacts(b, sys);
     if (b->fits) {
         memset(b->awake, 1, b->blocks);
+        memset(b->wakes, 0, b->blocks);
         memset(b->load, 0, sys->ndof * sizeof *b->load);
         find_driven(b, sys);
         take_limits(b, sys);
@@ -491,11 +493,18 @@ static inline size_t next_awake(const struct bodies_alone *b, size_t k)
     return found ? (size_t)(found - b->awake) : b->blocks;
 }
 
-/* Block k has moved: the next step looks at all that it pulls at. */
-static inline void wake_around(struct bodies_alone *b, size_t k)
+/* What the next step looks at since it has looked at block k: all that this pulls at, if it has moved. */
+static inline void wake(struct bodies_alone *b, size_t k, int moved)
 {
-    for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
-        b->wakes[b->pulled[e]] = 1;
+    b->awake[k] = 0;
+    if (moved) {
+        for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
+            b->wakes[b->pulled[e]] = 1;
+        }
+    } else if (b->driven[k]) {
+        b->wakes[k] = 1;
+    } else {
+        b->still[b->stills++] = k;
     }
 }
 
@@ -514,14 +523,12 @@ static int holds(const struct bodies_alone *b, const tribo_system *sys, size_t k
 /* Blocks that the next step would leave out are asked once whether they stay where they are. */
 static void let_rest(struct bodies_alone *b, const tribo_system *sys, const struct body_step *s)
 {
-    for (size_t k = next_awake(b, 0); k < b->blocks; k = next_awake(b, k + 1)) {
+    while (b->stills > 0) {
+        const size_t k = b->still[--b->stills];
         if (!b->wakes[k] && !holds(b, sys, k, s->q_to, s->u_to)) {
             b->wakes[k] = 1;
         }
     }
-    unsigned char *last = b->awake;
-    b->awake = b->wakes;
-    b->wakes = last;
 }
 
 int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct body_step *s, double *energy)
@@ -529,16 +536,16 @@ int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct bo
     int all = 0;
     size_t left = sys->ndof;
     prepare(b, sys, s);
-    memcpy(b->wakes, b->driven, b->blocks);
     for (size_t k = next_awake(b, 0); k < b->blocks; k = next_awake(b, k + 1)) {
         const int did = sys->ndof <= FEW ? step_few(b, sys, s, energy) : step_block(b, sys, s, k, energy);
         all |= did;
         left -= tribo_bodies_of_block(sys, k);
-        if (did & STIRS) {
-            wake_around(b, k);
-        }
+        wake(b, k, did & STIRS);
     }
     b->skipped += left;
     let_rest(b, sys, s);
+    unsigned char *last = b->awake;
+    b->awake = b->wakes;
+    b->wakes = last;
     return !(all & GROWS);
 }

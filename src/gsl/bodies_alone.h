@@ -33,7 +33,8 @@ struct bodies_alone {
     size_t *first, *pulled;         /* block k pulls at blocks pulled[first[k]] to pulled[first[k + 1] - 1] */
     unsigned char *driven;          /* [blocks] load, base or limits depend on time: never at rest */
     unsigned char *loaded;          /* [blocks] there is a load */
-    unsigned char *awake, *wakes;   /* [blocks] 1: looked at in this step, in the next one; else 0 */
+    unsigned char *awake, *wakes;   /* [blocks] 1: this step still has to look at it, the next one looks at it; else 0 */
+    size_t *still, stills;          /* those that this step has looked at, and that have not moved */
     int goes_on;                    /* after is what the next step begins with */
     int fits;                       /* the settings are such that steps can be taken */
     size_t revision;                /* of the system */
