@@ -253,17 +253,28 @@ static void find_bases(struct bodies_alone *b, tribo_system *sys, double t, doub
     }
 }
 
+/* What tables say, of the blocks that they drive. Other loads there are forgotten. */
+static void find_tabulated(struct bodies_alone *b, const tribo_system *sys)
+{
+    for (size_t k = 0; k < b->blocks; k++) {
+        if (b->driven[k]) {
+            const size_t begin = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
+            memset(b->load + begin, 0, n * sizeof *b->load);
+            tribo_system_tables(sys, 0, 1.0, begin, begin + n, b->load);
+        }
+    }
+}
+
 static inline void find_loads(struct bodies_alone *b, const tribo_system *sys)
 {
-    if (sys->tables) {
-        memset(b->load, 0, sys->ndof * sizeof *b->load);
-        tribo_system_tables(sys, 0, 1.0, b->load);
-    }
-    for (size_t s = 0; s < sys->harmonics && !sys->tables; s++) {
+    for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *h = &sys->harmonic[s];
         for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
             b->load[h->index[k]] = 0.0;
         }
+    }
+    if (sys->tables) {
+        find_tabulated(b, sys);
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *h = &sys->harmonic[s];
