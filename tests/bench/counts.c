@@ -135,7 +135,7 @@ static double count_chain(const char *method, size_t n)
     return count_motion(sys, n, method, dt, 200.0 * dt, 0.0);
 }
 
-/* Of which a load keeps 0.8% moving, or all of which slide. So many steps that what an advance begins and ends with, which looks
+/* Of which a load keeps 1.1% moving, or all of which slide. So many steps that what an advance begins and ends with, which looks
  * at all blocks, is little of them. */
 static double count_long_chain(const char *method, size_t n, int slides)
 {
