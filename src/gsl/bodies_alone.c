@@ -47,41 +47,58 @@ static int find_bodies(struct bodies_alone *b, const tribo_system *sys, unsigned
     return response->first[response->rows] == sys->ncontact;
 }
 
-/* The blocks in which matrix a has entries in rows of block k, found beyond those marked already: to, or NULL only to count. */
-static size_t find_around(const struct matrix *a, size_t k, size_t *mark, size_t *to)
+/* A map in the making: as long as `to` is NULL it only counts. */
+struct map {
+    size_t *at;   /* [blocks] how many blocks each one pulls at; where it notes the next of them */
+    size_t *mark; /* [blocks] the last one noted, from 1 on: 0 at first */
+    size_t *to;
+};
+
+static void note_pull(const struct map *m, size_t block, size_t k)
 {
-    size_t count = 0;
+    if (m->mark[block] != k + 1) {
+        m->mark[block] = k + 1;
+        if (m->to) {
+            m->to[m->at[block]] = k;
+        }
+        m->at[block]++;
+    }
+}
+
+/* Blocks in which matrix a has entries in rows of block k pull at it. */
+static void note_pulls(const struct map *m, const struct matrix *a, size_t k)
+{
     const size_t end = (k + 1) * MATRIX_BLOCK;
     for (size_t i = k * MATRIX_BLOCK; i < end && i < a->rows; i++) {
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
-            const size_t block = a->col[e] / MATRIX_BLOCK;
-            if (mark[block] != k + 1) {
-                mark[block] = k + 1;
-                if (to) {
-                    to[count] = block;
-                }
-                count++;
-            }
+            note_pull(m, a->col[e] / MATRIX_BLOCK, k);
         }
     }
-    return count;
 }
 
-/* The map of the blocks: counted first, then written. mark [2 blocks] is workspace, all 0. */
+/* Damping that is set later is diagonal: each block pulls at itself. */
+static void note_all(const struct map *m, const tribo_system *sys, size_t blocks)
+{
+    for (size_t k = 0; k < blocks; k++) {
+        note_pull(m, k, k);
+        note_pulls(m, &sys->stiffness, k);
+        note_pulls(m, &sys->damping, k);
+    }
+}
+
+/* The map of the blocks: counted first, then written. mark [2 blocks] is workspace, all 0. While it is written first[k + 1] is
+ * where block k goes on, and in the end where it ends. */
 static int find_map(struct bodies_alone *b, const tribo_system *sys, size_t *mark)
 {
+    note_all(&(struct map){b->first + 2, mark, NULL}, sys, b->blocks);
     for (size_t k = 0; k < b->blocks; k++) {
-        b->first[k + 1] =
-            b->first[k] + 1 + find_around(&sys->stiffness, k, mark, NULL) + find_around(&sys->damping, k, mark, NULL);
+        b->first[k + 2] += b->first[k + 1];
     }
-    b->around = malloc((b->first[b->blocks] + 1) * sizeof *b->around);
-    for (size_t k = 0; b->around && k < b->blocks; k++) {
-        size_t *to = b->around + b->first[k];
-        *to++ = k;
-        to += find_around(&sys->stiffness, k, mark + b->blocks, to);
-        find_around(&sys->damping, k, mark + b->blocks, to);
+    b->pulled = malloc((b->first[b->blocks + 1] + 1) * sizeof *b->pulled);
+    if (b->pulled) {
+        note_all(&(struct map){b->first + 1, mark + b->blocks, b->pulled}, sys, b->blocks);
     }
-    return b->around != NULL;
+    return b->pulled != NULL;
 }
 
 /* How many blocks there are. */
@@ -96,7 +113,7 @@ static int allocate(struct bodies_alone *b, size_t n, size_t c)
     b->body = malloc((c + 1) * sizeof *b->body);
     b->rows = calloc(b->blocks + 1, sizeof *b->rows);
     b->mass = calloc(5 * n + 2 * c + 1, sizeof *b->mass);
-    b->first = calloc(b->blocks + 1, sizeof *b->first);
+    b->first = calloc(2 * b->blocks + 2, sizeof *b->first);
     b->driven = calloc(4 * b->blocks + 1, 1);
     if (!b->body || !b->rows || !b->mass || !b->first || !b->driven) {
         return 0;
@@ -107,9 +124,10 @@ static int allocate(struct bodies_alone *b, size_t n, size_t c)
     b->load = b->after + n;
     b->turn = b->load + n;
     b->room = b->turn + c;
-    b->stirred = b->driven + b->blocks;
-    b->stirs = b->stirred + b->blocks;
-    b->loaded = b->stirs + b->blocks;
+    b->still = b->first + b->blocks + 2;
+    b->awake = b->driven + b->blocks;
+    b->wakes = b->awake + b->blocks;
+    b->loaded = b->wakes + b->blocks;
     return 1;
 }
 
@@ -119,7 +137,7 @@ void tribo_bodies_free(struct bodies_alone *b)
     free(b->rows);
     free(b->mass);
     free(b->first);
-    free(b->around);
+    free(b->pulled);
     free(b->driven);
     memset(b, 0, sizeof *b);
 }
@@ -208,7 +226,8 @@ int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
     b->revision = tribo_system_revision(sys);
     b->fits = b->body && plain_contacts(b, sys);
     if (b->fits) {
-        memset(b->stirred, 1, b->blocks);
+        memset(b->awake, 1, b->blocks);
+        memset(b->wakes, 0, b->blocks);
         memset(b->load, 0, sys->ndof * sizeof *b->load);
         find_driven(b, sys);
         take_limits(b, sys);
@@ -234,17 +253,28 @@ static void find_bases(struct bodies_alone *b, tribo_system *sys, double t, doub
     }
 }
 
+/* What tables say, of the blocks that they drive. Other loads there are forgotten. */
+static void find_tabulated(struct bodies_alone *b, const tribo_system *sys)
+{
+    for (size_t k = 0; k < b->blocks; k++) {
+        if (b->driven[k]) {
+            const size_t begin = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
+            memset(b->load + begin, 0, n * sizeof *b->load);
+            tribo_system_tables(sys, 0, 1.0, begin, begin + n, b->load);
+        }
+    }
+}
+
 static inline void find_loads(struct bodies_alone *b, const tribo_system *sys)
 {
-    if (sys->tables) {
-        memset(b->load, 0, sys->ndof * sizeof *b->load);
-        tribo_system_tables(sys, 0, 1.0, b->load);
-    }
-    for (size_t s = 0; s < sys->harmonics && !sys->tables; s++) {
+    for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *h = &sys->harmonic[s];
         for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
             b->load[h->index[k]] = 0.0;
         }
+    }
+    if (sys->tables) {
+        find_tabulated(b, sys);
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *h = &sys->harmonic[s];
@@ -357,16 +387,6 @@ TRIBO_SIMD static double sum_of(size_t n, const double *x)
     return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
 }
 
-/* Whether anything around block k has moved, or something changes with time. */
-static int awake(const struct bodies_alone *b, size_t k)
-{
-    int any = b->driven[k];
-    for (size_t e = b->first[k]; !any && e < b->first[k + 1]; e++) {
-        any = b->stirred[b->around[e]];
-    }
-    return any;
-}
-
 /* The acceleration of degree of freedom i without friction, by its rows. */
 static inline double free_one(const struct bodies_alone *b, const tribo_system *sys, size_t i, const double *q, const double *u)
 {
@@ -473,22 +493,70 @@ static int step_block(const struct bodies_alone *b, const tribo_system *sys, con
     return did;
 }
 
+/* The first block from k on that is awake; as many as there are, if there is none. Long rows of blocks at rest are passed over by
+ * the C library, many at a time. */
+static inline size_t next_awake(const struct bodies_alone *b, size_t k)
+{
+    if (k >= b->blocks || b->awake[k]) {
+        return k;
+    }
+    const unsigned char *found = memchr(b->awake + k, 1, b->blocks - k);
+    return found ? (size_t)(found - b->awake) : b->blocks;
+}
+
+/* What the next step looks at since it has looked at block k: all that this pulls at, if it has moved. */
+static inline void wake(struct bodies_alone *b, size_t k, int moved)
+{
+    b->awake[k] = 0;
+    if (moved) {
+        for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
+            b->wakes[b->pulled[e]] = 1;
+        }
+    } else if (b->driven[k]) {
+        b->wakes[k] = 1;
+    } else {
+        b->still[b->stills++] = k;
+    }
+}
+
+/* Whether contacts hold all of block k, which is at rest, in steps of any length. */
+static int holds(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u)
+{
+    double a[MATRIX_BLOCK];
+    int all = 1;
+    tribo_bodies_accelerate(b, sys, k, q, u, a);
+    for (size_t i = 0; i < tribo_bodies_of_block(sys, k); i++) {
+        all &= fabs(a[i]) <= b->rows[k].brake[i];
+    }
+    return all;
+}
+
+/* Blocks that the next step would leave out are asked once whether they stay where they are. */
+static void let_rest(struct bodies_alone *b, const tribo_system *sys, const struct body_step *s)
+{
+    while (b->stills > 0) {
+        const size_t k = b->still[--b->stills];
+        if (!b->wakes[k] && !holds(b, sys, k, s->q_to, s->u_to)) {
+            b->wakes[k] = 1;
+        }
+    }
+}
+
 int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct body_step *s, double *energy)
 {
     int all = 0;
+    size_t left = sys->ndof;
     prepare(b, sys, s);
-    for (size_t k = 0; k < b->blocks; k++) {
-        b->stirs[k] = 0;
-        if (awake(b, k)) {
-            const int did = sys->ndof <= FEW ? step_few(b, sys, s, energy) : step_block(b, sys, s, k, energy);
-            b->stirs[k] = did & STIRS;
-            all |= did;
-        } else {
-            b->skipped += tribo_bodies_of_block(sys, k);
-        }
+    for (size_t k = next_awake(b, 0); k < b->blocks; k = next_awake(b, k + 1)) {
+        const int did = sys->ndof <= FEW ? step_few(b, sys, s, energy) : step_block(b, sys, s, k, energy);
+        all |= did;
+        left -= tribo_bodies_of_block(sys, k);
+        wake(b, k, did & STIRS);
     }
-    unsigned char *last = b->stirred;
-    b->stirred = b->stirs;
-    b->stirs = last;
+    b->skipped += left;
+    let_rest(b, sys, s);
+    unsigned char *last = b->awake;
+    b->awake = b->wakes;
+    b->wakes = last;
     return !(all & GROWS);
 }

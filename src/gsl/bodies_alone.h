@@ -1,9 +1,17 @@
 /* Steps of central differences where contacts share no body: each acts on one degree of freedom of its own, so that a step needs
  * no solver, and goes block by block of degrees of freedom through everything that is to be done. Blocks at rest are left out.
  *
- * A block in which all velocities were exactly 0 before the last step and after it, on which no load depends on time, and around
- * which the same holds of all blocks that pull at it, is where it was; the next step would do with the same numbers what the last
- * one did. So it waits until a block around it stirs, and the motion is the same to the last bit. */
+ * A step looks only at blocks that are awake. All are when settings have changed or a motion begins; always are those on which
+ * something acts that depends on time; and for the next step are those at which a block pulls that has moved. Blocks are taken in
+ * their order, so that the energy is the same sum.
+ *
+ * A block left out cannot move. Before it was, a step looked at it, which began and ended with no velocity, so that both arrays
+ * that steps write in turn have it where it is; and |a| <= |B| limit held for each of its rows at the end of that step. Its a
+ * depends on places and velocities of blocks that pull at it, none of which has moved in that step or since, and on a load that
+ * is constant: a is the same to the last bit, and so are limits, and bases stand still. The next step would begin with u = 0,
+ * which becomes h a without friction and 0 with it: |h a| <= h |B| limit for every h, since rounding is monotonic. So it adds 0
+ * to the place and to the energy, and leaves the block where it was. That a step of one length did not move the block would not do:
+ * lengths differ by rounding, and |a| and |B| limit may be as close. */
 #ifndef TRIBO_BODIES_ALONE_H
 #define TRIBO_BODIES_ALONE_H
 
@@ -23,10 +31,11 @@ struct bodies_alone {
     double *load;                   /* [ndof] accelerations */
     double *room;                   /* [ncontact] */
     size_t blocks, skipped;         /* degrees of freedom left out, step by step, so far */
-    size_t *first, *around;         /* blocks around[first[k]] to around[first[k + 1] - 1] pull at block k */
+    size_t *first, *pulled;         /* block k pulls at blocks pulled[first[k]] to pulled[first[k + 1] - 1] */
     unsigned char *driven;          /* [blocks] load, base or limits depend on time: never at rest */
     unsigned char *loaded;          /* [blocks] there is a load */
-    unsigned char *stirred, *stirs; /* [blocks] something moved in the last step, in this one */
+    unsigned char *awake, *wakes;   /* [blocks] 1: this step still has to look at it, the next one looks at it; else 0 */
+    size_t *still, stills;          /* those that this step has looked at, and that have not moved */
     int goes_on;                    /* after is what the next step begins with */
     int fits;                       /* the settings are such that steps can be taken */
     size_t revision;                /* of the system */

@@ -133,7 +133,7 @@ static int expand_forces(struct event *e, size_t k)
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
     }
-    tribo_system_tables(sys, (int)k, 1.0, acc);
+    tribo_system_tables(sys, (int)k, 1.0, 0, sys->ndof, acc);
     find_velocities(e, k, watch);
     if (m->breakaway.falls) {
         expand_falling(e, k);

@@ -182,11 +182,11 @@ double tribo_system_next_kink(const tribo_system *sys, double t)
     return next;
 }
 
-void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to)
+void tribo_system_tables(const tribo_system *sys, int order, double factor, size_t begin, size_t end, double *to)
 {
     for (size_t k = 0; order < 2 && k < sys->tables; k++) {
         const double value = factor * look_up(sys, &sys->table[k], 1, 0, order);
-        for (size_t i = 0; i < sys->ndof; i++) {
+        for (size_t i = begin; i < end; i++) {
             to[i] += value * sys->table[k].pattern[i];
         }
     }
@@ -219,7 +219,7 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
         }
     }
     if (drives == DRIVES_LOAD && sys->tables) {
-        tribo_system_tables(sys, order, factor, to);
+        tribo_system_tables(sys, order, factor, 0, sys->ndof, to);
     }
 }
 

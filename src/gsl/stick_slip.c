@@ -130,7 +130,7 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
 static void find_sizes(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->size, 0, sys->ndof * sizeof *m->size);
-    tribo_system_tables(sys, 0, 1.0, m->size);
+    tribo_system_tables(sys, 0, 1.0, 0, sys->ndof, m->size);
     for (size_t d = 0; d < sys->ndof; d++) {
         m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
                      tribo_matrix_row_size(&sys->response, d, m->force);

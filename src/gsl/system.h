@@ -148,8 +148,8 @@ void tribo_system_set_low(tribo_system *sys, double low);
  * limits, to `to`, at the time set. */
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to);
 
-/* The part of the load's that comes from tables. */
-void tribo_system_tables(const tribo_system *sys, int order, double factor, double *to);
+/* The part of the load's that comes from tables, of the degrees of freedom from begin to end. */
+void tribo_system_tables(const tribo_system *sys, int order, double factor, size_t begin, size_t end, double *to);
 
 /* Whether limits change with time, by a table or harmonics. */
 static inline int tribo_system_limits_vary(const tribo_system *sys)

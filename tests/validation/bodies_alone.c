@@ -10,6 +10,7 @@
 struct row {
     size_t n, bare; /* 0: all are on contacts */
     int damped, tied;
+    size_t coupled; /* if not 0: the mass matrix couples the first body and this one, which are without contacts */
 };
 
 enum { PLAIN, LOADED, DAMPED, BELTS, SWINGING, LIMIT_TABLE, RELEASED, SETTINGS };
@@ -49,6 +50,10 @@ static tribo_system *row_create(const struct row *r)
     const size_t c = contacts_of(r);
     gsl_spmatrix *m = band(r->n, 1.0, 0.0), *k = band(r->n, 2.0, -1.0), *d = band(r->n, 0.2, -0.1);
     gsl_spmatrix *j = gsl_spmatrix_alloc(c + (size_t)r->tied, r->n);
+    if (r->coupled) {
+        gsl_spmatrix_set(m, 0, r->coupled, 0.5);
+        gsl_spmatrix_set(m, r->coupled, 0, 0.5);
+    }
     for (size_t i = 0, at = c; i < r->n; i++) {
         if (has_contact(r, i)) {
             gsl_spmatrix_set(j, --at, i, -2.0);
@@ -117,6 +122,18 @@ static void act(tribo_system *sys, const struct row *r, int setting, double *x)
     }
 }
 
+/* Limits that follow a table might change: nothing is left out. The table says what they are. */
+static void keep_awake(tribo_system *sys)
+{
+    const double time[] = {0.0, 1.0};
+    const size_t c = tribo_system_ncontact(sys);
+    double *limit = malloc(2 * c * sizeof *limit);
+    assert_ok(tribo_get_limit(tribo_system_context(sys), limit));
+    memcpy(limit + c, limit, c * sizeof *limit);
+    assert_ok(tribo_system_set_limit_table(sys, 2, time, limit));
+    free(limit);
+}
+
 static int seen(double t, const double *y, int event, void *data)
 {
     (void)t, (void)event;
@@ -129,25 +146,33 @@ struct counts {
     size_t rested, stuck, evaluations;
 };
 
-/* From springs that strain the contacts a little, in three advances; watched: by an observer. */
-static double *motion(const char *method, const struct row *r, int setting, int watched, struct counts *counts)
+enum { UNWATCHED, WATCHED, KEPT_AWAKE };
+
+/* From springs that strain the contacts a little, in three advances. */
+static double *motion(const char *method, const struct row *r, int setting, int how, struct counts *counts)
 {
     tribo_system *sys = row_create(r);
     const size_t n = r->n, c = tribo_system_ncontact(sys);
     double *y = calloc(2 * n + 2, sizeof *y), *x = malloc((4 * (c + n) + 1) * sizeof *x), t = 0.0;
     act(sys, r, setting, x);
+    if (how == KEPT_AWAKE) {
+        keep_awake(sys);
+    }
     assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), 0.1, 0.4));
     for (size_t i = 0; i < n; i++) {
         y[i] = 0.01 * (double)((i * 37) % 11) * (double)(has_contact(r, i));
     }
     y[n + n / 4] = 0.8;
     tribo_driver *drv = driver_create(sys, method, 0.1, 0.0);
-    assert_ok(tribo_driver_set_observer(drv, watched ? seen : NULL, &y[2 * n + 1]));
+    assert_ok(tribo_driver_set_observer(drv, how == WATCHED ? seen : NULL, &y[2 * n + 1]));
     driver_advance(drv, &t, 10.0, y);
     driver_advance(drv, &t, 20.05, y);
     if (setting == RELEASED) { /* what held does not hold any more */
         memset(x, 0, c * sizeof *x);
         assert_ok(tribo_set_limit(tribo_system_context(sys), x));
+        if (how == KEPT_AWAKE) {
+            keep_awake(sys);
+        }
     }
     driver_advance(drv, &t, 30.0, y);
     counts->rested = driver_count(drv, TRIBO_COUNT_RESTED);
@@ -159,7 +184,8 @@ static double *motion(const char *method, const struct row *r, int setting, int 
     return y;
 }
 
-static const struct row rows[] = {{1, 0, 0, 0}, {2, 0, 0, 0}, {5, 0, 0, 0}, {131, 4, 0, 0}, {400, 3, 0, 0}, {1500, 0, 0, 0}};
+static const struct row rows[] = {{1, 0, 0, 0, 0},   {2, 0, 0, 0, 0},   {5, 0, 0, 0, 0},
+                                  {131, 4, 0, 0, 0}, {400, 3, 0, 0, 0}, {1500, 0, 0, 0, 0}};
 
 static const char *const methods[] = {"central/fixed", "rk4/fixed"};
 enum { CASES = (int)COUNT(rows) * SETTINGS };
@@ -207,7 +233,7 @@ TEST(watched_or_not)
     if (!pick(_i % CASES, &r, &setting)) {
         return;
     }
-    double *alone = motion(method, &r, setting, 0, &counts), *watched = motion(method, &r, setting, 1, &counts);
+    double *alone = motion(method, &r, setting, UNWATCHED, &counts), *watched = motion(method, &r, setting, WATCHED, &counts);
     for (size_t i = 0; i < 2 * r.n + 1; i++) {
         assert_exact(alone[i], watched[i]);
     }
@@ -215,10 +241,83 @@ TEST(watched_or_not)
     free(watched);
 }
 
+/* Nor does it, to the last bit, that blocks at rest are left out. */
+static void assert_same_awake(const struct row *r, int setting)
+{
+    struct counts left_out, awake;
+    double *some = motion("central/fixed", r, setting, UNWATCHED, &left_out);
+    double *all = motion("central/fixed", r, setting, KEPT_AWAKE, &awake);
+    assert_all_close(some, all, 2 * r->n + 1, 0.0);
+    ck_assert_uint_eq(awake.rested, 0);
+    require(r->n < 1500 || left_out.rested > 0, "setting %d: none at rest", setting);
+    free(some);
+    free(all);
+}
+
+TEST(left_out_or_not)
+{
+    struct row r;
+    int setting;
+    if (pick(_i, &r, &setting) && setting != SWINGING && setting != LIMIT_TABLE) {
+        assert_same_awake(&r, setting);
+    }
+}
+
+/* From rest but for one body's speed, under a steady load on the first, with one limit for all. */
+static double *plain_motion(const struct row *r, double limit, double load, size_t body, double speed, int how)
+{
+    tribo_system *sys = row_create(r);
+    double *y = calloc(2 * r->n + 1, sizeof *y), *x = calloc(r->n, sizeof *x), t = 0.0;
+    x[0] = load;
+    assert_ok(tribo_system_add_load(sys, 0.0, x, NULL));
+    for (size_t i = 0; i < r->n; i++) {
+        x[i] = limit;
+    }
+    assert_ok(tribo_set_limit(tribo_system_context(sys), x));
+    if (how == KEPT_AWAKE) {
+        keep_awake(sys);
+    }
+    y[r->n + body] = speed;
+    tribo_driver *drv = driver_create(sys, "central/fixed", 0.1, 0.0);
+    driver_advance(drv, &t, 30.0, y);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    free(x);
+    return y;
+}
+
+/* Bodies 0 and 255 are without contacts. Body 256, which a wave reaches, accelerates both, and feels only the latter: its block
+ * wakes one at which it pulls, but which does not pull at it. */
+TEST(coupled_masses)
+{
+    const struct row r = {512, 255, 0, 0, 255};
+    double *some = plain_motion(&r, 0.3, 0.0, 258, 5.0, UNWATCHED), *all = plain_motion(&r, 0.3, 0.0, 258, 5.0, KEPT_AWAKE);
+    require(all[0] != 0.0, "the first body does not move: this shows nothing");
+    assert_all_close(some, all, 2 * r.n + 1, 0.0);
+    free(some);
+    free(all);
+}
+
+/* Loads above the limit by less than lengths of steps differ by: what does not move in one step may creep in another. */
+TEST(hardly_held)
+{
+    const struct row r = {1, 0, 0, 0, 0};
+    size_t creeps = 0;
+    for (int k = 0; k < 100; k++) {
+        const double limit = 0.3 + 0.001 * k, load = nextafter(2.0 * limit, 10.0);
+        double *some = plain_motion(&r, limit, load, 0, 0.0, UNWATCHED), *all = plain_motion(&r, limit, load, 0, 0.0, KEPT_AWAKE);
+        creeps += all[0] > 0.0;
+        assert_exact(some[0], all[0]);
+        free(some);
+        free(all);
+    }
+    require(creeps > 0, "nothing creeps: this shows nothing");
+}
+
 /* Steps that are too long end with an error that says so, and with the last good state. */
 TEST(grows)
 {
-    const struct row r = {131, 4, 0, 0};
+    const struct row r = {131, 4, 0, 0, 0};
     double y[2 * 131 + 1] = {0}, t = 0.0, x[4 * 2 * 131];
     tribo_system *sys = row_create(&r);
     act(sys, &r, PLAIN, x);
@@ -259,5 +358,5 @@ TEST(steps_cost_what_moves)
     free(y);
 }
 
-TEST_MAIN("bodies_alone", {as_solved_for_together, 4 * CASES}, {watched_or_not, 2 * CASES}, {grows, 1},
-          {steps_cost_what_moves, 1})
+TEST_MAIN("bodies_alone", {as_solved_for_together, 4 * CASES}, {watched_or_not, 2 * CASES}, {left_out_or_not, CASES},
+          {coupled_masses, 1}, {hardly_held, 1}, {grows, 1}, {steps_cost_what_moves, 1})
