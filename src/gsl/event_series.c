@@ -174,25 +174,19 @@ static int expand_forces(struct event *e, size_t k)
     return status;
 }
 
-/* The k-th coefficient of the power of contact i, which slides: its limit times its velocity. */
-static double power_of(const struct event *e, size_t i, size_t k)
-{
-    const size_t c = e->sys->ncontact;
-    double power = 0.0;
-    for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
-        power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
-    }
-    return e->events.stick_slip.slip[i] * power;
-}
-
+/* The power of the sliding contacts: limits times velocities. */
 static void expand_energy(struct event *e)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
     for (size_t k = 0; k < e->order; k++) {
         double power = 0.0;
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * power_of(e, i, k) : 0.0;
+        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
+            for (size_t i = 0; i < c; i++) {
+                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
+            }
         }
         power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
         e->d[k + 1] = power / (double)(k + 1);
@@ -241,6 +235,17 @@ void tribo_event_slopes(struct event *e)
             e->slope[k * c + i] = m->slip[i] == 1 || m->slip[i] == -1 ? more / m->breakaway.velocity[i] : 0.0;
         }
     }
+}
+
+/* The k-th coefficient of the power of contact i, which slides: its limit times its velocity. */
+static double power_of(const struct event *e, size_t i, size_t k)
+{
+    const size_t c = e->sys->ncontact;
+    double power = 0.0;
+    for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+        power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
+    }
+    return e->events.stick_slip.slip[i] * power;
 }
 
 double tribo_event_work(const struct event *e, size_t i, double tau)

@@ -183,27 +183,39 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
 
 enum { LANES = 4 }; /* side by side, since one sum would wait for itself */
 
-/* What n exponentials make of an output, as far as they fill lanes: v, v', v'' += Re(c w), Re(c lambda w), Re(c lambda^2 w).
- * Returns how many are done. */
-TRIBO_SIMD static size_t add_lanes(const struct output *c, size_t n, const double *restrict wr, const double *restrict wi,
-                                   double *restrict v)
+/* sum [LANES] += a r - b i */
+static inline void add_products(const double *restrict a, const double *restrict r, const double *restrict b,
+                                const double *restrict i, double *restrict sum)
 {
-    double g[LANES] = {0.0}, d[LANES] = {0.0}, e[LANES] = {0.0};
+    for (size_t k = 0; k < LANES; k++) {
+        sum[k] += a[k] * r[k] - b[k] * i[k];
+    }
+}
+
+/* What n exponentials make of an output, as far as they fill lanes: Re(c w), Re(c lambda w), Re(c lambda^2 w) into sum
+ * [3][LANES], which is not of this function, or compilers would take several lots of lanes at once, and sort them first. Returns
+ * how many are done. */
+TRIBO_SIMD static size_t add_lanes(const struct output *c, size_t n, const double *restrict wr, const double *restrict wi,
+                                   double *restrict sum)
+{
     size_t p = 0;
     for (; p + LANES <= n; p += LANES) {
-        const double *restrict r = wr + p, *restrict i = wi + p;
-        const double *restrict cr = c->cr + p, *restrict ci = c->ci + p, *restrict c1r = c->c1r + p, *restrict c1i = c->c1i + p,
-                               *restrict c2r = c->c2r + p, *restrict c2i = c->c2i + p;
-        for (size_t k = 0; k < LANES; k++) {
-            g[k] += cr[k] * r[k] - ci[k] * i[k];
-            d[k] += c1r[k] * r[k] - c1i[k] * i[k];
-            e[k] += c2r[k] * r[k] - c2i[k] * i[k];
-        }
+        add_products(c->cr + p, wr + p, c->ci + p, wi + p, sum);
+        add_products(c->c1r + p, wr + p, c->c1i + p, wi + p, sum + LANES);
+        add_products(c->c2r + p, wr + p, c->c2i + p, wi + p, sum + 2 * LANES);
     }
-    v[0] += (g[0] + g[2]) + (g[1] + g[3]);
-    v[1] += (d[0] + d[2]) + (d[1] + d[3]);
-    v[2] += (e[0] + e[2]) + (e[1] + e[3]);
     return p;
+}
+
+/* The same into v, v', v''. */
+static size_t add_most(const struct output *c, size_t n, const double *wr, const double *wi, double *v)
+{
+    double sum[3][LANES] = {{0.0}};
+    const size_t done = add_lanes(c, n, wr, wi, sum[0]);
+    for (size_t order = 0; order < 3; order++) {
+        v[order] += (sum[order][0] + sum[order][2]) + (sum[order][1] + sum[order][3]);
+    }
+    return done;
 }
 
 /* What resonances add to the derivatives of an output. */
@@ -220,7 +232,7 @@ struct sample tribo_modal_motion_output(const struct modal_motion *x, const stru
     const struct modal *h = x->h;
     const size_t n = h->exponents;
     double v[] = {start + ramp * x->tau, ramp, 0.0};
-    for (size_t p = n < LANES ? 0 : add_lanes(w, n, x->wr, x->wi, v); p < n; p++) {
+    for (size_t p = n < LANES ? 0 : add_most(w, n, x->wr, x->wi, v); p < n; p++) {
         const double wr = x->wr[p], wi = x->wi[p];
         v[0] += w->cr[p] * wr - w->ci[p] * wi;
         v[1] += w->c1r[p] * wr - w->c1i[p] * wi;
