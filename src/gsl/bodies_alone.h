@@ -10,8 +10,8 @@
  * depends on places and velocities of blocks that pull at it, none of which has moved in that step or since, and on a load that
  * is constant: a is the same to the last bit, and so are limits, and bases stand still. The next step would begin with u = 0,
  * which becomes h a without friction and 0 with it: |h a| <= h |B| limit for every h, since rounding is monotonic. So it adds 0
- * to the place and to the energy, and leaves the block where it was. That a step of one length did not move the block would not do:
- * lengths differ by rounding, and |a| and |B| limit may be as close. */
+ * to the place and to the energy, and leaves the block where it was. That a step of one length did not move the block would not
+ * do: lengths differ by rounding, and |a| and |B| limit may be as close. */
 #ifndef TRIBO_BODIES_ALONE_H
 #define TRIBO_BODIES_ALONE_H
 
