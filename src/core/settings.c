@@ -401,13 +401,13 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
 
 /* ------------------------------------------------------------------------------------------------------ static limits */
 
-/* Where a ratio is above 1, or n. */
+/* Where a ratio is above 1, or n; either of ratio and velocity may be NULL. */
 static int check_static(const tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
 {
-    int status = tribo_check_finite(ctx, "ratio", ratio, ctx->n);
+    int status = ratio ? tribo_check_finite(ctx, "ratio", ratio, ctx->n) : TRIBO_OK;
     status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
     *above = ctx->n;
-    for (size_t i = 0; !status && i < ctx->n; i++) {
+    for (size_t i = 0; !status && ratio && i < ctx->n; i++) {
         if (ratio[i] < 1.0) {
             return tribo_fail(ctx, TRIBO_ERR_RANGE, "ratio[%zu] = %g is below 1", i, ratio[i]);
         }
@@ -422,7 +422,7 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
         return TRIBO_ERR_NULL;
     }
     size_t above = ctx->n;
-    int status = ratio ? check_static(ctx, ratio, velocity, &above) : TRIBO_OK;
+    int status = check_static(ctx, ratio, velocity, &above);
     const int breaking = above == ctx->n ? NEVER : velocity ? FALLS : DROPS;
     status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
     if (!status && breaking && ctx->planar) {

@@ -418,6 +418,10 @@ TEST(refusals)
     assert_status(tribo_set_static(c, TWO(1.0, 2.0), TWO(1.0, 0.0)), TRIBO_ERR_NOT_POSITIVE);
     assert_says(tribo_message(c), "velocity[1] = 0 is not positive");
     assert_status(tribo_set_static(c, TWO(1.0, 2.0), TWO(INFINITY, 1.0)), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_set_static(c, NULL, TWO(1.0, NAN)), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_message(c), "velocity[1]");
+    assert_status(tribo_set_static(c, NULL, TWO(-1.0, 1.0)), TRIBO_ERR_NOT_POSITIVE);
+    assert_says(tribo_message(c), "velocity[0] = -1 is not positive");
     assert_status(tribo_set_law(c, TRIBO_SMOOTH), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_message(c), "ratio[0] = 1.5 needs a velocity by which the limit falls: law smooth has no stick");
     ck_assert_uint_eq(tribo_revision(c), revision);
