@@ -23,6 +23,13 @@
 #define TRIBO_SIMD
 #endif
 
+/* The same for sums of four numbers at a time, of which compilers make nothing good where vectors are wider. */
+#if defined(TRIBO_CLONES) || defined(TRIBO_CLONES_512)
+#define TRIBO_SIMD_OF_FOUR __attribute__((target_clones("avx2", "default")))
+#else
+#define TRIBO_SIMD_OF_FOUR
+#endif
+
 /* Before a loop that does next to nothing with each number, where counting them would take as long; clang does so unasked. */
 #if defined(TRIBO_GNU_C) && !defined(__clang__)
 #define TRIBO_UNROLLED _Pragma("GCC unroll 4")

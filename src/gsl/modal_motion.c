@@ -196,8 +196,8 @@ static inline void add_products(const double *restrict a, const double *restrict
 /* What n exponentials make of an output, as far as they fill lanes: Re(c w), Re(c lambda w), Re(c lambda^2 w) into sum
  * [3][LANES], which is not of this function, or compilers would take several lots of lanes at once, and sort them first. Returns
  * how many are done. */
-TRIBO_SIMD static size_t add_lanes(const struct output *c, size_t n, const double *restrict wr, const double *restrict wi,
-                                   double *restrict sum)
+TRIBO_SIMD_OF_FOUR static size_t add_lanes(const struct output *c, size_t n, const double *restrict wr, const double *restrict wi,
+                                           double *restrict sum)
 {
     size_t p = 0;
     for (; p + LANES <= n; p += LANES) {
