@@ -213,15 +213,15 @@ static int box_primal(struct box_qp *p)
     return 0;
 }
 
-/* How far x is from the fixed point, in parts of what may be rounding: its own, and that of the x which it comes from. */
-static double box_violation(const struct box_qp *p, const double *noise)
+/* How far x is from the fixed point, in parts of what may be rounding. */
+static double box_violation(const struct box_qp *p)
 {
     double most = 0.0;
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
         const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
         const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
-        most = greater(most, quotient(fabs(off), greater(greater(p->noise[i], noise[i]), DBL_MIN)));
+        most = greater(most, quotient(fabs(off), greater(p->noise[i], DBL_MIN)));
     }
     return most;
 }
@@ -258,13 +258,11 @@ int tribo_box_solve(struct box_qp *p)
 }
 
 /* The rounding of shares may be much to a contact that carries little: then it is taken away again, where the boxes have room for
- * that, and otherwise the contacts share as they did before. Of large forces that come to nothing there is left what was rounding
- * of them. */
+ * that, and otherwise the contacts share as they did before. */
 void tribo_box_share(struct box_qp *p)
 {
-    double *before = p->spare[0], *split = p->spare[1], *noise = p->spare[2];
+    double *before = p->spare[0], *split = p->spare[1];
     memcpy(before, p->x, p->group->size * sizeof *before);
-    memcpy(noise, p->noise, p->group->size * sizeof *noise);
     if (!tribo_least_norm(p)) {
         return;
     }
@@ -274,11 +272,11 @@ void tribo_box_share(struct box_qp *p)
     if (!box_inside(p)) {
         box_restore(p, split);
     }
-    const double after = box_violation(p, noise);
+    const double after = box_violation(p);
     if (after > TRIBO_SETTLED) {
         memcpy(split, p->x, p->group->size * sizeof *split);
         box_restore(p, before);
-        if (box_violation(p, noise) > after) {
+        if (box_violation(p) > after) {
             box_restore(p, split);
         }
     }

@@ -101,7 +101,7 @@ struct box_qp {
     double *unit;             /* R_ii times the limit, or half the box; of groups with redundant contacts */
     signed char *to;          /* workspace */
     double *step, *step_low;  /* workspace, [size]; the latter is what rounding left, if the group is graded */
-    double *spare[3];         /* workspace, [size] */
+    double *spare[2];         /* workspace, [size] */
     double *row;              /* the same, zero between calls */
     double *basis;            /* workspace: orthonormal null vectors, [redundant][size] */
     size_t redundant;         /* how many there is room for */

@@ -134,7 +134,7 @@ void tribo_memory_expect(const struct delassus *op, const struct memory *m, size
 
 static int allocate_problem(struct box_qp *p, size_t largest)
 {
-    enum { VECTORS = 14 };
+    enum { VECTORS = 13 };
     const size_t s = largest + 1;
     p->near = malloc(s * sizeof *p->near);
     p->held = malloc(s * sizeof *p->held);
@@ -143,8 +143,8 @@ static int allocate_problem(struct box_qp *p, size_t largest)
     if (!p->near || !p->held || !p->to || !p->q) {
         return 0;
     }
-    double **const vector[] = {&p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,      &p->first,   &p->unit,
-                               &p->step, &p->step_low, &p->row,      &p->spare[0], &p->spare[1], &p->spare[2]};
+    double **const vector[] = {&p->lo,   &p->hi,   &p->gradient, &p->noise, &p->low,      &p->first,
+                               &p->unit, &p->step, &p->step_low, &p->row,   &p->spare[0], &p->spare[1]};
     for (size_t k = 0; k < VECTORS - 1; k++) {
         *vector[k] = p->q + (k + 1) * s;
     }
