@@ -1,6 +1,6 @@
 /* Loops over contacts or degrees of freedom, compiled for more than one instruction set where the compiler and the system can
  * choose among them when the library is loaded. Every variant gives the same bits: nothing is reordered, and products and sums
- * are not fused. */
+ * are not fused. Such functions are called by name only: in 32 bits linkers know no addresses of static ones. */
 #ifndef TRIBO_SIMD_H
 #define TRIBO_SIMD_H
 

@@ -68,8 +68,12 @@ TRIBO_SIMD static void no_feq_if_open(size_t n, const double *restrict limit, do
 void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *a, double *feq)
 {
     const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
-    const int plain = chunk->plain && tribo_all_plain(a + i, n);
-    (plain ? feq_alone : feq_alone_far)(n, ctx->op->inverse + chunk->like, a + i, feq);
+    const double *inverse = ctx->op->inverse + chunk->like;
+    if (chunk->plain && tribo_all_plain(a + i, n)) {
+        feq_alone(n, inverse, a + i, feq);
+    } else {
+        feq_alone_far(n, inverse, a + i, feq);
+    }
     if (chunk->least == 0.0) {
         no_feq_if_open(n, ctx->follow.contacts.limit + i, feq);
     }

@@ -84,8 +84,10 @@ struct evaluation {
 /* n numbers of the state from place i on, their slopes being k. */
 static void proceed(const struct rk4 *r, const struct evaluation *e, size_t i, size_t n, const double *k)
 {
-    if (e->number < 3) {
-        (e->number ? next_stage : first_stage)(n, e->from + i, e->h, k, r->sum + i, e->to + i);
+    if (e->number == 0) {
+        first_stage(n, e->from + i, e->h, k, r->sum + i, e->to + i);
+    } else if (e->number < 3) {
+        next_stage(n, e->from + i, e->h, k, r->sum + i, e->to + i);
     } else {
         finish(n, e->from + i, e->h, k, r->sum + i, e->to + i);
     }
