@@ -69,7 +69,7 @@ static void write_slips(const tribo_context *ctx, double holds, size_t k, const 
 static void keep_forces(tribo_context *ctx, double holds)
 {
     tribo_store_all(ctx);
-    ctx->last.modes = MODES_IN_FORCES;
+    ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = holds;
 }
 
@@ -108,7 +108,7 @@ static void find_many(tribo_context *ctx, const struct call *call, double *f)
         }
     }
     ctx->last.did.all_stored = 0;
-    ctx->last.modes = MODES_WRITTEN;
+    ctx->last.slips = SLIPS_WRITTEN;
 }
 
 static void find_all(tribo_context *ctx, const struct call *call, double *f)

@@ -18,7 +18,7 @@ void tribo_begin_call(tribo_context *ctx)
     ctx->memory.nsolved = 0;
     ctx->last.far = ctx->follow.largest > TRIBO_ROOM * ctx->op->most;
     ctx->last.rank = 0;
-    ctx->last.modes = NO_MODES;
+    ctx->last.slips = NO_SLIPS;
     ctx->last.linearized = 0;
 }
 
@@ -250,7 +250,7 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     }
     ctx->count.skipped += ctx->op->islands - ctx->memory.nsolved;
     tribo_remember_forces(ctx);
-    ctx->last.modes = MODES_IN_FORCES;
+    ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
     if (feq) {
         feq_of_others(ctx, a);

@@ -44,7 +44,7 @@ static inline size_t tribo_chunks(size_t n)
 }
 
 /* What a contact did in the last call that found forces: it slid towards v < 0 or v > 0, which is to say that its force is its
- * limit; or its force is stored in f. Before limits change modes take the place of that, with the same numbers (see
+ * limit; or its force is stored in f. Before limits change slips take the place of that, with the same numbers (see
  * tribo_get_slip): 0 for stuck, and OPEN. */
 enum { BACK = -1, STORED = 0, FORTH = 1, OPEN = 2 };
 
@@ -57,8 +57,8 @@ struct deeds {
     int all_stored;        /* the forces of all contacts are */
 };
 
-/* What is known of the modes of the last call: nothing, or they follow from forces and limits, or they are written down. */
-enum { NO_MODES, MODES_IN_FORCES, MODES_WRITTEN };
+/* What is known of the slips of the last call: nothing, or they follow from forces and limits, or they are written down. */
+enum { NO_SLIPS, SLIPS_IN_FORCES, SLIPS_WRITTEN };
 
 /* How a contact lets go: at the limit by which it slides; or at a static one, which then drops at once, or falls with speed. */
 enum { NEVER, DROPS, FALLS };
@@ -91,7 +91,7 @@ struct last {
     double *feq, *f;         /* [n] f where it is stored */
     double *v;               /* [n] velocities, and the law's derivatives there, after tribo_balance_tangent */
     struct tangent *tangent; /* [n] */
-    int modes;               /* NO_MODES, ... */
+    int slips;               /* NO_SLIPS, ... */
     double holds;            /* a contact is stuck if |f| is less than this part of the limit */
     int linearized;          /* tangent is that of the last call */
     int far;                 /* a limit or a bound was so large that solutions may be beyond op->most */
@@ -280,8 +280,8 @@ size_t tribo_break_away(tribo_context *ctx, const struct box_qp *p, double dt);
 /* The same for contacts in no group, from their forces with static limits; these become right. */
 void tribo_break_alone(tribo_context *ctx, double dt, const double *vfree);
 
-/* queries.c: writes modes down, before limits change. */
-void tribo_write_modes(tribo_context *ctx);
+/* queries.c: writes slips down, before limits change. */
+void tribo_write_slips(tribo_context *ctx);
 
 /* The force of the contact at place k of a group as the solver takes it. */
 static inline double tribo_carried(const tribo_context *ctx, const struct box_qp *p, size_t k)

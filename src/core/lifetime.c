@@ -74,8 +74,11 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
 
 int tribo_clone(const tribo_context *ctx, tribo_context **copy)
 {
-    if (!ctx || !copy) {
+    if (!ctx) {
         return TRIBO_ERR_NULL;
+    }
+    if (!copy) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "copy is NULL");
     }
     const size_t n = ctx->n;
     tribo_context *c = malloc(sizeof *c);

@@ -18,57 +18,57 @@ int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 
 /* The force alone tells: only where a law holds the contact is it less than the limit. (The smooth law never reaches the limit;
  * it counts as holding where |v| < epsilon.) */
-static inline signed char mode_of(signed char did, double f, double limit, double holds)
+static inline signed char slip_of(signed char did, double f, double limit, double holds)
 {
     const double edge = holds * limit;
-    const int open = !(limit > 0.0), stored = (f <= -edge) - (f >= edge), mode = did + (did == STORED) * stored;
-    return (signed char)(mode * !open + OPEN * open); /* no choice: that is what makes loops of it fast */
+    const int open = !(limit > 0.0), stored = (f <= -edge) - (f >= edge), slip = did + (did == STORED) * stored;
+    return (signed char)(slip * !open + OPEN * open); /* no choice: that is what makes loops of it fast */
 }
 
-/* Modes take the place of what contacts did. */
-TRIBO_SIMD static void find_modes(size_t n, const double *restrict f, const double *restrict limit, double holds,
+/* Slips take the place of what contacts did. */
+TRIBO_SIMD static void find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
                                   signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
-        did[i] = mode_of(did[i], f[i], limit[i], holds);
+        did[i] = slip_of(did[i], f[i], limit[i], holds);
     }
 }
 
-void tribo_write_modes(tribo_context *ctx)
+void tribo_write_slips(tribo_context *ctx)
 {
-    for (size_t i = 0, k = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
+    for (size_t i = 0, k = 0; ctx->last.slips == SLIPS_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.did.stored[k] != NONE_STORED || ctx->follow.chunk[k].least == 0.0) {
-            find_modes(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds,
+            find_slips(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds,
                        ctx->last.did.of + i);
             ctx->last.did.stored[k] = SOME_STORED;
             ctx->last.did.all_stored = 0;
         }
     }
-    if (ctx->planar && ctx->last.modes == MODES_IN_FORCES) {
+    if (ctx->planar && ctx->last.slips == SLIPS_IN_FORCES) {
         tribo_planar_slips(ctx, ctx->last.did.of);
     }
-    ctx->last.modes = ctx->last.modes == NO_MODES ? NO_MODES : MODES_WRITTEN;
+    ctx->last.slips = ctx->last.slips == NO_SLIPS ? NO_SLIPS : SLIPS_WRITTEN;
 }
 
-int tribo_get_slip(const tribo_context *ctx, signed char *mode)
+int tribo_get_slip(const tribo_context *ctx, signed char *slip)
 {
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (!mode && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "mode is NULL");
+    if (!slip && ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "slip is NULL");
     }
-    if (ctx->last.modes == NO_MODES) {
+    if (ctx->last.slips == NO_SLIPS) {
         return tribo_fail(ctx, TRIBO_ERR_STATE,
                           "no tribo_balance or tribo_step_force since the last tribo_solve_box or operator");
     }
     if (ctx->n) {
-        memcpy(mode, ctx->last.did.of, ctx->n);
+        memcpy(slip, ctx->last.did.of, ctx->n);
     }
-    if (ctx->last.modes == MODES_IN_FORCES) {
-        find_modes(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, mode);
+    if (ctx->last.slips == SLIPS_IN_FORCES) {
+        find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
         if (ctx->planar) {
-            tribo_planar_slips(ctx, mode);
+            tribo_planar_slips(ctx, slip);
         }
     }
     return TRIBO_OK;
@@ -77,16 +77,16 @@ int tribo_get_slip(const tribo_context *ctx, signed char *mode)
 static size_t count_stuck(const tribo_context *ctx)
 {
     size_t stuck = 0;
-    for (size_t i = 0; ctx->last.modes == MODES_IN_FORCES && i < ctx->n; i++) {
-        stuck += mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
+    for (size_t i = 0; ctx->last.slips == SLIPS_IN_FORCES && i < ctx->n; i++) {
+        stuck += slip_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
     }
-    for (size_t k = 0; ctx->planar && ctx->last.modes == MODES_IN_FORCES && k < ctx->planar->count; k++) {
+    for (size_t k = 0; ctx->planar && ctx->last.slips == SLIPS_IN_FORCES && k < ctx->planar->count; k++) {
         for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-            stuck -= mode_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
+            stuck -= slip_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
             stuck += tribo_planar_slip(ctx, k) == 0;
         }
     }
-    for (size_t i = 0; ctx->last.modes == MODES_WRITTEN && i < ctx->n; i++) {
+    for (size_t i = 0; ctx->last.slips == SLIPS_WRITTEN && i < ctx->n; i++) {
         stuck += ctx->last.did.of[i] == 0;
     }
     return stuck;

@@ -193,7 +193,7 @@ int tribo_set_limit(tribo_context *ctx, const double *limit)
     if (status) {
         return status;
     }
-    tribo_write_modes(ctx);
+    tribo_write_slips(ctx);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         tribo_take_limits(n, limit + i, ctx->set.limit + i, &ctx->follow.chunk[k]);
@@ -212,7 +212,7 @@ int tribo_set_normal_load(tribo_context *ctx, const double *mu, const double *lo
     if (status) {
         return status;
     }
-    tribo_write_modes(ctx);
+    tribo_write_slips(ctx);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         double limit[TRIBO_CHUNK];
@@ -236,7 +236,7 @@ int tribo_set_limit_all(tribo_context *ctx, double limit)
     if (limit < 0.0) {
         return tribo_fail(ctx, TRIBO_ERR_NEGATIVE, "limit = %g is negative", limit);
     }
-    tribo_write_modes(ctx);
+    tribo_write_slips(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->set.limit[i] = limit;
     }
@@ -431,7 +431,7 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
     if (status) {
         return status;
     }
-    tribo_write_modes(ctx);
+    tribo_write_slips(ctx);
     ctx->set.breaking = breaking;
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->set.ratio[i] = breaking ? ratio[i] : 1.0;

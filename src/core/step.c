@@ -265,7 +265,7 @@ int tribo_step_at_end(tribo_context *ctx, double dt, const double *v, const doub
 {
     const int status = ctx->set.breaking ? step_from(ctx, dt, v, vfree, f) : step_once(ctx, dt, vfree, f);
     if (!status) {
-        ctx->last.modes = MODES_IN_FORCES;
+        ctx->last.slips = SLIPS_IN_FORCES;
         ctx->last.holds = 1.0;
     }
     return status;

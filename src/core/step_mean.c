@@ -124,7 +124,7 @@ TRIBO_SIMD static int any_slip_ends(size_t n, const double *restrict v, const do
 /* Forces do not tell the slip of contacts that reverse. */
 static void write_slips(tribo_context *ctx, const struct step *s)
 {
-    tribo_write_modes(ctx);
+    tribo_write_slips(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->last.did.of[i] = s->reverses[i] ? s->reverses[i] : ctx->last.did.of[i];
     }
@@ -164,7 +164,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
     tribo_begin_call(ctx);
     status = solve_both(ctx, &s, f);
     if (!status) {
-        ctx->last.modes = MODES_IN_FORCES;
+        ctx->last.slips = SLIPS_IN_FORCES;
     }
     if (!status && (s.changes || ctx->planar)) {
         write_slips(ctx, &s);

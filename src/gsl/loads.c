@@ -458,10 +458,11 @@ int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine
 
 /* --------------------------------------------------------------------------------------------------------------------- tables */
 
-static int check_table(const tribo_system *sys, size_t knots, size_t columns, const double *time, const double *value)
+/* At the knots stands what is called name. */
+static int check_knots(const tribo_system *sys, size_t knots, const double *time, const char *name, const double *value)
 {
     if (!time || !value) {
-        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? "value" : "time");
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time");
     }
     for (size_t k = 0; k < knots; k++) {
         if (!isfinite(time[k])) {
@@ -472,7 +473,27 @@ static int check_table(const tribo_system *sys, size_t knots, size_t columns, co
                                      time[k - 1]);
         }
     }
-    return check_amplitudes(sys, "value", value, knots * columns);
+    return TRIBO_OK;
+}
+
+/* The index is the knot's. */
+static int check_limit_table(const tribo_system *sys, size_t knots, const double *limit)
+{
+    const size_t n = sys->ncontact;
+    int status = TRIBO_OK;
+    for (size_t k = 0; !status && k < knots * n; k++) {
+        if (!isfinite(limit[k])) {
+            status = tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "limit[%zu] = %g of contact %zu is not finite", k / n, limit[k],
+                                       k % n);
+        } else if (limit[k] < 0.0) {
+            status =
+                tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / n, limit[k], k % n);
+        }
+    }
+    for (size_t k = 0; !status && k < knots; k++) {
+        status = check_massless(sys, DRIVES_LIMIT, "limit", limit + k * n);
+    }
+    return status;
 }
 
 int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
@@ -484,7 +505,8 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
         return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL")
                      : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
     }
-    int status = check_table(sys, knots, 1, time, value);
+    int status = check_knots(sys, knots, time, "value", value);
+    status = status ? status : check_amplitudes(sys, "value", value, knots);
     status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
     status = status ? status : check_massless(sys, DRIVES_LOAD, "pattern", pattern);
     if (status) {
@@ -514,18 +536,10 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
     }
     struct table t = {0};
     if (knots) {
-        int status = check_table(sys, knots, sys->ncontact, time, limit);
-        for (size_t k = 0; !status && k < knots; k++) {
-            status = check_massless(sys, DRIVES_LIMIT, "limit", limit + k * sys->ncontact);
-        }
+        int status = check_knots(sys, knots, time, "limit", limit);
+        status = status ? status : check_limit_table(sys, knots, limit);
         if (status) {
             return status;
-        }
-        for (size_t k = 0; k < knots * sys->ncontact; k++) {
-            if (limit[k] < 0.0) {
-                return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / sys->ncontact,
-                                         limit[k], k % sys->ncontact);
-            }
         }
         if (!create_table(&t, knots, sys->ncontact, time, limit)) {
             free_table(&t);

@@ -267,6 +267,8 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'limit has size 2 x 2, not 1 x 2')
     call s%set_limit_table([0.0_dp, 1.0_dp], reshape([1.0_dp, -2.0_dp], [1, 2]), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'limit(2) = -2 of contact 1 is negative')
+    call s%set_limit_table([0.0_dp, 1.0_dp], reshape([1.0_dp, nan], [1, 2]), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'limit(2) = nan of contact 1 is not finite')
     call s%set_damping_ratio(0.1_dp, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'the system is not reduced to modes')
     x = blank

@@ -13,7 +13,7 @@ static const double dense[] = {1.0, 0.5, 0.25, 0.5, 1.0, 0.5, 0.25, 0.5, 1.0}, u
 static void work(tribo_context *c, const struct problem *p)
 {
     static double f[LARGEST], feq[LARGEST], square[2][LARGEST * LARGEST];
-    static signed char mode[LARGEST];
+    static signed char slip[LARGEST];
     size_t count;
     tribo_balance(c, p->v, p->a, feq, f);
     tribo_force(c, p->v, feq, f);
@@ -25,7 +25,7 @@ static void work(tribo_context *c, const struct problem *p)
     tribo_step_force_mean(c, 0.1, p->a, p->v, f);
     tribo_solve_box(c, p->a, p->v, p->v, f);
     tribo_accept(c, p->v, feq);
-    tribo_get_slip(c, mode);
+    tribo_get_slip(c, slip);
     tribo_get_count(c, TRIBO_COUNT_STUCK, &count);
     tribo_set_limit(c, p->limit);
     tribo_set_epsilon(c, p->epsilon);

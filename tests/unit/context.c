@@ -216,12 +216,12 @@ TEST(open_contacts)
     for (int k = 0; k < 50; k++) {
         const double v[2] = {uniform(&g, -1e-6, 1e-6) * (double)(k % 2), 0.0}, a[2] = {uniform(&g, -9, 9), 0.25};
         double feq[2], f[2];
-        signed char mode[2];
+        signed char slip[2];
         assert_ok(tribo_balance(c, v, a, feq, f));
         assert_exact(f[0], 0.0);
         assert_exact(feq[0], 0.0);
-        assert_ok(tribo_get_slip(c, mode));
-        ck_assert_int_eq(mode[0], 2);
+        assert_ok(tribo_get_slip(c, slip));
+        ck_assert_int_eq(slip[0], 2);
         assert_ok(tribo_step_force(c, 1.0, a, f));
         assert_exact(f[0], 0.0);
         assert_ok(tribo_force(c, v, a, f));
@@ -302,7 +302,7 @@ TEST(no_feq)
 struct fingerprint {
     int law, coupling;
     double limit[3], epsilon[3], feq[3], f[3], atop[3];
-    signed char mode[3];
+    signed char slip[3];
 };
 
 static struct fingerprint fingerprint(tribo_context *c)
@@ -315,7 +315,7 @@ static struct fingerprint fingerprint(tribo_context *c)
     assert_ok(tribo_get_limit(c, x.limit));
     assert_ok(tribo_get_epsilon(c, x.epsilon));
     assert_ok(tribo_force(c, rest, twice, x.atop));
-    assert_ok(tribo_get_slip(c, x.mode));
+    assert_ok(tribo_get_slip(c, x.slip));
     assert_ok(tribo_balance(c, v, a, x.feq, x.f));
     return x;
 }

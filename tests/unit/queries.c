@@ -15,30 +15,30 @@ TEST(modes)
     const struct problem p = problem_create(&g, &recipe);
     struct answer x;
     const double none[LARGEST] = {0.0};
-    signed char mode[LARGEST];
+    signed char slip[LARGEST];
     size_t stuck = 0;
     tribo_context *c = problem_context(&p, TRIBO_QUINN, TRIBO_CONSISTENT);
-    stain(mode, sizeof mode);
-    assert_status(tribo_get_slip(c, mode), TRIBO_ERR_STATE);
-    ck_assert(stained(mode, sizeof mode));
+    stain(slip, sizeof slip);
+    assert_status(tribo_get_slip(c, slip), TRIBO_ERR_STATE);
+    ck_assert(stained(slip, sizeof slip));
     ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 0);
     for (int step = 0; step < 2; step++) {
         assert_ok(step ? tribo_step_force(c, 0.1, p.v, x.f) : tribo_balance(c, p.v, p.a, NULL, x.f));
-        assert_ok(tribo_get_slip(c, mode));
+        assert_ok(tribo_get_slip(c, slip));
         stuck = 0;
         for (size_t i = 0; i < p.n; i++) {
             const int slides = fabs(x.f[i]) == p.limit[i], want = p.limit[i] > 0.0 ? slides ? (int)-sgn(x.f[i]) : 0 : 2;
-            require(mode[i] == want, "mode %d of contact %zu, f = %g of %g", mode[i], i, x.f[i], p.limit[i]);
+            require(slip[i] == want, "slip %d of contact %zu, f = %g of %g", slip[i], i, x.f[i], p.limit[i]);
             stuck += want == 0;
         }
         ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), stuck);
         /* a call that is refused changes nothing; another operator or forces in a box of the caller's own leave no modes */
         assert_status(tribo_balance(c, NULL, p.a, NULL, x.f), TRIBO_ERR_NULL);
-        assert_ok(tribo_get_slip(c, mode));
+        assert_ok(tribo_get_slip(c, slip));
         assert_ok(step ? tribo_set_operator_dense(c, p.r) : tribo_solve_box(c, p.a, none, none, x.f));
-        stain(mode, sizeof mode);
-        assert_status(tribo_get_slip(c, mode), TRIBO_ERR_STATE);
-        ck_assert(stained(mode, sizeof mode));
+        stain(slip, sizeof slip);
+        assert_status(tribo_get_slip(c, slip), TRIBO_ERR_STATE);
+        ck_assert(stained(slip, sizeof slip));
         ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 0);
     }
     tribo_destroy(c);
@@ -49,7 +49,7 @@ TEST(modes_of_the_smooth_law)
 {
     const double v[] = {0.5, -0.99, 1.01, -7.0}, rest[] = {0.0, 0.0, 0.0, 0.0}, unit[] = {1.0, 1.0, 1.0, 1.0};
     const signed char want[] = {0, 0, 1, -1};
-    signed char mode[4];
+    signed char slip[4];
     tribo_context *c;
     assert_ok(tribo_create(&c, 4));
     assert_ok(tribo_set_law(c, TRIBO_SMOOTH));
@@ -57,8 +57,8 @@ TEST(modes_of_the_smooth_law)
     assert_ok(tribo_set_limit_all(c, 2.0));
     assert_ok(tribo_set_epsilon_all(c, 1.0));
     assert_ok(tribo_balance(c, v, rest, NULL, NULL));
-    assert_ok(tribo_get_slip(c, mode));
-    ck_assert_mem_eq(mode, want, sizeof want);
+    assert_ok(tribo_get_slip(c, slip));
+    ck_assert_mem_eq(slip, want, sizeof want);
     tribo_destroy(c);
 }
 

@@ -138,7 +138,7 @@ TEST(mostly_sliding)
     struct random g = random_of(_i);
     const int law = _i % tribo_law_count(), alike = _i / tribo_law_count() % 2, apart = _i >= 2 * tribo_law_count();
     static double limit[SCENE], epsilon[SCENE], v[SCENE], a[SCENE], f[SCENE], feq[SCENE], again[SCENE];
-    static signed char mode[SCENE], before[SCENE];
+    static signed char slip[SCENE], before[SCENE];
     tribo_context *c = mostly_sliding_scene(&g, law, alike, apart, limit, epsilon), *d;
     for (int call = 0; call < 10; call++) {
         const size_t busy = below(&g, STRETCHES), crowd = call % 3 ? 40 : 2;
@@ -160,10 +160,10 @@ TEST(mostly_sliding)
             assert_close(f[i], law_force(law, v[i], want, limit[i], epsilon[i]), 1e-14);
             assert_close(call % 2 ? feq[i] : want, want, 1e-14);
         }
-        assert_ok(tribo_get_slip(c, mode));
+        assert_ok(tribo_get_slip(c, slip));
         for (size_t i = 0; i < SCENE && law != TRIBO_SMOOTH; i++) {
             const int holds = fabs(f[i]) < limit[i];
-            ck_assert_int_eq(mode[i], limit[i] == 0.0 ? 2 : holds ? 0 : f[i] < 0.0 ? 1 : -1);
+            ck_assert_int_eq(slip[i], limit[i] == 0.0 ? 2 : holds ? 0 : f[i] < 0.0 ? 1 : -1);
         }
         /* the same calls from the same beginning give the same bits, whether f_eq is wanted or not */
         assert_ok(tribo_balance(d, v, a, call % 2 ? NULL : feq, again));
@@ -176,7 +176,7 @@ TEST(mostly_sliding)
         assert_ok(tribo_set_limit(c, limit));
         for (int clone = 0; clone < 2; clone++) {
             assert_ok(tribo_get_slip(clone ? d : c, before));
-            ck_assert_mem_eq(before, mode, sizeof mode);
+            ck_assert_mem_eq(before, slip, sizeof slip);
             ck_assert_uint_eq(count_of(clone ? d : c, TRIBO_COUNT_STUCK), stuck);
         }
         tribo_destroy(d);
@@ -191,7 +191,7 @@ TEST(mostly_sliding)
         assert_says(tribo_message(c), bad == v ? "v[1799]" : "a[1799]");
         assert_all_exact(again, f, SCENE);
         assert_ok(tribo_get_slip(c, before));
-        ck_assert_mem_eq(before, mode, sizeof mode);
+        ck_assert_mem_eq(before, slip, sizeof slip);
         bad[SCENE - 1] = good;
     }
     /* finite, though no sum of them is */

@@ -59,7 +59,7 @@ static void *share(void *data)
     const tribo_context *c = j->shared;
     const size_t n = j->p->n;
     double f[LARGEST], dv[LARGEST], x[LARGEST], bad[LARGEST] = {NAN};
-    signed char mode[LARGEST];
+    signed char slip[LARGEST];
     j->good = 1;
     for (int k = 0; k < ROUNDS; k++) {
         tribo_context *own;
@@ -71,7 +71,7 @@ static void *share(void *data)
         j->good &= tribo_get_limit(c, x) == TRIBO_OK && tribo_get_epsilon(c, x) == TRIBO_OK;
         j->good &= tribo_get_law(c, &number) == TRIBO_OK && tribo_get_coupling(c, &number) == TRIBO_OK;
         j->good &= tribo_get_ncontact(c, &count) == TRIBO_OK && tribo_get_sharing(c, &number) == TRIBO_OK;
-        j->good &= tribo_get_slip(c, mode) == TRIBO_OK && tribo_get_count(c, TRIBO_COUNT_STUCK, &count) == TRIBO_OK;
+        j->good &= tribo_get_slip(c, slip) == TRIBO_OK && tribo_get_count(c, TRIBO_COUNT_STUCK, &count) == TRIBO_OK;
         j->good &= tribo_get_real(c, TRIBO_REAL_MAX_RATE, x) == TRIBO_OK && tribo_get_count(c, -1, &count) == TRIBO_ERR_RANGE;
         if (COUNTS_CLONES && k % 20 == 0) {
             j->good &= tribo_clone(c, &own) == TRIBO_OK;

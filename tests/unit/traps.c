@@ -191,7 +191,7 @@ static void ask_steps(struct random *g, struct scene *s)
 
 static void ask_queries(struct scene *s)
 {
-    signed char mode[N];
+    signed char slip[N];
     tribo_context *copy;
     for (int which = 0; which <= TRIBO_REAL_MAX_STEP; which++) {
         double value;
@@ -202,7 +202,7 @@ static void ask_queries(struct scene *s)
         size_t value;
         assert_quiet(tribo_get_count(s->c, which, &value));
     }
-    quiet(tribo_get_slip(s->c, mode));
+    quiet(tribo_get_slip(s->c, slip));
     assert_quiet(tribo_clone(s->c, &copy));
     tribo_destroy(s->c);
     s->c = copy;

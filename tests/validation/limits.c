@@ -552,7 +552,34 @@ TEST(errors)
     tribo_system_destroy(sys);
 }
 
+TEST(errors_of_tables)
+{
+    const struct {
+        double limit[4];
+        int status;
+        const char *text;
+    } cases[] = {
+        {{1.0, 1.0, 1.0, -2.0}, TRIBO_ERR_NEGATIVE, "limit[1] = -2 of contact 1 is negative"},
+        {{1.0, 1.0, NAN, 1.0}, TRIBO_ERR_NOT_FINITE, "limit[1] = nan of contact 0 is not finite"},
+        {{1.0, HUGE_VAL, 1.0, 1.0}, TRIBO_ERR_NOT_FINITE, "limit[0] = inf of contact 1 is not finite"},
+    };
+    const double time[] = {0.0, 1.0};
+    tribo_system *sys;
+    assert_ok(tribo_system_belt(&sys, 2.0, 0.5, 0.25, 1.0, 0.5));
+    const char *message = tribo_message(tribo_system_context(sys));
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        assert_status(tribo_system_set_limit_table(sys, 2, time, cases[i].limit), cases[i].status);
+        ck_assert_str_eq(message, cases[i].text);
+    }
+    assert_status(tribo_system_set_limit_table(sys, 2, time, NULL), TRIBO_ERR_NULL);
+    ck_assert_str_eq(message, "limit is NULL");
+    assert_status(tribo_system_set_limit_table(sys, 2, NULL, cases[0].limit), TRIBO_ERR_NULL);
+    ck_assert_str_eq(message, "time is NULL");
+    tribo_system_destroy(sys);
+}
+
 TEST_MAIN("limits", {slides_on, 2}, {resonance, 2}, {lift_off, 2}, {touches_down_at_rest, 2}, {touches_down_pulled, 2},
           {grazing_lift_off, 2}, {released_at_the_load_s_extremum, 2}, {grazing_limit, 2}, {zero_limits, 2}, {constant, 1},
           {together, 2}, {doubled, 2}, {methods_agree, 12}, {reference_systems, 1}, {steppers, 1}, {energy, 12},
-          {late_in_time, 2}, {table_lifts_off, 1}, {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1}, {errors, 1})
+          {late_in_time, 2}, {table_lifts_off, 1}, {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1}, {errors, 1},
+          {errors_of_tables, 1})

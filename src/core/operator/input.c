@@ -77,7 +77,7 @@ static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
     tribo_memory_free(&ctx->memory);
     ctx->op = op;
     ctx->memory = *m;
-    ctx->last.modes = NO_MODES;
+    ctx->last.slips = NO_SLIPS;
     tribo_refresh(ctx);
     return TRIBO_OK;
 }
