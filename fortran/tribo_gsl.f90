@@ -783,14 +783,14 @@ contains
     integer(int64), intent(inout) :: value
     type(work), intent(out) :: w
     integer(c_size_t) :: count
-    character(len=60) :: text
 
     call find_driver(this, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_count(w%object, to_int(which), count)
+      call keep_message(w)
+    end if
     if (w%status /= TRIBO_OK) return
-    if (c_driver_count(w%object, to_int(which), count) /= TRIBO_OK) then
-      write (text, '(a,i0,a)') 'which = ', which, ' is none of the counts of a driver'
-      call fail(w, TRIBO_ERR_RANGE, trim(text))
-    else if (count > most) then
+    if (count > most) then
       call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
     else
       value = int(count, int64)
@@ -805,21 +805,14 @@ contains
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
-    character(len=60) :: text
     real(dp) :: found(1)
 
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
-      select case (c_driver_real(w%object, to_int(which), found))
-      case (TRIBO_OK)
-        value = found(1)
-      case (TRIBO_ERR_UNSUPPORTED)
-        call fail(w, TRIBO_ERR_UNSUPPORTED, 'this method does not know how far it strays from Coulomb''s law')
-      case default
-        write (text, '(a,i0,a)') 'which = ', which, ' is no real quantity of a driver'
-        call fail(w, TRIBO_ERR_RANGE, trim(text))
-      end select
+      w%status = c_driver_real(w%object, to_int(which), found)
+      call keep_message(w)
     end if
+    if (w%status == TRIBO_OK) value = found(1)
     call finish(w, stat, errmsg)
   end subroutine driver_real
 
@@ -853,8 +846,8 @@ contains
     call expect_size(w, 're', re, w%dimension - 1)
     call expect_size(w, 'im', im, w%dimension - 1)
     if (w%status == TRIBO_OK) then
-      if (c_driver_get_multipliers(w%object, re, im) /= TRIBO_OK) &
-        call fail(w, TRIBO_ERR_STATE, 'no periodic motion was found: call find_periodic first')
+      w%status = c_driver_get_multipliers(w%object, re, im)
+      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine get_multipliers
@@ -909,7 +902,7 @@ contains
 
     call find_driver(this, w)
     call expect_size(w, 'c', c, w%dimension - 1)
-    if (w%status == TRIBO_OK .and. k < 0) call fail(w, TRIBO_ERR_NEGATIVE, 'k is negative')
+    call expect_count(w, 'k', k)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_harmonic(w%object, c, int(k, c_size_t), re, im)
       call keep_message(w)

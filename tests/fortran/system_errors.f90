@@ -340,7 +340,7 @@ contains
     type(tribo_system) :: s
     type(tribo_driver) :: d
     type(stopper), target :: sees
-    real(dp) :: t, x, y(3)
+    real(dp) :: t, x, y(3), pair(2)
     integer :: i
 
     call s%oscillator(0.1_dp, 1.0_dp, 1.0_dp)
@@ -372,17 +372,21 @@ contains
     y(3) = 0
     i = blank_integer
     call d%count(7, i, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 7 is none of the counts of a driver')
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 7 is no count of a driver')
     call require(untouched(i), 'count: output')
     x = blank
     call d%real(7, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 7 is no real quantity of a driver')
     call d%set_max_step(1.0_dp, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'method exact has no largest step')
+    call d%period_harmonic(y(:2), -1, x, t, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'k = -1 is negative')
+    call d%get_multipliers(pair, pair, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, 'no periodic motion was found: call tribo_driver_find_periodic first')
     call d%create(s, 'RK8PD', 0.1_dp, 1e-6_dp)
     call require(d%method() == 'rk8pd', 'create: letters of any case')
     call d%real(TRIBO_REAL_EXCESS, x, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, "this method does not know how far it strays from Coulomb's law")
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'method rk8pd does not bound how far the motion strays')
     call require(untouched(x), 'real: output')
     call d%create(s, 'mode 3[1]', 0.1_dp, stat=stat, errmsg=msg)
     call require(index(msg, '"mode 3[1]"') > 0, 'create: a name stays as it is: ' // msg)
