@@ -1,5 +1,5 @@
-# sh check.sh RESULTS KEYS PROGRAM: runs a program of run.sh by itself, as a test. RESULTS is a folder for what it writes; its values
-# are compared with those of expected.txt whose keys begin with KEYS and a point.
+# sh check.sh RESULTS KEYS PROGRAM: runs a program of run.sh by itself, as a test. RESULTS is a folder for what it writes; its
+# values are compared with those of expected.txt whose keys begin with KEYS and a point.
 set -eu
 cd "$(dirname -- "$0")"
 results=$1 keys=$2 program=$3

@@ -1,5 +1,5 @@
-# One job of run.sh: sh job.sh BINARIES RESULTS PROGRAM [CASE LAW], or tribo-damper with a file of options and further ones. Its output
-# goes to a log, and its last line to the terminal.
+# One job of run.sh: sh job.sh BINARIES RESULTS PROGRAM [CASE LAW], or tribo-damper with a file of options and further ones. Its
+# output goes to a log, and its last line to the terminal.
 set -eu
 bin=$1 results=$2 program=$3
 shift 3

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Runs the paper's figures and a beam with friction through the library, and leaves tables and pictures in build/results.
-# Complete on a bare Debian 12 machine: installs what is missing, see tests/setup.sh. Takes a minute after the build, on two cores.
-# Its status is 0 only if every quantity of the closing table is within its tolerance (expected.txt).
+# Complete on a bare Debian 12 machine: installs what is missing, see tests/setup.sh. Takes a minute after the build, on two
+# cores. Its status is 0 only if every quantity of the closing table is within its tolerance (expected.txt).
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/.."
 . tests/setup.sh
@@ -18,7 +18,8 @@ begin=$(date +%s)
 echo "== Building in $build"
 # A folder that tests/run.sh has configured stays as it is; else only what is needed here.
 [ -f $build/CMakeCache.txt ] || parts='-DTRIBO_BUILD_TESTS=OFF'
-cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_GSL=ON -DTRIBO_FORTRAN=ON -DTRIBO_BUILD_EXAMPLES=ON -DTRIBO_BUILD_TOOLS=ON ${parts-}
+cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release \
+    -DTRIBO_GSL=ON -DTRIBO_FORTRAN=ON -DTRIBO_BUILD_EXAMPLES=ON -DTRIBO_BUILD_TOOLS=ON ${parts-}
 cmake --build $build --parallel "$cores" --target $programs
 
 echo "== Running, $cores at a time; tables, pictures and logs go to $results"

@@ -1,4 +1,4 @@
-# awk -f summary.awk results/values-*.txt expected.txt: the closing table. Exits with 1 if a value is missing or off its tolerance.
+# awk -f summary.awk results/values-*.txt expected.txt: the closing table. Exits with 1 if a value is missing or off.
 BEGIN { FS = " " }
 FILENAME !~ /expected.txt$/ { value[$1] = $2; next }
 FNR == 1 {

@@ -68,15 +68,15 @@
 !>   TRBFTN(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      F(N), its derivatives by V, FEQ, limit
 !>          IERR)
 !>   TRBFTP(IH, N, V, FEQ, F, DFDV, DFDQ, DFDN,      V(N), FEQ(N)                      the same of planar contacts: DFDV(2,N) and
-!>          IERR)                                                                      so on, (J,I) is how F(I) follows direction J
+!>          IERR)                                                                      so on, (J,I) how F(I) follows direction J
 !>                                                                                     of its contact; scalar ones: (2,I) is 0
 !>   TRBBAL(IH, N, V, A, FEQ, F, IERR)               V(N), A(N)                        FEQ(N), F(N)
 !>   TRBBTN(IH, N, V, A, FEQ, F, DFDV, DFDA, LDJ,    V(N), A(N); LDJ >= N              FEQ(N), F(N), DFDV(LDJ,N) and DFDA(LDJ,N):
-!>          IERR)                                                                      (I,J) is the derivative of F(I) by V(J), A(J)
-!>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of the last TRBBTN
-!>   TRBLPR(IH, N, DLIM, DF, IERR)                   DLIM(N): change of the limits     DF(N): that of the forces of the last TRBBTN
+!>          IERR)                                                                      (I,J) is that of F(I) by V(J), A(J)
+!>   TRBTPR(IH, N, DV, DA, DF, IERR)                 DV(N), DA(N): changes of V, A     DF(N) = DFDV DV + DFDA DA of TRBBTN
+!>   TRBLPR(IH, N, DLIM, DF, IERR)                   DLIM(N): change of the limits     DF(N): that of the forces of TRBBTN
 !>   TRBSTF(IH, N, DT, VFREE, F, IERR)               DT, VFREE(N)                      F(N): Coulomb's law over one step
-!>   TRBSTM(IH, N, DT, V, VFREE, F, IERR)            DT, V(N) at its start, VFREE(N)       F(N): the same to second order
+!>   TRBSTM(IH, N, DT, V, VFREE, F, IERR)            DT, V(N) at its start, VFREE(N)   F(N): the same to second order
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
 !>   TRBACC(IH, N, V, FEQ, IERR)                     V(N), FEQ(N) of an accepted step
 !> Queries
@@ -198,7 +198,7 @@ contains
   end subroutine hand_out
 end module tribo_fixed
 
-! ------------------------------------------------------------------------------------------------------------------------ registry
+! ---------------------------------------------------------------------------------------------------------------------- registry
 
 subroutine trbver(iver, ierr)
   use tribo_fixed
@@ -292,7 +292,7 @@ subroutine trbelp(n, dz, stif, fmun, f, dfdz, ierr)
   if (n >= 0) call tribo_elastic_force(dz(:, :n), stif(:n), fmun(:n), f(:, :n), dfdz(:, :, :n), ierr)
 end subroutine trbelp
 
-! ---------------------------------------------------------------------------------------------------------------------------- life
+! -------------------------------------------------------------------------------------------------------------------------- life
 
 subroutine trbnew(n, ih, ierr)
   use tribo_fixed
@@ -365,7 +365,7 @@ subroutine trbmsg(ih, text, ierr)
   if (ierr == TRIBO_OK) ierr = no_handle
 end subroutine trbmsg
 
-! ------------------------------------------------------------------------------------------------------------------------ settings
+! ---------------------------------------------------------------------------------------------------------------------- settings
 
 subroutine trblaw(ih, law, ierr)
   use tribo_fixed
@@ -655,7 +655,7 @@ subroutine trbgsh(ih, ishr, ierr)
   if (ierr == TRIBO_OK) call c%get_sharing(ishr, ierr)
 end subroutine trbgsh
 
-! -------------------------------------------------------------------------------------------------------------------------- forces
+! ------------------------------------------------------------------------------------------------------------------------ forces
 
 subroutine trbfrc(ih, n, v, feq, f, ierr)
   use tribo_fixed
@@ -799,7 +799,7 @@ subroutine trbacc(ih, n, v, feq, ierr)
   if (ierr == TRIBO_OK) ierr = c_accept(ctx, v, feq)
 end subroutine trbacc
 
-! ------------------------------------------------------------------------------------------------------------------------- queries
+! ----------------------------------------------------------------------------------------------------------------------- queries
 
 subroutine trbslp(ih, n, slip, ierr)
   use tribo_fixed

@@ -1,9 +1,9 @@
-!> tribo with GSL for fixed-form Fortran: linear structures with friction contacts, their integration, and periodic motions. Arguments
-!> as in trb.f90.
+!> tribo with GSL for fixed-form Fortran: linear structures with friction contacts, their integration, and periodic motions.
+!> Arguments as in trb.f90.
 !>
-!> TRBLIN makes a structure M q'' + C q' + K q = p(t) + J' f, and a handle IH of its contacts: all of trb.f90 works with it (limits by
-!> TRBLIM, messages by TRBMSG, the end by TRBDEL), but the operator is the structure's. TRBDRV gives it an integrator. A handle of
-!> TRBNEW or TRBCPY has contacts only, and is refused here with TRIBO_ERR_STATE.
+!> TRBLIN makes a structure M q'' + C q' + K q = p(t) + J' f, and a handle IH of its contacts: all of trb.f90 works with it
+!> (limits by TRBLIM, messages by TRBMSG, the end by TRBDEL), but the operator is the structure's. TRBDRV gives it an integrator.
+!> A handle of TRBNEW or TRBCPY has contacts only, and is refused here with TRIBO_ERR_STATE.
 !>
 !> NDOF   degrees of freedom; must be that of TRBLIN
 !> Y      2*NDOF + 1 values: displacements, velocities, energy that friction has taken
@@ -17,8 +17,8 @@
 !>   TRBCLL(IH, IERR)                                takes all loads away
 !>   TRBBAS(IH, N, OMEGA, BC, BS, IERR)              adds BC(N)*COS(OMEGA*t) + BS(N)*SIN(OMEGA*t) to the velocities of the bases
 !>   TRBHLM(IH, N, OMEGA, FC, FS, IERR)              adds FC(N)*COS(OMEGA*t) + FS(N)*SIN(OMEGA*t) to the limits
-!>   TRBDRV(IH, NAME, DT, ATOL, RTOL, IERR)          NAME of a method, e.g. 'exact', DT step, tolerances: an integrator in the place
-!>                                                   of the one before
+!>   TRBDRV(IH, NAME, DT, ATOL, RTOL, IERR)          NAME of a method, e.g. 'exact', DT step, tolerances: an integrator in the
+!>                                                   place of the one before
 !>   TRBADV(IH, NDOF, T, T1, Y, IERR)                T, Y, T1 >= T                     T, Y there; on error the last good step
 !>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a motion that comes back after it
 !> Of the periodic motion found last
@@ -26,7 +26,7 @@
 !>   TRBEXT(IH, NDOF, CV, XMIN, XMAX, TMIN, TMAX,    CV(2*NDOF)                        the extremes of CV'Y, and when
 !>          IERR)
 !>   TRBHAR(IH, NDOF, CV, K, XC, XS, IERR)           CV(2*NDOF), K >= 0                XC*COS(K*w*t) + XS*SIN(K*w*t) of CV'Y
-!>   TRBDIS(IH, N, E, IERR)                                                            E(N): what each contact dissipates in a period
+!>   TRBDIS(IH, N, E, IERR)                                                            E(N): what each contact dissipates in it
 !>   TRBSHS(IH, N, SHARE, IERR)                                                        SHARE(N) of the period for which each rests
 !> Counts
 !>   TRBDCT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of a       IVAL
@@ -141,7 +141,7 @@ contains
   end subroutine expect_least
 end module tribo_fixed_gsl
 
-! ------------------------------------------------------------------------------------------------------------------------ structure
+! --------------------------------------------------------------------------------------------------------------------- structure
 
 subroutine trblin(ndof, n, rm, c, rk, ldm, rj, ldj, ih, text, ierr)
   use tribo_fixed_gsl
@@ -219,7 +219,7 @@ subroutine trbhlm(ih, n, omega, fc, fs, ierr)
   if (ierr == TRIBO_OK) call s%system%add_limit(omega, fc(:n), fs(:n), ierr)
 end subroutine trbhlm
 
-! ------------------------------------------------------------------------------------------------------------------------ integrator
+! -------------------------------------------------------------------------------------------------------------------- integrator
 
 subroutine trbdrv(ih, name, dt, atol, rtol, ierr)
   use tribo_fixed_gsl
@@ -272,7 +272,7 @@ subroutine trbdct(ih, iwhich, ival, ierr)
   if (ierr == TRIBO_OK) call s%driver%count(iwhich, ival, ierr)
 end subroutine trbdct
 
-! ------------------------------------------------------------------------------------------------------------------- periodic motion
+! --------------------------------------------------------------------------------------------------------------- periodic motion
 
 subroutine trbmul(ih, ndof, re, ai, ierr)
   use tribo_fixed_gsl

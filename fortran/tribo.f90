@@ -718,8 +718,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine force_tangent
 
-  !> The same where contacts may be planar: df_dv(:, i), df_dfeq(:, i), df_dlimit(:, i) is how component i of the force follows the
-  !> first and the second direction of its contact; of a scalar contact its derivative and 0.
+  !> The same where contacts may be planar: df_dv(:, i), df_dfeq(:, i), df_dlimit(:, i) is how component i of the force follows
+  !> the first and the second direction of its contact; of a scalar contact its derivative and 0.
   subroutine force_tangent_planar(this, v, feq, f, df_dv, df_dfeq, df_dlimit, stat, errmsg)
     class(tribo_context), intent(in) :: this
     real(dp), intent(in) :: v(:), feq(:)
@@ -854,8 +854,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine step_force_mean
 
-  !> The box-constrained problem behind it all, the minimum of f'Rf/2 + a'f with lower <= f <= upper, for laws of the caller's own.
-  !> Neither limits nor law nor epsilon matter.
+  !> The box-constrained problem behind it all, the minimum of f'Rf/2 + a'f with lower <= f <= upper, for laws of the caller's
+  !> own. Neither limits nor law nor epsilon matter.
   subroutine solve_box(this, a, lower, upper, f, stat, errmsg)
     class(tribo_context), intent(inout) :: this
     real(dp), intent(in) :: a(:), lower(:), upper(:)

@@ -243,8 +243,8 @@ contains
   end subroutine clone_system
 
   !> n >= 2 blocks on a frictional surface, pulled by alpha*sin(omega*t) at the first one. Fig. 8. limit is the paper's mu N_i.
-  !> Contacts have the limit mu N_i/n and R = n, the last one 3/4 of that limit and 4/3 of that R, see tribo_gsl.h; the last entry of
-  !> the state is the paper's D.
+  !> Contacts have the limit mu N_i/n and R = n, the last one 3/4 of that limit and 4/3 of that R, see tribo_gsl.h; the last entry
+  !> of the state is the paper's D.
   subroutine chain(this, n, limit, alpha, omega, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     integer, intent(in) :: n
@@ -261,8 +261,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine chain
 
-  !> Two blocks, the upper on the lower, the lower on a belt that moves with speed*sin(omega*t): contact 1 is between belt and lower
-  !> block (limit1), contact 2 between the blocks (limit2); kappa is the stiffness of the upper spring. Eq. 7, Fig. 10.
+  !> Two blocks, the upper on the lower, the lower on a belt that moves with speed*sin(omega*t): contact 1 is between belt and
+  !> lower block (limit1), contact 2 between the blocks (limit2); kappa is the stiffness of the upper spring. Eq. 7, Fig. 10.
   subroutine belt(this, kappa, limit1, limit2, speed, omega, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: kappa, limit1, limit2, speed, omega
@@ -352,8 +352,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine linear_sparse
 
-  !> A structure reduced to its lowest nmode modes and, unless static_contacts is .false., to what steady forces at its contacts do
-  !> beside them. A load's static response is had from a row of direction that is the load, as a contact whose limit stays 0.
+  !> A structure reduced to its lowest nmode modes and, unless static_contacts is .false., to what steady forces at its contacts
+  !> do beside them. A load's static response is had from a row of direction that is the load, as a contact whose limit stays 0.
   subroutine reduced(this, mass, stiffness, direction, nmode, static_contacts, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     type(tribo_sparse), intent(in), target :: mass, stiffness, direction
@@ -402,7 +402,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine add_load
 
-  !> Adds a harmonic to the driven velocities of the contacts, b(t) = ... + cosine*cos(omega*t) + sine*sin(omega*t), e.g. of a belt.
+  !> Adds a harmonic to the driven velocities of the contacts, b(t) = ... + cosine*cos(omega*t) + sine*sin(omega*t), as of a belt.
   subroutine add_base_motion(this, omega, cosine, sine, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: omega
@@ -725,8 +725,8 @@ contains
     call to_text(c_method_name(to_int(method)), text)
   end function tribo_method_name
 
-  !> Integrates from t to t1 >= t; y, the system and its context's settings may be changed between calls. On error t and y hold the
-  !> last good step.
+  !> Integrates from t to t1 >= t; y, the system and its context's settings may be changed between calls. On error t and y hold
+  !> the last good step.
   subroutine advance(this, t, t1, y, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     real(dp), intent(inout) :: t, y(:)
@@ -973,8 +973,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine set_observer
 
-  !> The largest step h > 0 of an adaptive method; by default 0.1 over the highest frequency of structure and loads, since while all
-  !> contacts rest no estimate sees how long a step is. An infinite h: none.
+  !> The largest step h > 0 of an adaptive method; by default 0.1 over the highest frequency of structure and loads, since while
+  !> all contacts rest no estimate sees how long a step is. An infinite h: none.
   subroutine set_max_step(this, h, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     real(dp), intent(in) :: h

@@ -1,5 +1,5 @@
-!> What the modules tribo and tribo_gsl and the fixed-form routines share: objects by number, sizes of arrays, texts, and how calls
-!> begin and end. Not for programs.
+!> What the modules tribo and tribo_gsl and the fixed-form routines share: objects by number, sizes of arrays, texts, and how
+!> calls begin and end. Not for programs.
 module tribo_support
   use tribo_c
   use tribo_constants
@@ -26,8 +26,8 @@ module tribo_support
   end type tribo_object
 
   !> What a call works on: the object of the library, the context that keeps its messages, the number of contacts; of a system and
-  !> its drivers the size of the state, and the degrees of freedom of the matrices given; how the call has gone so far, and the text
-  !> of an error found here, with indices from 0 as in the library's messages.
+  !> its drivers the size of the state, and the degrees of freedom of the matrices given; how the call has gone so far, and the
+  !> text of an error found here, with indices from 0 as in the library's messages.
   type, public :: work
     type(c_ptr) :: object = c_null_ptr, ctx = c_null_ptr
     integer :: n = 0, dimension = 0, given = 0
@@ -108,7 +108,7 @@ contains
     if (w%status == TRIBO_OK) w%n = int(n)
   end subroutine begin
 
-  !> Ends every call: hands over its status, and the text of an error; where there is no stat to take it, an error ends the program.
+  !> Ends every call: hands over its status, and the text of an error; without a stat to take it, an error ends the program.
   subroutine finish(w, stat, errmsg)
     type(work), intent(in) :: w
     integer, intent(out), optional :: stat

@@ -1,6 +1,6 @@
 # For the run scripts, which source it. POSIX sh.
-#   setup <Debian package>...   returns when what the packages bring is there. Installs the missing ones where it may (as root, or by
-#                               sudo without a password), else says what to install and ends the script with status 1.
+#   setup <Debian package>...   returns when what the packages bring is there. Installs the missing ones where it may (as root, or
+#                               by sudo without a password), else says what to install and ends the script with status 1.
 
 # A tool counts wherever it comes from; dpkg is asked about what is none, or not found.
 setup_has() {

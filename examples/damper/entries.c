@@ -19,8 +19,8 @@ void add_entry(struct entries *all, const struct entry *e)
     all->entry[all->count++] = *e;
 }
 
-/* Moves the entries to `to`, those of the first row, or column, first, else in their order: a pass that takes time in proportion to
- * their number. next [rows + 2] is workspace. */
+/* Moves the entries to `to`, those of the first row, or column, first, else in their order: a pass that takes time in proportion
+ * to their number. next [rows + 2] is workspace. */
 static void sort_pass(const struct entry *from, size_t count, size_t rows, int by_row, size_t *next, struct entry *to)
 {
     for (size_t i = 0; i < rows + 2; i++) {

@@ -1,10 +1,10 @@
-!> Quinn (2004), Fig. 9, from Fortran: dissipation of the chain of 32 blocks over cycle 4 against the time step, for the paper's three
-!> laws, and exactly.
+!> Quinn (2004), Fig. 9, from Fortran: dissipation of the chain of 32 blocks over cycle 4 against the time step, for the paper's
+!> three laws, and exactly.
 !>
 !>     paper_chain FOLDER
 !>
-!> Classical Runge-Kutta method as in the paper, dt = 10^-1.5 to 10^-3.5, epsilon in proportion. Writes FOLDER/fig9-fortran.csv and
-!> FOLDER/values-paper_chain.txt.
+!> Classical Runge-Kutta method as in the paper, dt = 10^-1.5 to 10^-3.5, epsilon in proportion. Writes FOLDER/fig9-fortran.csv
+!> and FOLDER/values-paper_chain.txt.
 program paper_chain
   use tribo
   use tribo_gsl

@@ -1,5 +1,5 @@
-# sh check.sh CASE RANKS PROGRAMS MPIEXEC: runs one of the PETSc programs as a test, in a folder of its own under PROGRAMS, the folder that they
-# are in. MPIEXEC: how it is started, without the number of ranks ("mpiexec -n").
+# sh check.sh CASE RANKS PROGRAMS MPIEXEC: runs one of the PETSc programs as a test, in a folder of its own under PROGRAMS, the
+# folder that they are in. MPIEXEC: how it is started, without the number of ranks ("mpiexec -n").
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 case=$1 ranks=$2 programs=$3 mpiexec=$4
@@ -129,7 +129,8 @@ chain-fails) # the first rank pulls its first block, the others wait for their n
 structure-fails) # the first rank has the only island, the others wait for its forces
     fails 'is not finite' petsc_structure $structure $short -load 1e307
     echo '276 0 -0.5' >>contacts.txt
-    fails 'tribo on rank 0: a value is negative: limit[4] = -0.5 is negative (contacts: 0 1 2 3 4)' petsc_structure $structure $short
+    fails 'tribo on rank 0: a value is negative: limit[4] = -0.5 is negative (contacts: 0 1 2 3 4)' \
+        petsc_structure $structure $short
     ;;
 *)
     echo "there is no case $case"

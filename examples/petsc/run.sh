@@ -1,7 +1,7 @@
 #!/bin/sh
-# Runs the programs on PETSc on 1, 2 and 3 ranks (or on those given: `run.sh 4 8`), compares them with the drivers of libtribo_gsl in one
-# process, and leaves tables and VTK files in build/results/petsc. Complete on a bare Debian 12 machine: installs what is missing.
-# Its status is 0 only if all agree.
+# Runs the programs on PETSc on 1, 2 and 3 ranks (or on those given: `run.sh 4 8`), compares them with the drivers of libtribo_gsl
+# in one process, and leaves tables and VTK files in build/results/petsc. Complete on a bare Debian 12 machine: installs what is
+# missing. Its status is 0 only if all agree.
 set -eu
 CDPATH= cd -- "$(dirname -- "$0")/../.."
 . tests/setup.sh
@@ -14,7 +14,8 @@ here=$PWD/examples/petsc build=build/release results=$PWD/build/results/petsc
 echo "== Building in $build"
 [ -f $build/CMakeCache.txt ] || parts='-DTRIBO_BUILD_TESTS=OFF -DTRIBO_FORTRAN=OFF'
 cmake -S . -B $build -DCMAKE_BUILD_TYPE=Release -DTRIBO_GSL=ON -DTRIBO_BUILD_EXAMPLES=ON ${parts-}
-cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" --target petsc_chain petsc_structure petsc_study petsc_single tribo_damper
+cmake --build $build --parallel "$(getconf _NPROCESSORS_ONLN)" \
+    --target petsc_chain petsc_structure petsc_study petsc_single tribo_damper
 
 rm -rf "$results"
 mkdir -p "$results"
@@ -23,7 +24,8 @@ for program in petsc_chain petsc_structure petsc_study petsc_single tribo-damper
 done
 status=0
 for ranks; do
-    for case in chain-rk4 chain-step structure structure-damped structure-cg copies vtk study study-marched chain-fails structure-fails; do
+    for case in chain-rk4 chain-step structure structure-damped structure-cg copies vtk study study-marched \
+        chain-fails structure-fails; do
         echo "== $case, $ranks ranks"
         sh "$here/check.sh" $case "$ranks" "$results" 'mpiexec -n' || status=1
     done

@@ -1,7 +1,7 @@
 #!/bin/sh
-# sh scaling.sh FOLDER [BLOCKS] [STEPS]: how the chain in FOLDER (build/release/examples) scales on 1 and 2 ranks, in motion. A line each:
-# wall time times ranks of a block and step, the best of three runs, how much of it is tribo's, and memory of all ranks a block: PETSc's
-# vectors, contacts, and the 50 MB that a rank begins with.
+# sh scaling.sh FOLDER [BLOCKS] [STEPS]: how the chain in FOLDER (build/release/examples) scales on 1 and 2 ranks, in motion. A
+# line each: wall time times ranks of a block and step, the best of three runs, how much of it is tribo's, and memory of all ranks
+# a block: PETSc's vectors, contacts, and the 50 MB that a rank begins with.
 set -eu
 . "$(dirname -- "$0")/mpi.sh"
 chain=$1/petsc_chain blocks=${2-1000000} steps=${3-40}
@@ -10,7 +10,8 @@ measure() { # ranks, blocks of all, options
     ranks=$1 all=$2
     shift 2
     for run in 1 2 3; do
-        mpiexec -n "$ranks" "$chain" -da_grid_x "$all" -velocity 0.1 -cycles 1 -steps 1000000000 -ts_max_steps "$steps" "$@" -log_view -memory_view
+        mpiexec -n "$ranks" "$chain" -da_grid_x "$all" -velocity 0.1 -cycles 1 -steps 1000000000 \
+            -ts_max_steps "$steps" "$@" -log_view -memory_view
     done | awk -v ranks="$ranks" -v all="$all" -v steps="$steps" '
         $1 == "Maximum" && /process memory/ { memory = $8 }
         $1 == "0:" && /Main Stage/ { rest = $4 }

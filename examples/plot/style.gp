@@ -1,4 +1,5 @@
-# Common style. Before loading it a script sets: name (of the picture), wide, high (pixels). From run.sh: results (folder), format.
+# Common style. Before loading it a script sets name (of the picture), wide, high (pixels); run.sh has set results (a folder)
+# and format.
 if (format eq 'png') {
     set terminal pngcairo size wide, high font 'DejaVu Sans,11' linewidth 1.4 enhanced
 } else {

@@ -214,10 +214,9 @@ TRIBO_API int tribo_set_normal_load(tribo_context *ctx, const double *mu, const 
  * by limit from there on, all of them at the same time, and the forces are found again, until none breaks away. So contacts only
  * leave, their order does not matter, and where several answers are possible this is the one. Redundant contacts at rest hold as
  * long as any forces within ratio*limit hold all of them. What has broken away may yet be held by the others, with |f| <= limit.
- * A contact whose load just reaches its static limit holds; it counts as sliding in
- * tribo_get_slip. In the partition coupling nothing is found again: each contact goes by its own f_eq, and so it does in
- * tribo_force. Forces jump at |v| = epsilon, so that integrators are of first order there. VELOCITY_LIMITED and SMOOTH know no
- * stick, and need velocities.
+ * A contact whose load just reaches its static limit holds; it counts as sliding in tribo_get_slip. In the partition coupling
+ * nothing is found again: each contact goes by its own f_eq, and so it does in tribo_force. Forces jump at |v| = epsilon, so that
+ * integrators are of first order there. VELOCITY_LIMITED and SMOOTH know no stick, and need velocities.
  *
  * Planar contacts go by the same rule, in their plane: near stick within the ellipse of ratio*limit; a contact whose f_eq is
  * outside that goes by the ellipse of limit from there on, and slides the way in which it was held. |v| is then the length of v.
@@ -325,10 +324,11 @@ TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
 
 /* How redundant contacts share: R f is unique, but where R is singular f is not. (In the partition f_eq is always the one of
  * least norm.)
- *   LEAST  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls. (Groups of more
- *          than 2048 contacts that are kept sparse: while not more than 64 are redundant; beyond that, one of the solutions.)
- *   LAST   one that is found from the forces of the last call, and follows slow changes without jumps. For event-driven codes,
- *          where a contact that has reached its limit should stay there while others take over.
+ *   LEAST_NORM  the f of least norm, sum of f_i^2: depends neither on the order of the contacts nor on earlier calls. (Groups of
+ *               more than 2048 contacts that are kept sparse: while not more than 64 are redundant; beyond that, one of the
+ *               solutions.)
+ *   PREVIOUS    one that is found from the forces of the last call, and follows slow changes without jumps. For event-driven
+ *               codes, where a contact that has reached its limit should stay there while others take over.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE. */
 enum { TRIBO_SHARE_LEAST_NORM = 0, TRIBO_SHARE_PREVIOUS = 1 };
 TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
@@ -365,9 +365,8 @@ TRIBO_API int tribo_force_tangent_planar(const tribo_context *ctx, const double 
  * feq  [n] out  or NULL; 0 for open contacts
  * f    [n] out  or NULL; |f| <= limit
  * Consistent coupling: f = law(v, feq) and R_ii feq_i = -(a_i + sum of R_ij f_j over j != i), to rounding (R_d, and the other
- * contacts' j, for planar ones). Where
- * contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing. QUINN_REVERSAL: f_eq of
- * contacts near stick balances Quinn's forces.
+ * contacts' j, for planar ones). Where contacts are redundant R f is unique and f one of the solutions, see tribo_set_sharing.
+ * QUINN_REVERSAL: f_eq of contacts near stick balances Quinn's forces.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_STATE (no operator), TRIBO_ERR_NO_CONVERGENCE,
  * TRIBO_ERR_INCONSISTENT. */
 TRIBO_API int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *feq, double *f);

@@ -9,5 +9,6 @@ install(FILES "${PROJECT_BINARY_DIR}/triboConfig.cmake" "${PROJECT_BINARY_DIR}/t
 
 if(PROJECT_IS_TOP_LEVEL)
   add_custom_target(uninstall VERBATIM
-    COMMAND "${CMAKE_COMMAND}" -D "MANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt" -P "${CMAKE_CURRENT_LIST_DIR}/uninstall.cmake")
+    COMMAND "${CMAKE_COMMAND}" -D "MANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt"
+            -P "${CMAKE_CURRENT_LIST_DIR}/uninstall.cmake")
 endif()

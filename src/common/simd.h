@@ -45,7 +45,7 @@ static inline double *tribo_aligned(double *x)
     return x ? x + (BYTES - (uintptr_t)x % BYTES) % BYTES / sizeof *x : NULL;
 }
 
-/* So many bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
+/* These bytes will soon be read, or written: for memory that is far away, and not simply passed over. */
 static inline void tribo_expect(const void *from, size_t bytes, int written)
 {
 #if defined(TRIBO_GNU_C)

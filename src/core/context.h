@@ -35,7 +35,7 @@ struct chunk {
     int alike;             /* and the same limit, above 0 */
 };
 
-/* Of so many contacts an output does not stay in any cache. */
+/* From this number of contacts on an output does not stay in any cache. */
 #define TRIBO_MANY ((size_t)1 << 22)
 
 static inline size_t tribo_chunks(size_t n)

@@ -19,7 +19,7 @@ static int check(const double *x, size_t count, int nonnegative)
     return TRIBO_OK;
 }
 
-/* n elements of so many directions. */
+/* Checks what n elements of 1 or 2 directions are given. */
 static int check_all(size_t n, size_t directions, const double *dz, const double *stiffness, const double *limit, const double *f)
 {
     if (n >= SIZE_MAX / 64) {

@@ -198,8 +198,10 @@ static int find_clusters(struct planar *c, size_t n, const struct delassus *op, 
     return status || c->r ? status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_planar_create(struct planar **planar, size_t n, size_t count, const size_t *first, const struct delassus *op,
-                        struct memory *m, size_t *flaw)
+/* Planar contacts of n directions, with the clusters that op makes of them, if op has an operator; m is what goes with op. A
+ * status; *flaw is the size of a cluster that is too large. */
+static int create_planar(struct planar **planar, size_t n, size_t count, const size_t *first, const struct delassus *op,
+                         struct memory *m, size_t *flaw)
 {
     struct planar *c = calloc(1, sizeof *c);
     int status = TRIBO_ERR_MEMORY;
@@ -277,7 +279,7 @@ int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *f
     size_t large = 0;
     *planar = NULL;
     *plane = (struct plane){0};
-    int status = count ? tribo_planar_create(planar, ctx->n, count, first, op, m, &large) : TRIBO_OK;
+    int status = count ? create_planar(planar, ctx->n, count, first, op, m, &large) : TRIBO_OK;
     if (status == TRIBO_ERR_UNSUPPORTED) {
         return tribo_fail(ctx, status, "planar contacts couple %zu direction%s with each other, and not more than %d can be",
                           large, plural(large), TRIBO_CLUSTER_MOST);

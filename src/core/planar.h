@@ -55,10 +55,6 @@ struct plane {
 /* Of a cluster with more directions than this no matrix is kept. */
 #define TRIBO_CLUSTER_MOST 2048
 
-/* Planar contacts of n directions, with the clusters that op makes of them, if op has an operator; m is what goes with op. A
- * status; *flaw is the size of a cluster that is too large. */
-int tribo_planar_create(struct planar **planar, size_t n, size_t count, const size_t *first, const struct delassus *op,
-                        struct memory *m, size_t *flaw);
 struct planar *tribo_planar_share(struct planar *planar); /* NULL is fine here and below */
 void tribo_planar_release(struct planar *planar);
 int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t n); /* 1, or 0 if out of memory */

@@ -13,7 +13,7 @@
 
 /* --------------------------------------------------------------------------------------------------------- clusters */
 
-/* Takes a contact with so many directions from place k on into the problem. */
+/* Takes a contact of 1 or 2 directions, from place k on, into the problem. */
 static void take(tribo_context *ctx, size_t k, int directions)
 {
     struct disc_qp *p = &ctx->plane.problem;

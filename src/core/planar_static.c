@@ -86,7 +86,7 @@ static void find_ends(tribo_context *ctx, const struct cluster *g, double dt, co
     }
 }
 
-/* The limits by which the contact of so many directions at i slides; returns whether they have fallen. */
+/* The limits by which the contact at i, of 1 or 2 directions, slides; returns whether they have fallen. */
 static int let_go(tribo_context *ctx, size_t i, size_t directions)
 {
     const double speed = tribo_length((int)directions, ctx->plane.v + i);

@@ -59,7 +59,7 @@ void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const doubl
  * it takes to stop it is no load for others. */
 #define RESTS 1e-4
 
-/* Whether contact i of so many directions comes into a step with a velocity that counts. */
+/* Whether contact i, of 1 or 2 directions, comes into a step with a velocity that counts. */
 static int comes_sliding(const tribo_context *ctx, double dt, size_t i, size_t directions, const double *v)
 {
     double stops = 0.0;

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "elastic.h"
-#include "../common/real.h"
 
 static void expand_harmonics(struct event *e, double t)
 {

@@ -76,11 +76,76 @@ static int find_limit_rates(tribo_system *sys, double *df_dt)
     return status;
 }
 
+/* Contacts at a state: forces in sys->f, how they follow v and a, and df_dt, as find_limit_rates has it. Returns a status. */
+static int find_contacts(tribo_system *sys, double t, const double y[], const struct dense *d, double *df_dt)
+{
+    tribo_system_free_motion(sys, t, y, d->load, sys->v, sys->a);
+    const int status = find_limit_rates(sys, df_dt);
+    return status ? status : tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d->df_dv, d->df_da);
+}
+
+/* pull = (df/da) J,  df/dq = -pull AK,  df/du = (df/dv) J - pull AC */
+static void follow_state(size_t n, size_t m, const struct dense *d)
+{
+    memset(d->df_dq, 0, 3 * m * n * sizeof *d->df_dq);
+    tribo_multiply_add(m, m, n, 1.0, d->df_da, d->direction, d->pull);
+    tribo_multiply_add(m, n, n, -1.0, d->pull, d->stiffness, d->df_dq);
+    tribo_multiply_add(m, n, n, -1.0, d->pull, d->damping, d->df_du);
+    tribo_multiply_add(m, m, n, 1.0, d->df_dv, d->direction, d->df_du);
+}
+
+/* df/dt = -(df/dv) b' + (df/da) (J load' - b'') + (df/dlimit) limit', of which df_dt holds the last; d->load = load' */
+static void follow_time(tribo_system *sys, const struct dense *d, double *df_dt)
+{
+    const size_t n = sys->ndof, m = sys->ncontact;
+    memset(d->load, 0, n * sizeof *d->load);
+    memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
+    memset(sys->a, 0, m * sizeof *sys->a);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, d->load);
+    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, sys->dv_dt);
+    tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->a);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, d->load, sys->a);
+    tribo_multiply_add(m, m, 1, 1.0, d->df_dv, sys->dv_dt, df_dt);
+    tribo_multiply_add(m, m, 1, 1.0, d->df_da, sys->a, df_dt);
+}
+
+/* The rows of u' = load - AK q - AC u + B f, dfdy being 0 there. */
+static void write_motion(const tribo_system *sys, const struct dense *d, const double *df_dt, double *dfdy, double *dfdt)
+{
+    const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
+    for (size_t i = 0; i < n; i++) {
+        double *row = dfdy + (n + i) * size;
+        for (size_t j = 0; j < n; j++) {
+            row[j] = -d->stiffness[i * n + j];
+            row[n + j] = -d->damping[i * n + j];
+        }
+        tribo_multiply_add(1, m, n, 1.0, d->response + i * m, d->df_dq, row);
+        tribo_multiply_add(1, m, n, 1.0, d->response + i * m, d->df_du, row + n);
+        dfdt[n + i] = d->load[i];
+        tribo_multiply_add(1, m, 1, 1.0, d->response + i * m, df_dt, dfdt + n + i);
+    }
+}
+
+/* The row of the energy, whose rate is -sum of tally f v. v and f of sys are spent. */
+static void write_power(tribo_system *sys, const struct dense *d, const double *df_dt, double *row, double *dfdt)
+{
+    const size_t n = sys->ndof, m = sys->ncontact;
+    for (size_t i = 0; i < m; i++) {
+        sys->v[i] *= sys->tally[i];
+        sys->f[i] *= sys->tally[i];
+    }
+    tribo_multiply_add(1, m, n, -1.0, sys->v, d->df_dq, row);
+    tribo_multiply_add(1, m, n, -1.0, sys->v, d->df_du, row + n);
+    tribo_multiply_add(1, m, n, -1.0, sys->f, d->direction, row + n);
+    tribo_multiply_add(1, m, 1, -1.0, sys->v, df_dt, dfdt);
+    tribo_multiply_add(1, m, 1, -1.0, sys->f, sys->dv_dt, dfdt);
+}
+
 /* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
 int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
 {
     tribo_system *sys = params;
-    const size_t n = sys->ndof, m = sys->ncontact, size = tribo_system_dimension(sys);
+    const size_t n = sys->ndof, size = tribo_system_dimension(sys);
     sys->jacobians++;
     sys->status = tribo_system_check_rates(sys, "the Jacobian");
     if (sys->status) {
@@ -91,58 +156,19 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
         return GSL_EBADFUNC;
     }
     const struct dense d = dense_of(sys);
-    tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
     double *df_dt = sys->feq;
-    sys->status = find_limit_rates(sys, df_dt);
-    if (!sys->status) {
-        sys->status = tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
-    }
+    sys->status = find_contacts(sys, t, y, &d, df_dt);
     if (sys->status) {
         return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
     }
-
-    /* pull = (df/da) J,  df/dq = -pull AK,  df/du = (df/dv) J - pull AC */
-    memset(d.df_dq, 0, 3 * m * n * sizeof *d.df_dq);
-    tribo_multiply_add(m, m, n, 1.0, d.df_da, d.direction, d.pull);
-    tribo_multiply_add(m, n, n, -1.0, d.pull, d.stiffness, d.df_dq);
-    tribo_multiply_add(m, n, n, -1.0, d.pull, d.damping, d.df_du);
-    tribo_multiply_add(m, m, n, 1.0, d.df_dv, d.direction, d.df_du);
-
-    /* df/dt = -(df/dv) b' + (df/da) (J load' - b'') + (df/dlimit) limit' */
-    memset(d.load, 0, n * sizeof *d.load);
-    memset(sys->dv_dt, 0, m * sizeof *sys->dv_dt);
-    memset(sys->a, 0, m * sizeof *sys->a);
-    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, d.load);
-    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, sys->dv_dt);
-    tribo_system_loads(sys, DRIVES_BASE, 2, -1.0, sys->a);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, d.load, sys->a);
-    tribo_multiply_add(m, m, 1, 1.0, d.df_dv, sys->dv_dt, df_dt);
-    tribo_multiply_add(m, m, 1, 1.0, d.df_da, sys->a, df_dt);
-
+    follow_state(n, sys->ncontact, &d);
+    follow_time(sys, &d, df_dt);
     memset(dfdy, 0, size * size * sizeof *dfdy);
     memset(dfdt, 0, size * sizeof *dfdt);
     for (size_t i = 0; i < n; i++) {
-        double *row = dfdy + (n + i) * size;
         dfdy[i * size + n + i] = 1.0;
-        for (size_t j = 0; j < n; j++) {
-            row[j] = -d.stiffness[i * n + j];
-            row[n + j] = -d.damping[i * n + j];
-        }
-        tribo_multiply_add(1, m, n, 1.0, d.response + i * m, d.df_dq, row);
-        tribo_multiply_add(1, m, n, 1.0, d.response + i * m, d.df_du, row + n);
-        dfdt[n + i] = d.load[i];
-        tribo_multiply_add(1, m, 1, 1.0, d.response + i * m, df_dt, dfdt + n + i);
     }
-    /* power = -sum of tally f v */
-    for (size_t i = 0; i < m; i++) {
-        sys->v[i] *= sys->tally[i];
-        sys->f[i] *= sys->tally[i];
-    }
-    double *row = dfdy + 2 * n * size;
-    tribo_multiply_add(1, m, n, -1.0, sys->v, d.df_dq, row);
-    tribo_multiply_add(1, m, n, -1.0, sys->v, d.df_du, row + n);
-    tribo_multiply_add(1, m, n, -1.0, sys->f, d.direction, row + n);
-    tribo_multiply_add(1, m, 1, -1.0, sys->v, df_dt, dfdt + 2 * n);
-    tribo_multiply_add(1, m, 1, -1.0, sys->f, sys->dv_dt, dfdt + 2 * n);
+    write_motion(sys, &d, df_dt, dfdy, dfdt);
+    write_power(sys, &d, df_dt, dfdy + 2 * n * size, dfdt + 2 * n);
     return GSL_SUCCESS;
 }

@@ -233,7 +233,7 @@ static void compress(struct lanczos *l, size_t keep)
     l->pending = 0;
 }
 
-/* Goes on until so many modes are found, or all that there are. */
+/* Goes on until target modes are found, or all that there are. */
 static int converge(struct lanczos *l, size_t target)
 {
     for (size_t blocks = 0; blocks < MOST_BLOCKS; blocks++) {

@@ -57,7 +57,7 @@ static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
     return done;
 }
 
-/* With so many columns; pattern [ndof], if there is one. */
+/* A copy with its columns, and its pattern [ndof], if there is one. */
 static int copy_table(struct table *to, const struct table *from, size_t columns, size_t ndof)
 {
     int done = 1;
@@ -98,7 +98,7 @@ static size_t knot_at(const struct table *table, double t)
     return lo;
 }
 
-/* Value (order 0) or slope (1) of column i of a table with so many of them at the time set. */
+/* Value (order 0) or slope (1) of column i, of columns, of a table at the time set. */
 static double look_up(const tribo_system *sys, const struct table *table, size_t columns, size_t i, int order)
 {
     const size_t k = table->at;

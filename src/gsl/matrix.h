@@ -32,7 +32,7 @@ int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from);
 int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b);
 
-/* A copy of count things of so many bytes, NULL for NULL. *done becomes 0 if out of memory. */
+/* A copy of count things of size bytes each, NULL for NULL. *done becomes 0 if out of memory. */
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done);
 
 void tribo_matrix_free(struct matrix *a);

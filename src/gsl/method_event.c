@@ -11,7 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "elastic.h"
 #include "event_series.h"
 #include "../common/real.h"
 #include "../common/simd.h"

@@ -87,7 +87,7 @@ static size_t set_apart(struct spectrum *s, size_t open)
     return low;
 }
 
-/* ky = K y for so many modes from the first one on. */
+/* ky = K y for count modes from the first one on. */
 static void stress(struct spectrum *s, size_t first, size_t count)
 {
     memset(s->ky + first * s->n, 0, count * s->n * sizeof *s->ky);

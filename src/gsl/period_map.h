@@ -45,7 +45,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual);
 
-/* Takes x [n] along for so many periods; a status, its message on the driver. */
+/* Takes x [n] along for that number of periods; a status, its message on the driver. */
 int tribo_period_map_march(struct period_map *m, size_t periods, double *x);
 
 /* Follows the motion from y through a period, with company. */

@@ -12,7 +12,7 @@ struct signal {
     double tau;
 };
 
-/* Room for so many terms, none yet, and powers, all zero. 1, or 0 if out of memory. */
+/* Room for terms, none yet, and powers up to degree, all zero. 1, or 0 if out of memory. */
 int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree);
 void tribo_signal_free(struct signal *s);
 

@@ -1,5 +1,4 @@
 #include "sparse_factor.h"
-#include "../common/real.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,8 @@
 #   abi.sh names <file>...            a map, a header, symbols and prototypes: all must name the same functions
 # <what> is one of
 #   symbols <library>                 soname and exported symbols with their versions
-#   constants <header> <base> <cc>... value of all enumerators and macros of <header> that the header <base> (or none) does not have;
+#   constants <header> <base> <cc>... value of all enumerators and macros of <header> that the header <base> (or none) does not
+#   have;
 #                                     <cc> is the compiler with the flags that the headers need
 #   prototypes <header>               the functions once more: a C file that only compiles if its prototypes are the header's
 # To be run in the build folder.

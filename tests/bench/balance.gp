@@ -28,7 +28,8 @@ do for [k = 1:n] {
 }
 reference(x, k, slope, decades) = x > x_end[k] || x < x_end[k]/10.0**decades ? NaN : 0.4*t_end[k]*(x/x_end[k])**slope
 set samples 400
-set xlabel name eq 'near' ? 'contacts near stick in one dense group, s' : name eq 'islands' ? 'sleeping islands of 8' : 'contacts, n'
+set xlabel name eq 'near' ? 'contacts near stick in one dense group, s' : \
+    name eq 'islands' ? 'sleeping islands of 8' : 'contacts, n'
 if (name eq 'contacts') {
     set title 'A call against the number of contacts'
     plot for [k = 1:n] rows(k) using 2:($4*1e6) with linespoints linestyle k title curve(k), \
@@ -44,7 +45,8 @@ if (name eq 'near') {
 if (name eq 'islands') {
     set title 'A call against the number of sleeping islands'
     plot for [k = 1:n] rows(k) using 2:($4*1e6) with linespoints linestyle k title curve(k), \
-        "< grep '^100 islands' '".table."' > '".results."/awake.tmp'; grep '^none' '".table."' | paste -d, '".results."/awake.tmp' -; rm '".results."/awake.tmp'" \
+        "< grep '^100 islands' '".table."' > '".results."/awake.tmp'; ".\
+        "grep '^none' '".table."' | paste -d, '".results."/awake.tmp' -; rm '".results."/awake.tmp'" \
         using 2:(($4 - $17)*1e6) with linespoints linestyle 3 title 'their difference', \
         reference(x, 2, 1, 2) linestyle 20 title 'slope 1'
 }

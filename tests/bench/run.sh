@@ -1,7 +1,7 @@
 #!/bin/sh
-# Builds the bench, with SUNDIALS, Siconos and CHOLMOD where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev, g++,
-# libsuitesparse-dev), runs it, draws a picture a system, and prints tables: run times aimed at and measured, and the fastest method
-# for each error; then what a call of tribo_balance costs, a step in the plane, a steady motion, and the modes
+# Builds the bench, with SUNDIALS, Siconos and CHOLMOD where they are installed (Debian: libsundials-dev, libsiconos-kernel-dev,
+# g++, libsuitesparse-dev), runs it, draws a picture a system, and prints tables: run times aimed at and measured, and the fastest
+# method for each error; then what a call of tribo_balance costs, a step in the plane, a steady motion, and the modes
 # of large plates where CalculiX is installed, too (some minutes).
 # Arguments go to the bench: `sh tests/bench/run.sh --quick`. Everything is left in build/bench/results.
 set -eu
@@ -31,7 +31,8 @@ mkdir -p "$results/balance"
 # One thread: times are those of one processor.
 OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench --out "$results" "$@"
 case " $* " in *" --quick "*) quick=--quick ;; *) quick= ;; esac
-OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out "$results/balance" $quick > "$results/balance/tables.txt"
+OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 $build/tests/bench/bench_balance --out "$results/balance" $quick \
+    > "$results/balance/tables.txt"
 $build/tests/bench/bench_planar > "$results/planar.txt"
 $build/tests/bench/bench_kernels $quick > "$results/kernels.txt"
 $build/tests/bench/bench_periodic --out "$results" > "$results/periodic.txt"

@@ -1,12 +1,14 @@
 # Error against run time, a picture a system. From run.sh: results (folder), format.
 systems = system("cd '".results."' && ls *.csv | sed 's/.csv//'")
 
-# Coulomb's law itself: this library's methods, solid; others', dashed. Laws with an epsilon: rk4 triangles, adaptive ones circles.
+# Coulomb's law itself: this library's methods, solid; others', dashed. Laws with an epsilon: rk4 triangles, others circles.
 curves = "'tribo,exact,coulomb' 'tribo,event,coulomb' 'tribo,central/fixed,coulomb' 'tribo,moreau/fixed,coulomb' ".\
          "'sundials,cvode-adams,coulomb' 'sundials,arkode-5,coulomb' 'siconos,moreau-jean,coulomb' 'plain,moreau,coulomb' ".\
-         "'plain,rk4,quinn' 'tribo,rk4/fixed,quinn-reversal' 'tribo,rk4/fixed,velocity-limited' 'tribo,rkf45,quinn' 'tribo,msbdf,quinn' 'tribo,rkf45,velocity-limited'"
+         "'plain,rk4,quinn' 'tribo,rk4/fixed,quinn-reversal' 'tribo,rk4/fixed,velocity-limited' ".\
+         "'tribo,rkf45,quinn' 'tribo,msbdf,quinn' 'tribo,rkf45,velocity-limited'"
 titles = "'exact' 'event' 'central/fixed' 'moreau/fixed' 'CVODE Adams + events' 'ARKODE + events' 'Siconos' 'Moreau, by hand' ".\
-         "'rk4, Quinn, by hand' 'rk4/fixed, quinn-reversal' 'rk4/fixed, velocity-limited' 'rkf45, Quinn' 'msbdf, Quinn' 'rkf45, velocity-limited'"
+         "'rk4, Quinn, by hand' 'rk4/fixed, quinn-reversal' 'rk4/fixed, velocity-limited' ".\
+         "'rkf45, Quinn' 'msbdf, Quinn' 'rkf45, velocity-limited'"
 
 do for [s in systems] {
     name = s; wide = 900; high = 500
@@ -41,6 +43,7 @@ do for [s in systems] {
     do for [i = 1:words(curves)] {
         if (has(word(curves, i))) { shown = shown.' '.i }
     }
-    plot for [i in shown] points(word(curves, i + 0)) using 8:($6 > 2e-15 ? $6 : 2e-15) with linespoints linestyle i + 0 title word(titles, i + 0)
+    plot for [i in shown] points(word(curves, i + 0)) using 8:($6 > 2e-15 ? $6 : 2e-15) \
+        with linespoints linestyle i + 0 title word(titles, i + 0)
     unset output
 }

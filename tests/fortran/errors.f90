@@ -65,16 +65,12 @@ contains
     type(tribo_context) :: c, other
     type(broken_mass) :: mass
     real(dp) :: x(n), y(n), z(n), w(n), q(n, n), p(n, n)
-    integer :: i, mode(n)
+    integer :: i, slip(n)
 
-    x = blank
-    y = blank
-    z = blank
-    w = blank
-    q = blank
-    p = blank
+    x = blank; y = blank; z = blank
+    w = blank; q = blank; p = blank
     i = blank_integer
-    mode = blank_integer
+    slip = blank_integer
     call require(c%message() == none, 'message of no context')
     call c%clone(other, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
@@ -145,13 +141,13 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%accept(x, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
-    call c%get_slip(mode, stat, msg)
+    call c%get_slip(slip, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_count(TRIBO_COUNT_STUCK, i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
     call c%get_real(TRIBO_REAL_RESIDUAL, x(1), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, none)
-    call require(all(untouched([x, y, z, w]) .and. all(untouched([q, p]))) .and. all(untouched([i, mode])), 'no context: outputs')
+    call require(all(untouched([x, y, z, w]) .and. all(untouched([q, p]))) .and. all(untouched([i, slip])), 'no context: outputs')
     call c%destroy()
     call make(c)
     call c%destroy()
@@ -185,9 +181,7 @@ contains
     call tribo_law_find('contact 3[1]', law, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NAME, 'no law is called "contact 3[1]"' // laws)
     call require(untouched(law), 'tribo_law_find: law')
-    f = blank
-    df_dv = blank
-    df_dfeq = blank
+    f = blank; df_dv = blank; df_dfeq = blank
     df_dlimit = blank
     call tribo_law_eval(99, 1.0_dp, 1.0_dp, 1.0_dp, 1.0_dp, f, df_dv, df_dfeq, df_dlimit, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, tribo_strerror(TRIBO_ERR_RANGE))
@@ -413,12 +407,8 @@ contains
     call require(all(untouched(x)), 'no operator: outputs')
     call make(c)
     bad = [0.0_dp, nan, 0.0_dp]
-    x = blank
-    y = blank
-    z = blank
-    w = blank
-    q = blank
-    p = blank
+    x = blank; y = blank; z = blank
+    w = blank; q = blank; p = blank
     call c%force(v(:2), v, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'v has size 2, not 3')
     call c%force(v, [v, v], x, stat, msg)
@@ -555,24 +545,24 @@ contains
 
   subroutine queries()
     type(tribo_context) :: c
-    integer :: mode(n), i
+    integer :: slip(n), i
     real(dp) :: x
 
     call make(c)
-    mode = blank_integer
+    slip = blank_integer
     i = blank_integer
     x = blank
-    call c%get_slip(mode, stat, msg)
+    call c%get_slip(slip, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_STATE, &
       'no tribo_balance or tribo_step_force since the last tribo_solve_box or operator')
     call c%balance([0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp])
-    call c%get_slip(mode(:2), stat, msg)
+    call c%get_slip(slip(:2), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'slip has size 2, not 3')
     call c%get_count(99, i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 99 is no count')
     call c%get_real(-1, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = -1 is no real quantity')
-    call require(all(untouched([mode, i])) .and. untouched(x), 'queries: outputs')
+    call require(all(untouched([slip, i])) .and. untouched(x), 'queries: outputs')
   end subroutine queries
 
   !> What becomes of errmsg, and of the message of a context.

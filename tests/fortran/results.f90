@@ -330,8 +330,8 @@ contains
     end do
   end subroutine forces
 
-  !> Every array as a section with a stride, backwards or a row of a matrix, and outputs each by itself, against whole arrays. What
-  !> lies between the elements of an output stays.
+  !> Every array as a section with a stride, backwards or a row of a matrix, and outputs each by itself, against whole arrays.
+  !> What lies between the elements of an output stays.
   subroutine sections()
     type(tribo_context) :: c, d
     real(dp), parameter :: gap = 5

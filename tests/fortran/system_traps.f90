@@ -1,5 +1,5 @@
-!> A program that stops at invalid operations, divisions by zero and overflows (-ffpe-trap) runs all methods on all systems, with a
-!> contact that friction cannot move (R = 0) and one that is open.
+!> A program that stops at invalid operations, divisions by zero and overflows (-ffpe-trap) runs all methods on all systems, with
+!> a contact that friction cannot move (R = 0) and one that is open.
 program system_traps
   use check, only: report, require
   use tribo

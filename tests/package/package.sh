@@ -34,7 +34,8 @@ consume() {
     done
 }
 
-# bits <folder> <cmake option>...: builds the core and the consumer bits.c without a warning; what that prints is in <folder>/bits.
+# bits <folder> <cmake option>...: builds the core and the consumer bits.c without a warning; what that prints is in
+# <folder>/bits.
 bits() {
     folder=$1
     shift
@@ -64,8 +65,8 @@ compile() {
     esac
 }
 
-# page <page>: writes its programs, a block in C to user.c, the next one to user2.c, one in Fortran to user.f if it begins in column
-# 7, else to user.f90; its CMake to user.cmake, and its lines for the shell to lines.
+# page <page>: writes its programs, a block in C to user.c, the next one to user2.c, one in Fortran to user.f if it begins in
+# column 7, else to user.f90; its CMake to user.cmake, and its lines for the shell to lines.
 page() {
     rm -f user2.c
     awk 'BEGIN { name["c"] = "user.c"; name["cmake"] = "user.cmake"; name["sh"] = "lines" }
@@ -96,13 +97,14 @@ rests() {
     }
 }
 
-# follow <folder>: compiles and runs the programs in README.md and fortran/README.md by the lines beside them, as they stand there but
-# for the folder that stands for any, and the version of the compiler.
+# follow <folder>: compiles and runs the programs in README.md and fortran/README.md by the lines beside them, as they stand there
+# but for the folder that stands for any, and the version of the compiler.
 follow() {
     modules=$(basename "$1"/include/tribo/gfortran-*[0-9])
     for page in fortran/README.md README.md; do
         page $page
-        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e '/^cc /p' -e '/^gfortran /p' lines >compile.lines
+        sed -n -e "s,/opt/tribo,$1,g" -e "s,tribo/gfortran-12,tribo/$modules,g" -e '/^cc /p' -e '/^gfortran /p' lines \
+            >compile.lines
         while read -r compile; do
             rm -f a.out
             eval "$compile"
@@ -164,8 +166,8 @@ tool) # The tool runs where it was installed to, and finds the libraries and its
     grep -q '^damper.free 11\.456' "$out/values-damper.txt"
     ;;
 
-pages) # usual | elsewhere: installs as README.md says, into /usr/local as root or elsewhere, and follows the pages. The rest of the
-    # environment is bare, as a newcomer's.
+pages) # usual | elsewhere: installs as README.md says, into /usr/local as root or elsewhere, and follows the pages. The rest of
+    # the environment is bare, as a newcomer's.
     mkdir -p "$WORK/clone"
     cd "$WORK/clone"
     for entry in "$ROOT"/*; do
@@ -213,8 +215,8 @@ subdirectory) # <cmake option>... <consumer>...
     consume subdirectory -DTRIBO_SOURCE="$ROOT" -DCONSUMERS="${consumers#;}" "$@"
     ;;
 
-foreign) # "<compiler> <flag>..." <cmake option>...: the core for another machine or C library gives the same bits as here. Skipped
-    # where the compiler, or what runs its programs, is missing.
+foreign) # "<compiler> <flag>..." <cmake option>...: the core for another machine or C library gives the same bits as here.
+    # Skipped where the compiler, or what runs its programs, is missing.
     compiler=${1%% *} flags=${1#"${1%% *}"}
     shift
     mkdir -p "$WORK"

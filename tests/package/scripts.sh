@@ -37,7 +37,8 @@ command_stub id 'echo 1000'
 command_stub sudo 'exit 1'
 command_stub apt-get "echo \"\$*\" >>'$stub/apt'"
 try "$stub:$PATH" present absent-1 absent-2
-[ $status = 1 ] && says 'as root' && says 'apt-get install -y --no-install-recommends absent-1 absent-2' || fail "does not name what is missing"
+[ $status = 1 ] && says 'as root' && says 'apt-get install -y --no-install-recommends absent-1 absent-2' ||
+        fail "does not name what is missing"
 ! says 'went on' && [ ! -e "$stub/apt" ] || fail "does not stop without root"
 
 command_stub id 'echo 0'

@@ -37,8 +37,8 @@ void problem_forces(tribo_context *c, const struct problem *p, double step, cons
 /* f with limits that have gone by part of dlimit. */
 void problem_forces_of_limits(tribo_context *c, const struct problem *p, double part, const double *dlimit, double *f);
 
-/* The same contacts in other tangential directions: turn [n][n] takes each that is two directions wide (wide[i] of those that begin
- * at i) by an angle of its own, and p's limits become the same in both of its directions. */
+/* The same contacts in other tangential directions: turn [n][n] takes each that is two directions wide (wide[i] of those that
+ * begin at i) by an angle of its own, and p's limits become the same in both of its directions. */
 struct problem problem_turn(struct random *g, struct problem *p, const int *wide, double *turn);
 
 /* turn f = got. */

@@ -51,7 +51,8 @@ static tribo_system *block(size_t contacts, double limit, double belt)
     return sys;
 }
 
-/* Stick-slip: contacts.md. Starts with the speed of the belt. Redundant contacts break away together. */
+/* A block on a belt sticks and slips, for times and by an amplitude that are known in closed form. Starts with the speed of the
+ * belt. Redundant contacts break away together. */
 TEST(belt)
 {
     const int method = _i % 2;

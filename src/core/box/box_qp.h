@@ -154,7 +154,7 @@ double tribo_factor_rebuild(struct box_qp *p, size_t *where);
 /* step = R^-1 step over the independent ones. Entries of the others are left alone. */
 void tribo_factor_solve(const struct box_qp *p, double *step);
 
-/* Whether so many changes, towards so many free contacts, cost more than a new factor. */
+/* Whether that number of changes, towards that number of free contacts, costs more than a new factor. */
 int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free);
 
 void tribo_dense_add(struct box_qp *p, size_t i);
@@ -270,7 +270,7 @@ void tribo_box_downhill(struct box_qp *p);
 /* Returns where the step takes x. */
 double tribo_box_moved(struct box_qp *p, size_t i);
 
-/* Whether the gradient of the independent x is at most so many times its rounding. */
+/* Whether the gradient of the independent x is at most noises times its rounding. */
 static inline int tribo_box_settled(const struct box_qp *p, double noises)
 {
     for (size_t k = 0; k < p->sets->rank; k++) {

@@ -11,7 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "../../common/real.h"
 #include "../../common/simd.h"
 
 void tribo_supernodes_find(struct sparse *s, const size_t *parent)

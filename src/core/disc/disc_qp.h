@@ -47,7 +47,7 @@ struct disc_qp {
     size_t redundant;     /* its null vectors */
 };
 
-/* Room for so many directions; 1, or 0 if out of memory. */
+/* Room for up to most directions; 1, or 0 if out of memory. */
 int tribo_disc_create(struct disc_qp *p, size_t most);
 void tribo_disc_free(struct disc_qp *p);
 

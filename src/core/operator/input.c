@@ -315,7 +315,7 @@ static int find_column(const tribo_context *ctx, const struct solver *m, size_t 
     return TRIBO_OK;
 }
 
-/* Appends the entries of a column to a, which has room for so many and gets more. */
+/* Appends the entries of column j to a, whose room grows where that is too little. */
 static int append_column(struct csr *a, size_t *room, size_t j, const double *column)
 {
     const size_t n = a->n;
