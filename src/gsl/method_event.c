@@ -186,7 +186,8 @@ static void set_planar_guards(struct event *e)
         const struct planar_contact *p = &m->plane->contact[k];
         const struct planar_line *line = &e->planar.line[k];
         const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
-        const double *square = e->planar.square + k, limit = greater(p->limit[0], p->limit[1]);
+        double *square = e->planar.square + k;
+        const double limit = greater(p->limit[0], p->limit[1]);
         struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
         g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
         g.allowance = moves ? 0.0 : greater(m->allowance[p->at], m->allowance[p->at + 1]);
