@@ -97,12 +97,13 @@ static struct sample watch(const struct event *e, const struct guard *g, double 
 }
 
 /* The two sides of what is watched follow one another, and are computed once. */
-static void look(void *motion, double tau, size_t guards, struct guard *guard)
+static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
     const struct event *e = motion;
     const void *seen = NULL;
     struct sample v = {0.0, 0.0, 0.0};
-    for (struct guard *g = guard; g < guard + guards; g++) {
+    for (size_t k = 0; k < guards; k++) {
+        struct guard *g = guard[k];
         if (g->side != 0.0 && seen != g->output) {
             seen = g->output;
             v = watch(e, g, tau);

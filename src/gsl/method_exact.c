@@ -106,11 +106,12 @@ static struct sample course_at(const struct modal_motion *x, struct course *c, d
     return c->at;
 }
 
-static void look(void *motion, double tau, size_t guards, struct guard *guard)
+static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
     struct modal_motion *x = &((struct exact *)motion)->motion;
     tribo_modal_motion_go(x, tau);
-    for (struct guard *g = guard; g < guard + guards; g++) {
+    for (size_t k = 0; k < guards; k++) {
+        struct guard *g = guard[k];
         struct sample v = {0.0, 0.0, 0.0}, limit = v;
         if (g->output) {
             v = course_at(x, g->output, tau);
