@@ -19,14 +19,17 @@
 
 /* The third derivative of a sum of exponentials and sines is at most the root of its size times its bend (Cauchy, Schwarz), that
  * of powers of time at most 4.5 times this and 60 size/longest^3. So over this part of a first length it changes what two
- * derivatives tell by a thousandth of noise. */
-#define SHORT 2.5e-7
+ * derivatives tell by a tenth of noise. */
+#define SHORT 2e-6
 
 /* Within this part of an interval two derivatives foresee a zero to a thousandth: from just before it, it is in their reach. */
 #define SOON 0.1
 
-/* A zero of a quintic that may differ from the guard by this part of its noise there is that of the guard. */
+/* A zero of a quintic which differs there from the guard by no more than this part of its noise is that of the guard. */
 #define FINE 0.1
+
+/* After an interval of which not all is known, this part of it is tried. */
+#define SHRINK 0.7
 
 /* A guard that begins at zero may stray from there by this part of its size. */
 #define ALLOWED 1e-14
@@ -133,15 +136,18 @@ static double first_length(const struct first_zero *s, double longest)
     return lesser(sixth_root(300.0 * ratio), longest);
 }
 
-/* Whether one is not positive at the middle sample, or is below zero there. */
-static int some_not_positive(const struct first_zero *s)
+/* What is known of an interval at the end of which the middle samples are: that no guard is below zero in it, or that one is not
+ * positive there, or neither. */
+enum { CLEAR, FALLS, IN_DOUBT };
+
+static int judge(struct first_zero *s, double h)
 {
     for (size_t k = 0; k < s->watching; k++) {
         if (!(s->watched[k]->middle.g > noise(s->watched[k]))) {
-            return 1;
+            return FALLS;
         }
     }
-    return 0;
+    return all_positive(s, h) ? CLEAR : IN_DOUBT;
 }
 
 static int some_below(const struct first_zero *s)
@@ -280,25 +286,28 @@ static const struct guard *narrow(struct first_zero *s, double *a, double *b, do
     return NULL;
 }
 
-/* Whether a look in the middle of an interval of length h from a on tells that no guard is below zero in it. */
-static int divide(struct first_zero *s, double a, double h)
+/* Looks in the middle of an interval [a, *b] in doubt. Returns what is known of it then, or of its first half, up to which *b comes
+ * back. */
+static int divide(struct first_zero *s, double a, double *b)
 {
-    const double half = 0.5 * h;
-    watch_doubtful(s, h);
+    const double half = 0.5 * (*b - a);
+    watch_doubtful(s, *b - a);
     sample(s, a + half);
-    if (some_not_positive(s) || !all_positive(s, half)) {
-        return 0;
-    }
-    for (size_t k = 0; k < s->watching; k++) {
+    const int first = judge(s, half);
+    int clear = first == CLEAR;
+    for (size_t k = 0; clear && k < s->watching; k++) {
         struct guard *g = s->watched[k];
-        if (!positive(g, &g->middle, &g->right, half, half)) {
-            return 0;
-        }
+        clear = positive(g, &g->middle, &g->right, half, half);
+    }
+    if (!clear) {
+        *b = a + half;
+        keep_right(s);
+        return first == FALLS ? FALLS : IN_DOUBT;
     }
     for (size_t k = 0; k < s->guards; k++) {
         s->guard[k].middle = s->guard[k].right;
     }
-    return 1;
+    return CLEAR;
 }
 
 /* Finds bounds from a on, and the reach that they leave to two derivatives. Returns a length of interval to try. */
@@ -381,21 +390,24 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         double b = next_look(s, a, h, longest);
         watch_all(s);
         sample(s, b);
-        const int falls = some_not_positive(s);
-        int clear = !falls && all_positive(s, b - a);
-        if (!clear) {
+        int known = judge(s, b - a);
+        if (known != CLEAR) {
             keep_right(s);
-            *first = falls ? narrow(s, &a, &b, when) : NULL;
-            clear = !falls && divide(s, a, b - a);
-            watch_all(s);
         }
-        if (clear) {
+        if (known == IN_DOUBT) {
+            known = divide(s, a, &b);
+        }
+        if (known == FALLS) {
+            *first = narrow(s, &a, &b, when);
+        }
+        if (known == CLEAR) {
+            watch_all(s);
             h = greater(h, longer(s, b - a));
             a = b;
             keep_left(s);
             *first = foresee(s, a, h, longest, when);
         } else if (!*first) {
-            h = 0.5 * (b - a);
+            h = SHRINK * (b - a);
             if (a + h > a && a + h < b && h > s->resolution) {
                 if (a > begun) {
                     come_to(s, a);
