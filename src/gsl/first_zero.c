@@ -56,7 +56,7 @@ static double sixth_root(double x)
 
 static void watch_all(struct first_zero *s)
 {
-    for (size_t k = 0; k < s->guards; k++) {
+    for (size_t k = 0; s->watching < s->guards && k < s->guards; k++) {
         s->watched[k] = &s->guard[k];
     }
     s->watching = s->guards;
@@ -65,15 +65,15 @@ static void watch_all(struct first_zero *s)
 /* Middle samples of those watched. */
 static void sample(struct first_zero *s, double tau)
 {
-    double not_finite = 0.0;
+    double all = 0.0;
     s->look(s->motion, tau, s->watching, s->watched);
     for (size_t k = 0; k < s->watching; k++) {
         struct sample *m = &s->watched[k]->middle;
-        not_finite += (m->g - m->g) + (m->d - m->d) + (m->e - m->e);
+        all += 0.0 * (m->g + m->d + m->e);
         m->g += s->watched[k]->allowance;
     }
     s->looks++;
-    s->lost |= not_finite != 0.0 || s->looks >= MOST_LOOKS;
+    s->lost |= all != 0.0 || s->looks >= MOST_LOOKS;
 }
 
 /* Whether a guard cannot be below zero between two samples of it, h apart, until so much after the first one; if so, notes how
@@ -335,6 +335,7 @@ static double next_look(const struct first_zero *s, double a, double h, double l
 /* Looks at the start: one that is zero there, or NULL. */
 static const struct guard *start(struct first_zero *s)
 {
+    s->watching = 0;
     watch_all(s);
     for (size_t k = 0; k < s->guards; k++) {
         struct guard *g = &s->guard[k];

@@ -41,7 +41,7 @@ struct modal {
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
     unsigned char *drifts; /* [modes] omega = 0 and no damping */
 
-    size_t exponents, terms;   /* terms: with harmonics, and zeros after them */
+    size_t exponents, terms;   /* terms: with harmonics, and zeros after them, at least TRIBO_TERMS */
     double *lr, *li, *size;    /* [terms] lambda (of harmonics: i Omega), and its absolute value, */
     double *sixth;             /* and this to the power of six */
     double *ar, *ai, *br, *bi; /* z = a eta + b eta';  [exponents], or [exponents][modes] if coupled */
@@ -60,6 +60,7 @@ struct modal {
 
     size_t outputs, sliding; /* the first ones are of sliding contacts, the others of held ones */
     struct output *output;
+    int swings;             /* no exponent decays or grows */
     double fastest;         /* largest |lambda| */
     double quickest, decay; /* the largest of these and the frequencies of harmonics; the largest decay rate */
     void *memory;           /* all arrays */

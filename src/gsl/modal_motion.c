@@ -154,8 +154,9 @@ TRIBO_SIMD_OF_FOUR static void grow_little(size_t n, const double *restrict lr, 
 /* e^{lambda tau} of all terms. */
 static void grow(const struct modal *h, double tau, double *re, double *im)
 {
-    tribo_cos_sin_all(tau, h->terms, h->li, re, im);
-    for (size_t p = 0; p < h->exponents; p++) {
+    const int near = fabs(tau) * h->quickest <= COS_SIN_NEAR;
+    (near ? tribo_cos_sin_near : tribo_cos_sin_all)(tau, h->terms, h->li, re, im);
+    for (size_t p = 0; !h->swings && p < h->exponents; p++) {
         if (h->lr[p] != 0.0) {
             const double size = exp(h->lr[p] * tau);
             re[p] *= size;
@@ -187,35 +188,49 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
     }
 }
 
-/* sum += Re(a b) */
-static inline void add_products(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                                const double *restrict bi, double *restrict sum)
+/* to = Re(a b) */
+static inline void real_products(const double *restrict ar, const double *restrict ai, const double *restrict br,
+                                 const double *restrict bi, double *restrict to)
 {
     for (size_t k = 0; k < T; k++) {
-        sum[k] += ar[k] * br[k] - ai[k] * bi[k];
+        to[k] = ar[k] * br[k] - ai[k] * bi[k];
+    }
+}
+
+/* to += Re(a b) */
+static inline void add_products(const double *restrict ar, const double *restrict ai, const double *restrict br,
+                                const double *restrict bi, double *restrict to)
+{
+    for (size_t k = 0; k < T; k++) {
+        to[k] += ar[k] * br[k] - ai[k] * bi[k];
     }
 }
 
 /* Re(c w), Re(c w'), Re(c w'') into sum [3][T], which is not of this function, or compilers would take several lots of terms at
  * once, and sort them first. */
-TRIBO_SIMD_OF_FOUR static void add_terms(const struct modal_motion *x, const struct output *c, double *restrict sum)
+TRIBO_SIMD_OF_FOUR static void sum_terms(const struct modal_motion *x, const struct output *c, double *restrict sum)
 {
     const size_t n = x->h->terms;
-    for (size_t p = 0; p < n; p += T) {
+    real_products(c->cr, c->ci, x->wr, x->wi, sum);
+    real_products(c->cr, c->ci, x->w1r, x->w1i, sum + T);
+    real_products(c->cr, c->ci, x->w2r, x->w2i, sum + 2 * T);
+    for (size_t p = T; p < n; p += T) {
         add_products(c->cr + p, c->ci + p, x->wr + p, x->wi + p, sum);
         add_products(c->cr + p, c->ci + p, x->w1r + p, x->w1i + p, sum + T);
         add_products(c->cr + p, c->ci + p, x->w2r + p, x->w2i + p, sum + 2 * T);
     }
 }
 
+static double total(const double *sum)
+{
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
 struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, const struct line *line)
 {
-    double v[3], sum[3][T] = {{0.0}};
-    add_terms(x, w, sum[0]);
-    for (size_t order = 0; order < 3; order++) {
-        v[order] = (sum[order][0] + sum[order][2]) + (sum[order][1] + sum[order][3]);
-    }
-    return (struct sample){v[0] + (line->start + line->ramp * x->tau), v[1] + line->ramp, v[2]};
+    double sum[3 * T];
+    sum_terms(x, w, sum);
+    return (struct sample){total(sum) + (line->start + line->ramp * x->tau), total(sum + T) + line->ramp, total(sum + 2 * T)};
 }
 
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
@@ -398,7 +413,7 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
     x->sin_0 = x->zi + e;
     x->cos_t = x->wr + e;
     x->sin_t = x->wi + e;
-    for (size_t p = e; p < h->terms; p++) {
+    for (size_t p = e + h->harmonics; p < h->terms; p++) {
         x->zr[p] = x->zi[p] = x->growth[p] = x->growth6[p] = 0.0;
     }
     tribo_system_set_time(sys, x->t0);

@@ -275,7 +275,8 @@ static int find_terms(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t p = h->exponents;
-    h->terms = (p + h->harmonics + TRIBO_TERMS - 1) / TRIBO_TERMS * TRIBO_TERMS;
+    const size_t count = p + h->harmonics > 0 ? p + h->harmonics : 1;
+    h->terms = (count + TRIBO_TERMS - 1) / TRIBO_TERMS * TRIBO_TERMS;
     double *x = tribo_modal_keep(b, 4 * h->terms);
     if (!x) {
         return 0;
@@ -289,7 +290,9 @@ static int find_terms(struct modal_build *b)
     for (size_t s = 0; s < h->harmonics; s++) {
         h->li[p + s] = h->forcing[s].omega;
     }
+    h->swings = 1;
     for (size_t k = 0; k < h->terms; k++) {
+        h->swings &= h->lr[k] == 0.0;
         h->size[k] = hypot(h->lr[k], h->li[k]);
         h->sixth[k] = sixth_power(h->size[k]);
     }
