@@ -404,6 +404,17 @@ static const double *find_steady_forces(const struct modal_motion *x, const trib
     return sys->limit_harmonics ? steady : x->contacts->force;
 }
 
+/* The terms from begin to end of which these are real and imaginary parts, or others. */
+static inline void fill(size_t begin, size_t end, double real, double *restrict re, double *restrict im)
+{
+    for (size_t p = begin; p < end; p += T) {
+        for (size_t k = 0; k < T; k++) {
+            re[p + k] = real;
+            im[p + k] = 0.0;
+        }
+    }
+}
+
 /* The harmonics at t0, those of limits as many times as the force of their contact follows them; and the nothing after them. */
 static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
@@ -413,9 +424,8 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
     x->sin_0 = x->zi + e;
     x->cos_t = x->wr + e;
     x->sin_t = x->wi + e;
-    for (size_t p = e + h->harmonics; p < h->terms; p++) {
-        x->zr[p] = x->zi[p] = x->growth[p] = x->growth6[p] = 0.0;
-    }
+    fill(h->terms - T, h->terms, 0.0, x->zr, x->zi);
+    fill(h->terms - T, h->terms, 0.0, x->growth, x->growth6);
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
@@ -518,10 +528,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
 static void rest_at_start(struct modal_motion *x)
 {
     const struct modal *h = x->h;
-    for (size_t p = 0; p < h->terms; p++) {
-        x->far_r[p] = 1.0;
-        x->far_i[p] = 0.0;
-    }
+    fill(0, h->terms, 1.0, x->far_r, x->far_i);
     x->far = x->tau = 0.0;
     move(h->terms, h->lr, h->li, x->far_r, x->zr, x->wr, x->room);
 }
