@@ -108,19 +108,19 @@ static struct sample course_at(const struct modal_motion *x, struct course *c, d
 
 static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
+    static const struct sample none = {0.0, 0.0, 0.0};
     struct modal_motion *x = &((struct exact *)motion)->motion;
     tribo_modal_motion_go(x, tau);
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
-        struct sample v = {0.0, 0.0, 0.0}, limit = v;
-        if (g->output) {
-            v = course_at(x, g->output, tau);
-        }
+        const struct sample v = g->output ? course_at(x, g->output, tau) : none;
+        g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
         if (g->limit != 0.0) {
-            limit = tribo_modal_motion_limit(x, g->contact);
+            const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+            g->middle.g += g->limit * limit.g;
+            g->middle.d += g->limit * limit.d;
+            g->middle.e += g->limit * limit.e;
         }
-        g->middle = (struct sample){g->offset + g->side * v.g + g->limit * limit.g, g->side * v.d + g->limit * limit.d,
-                                    g->side * v.e + g->limit * limit.e};
     }
 }
 

@@ -322,6 +322,19 @@ static void amplitudes(struct modal_motion *x)
     }
 }
 
+/* What a harmonic of the base adds to velocities u, and has added to dq: the contacts that hold are carried along. */
+static void carry(struct modal_motion *x, size_t s, double *u)
+{
+    const struct modal *h = x->h;
+    const double omega = h->forcing[s].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
+    const double c = x->cos_t[s], d = x->sin_t[s], dc = by * (c - x->cos_0[s]), dd = by * (d - x->sin_0[s]);
+    for (size_t i = 0; i < h->moving; i++) {
+        const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
+        u[h->dof[i]] += yr * c - yi * d;
+        x->dq[h->dof[i]] += yr * dd + yi * dc;
+    }
+}
+
 void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to)
 {
     const tribo_system *sys = x->sys;
@@ -334,14 +347,13 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
         memcpy(to, from, (2 * n + 1) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
-        double dq = h->y0[i] * tau, u = h->y0[i];
-        for (size_t s = 0; s < h->given; s++) {
-            const double omega = h->forcing[s].omega, yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
-            u += yr * x->cos_t[s] - yi * x->sin_t[s];
-            dq += omega != 0.0 ? (yr * (x->sin_t[s] - x->sin_0[s]) + yi * (x->cos_t[s] - x->cos_0[s])) / omega : 0.0;
+        x->dq[h->dof[i]] = h->y0[i] * tau;
+        to[n + h->dof[i]] = h->y0[i];
+    }
+    for (size_t s = 0; s < h->given; s++) {
+        if (sys->harmonic[s].drives == DRIVES_BASE) {
+            carry(x, s, to + n);
         }
-        x->dq[h->dof[i]] = dq;
-        to[n + h->dof[i]] = u;
     }
     for (size_t k = 0; k < h->modes; k++) {
         const double *phi = h->phi + k * h->moving, change = x->now[k];

@@ -42,10 +42,16 @@ static int create_output(struct modal_build *b, struct output *w, size_t contact
     return 1;
 }
 
+/* |re + i im|, of which one is often zero. */
+static double absolute(double re, double im)
+{
+    return re == 0.0 ? fabs(im) : im == 0.0 ? fabs(re) : hypot(re, im);
+}
+
 static void finish_output(const struct modal_build *b, struct output *w)
 {
     for (size_t p = 0; p < b->h->terms; p++) {
-        w->size[p] = hypot(w->cr[p], w->ci[p]);
+        w->size[p] = absolute(w->cr[p], w->ci[p]);
     }
 }
 
@@ -293,7 +299,7 @@ static int find_terms(struct modal_build *b)
     h->swings = 1;
     for (size_t k = 0; k < h->terms; k++) {
         h->swings &= h->lr[k] == 0.0;
-        h->size[k] = hypot(h->lr[k], h->li[k]);
+        h->size[k] = absolute(h->lr[k], h->li[k]);
         h->sixth[k] = sixth_power(h->size[k]);
     }
     return 1;
