@@ -313,10 +313,10 @@ static void amplitudes(struct modal_motion *x)
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
+        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s], dc = ct - x->cos_0[s], ds = st - x->sin_0[s];
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
+            x->now[k] += xr * dc - xi * ds;
             x->work[k] -= omega * (xr * st + xi * ct);
         }
     }
