@@ -31,6 +31,9 @@
 /* After an interval of which not all is known, this part of it is tried. */
 #define SHRINK 0.7
 
+/* An interval may be so many times longer if it ends where a zero is expected. */
+#define STRETCH 1.5
+
 /* A guard that begins at zero may stray from there by this part of its size. */
 #define ALLOWED 1e-14
 
@@ -325,11 +328,11 @@ static double longer(const struct first_zero *s, double h)
     return (SHORT * h < 0.5 * s->reach ? 1.7 : 1.15) * h;
 }
 
-/* Where to look next: not further than to where a zero is expected, which is then in reach. */
+/* Where to look next: where a zero is expected, which is then in reach, unless it is much further than h. */
 static double next_look(const struct first_zero *s, double a, double h, double longest)
 {
-    const double b = lesser(a + h, longest), before = s->expected - 0.5 * s->reach;
-    return before > a && before < b ? before : b;
+    const double before = s->expected - 0.5 * s->reach;
+    return before > a && before < lesser(a + STRETCH * h, longest) ? before : lesser(a + h, longest);
 }
 
 /* Looks at the start: one that is zero there, or NULL. */
