@@ -328,11 +328,11 @@ static double longer(const struct first_zero *s, double h)
     return (SHORT * h < 0.5 * s->reach ? 1.7 : 1.15) * h;
 }
 
-/* Where to look next: where a zero is expected, which is then in reach, unless it is much further than h. */
-static double next_look(const struct first_zero *s, double a, double h, double longest)
+/* Where to look next: where a zero is expected, which is then in reach, unless that is after more than `most`. */
+static double next_look(const struct first_zero *s, double a, double h, double most, double longest)
 {
     const double before = s->expected - 0.5 * s->reach;
-    return before > a && before < lesser(a + STRETCH * h, longest) ? before : lesser(a + h, longest);
+    return before > a && before < lesser(a + most, longest) ? before : lesser(a + h, longest);
 }
 
 /* Looks at the start: one that is zero there, or NULL. */
@@ -380,7 +380,7 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         return 1;
     }
     s->looks = 0;
-    double a = 0.0, better, h = find_bounds(s, a, longest, &better);
+    double a = 0.0, better, h = find_bounds(s, a, longest, &better), most = STRETCH * h;
     s->lost = (double)MOST_LOOKS * h < HOPELESS * lesser(better, longest);
     *first = start(s);
     while (!*first && a < longest) {
@@ -391,7 +391,7 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
             h = greater(h, find_bounds(s, a, longest, &better));
         }
         const double begun = a;
-        double b = next_look(s, a, h, longest);
+        double b = next_look(s, a, h, most, longest);
         watch_all(s);
         sample(s, b);
         int known = judge(s, b - a);
@@ -407,11 +407,12 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
         if (known == CLEAR) {
             watch_all(s);
             h = greater(h, longer(s, b - a));
+            most = STRETCH * h;
             a = b;
             keep_left(s);
             *first = foresee(s, a, h, longest, when);
         } else if (!*first) {
-            h = SHRINK * (b - a);
+            most = h = SHRINK * (b - a);
             if (a + h > a && a + h < b && h > s->resolution) {
                 if (a > begun) {
                     come_to(s, a);

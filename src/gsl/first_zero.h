@@ -15,12 +15,12 @@ struct guard {
     size_t contact;
     int slides;
     double side;
-    void *output;       /* the motion's own */
-    double offset;      /* the motion's own */
-    double limit;               /* how many times the limit, as far as that is the motion's own, is in it */
-    double size, bend;          /* bounds, from where the search is on, of its parts together and of its sixth derivative */
-    double allowance;           /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
-    double lowest;              /* below zero by this much at most, so far */
+    void *output;      /* the motion's own */
+    double offset;     /* the motion's own */
+    double limit;      /* how many times the limit, as far as that is the motion's own, is in it */
+    double size, bend; /* bounds, from where the search is on, of its parts together and of its sixth derivative */
+    double allowance;  /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
+    double lowest;     /* below zero by this much at most, so far */
     struct sample left, right, middle; /* with the allowance added */
 };
 

@@ -313,7 +313,8 @@ static void amplitudes(struct modal_motion *x)
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s], dc = ct - x->cos_0[s], ds = st - x->sin_0[s];
+        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s], dc = ct - x->cos_0[s],
+                     ds = st - x->sin_0[s];
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
             x->now[k] += xr * dc - xi * ds;
@@ -536,13 +537,16 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     }
 }
 
-/* At t0 nothing has moved. */
+/* At t0 nothing has moved; but what resonates pulls already. */
 static void rest_at_start(struct modal_motion *x)
 {
     const struct modal *h = x->h;
     fill(0, h->terms, 1.0, x->far_r, x->far_i);
     x->far = x->tau = 0.0;
     move(h->terms, h->lr, h->li, x->far_r, x->zr, x->wr, x->room);
+    if (h->any_resonant) {
+        add_resonances(x, 0.0);
+    }
 }
 
 /* The part of the velocities of sliding contacts that is linear in time. */
