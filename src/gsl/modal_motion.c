@@ -1,15 +1,11 @@
 #include "modal_motion.h"
-#include "cos_sin.h"
 #include "divided.h"
+#include "modal_terms.h"
 #include "../common/real.h"
-#include "../common/simd.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Over a time this short, in terms of the fastest term, four terms of a series are all of it. */
-#define CLOSE 1e-3
 
 /* Over a time this short, in terms of its exponent, an exponential moves by a small part of itself: by how much is not found as a
  * difference, which would lose digits. */
@@ -106,131 +102,20 @@ static void add_resonances(struct modal_motion *x, double tau)
     }
 }
 
-/* Terms are done side by side, since one sum would wait for itself; and in places that are known apart, or compilers would not
- * do so. */
-enum { T = TRIBO_TERMS };
-
-/* Products a b. */
-static inline void multiply(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                            const double *restrict bi, double *restrict re, double *restrict im)
-{
-    for (size_t k = 0; k < T; k++) {
-        re[k] = ar[k] * br[k] - ai[k] * bi[k];
-        im[k] = ar[k] * bi[k] + ai[k] * br[k];
-    }
-}
-
-/* w = e z, w' and w'' of n terms, each [2] a distance apart. */
-TRIBO_SIMD_OF_FOUR static void move(size_t n, const double *restrict lr, const double *restrict li, const double *restrict e,
-                                    const double *restrict z, double *restrict w, size_t apart)
-{
-    for (size_t p = 0; p < n; p += T) {
-        double *w1 = w + 2 * apart, *w2 = w + 4 * apart;
-        multiply(e + p, e + apart + p, z + p, z + apart + p, w + p, w + apart + p);
-        multiply(lr + p, li + p, w + p, w + apart + p, w1 + p, w1 + apart + p);
-        multiply(lr + p, li + p, w1 + p, w1 + apart + p, w2 + p, w2 + apart + p);
-    }
-}
-
-/* e = far e^{lambda delta}, lambda delta being small. */
-TRIBO_SIMD_OF_FOUR static void grow_little(size_t n, const double *restrict lr, const double *restrict li, double delta,
-                                           const double *restrict far, double *restrict e, size_t apart)
-{
-    for (size_t p = 0; p < n; p += T) {
-        double re[T], im[T];
-        for (size_t k = 0; k < T; k++) {
-            const double x = lr[p + k] * delta, y = li[p + k] * delta;
-            double r = 1.0 + 0.25 * x, i = 0.25 * y;
-            const double r3 = 1.0 + (x * r - y * i) * (1 / 3.), i3 = (x * i + y * r) * (1 / 3.);
-            r = 1.0 + 0.5 * (x * r3 - y * i3);
-            i = 0.5 * (x * i3 + y * r3);
-            re[k] = 1.0 + (x * r - y * i);
-            im[k] = x * i + y * r;
-        }
-        multiply(re, im, far + p, far + apart + p, e + p, e + apart + p);
-    }
-}
-
-/* e^{lambda tau} of all terms. */
-static void grow(const struct modal *h, double tau, double *re, double *im)
-{
-    const int near = fabs(tau) * h->quickest <= COS_SIN_NEAR;
-    (near ? tribo_cos_sin_near : tribo_cos_sin_all)(tau, h->terms, h->li, re, im);
-    for (size_t p = 0; !h->swings && p < h->exponents; p++) {
-        if (h->lr[p] != 0.0) {
-            const double size = exp(h->lr[p] * tau);
-            re[p] *= size;
-            im[p] *= size;
-        }
-    }
-}
-
-/* From t0, or, if that is close, from where it was. Far ones from t0, since what rounding leaves of a late time must not tremble
- * within a phase. */
 void tribo_modal_motion_go(struct modal_motion *x, double tau)
 {
-    const struct modal *h = x->h;
-    const double *e = x->far_r;
-    if (tau == x->tau) {
-        return;
+    if (tau != x->tau) {
+        tribo_modal_terms_go(x, tau);
+        if (x->h->any_resonant) {
+            add_resonances(x, tau);
+        }
     }
-    x->tau = tau;
-    if (fabs(tau - x->far) * h->quickest < CLOSE) {
-        grow_little(h->terms, h->lr, h->li, tau - x->far, x->far_r, x->er, x->room);
-        e = x->er;
-    } else {
-        x->far = tau;
-        grow(h, tau, x->far_r, x->far_i);
-    }
-    move(h->terms, h->lr, h->li, e, x->zr, x->wr, x->room);
-    if (h->any_resonant) {
-        add_resonances(x, tau);
-    }
-}
-
-/* to = Re(a b) */
-static inline void real_products(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                                 const double *restrict bi, double *restrict to)
-{
-    for (size_t k = 0; k < T; k++) {
-        to[k] = ar[k] * br[k] - ai[k] * bi[k];
-    }
-}
-
-/* to += Re(a b) */
-static inline void add_products(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                                const double *restrict bi, double *restrict to)
-{
-    for (size_t k = 0; k < T; k++) {
-        to[k] += ar[k] * br[k] - ai[k] * bi[k];
-    }
-}
-
-/* Re(c w), Re(c w'), Re(c w'') into sum [3][T], which is not of this function, or compilers would take several lots of terms at
- * once, and sort them first. */
-TRIBO_SIMD_OF_FOUR static void sum_terms(const struct modal_motion *x, const struct output *c, double *restrict sum)
-{
-    const size_t n = x->h->terms;
-    real_products(c->cr, c->ci, x->wr, x->wi, sum);
-    real_products(c->cr, c->ci, x->w1r, x->w1i, sum + T);
-    real_products(c->cr, c->ci, x->w2r, x->w2i, sum + 2 * T);
-    for (size_t p = T; p < n; p += T) {
-        add_products(c->cr + p, c->ci + p, x->wr + p, x->wi + p, sum);
-        add_products(c->cr + p, c->ci + p, x->w1r + p, x->w1i + p, sum + T);
-        add_products(c->cr + p, c->ci + p, x->w2r + p, x->w2i + p, sum + 2 * T);
-    }
-}
-
-static double total(const double *sum)
-{
-    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
 struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, const struct line *line)
 {
-    double sum[3 * T];
-    sum_terms(x, w, sum);
-    return (struct sample){total(sum) + (line->start + line->ramp * x->tau), total(sum + T) + line->ramp, total(sum + 2 * T)};
+    const struct sample v = tribo_modal_terms_sum(x, w);
+    return (struct sample){v.g + (line->start + line->ramp * x->tau), v.d + line->ramp, v.e};
 }
 
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
@@ -417,17 +302,6 @@ static const double *find_steady_forces(const struct modal_motion *x, const trib
     return sys->limit_harmonics ? steady : x->contacts->force;
 }
 
-/* The terms from begin to end of which these are real and imaginary parts, or others. */
-static inline void fill(size_t begin, size_t end, double real, double *restrict re, double *restrict im)
-{
-    for (size_t p = begin; p < end; p += T) {
-        for (size_t k = 0; k < T; k++) {
-            re[p + k] = real;
-            im[p + k] = 0.0;
-        }
-    }
-}
-
 /* The harmonics at t0, those of limits as many times as the force of their contact follows them; and the nothing after them. */
 static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
@@ -437,8 +311,7 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
     x->sin_0 = x->zi + e;
     x->cos_t = x->wr + e;
     x->sin_t = x->wi + e;
-    fill(h->terms - T, h->terms, 0.0, x->zr, x->zi);
-    fill(h->terms - T, h->terms, 0.0, x->growth, x->growth6);
+    tribo_modal_terms_clear(x);
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
@@ -540,11 +413,8 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
 /* At t0 nothing has moved; but what resonates pulls already. */
 static void rest_at_start(struct modal_motion *x)
 {
-    const struct modal *h = x->h;
-    fill(0, h->terms, 1.0, x->far_r, x->far_i);
-    x->far = x->tau = 0.0;
-    move(h->terms, h->lr, h->li, x->far_r, x->zr, x->wr, x->room);
-    if (h->any_resonant) {
+    tribo_modal_terms_rest(x);
+    if (x->h->any_resonant) {
         add_resonances(x, 0.0);
     }
 }
