@@ -115,7 +115,7 @@ static int all_positive_until(struct first_zero *s, double until, double h)
     return 1;
 }
 
-/* From now on looks at those only of which left and right samples do not tell that they are positive between. */
+/* From now on looks at those only of which left and right samples, h apart, do not tell that they are positive between. */
 static void watch_doubtful(struct first_zero *s, double h)
 {
     size_t left = 0;
@@ -354,7 +354,7 @@ static const struct guard *start(struct first_zero *s)
     return NULL;
 }
 
-/* All left samples are at a again, which some of them have not come to. */
+/* All left samples are at a again, to which only those of guards in doubt have come. */
 static void come_to(struct first_zero *s, double a)
 {
     watch_all(s);
@@ -362,8 +362,8 @@ static void come_to(struct first_zero *s, double a)
     keep_left(s);
 }
 
-/* Looks on in an interval [a, b] of which not all is known. Nothing is left to divide where it is too short: there a guard that is
- * below zero falls, and what else is in doubt is rounding. */
+/* In an interval of length h that is too short to be divided: the guard that falls there, if one is below zero at its end. What
+ * else is in doubt is rounding. */
 static const struct guard *fallen(struct first_zero *s, double h)
 {
     double at;
@@ -420,10 +420,11 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
                 continue;
             }
             *first = fallen(s, b - a);
-            *when = b;
-            a = b;
-            come_to(s, b);
-            h = greater(h, s->resolution);
+            *when = a = b;
+            if (!*first) {
+                come_to(s, a);
+                h = greater(h, s->resolution);
+            }
         }
     }
     return 1;
