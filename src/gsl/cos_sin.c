@@ -43,8 +43,7 @@ static inline double sine_near_0(struct twofold x)
     return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * tail);
 }
 
-/* |omega t| <= COS_SIN_NEAR. */
-TRIBO_SIMD static void near_all(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
+TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
 {
     for (size_t k = 0; k < n; k++) {
         const struct twofold angle = twofold_product(omega, t[k]);
@@ -80,7 +79,7 @@ void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, doubl
     for (size_t k = 0, run; k < n; k += run) {
         run = near_run(omega, n - k, t + k);
         if (run) {
-            near_all(omega, run, t + k, c + k, s + k);
+            tribo_cos_sin_near(omega, run, t + k, c + k, s + k);
         } else {
             tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
             run = 1;

@@ -14,6 +14,9 @@ void tribo_turn(double angle, double *cosine, double *sine);
 #define COS_SIN_NEAR 1e6
 void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s);
 
+/* The same where all |omega t| are known to be at most COS_SIN_NEAR. */
+void tribo_cos_sin_near(double omega, size_t n, const double *t, double *c, double *s);
+
 /* The same at t + low, where low is what rounding left of a time, by the functions of math.h. */
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s);
 

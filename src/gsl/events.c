@@ -39,7 +39,8 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
     e->next = malloc(tribo_system_dimension(sys) * sizeof *e->next);
     e->lasted = calloc(SLIPS * sys->ncontact + 1, sizeof *e->lasted);
     e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
-    if (!e->next || !e->lasted || !e->search.guard) {
+    e->search.watched = malloc((3 * sys->ncontact + 1) * sizeof *e->search.watched);
+    if (!e->next || !e->lasted || !e->search.guard || !e->search.watched) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
                                  plural(sys->ncontact));
     }
@@ -56,6 +57,7 @@ void tribo_events_free(struct events *e)
     free(e->next);
     free(e->lasted);
     free(e->search.guard);
+    free(e->search.watched);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- guards */

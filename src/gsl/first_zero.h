@@ -15,12 +15,12 @@ struct guard {
     size_t contact;
     int slides;
     double side;
-    const void *output;         /* the motion's own */
-    double offset, start, ramp; /* the motion's own */
-    double limit;               /* how many times the limit, as far as that is the motion's own, is in it */
-    double size, bend;          /* bounds, from where the search is on, of its parts together and of its sixth derivative */
-    double allowance;           /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
-    double lowest;              /* below zero by this much at most, so far */
+    void *output;      /* the motion's own */
+    double offset;     /* the motion's own */
+    double limit;      /* how many times the limit, as far as that is the motion's own, is in it */
+    double size, bend; /* bounds, from where the search is on, of its parts together and of its sixth derivative */
+    double allowance;  /* it begins at zero: so far below counts as zero until it has left zero, and then no more */
+    double lowest;     /* below zero by this much at most, so far */
     struct sample left, right, middle; /* with the allowance added */
 };
 
@@ -28,8 +28,10 @@ struct guard {
 struct first_zero {
     size_t guards;
     struct guard *guard;
-    /* Sets middle of all guards to what they are at tau. */
-    void (*look)(void *motion, double tau, size_t guards, struct guard *guard);
+    struct guard **watched; /* [guards] workspace: those that may be below zero before the next one is known to be, */
+    size_t watching;        /* so many */
+    /* Sets middle of guards to what they are at tau. */
+    void (*look)(void *motion, double tau, size_t guards, struct guard *const *guard);
     /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */
     double (*bound)(void *motion, double tau);
     void *motion;

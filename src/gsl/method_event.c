@@ -96,12 +96,13 @@ static struct sample watch(const struct event *e, const struct guard *g, double 
 }
 
 /* The two sides of what is watched follow one another, and are computed once. */
-static void look(void *motion, double tau, size_t guards, struct guard *guard)
+static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
     const struct event *e = motion;
     const void *seen = NULL;
     struct sample v = {0.0, 0.0, 0.0};
-    for (struct guard *g = guard; g < guard + guards; g++) {
+    for (size_t k = 0; k < guards; k++) {
+        struct guard *g = guard[k];
         if (g->side != 0.0 && seen != g->output) {
             seen = g->output;
             v = watch(e, g, tau);
@@ -185,7 +186,8 @@ static void set_planar_guards(struct event *e)
         const struct planar_contact *p = &m->plane->contact[k];
         const struct planar_line *line = &e->planar.line[k];
         const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
-        const double *square = e->planar.square + k, limit = greater(p->limit[0], p->limit[1]);
+        double *square = e->planar.square + k;
+        const double limit = greater(p->limit[0], p->limit[1]);
         struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
         g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
         g.allowance = moves ? 0.0 : greater(m->allowance[p->at], m->allowance[p->at + 1]);

@@ -14,13 +14,23 @@
 /* Decompositions are dropped when they take more than this. */
 #define CACHE_BYTES ((size_t)256 << 20)
 
+/* An output in a phase. */
+struct course {
+    const struct output *output;
+    struct line line;
+    double size, bend; /* bounds, as of a guard */
+    double tau;        /* when it is that */
+    struct sample at;
+};
+
 struct exact {
     tribo_system *sys;
     struct events events;
     struct modal **held;
     size_t helds, room, bytes, revision;
 
-    struct modal_motion motion; /* of the phase */
+    struct modal_motion motion; /* of the phase, */
+    struct course *course;      /* [ncontact] and of the outputs that guards are of */
     double *work;               /* of transitions, allocated when one is first asked for */
     size_t columns;             /* for so many */
 };
@@ -86,22 +96,25 @@ static int find_held(struct exact *x, const struct modal **found)
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */
 
-/* All guards at tau. The two sides of an output follow one another, and are computed once. */
-static void look(void *motion, double tau, size_t guards, struct guard *guard)
+/* The two sides of an output are computed at once. */
+static struct sample course_at(const struct modal_motion *x, struct course *c, double tau)
 {
+    if (c->tau != tau) {
+        c->tau = tau;
+        c->at = tribo_modal_motion_output(x, c->output, &c->line);
+    }
+    return c->at;
+}
+
+static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
+{
+    static const struct sample none = {0.0, 0.0, 0.0};
     struct modal_motion *x = &((struct exact *)motion)->motion;
-    const void *seen = NULL;
-    struct sample v = {0.0, 0.0, 0.0};
     tribo_modal_motion_go(x, tau);
-    for (struct guard *g = guard; g < guard + guards; g++) {
-        g->middle = (struct sample){g->offset, 0.0, 0.0};
-        if (g->output && g->output != seen) {
-            seen = g->output;
-            v = tribo_modal_motion_output(x, g->output, g->start, g->ramp);
-        }
-        if (g->output) {
-            g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
-        }
+    for (size_t k = 0; k < guards; k++) {
+        struct guard *g = guard[k];
+        const struct sample v = g->output ? course_at(x, g->output, tau) : none;
+        g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
         if (g->limit != 0.0) {
             const struct sample limit = tribo_modal_motion_limit(x, g->contact);
             g->middle.g += g->limit * limit.g;
@@ -116,35 +129,39 @@ static void move_to(void *motion, double tau, const double *from, double *to)
     tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
 }
 
-/* Bounds of a guard from tau on, as far as they come from exponents and harmonics. */
+/* Bounds of a course, as far as they come from terms. */
+static void bound_course(const struct exact *x, struct course *c)
+{
+    tribo_modal_motion_output_bounds(&x->motion, c->output, &c->size, &c->bend);
+    c->size += fabs(c->line.start) + fabs(c->line.ramp) * x->motion.longest;
+}
+
+/* Of a guard, its course being bounded. */
 static void bound_guard(const struct exact *x, struct guard *g)
 {
-    g->size = g->bend = 0.0;
-    if (g->output) {
-        tribo_modal_motion_output_bounds(&x->motion, g->output, &g->size, &g->bend);
-    }
+    const struct course *c = g->output;
+    g->size = fabs(g->offset) + (c ? c->size : 0.0);
+    g->bend = c ? c->bend : 0.0;
     if (g->limit != 0.0) {
         g->size += fabs(g->limit) * x->events.stick_slip.swing[g->contact];
         g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
     }
-    g->size += fabs(g->offset) + fabs(g->start) + fabs(g->ramp) * x->motion.longest;
 }
 
 /* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on.
- */
+ * Those of courses from the start on come with them. */
 static double bound(void *motion, double tau)
 {
     struct exact *x = motion;
     const double decay = x->motion.h->decay;
-    tribo_modal_motion_bound(&x->motion, tau);
-    for (size_t k = 0; k < x->events.search.guards; k++) {
-        struct guard *g = &x->events.search.guard[k];
-        if (k > 0 && g->output && g->output == g[-1].output) {
-            g->size = g[-1].size;
-            g->bend = g[-1].bend;
-        } else {
-            bound_guard(x, g);
+    if (tau > 0.0) {
+        tribo_modal_motion_bound(&x->motion, tau);
+        for (size_t k = 0; k < x->motion.h->outputs; k++) {
+            bound_course(x, &x->course[k]);
         }
+    }
+    for (size_t k = 0; k < x->events.search.guards; k++) {
+        bound_guard(x, &x->events.search.guard[k]);
     }
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
 }
@@ -155,36 +172,17 @@ static double steady_limit(const struct exact *x, size_t i)
     return x->events.stick_slip.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.limit[i];
 }
 
-/* Guards of an output. now is its value at t0. */
-static void add_guards(struct exact *x, const struct output *w, int of_velocity, double now)
+/* Guards of a contact at rest, unless it is far from its limit for the whole phase. */
+static void add_stick_guards(struct exact *x, struct course *c)
 {
-    const size_t i = w->contact;
+    const size_t i = c->output->contact;
     const struct stick_slip *m = &x->events.stick_slip;
-    struct guard g = {.output = w, .contact = i};
-    tribo_modal_motion_line(&x->motion, w, of_velocity, now, &g.start, &g.ramp);
-    if (of_velocity && m->slip[i] == 0) {
-        tribo_events_guard_part(&x->events, i, &g);
-    } else if (of_velocity) {
-        tribo_events_guard_slip(&x->events, i, &g);
-    } else {
-        bound_guard(x, &g);
-        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
-        g.limit = m->swing[i] > 0.0 ? ratio : 0.0;
-        g.offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
-        /* nothing to guard if it is far from the limit for the whole phase */
-        if (g.size >= g.offset - ratio * m->swing[i]) {
-            tribo_events_guard_stick(&x->events, i, &g);
-        }
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = ratio * m->swing[i];
+    const double offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
+    const struct guard g = {.output = c, .limit = swing > 0.0 ? ratio : 0.0, .offset = offset};
+    if (c->size >= offset - swing) {
+        tribo_events_guard_stick(&x->events, i, &g);
     }
-}
-
-/* The velocity v of an open contact is not guarded, but when it touches down its rounding counts. */
-static void note_size(struct exact *x, const struct output *w, double v)
-{
-    struct guard g = {.output = w, .contact = w->contact};
-    tribo_modal_motion_line(&x->motion, w, 1, v, &g.start, &g.ramp);
-    bound_guard(x, &g);
-    x->events.stick_slip.seen[w->contact] = g.size;
 }
 
 /* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
@@ -198,23 +196,36 @@ static void add_limit_guard(struct exact *x, size_t i)
     }
 }
 
+/* Of output k. The velocity of an open contact is not guarded, but when it touches down its rounding counts. */
+static void add_guards(struct exact *x, size_t k, const double *y)
+{
+    struct course *c = &x->course[k];
+    struct stick_slip *m = &x->events.stick_slip;
+    const int of_velocity = k < x->motion.h->sliding;
+    c->output = &x->motion.h->output[k];
+    const size_t i = c->output->contact;
+    const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+    c->tau = 0.0;
+    c->at.g = of_velocity ? v : m->force[i];
+    c->line = tribo_modal_motion_line(&x->motion, c->output, of_velocity, &c->at);
+    bound_course(x, c);
+    if (m->slip[i] == 2) {
+        m->seen[i] = c->size;
+    } else if (!of_velocity) {
+        add_stick_guards(x, c);
+    } else {
+        const struct guard g = {.output = c};
+        (m->slip[i] == 0 ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
+    }
+}
+
 static void set_guards(struct exact *x, const double *y)
 {
-    const struct modal *h = x->motion.h;
-    const struct stick_slip *m = &x->events.stick_slip;
     tribo_events_clear_guards(&x->events);
-    for (size_t k = 0; k < h->outputs; k++) {
-        const struct output *w = &h->output[k];
-        const size_t i = w->contact;
-        const int of_velocity = k < h->sliding;
-        const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
-        if (m->slip[i] == 2) {
-            note_size(x, w, v);
-        } else {
-            add_guards(x, w, of_velocity, of_velocity ? v : m->force[i]);
-        }
+    for (size_t k = 0; k < x->motion.h->outputs; k++) {
+        add_guards(x, k, y);
     }
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {
         add_limit_guard(x, i);
     }
 }
@@ -227,9 +238,8 @@ static int begin(void *motion, double t, const double *y, double *reach)
     if (status) {
         return status;
     }
-    if (!tribo_modal_motion_reserve(&x->motion, h->harmonics)) {
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", h->harmonics,
-                                 plural(h->harmonics));
+    if (!tribo_modal_motion_reserve(&x->motion, h->terms)) {
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu exponents and harmonics", h->terms);
     }
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     set_guards(x, y);
@@ -266,6 +276,7 @@ static void destroy(tribo_driver *drv)
         free(x->held);
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
+        free(x->course);
         free(x->work);
         free(x);
     }
@@ -299,6 +310,7 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
+    x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
     const int status = tribo_events_create(&x->events, drv);
     if (status) {
         return status;
@@ -311,7 +323,7 @@ static int create(tribo_driver *drv)
     x->events.transition = transition;
     x->events.signal = combine;
     x->events.shows_between = 1;
-    if (!tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
+    if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     return TRIBO_OK;

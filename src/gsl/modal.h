@@ -10,16 +10,15 @@
 
 #include "system.h"
 
-/* What a contact's velocity (sliding) or force (held) is made of: Re(sum c_p z_p) + Re(sum response_h e^{i Omega_h t}) + constant
- * + ramp t. */
+/* So many terms side by side: their number is a multiple of this. */
+enum { TRIBO_TERMS = 4 };
+
+/* What a contact's velocity (sliding) or force (held) is made of: Re(sum c_p z_p) + constant + ramp t. The terms z_p are of the
+ * exponents, and then of the harmonics: z = e^{i Omega t}, c = response. */
 struct output {
     size_t contact;
-    double *cr, *ci;               /* [exponents] c_p, */
-    double *c1r, *c1i, *c2r, *c2i; /* and c_p lambda_p, c_p lambda_p^2 */
-    double *size;                  /* [exponents] |c_p| */
-    double *bend;                  /* [exponents] |c_p| |lambda_p|^6 */
-    double *rr, *ri;               /* [harmonics] response */
-    double *wave, *wave_bend;      /* [harmonics] its size, and that of its sixth derivative */
+    double *cr, *ci, *size; /* [terms] c_p, |c_p| */
+    double *rr, *ri, *wave; /* [harmonics] those of them that are of harmonics */
     double *on_rate; /* [modes] held contacts: what a constant eta' adds to the ramp; sliding ones: what a constant eta'' does */
     double ramp;     /* from belts of constant speed */
 };
@@ -42,8 +41,9 @@ struct modal {
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
     unsigned char *drifts; /* [modes] omega = 0 and no damping */
 
-    size_t exponents;
-    double *lr, *li, *size;    /* lambda, and its absolute value */
+    size_t exponents, terms;   /* terms: with harmonics, and zeros after them, at least TRIBO_TERMS */
+    double *lr, *li, *size;    /* [terms] lambda (of harmonics: i Omega), and its absolute value, */
+    double *sixth;             /* and this to the power of six */
     double *ar, *ai, *br, *bi; /* z = a eta + b eta';  [exponents], or [exponents][modes] if coupled */
     double *rr, *ri;           /* eta = Re(r z), coupled only: [modes][exponents] */
     size_t *owner;             /* the mode of an exponent, if not coupled (then r = 1) */
@@ -60,6 +60,7 @@ struct modal {
 
     size_t outputs, sliding; /* the first ones are of sliding contacts, the others of held ones */
     struct output *output;
+    int swings;             /* no exponent decays or grows */
     double fastest;         /* largest |lambda| */
     double quickest, decay; /* the largest of these and the frequencies of harmonics; the largest decay rate */
     void *memory;           /* all arrays */

@@ -51,7 +51,7 @@ static double complex mean_exponent(const struct modal_motion *x, const struct t
 static double integral(const struct modal_motion *x, const struct tide *w, size_t i, const struct output *v)
 {
     const struct modal *h = x->h;
-    double sum = creal(x->start[i] * mean(w, 0.0) + x->ramp[i] * w->tau * mean_2(w, 0.0, 0.0));
+    double sum = creal(x->line[i].start * mean(w, 0.0) + x->line[i].ramp * w->tau * mean_2(w, 0.0, 0.0));
     for (size_t p = 0; p < h->exponents; p++) {
         if (v->size[p] > 0.0) {
             sum += creal((v->cr[p] + v->ci[p] * I) * mean_exponent(x, w, p));

@@ -1,15 +1,11 @@
 #include "modal_motion.h"
-#include "cos_sin.h"
 #include "divided.h"
+#include "modal_terms.h"
 #include "../common/real.h"
-#include "../common/simd.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Over a time this short, in terms of the fastest exponent, three terms of a series are all of it. */
-#define CLOSE 1e-6
 
 /* Over a time this short, in terms of its exponent, an exponential moves by a small part of itself: by how much is not found as a
  * difference, which would lose digits. */
@@ -20,22 +16,17 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     const size_t n = sys->ndof;
     double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
                                 &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
-    double **const by_exponent[] = {&x->zr, &x->zi, &x->wr, &x->wi, &x->w1i, &x->w2r, &x->w2i, &x->growth, &x->growth6};
-    const size_t modes = sizeof by_mode / sizeof *by_mode, exponents = sizeof by_exponent / sizeof *by_exponent;
-    double *work = malloc(((modes + 2 * exponents) * n + 3 * sys->ncontact + 1) * sizeof *work);
-    if (!work) {
-        return 0;
-    }
-    for (size_t k = 0; k < modes; k++) {
+    const size_t modes = sizeof by_mode / sizeof *by_mode;
+    double *work = malloc((modes * n + sys->ncontact + 1) * sizeof *work);
+    x->line = malloc((sys->ncontact + 1) * sizeof *x->line);
+    for (size_t k = 0; work && k < modes; k++) {
         *by_mode[k] = work + k * n;
     }
-    for (size_t k = 0; k < exponents; k++) {
-        *by_exponent[k] = work + (modes + 2 * k) * n;
+    if (!work || !x->line) {
+        return 0;
     }
     x->sys = sys;
-    x->start = work + (modes + 2 * exponents) * n;
-    x->ramp = x->start + sys->ncontact;
-    x->room_for_steady = x->ramp + sys->ncontact;
+    x->room_for_steady = work + modes * n;
     x->contacts = contacts;
     return 1;
 }
@@ -43,25 +34,27 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
 void tribo_modal_motion_free(struct modal_motion *x)
 {
     free(x->eta);
-    free(x->cos_t);
+    free(x->line);
+    free(x->zr);
 }
 
-int tribo_modal_motion_reserve(struct modal_motion *x, size_t harmonics)
+int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms)
 {
-    const size_t room = harmonics + 1;
-    if (room <= x->room) {
+    double **const by_term[] = {&x->zr,    &x->zi,    &x->wr, &x->wi, &x->w1r,    &x->w1i,     &x->w2r, &x->w2i,
+                                &x->far_r, &x->far_i, &x->er, &x->ei, &x->growth, &x->growth6, &x->side};
+    const size_t count = sizeof by_term / sizeof *by_term, room = 2 * terms + 1;
+    if (terms < x->room) {
         return 1;
     }
-    double *more = realloc(x->cos_t, 5 * room * sizeof *more);
+    double *more = malloc(count * room * sizeof *more);
     if (!more) {
         return 0;
     }
+    free(x->zr);
     x->room = room;
-    x->cos_t = more;
-    x->sin_t = more + room;
-    x->cos_0 = more + 2 * room;
-    x->sin_0 = more + 3 * room;
-    x->side = more + 4 * room;
+    for (size_t k = 0; k < count; k++) {
+        *by_term[k] = more + k * room;
+    }
     return 1;
 }
 
@@ -86,23 +79,21 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
         zr += br * ur - bi * ui;
         zi += br * ui + bi * ur;
     }
-    const double yr = zi / nu, yi = -zr / nu; /* times -i/nu */
-    const double ct = x->cos_t[s], st = x->sin_t[s];
-    const double force = -(gr * ct - gi * st) / nu, rate = omega * (gr * st + gi * ct) / nu;
-    x->wr[p] += yr;
-    x->wi[p] += yi;
-    x->w1i[p] += force;
-    x->w2r[p] -= nu * force;
-    x->w2i[p] += h->lr[p] * force + rate;
+    const double ct = x->cos_t[s], st = x->sin_t[s], rate = omega * (gr * st + gi * ct) / nu;
+    const double complex lambda = h->lr[p] + h->li[p] * I, z = zi / nu - zr / nu * I;
+    const double complex z1 = lambda * z - (gr * ct - gi * st) / nu * I, z2 = lambda * z1 + rate * I;
+    x->wr[p] += creal(z);
+    x->wi[p] += cimag(z);
+    x->w1r[p] += creal(z1);
+    x->w1i[p] += cimag(z1);
+    x->w2r[p] += creal(z2);
+    x->w2i[p] += cimag(z2);
 }
 
-static void for_resonances(struct modal_motion *x, double tau)
+static void add_resonances(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
-    for (size_t p = 0; p < h->exponents && h->any_resonant; p++) {
-        x->w1i[p] = x->w2r[p] = x->w2i[p] = 0.0;
-    }
-    for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
+    for (size_t s = 0; s < h->harmonics; s++) {
         for (size_t p = 0; p < h->exponents; p++) {
             if (h->resonant[s * h->modes + h->owner[p]]) {
                 add_resonance(x, p, s, tau);
@@ -111,145 +102,20 @@ static void for_resonances(struct modal_motion *x, double tau)
     }
 }
 
-/* e^{lambda delta} of an exponent. */
-static void grow(const struct modal *h, size_t p, double delta, double *re, double *im)
-{
-    tribo_turn(h->li[p] * delta, re, im);
-    if (h->lr[p] != 0.0) {
-        const double size = exp(h->lr[p] * delta);
-        *re *= size;
-        *im *= size;
-    }
-}
-
-/* The same where |lambda delta| is tiny. */
-static void grow_little(const struct modal *h, size_t p, double delta, double *re, double *im)
-{
-    const double x = h->lr[p] * delta, y = h->li[p] * delta;
-    *re = 1.0 + x + 0.5 * (x * x - y * y);
-    *im = y + x * y;
-}
-
-/* Turns the harmonics that were at `from` (cosines, sines) on by a time, a little one or not; those of single contacts are what
- * the system's are. */
-static void turn_harmonics(struct modal_motion *x, const double *const *from, double delta, int little)
-{
-    const struct modal *h = x->h;
-    for (size_t s = 0; s < h->given; s++) {
-        const double angle = h->forcing[s].omega * delta, ct = from[0][s], st = from[1][s];
-        double c = 1.0 - 0.5 * angle * angle, d = angle;
-        if (!little) {
-            tribo_turn(angle, &c, &d);
-        }
-        x->cos_t[s] = c * ct - d * st;
-        x->sin_t[s] = d * ct + c * st;
-    }
-    for (size_t s = h->given; s < h->harmonics; s++) {
-        x->cos_t[s] = x->side[s] * x->cos_t[h->forcing[s].harmonic];
-        x->sin_t[s] = x->side[s] * x->sin_t[h->forcing[s].harmonic];
-    }
-}
-
-/* Lets exponentials that were at `from` (real, imaginary parts) grow for a time, a little one or not. */
-static void grow_all(struct modal_motion *x, const double *const *from, double delta, int little)
-{
-    const struct modal *h = x->h;
-    for (size_t p = 0; p < h->exponents; p++) {
-        const double zr = from[0][p], zi = from[1][p];
-        double er, ei;
-        if (little) {
-            grow_little(h, p, delta, &er, &ei);
-        } else {
-            grow(h, p, delta, &er, &ei);
-        }
-        x->wr[p] = zr * er - zi * ei;
-        x->wi[p] = zr * ei + zi * er;
-    }
-}
-
-/* From t0, or, if that is close, from where it was. Far ones from t0, since what rounding leaves of a late time must not tremble
- * within a phase. */
 void tribo_modal_motion_go(struct modal_motion *x, double tau)
 {
-    const double delta = tau - x->tau;
-    const int little = fabs(delta) * x->h->quickest < CLOSE && !x->h->any_resonant, on = little && !x->unmoved;
-    const double *const wave[] = {on ? x->cos_t : x->cos_0, on ? x->sin_t : x->sin_0};
-    const double *const z[] = {on ? x->wr : x->zr, on ? x->wi : x->zi};
-    turn_harmonics(x, wave, little ? delta : tau, little);
-    grow_all(x, z, little ? delta : tau, little);
-    for_resonances(x, tau);
-    x->tau = tau;
-    x->unmoved = 0;
-}
-
-enum { LANES = 4 }; /* side by side, since one sum would wait for itself */
-
-/* sum [LANES] += a r - b i */
-static inline void add_products(const double *restrict a, const double *restrict r, const double *restrict b,
-                                const double *restrict i, double *restrict sum)
-{
-    for (size_t k = 0; k < LANES; k++) {
-        sum[k] += a[k] * r[k] - b[k] * i[k];
+    if (tau != x->tau) {
+        tribo_modal_terms_go(x, tau);
+        if (x->h->any_resonant) {
+            add_resonances(x, tau);
+        }
     }
 }
 
-/* What n exponentials make of an output, as far as they fill lanes: Re(c w), Re(c lambda w), Re(c lambda^2 w) into sum
- * [3][LANES], which is not of this function, or compilers would take several lots of lanes at once, and sort them first. Returns
- * how many are done. */
-TRIBO_SIMD_OF_FOUR static size_t add_lanes(const struct output *c, size_t n, const double *restrict wr, const double *restrict wi,
-                                           double *restrict sum)
+struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, const struct line *line)
 {
-    size_t p = 0;
-    for (; p + LANES <= n; p += LANES) {
-        add_products(c->cr + p, wr + p, c->ci + p, wi + p, sum);
-        add_products(c->c1r + p, wr + p, c->c1i + p, wi + p, sum + LANES);
-        add_products(c->c2r + p, wr + p, c->c2i + p, wi + p, sum + 2 * LANES);
-    }
-    return p;
-}
-
-/* The same into v, v', v''. */
-static size_t add_most(const struct output *c, size_t n, const double *wr, const double *wi, double *v)
-{
-    double sum[3][LANES] = {{0.0}};
-    const size_t done = add_lanes(c, n, wr, wi, sum[0]);
-    for (size_t order = 0; order < 3; order++) {
-        v[order] += (sum[order][0] + sum[order][2]) + (sum[order][1] + sum[order][3]);
-    }
-    return done;
-}
-
-/* What resonances add to the derivatives of an output. */
-static void add_resonances(const struct modal_motion *x, const struct output *w, double *v)
-{
-    for (size_t p = 0; p < x->h->exponents; p++) {
-        v[1] -= w->ci[p] * x->w1i[p];
-        v[2] += w->cr[p] * x->w2r[p] - w->ci[p] * x->w2i[p];
-    }
-}
-
-struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, double start, double ramp)
-{
-    const struct modal *h = x->h;
-    const size_t n = h->exponents;
-    double v[] = {start + ramp * x->tau, ramp, 0.0};
-    for (size_t p = n < LANES ? 0 : add_most(w, n, x->wr, x->wi, v); p < n; p++) {
-        const double wr = x->wr[p], wi = x->wi[p];
-        v[0] += w->cr[p] * wr - w->ci[p] * wi;
-        v[1] += w->c1r[p] * wr - w->c1i[p] * wi;
-        v[2] += w->c2r[p] * wr - w->c2i[p] * wi;
-    }
-    if (h->any_resonant) {
-        add_resonances(x, w, v);
-    }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
-        const double re = w->rr[s] * ct - w->ri[s] * st, im = w->rr[s] * st + w->ri[s] * ct;
-        v[0] += re;
-        v[1] -= omega * im;
-        v[2] -= omega * omega * re;
-    }
-    return (struct sample){v[0], v[1], v[2]};
+    const struct sample v = tribo_modal_terms_sum(x, w);
+    return (struct sample){v.g + (line->start + line->ramp * x->tau), v.d + line->ramp, v.e};
 }
 
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
@@ -277,36 +143,25 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
     return sum;
 }
 
-void tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, double now, double *start,
-                             double *ramp)
+struct line tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, struct sample *at)
 {
-    const struct modal *h = x->h;
-    *start = now;
-    *ramp = w->ramp;
-    for (size_t p = 0; p < h->exponents; p++) {
-        *start -= w->cr[p] * x->zr[p] - w->ci[p] * x->zi[p];
-    }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        *start -= w->rr[s] * x->cos_0[s] - w->ri[s] * x->sin_0[s];
-    }
-    for (size_t k = 0; k < h->modes; k++) {
-        *ramp += w->on_rate[k] * (of_velocity ? x->acc[k] : x->vel[k]);
-    }
+    const struct line none = {0.0, 0.0};
+    const struct sample terms = tribo_modal_motion_output(x, w, &none);
+    const double ramp = w->ramp + tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->modes);
+    at->d = terms.d + ramp;
+    at->e = terms.e;
+    return (struct line){at->g - terms.g, ramp};
 }
 
 void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend)
 {
-    const struct modal *h = x->h;
-    *size = *bend = 0.0;
-    for (size_t p = 0; p < h->exponents; p++) {
-        *bend += w->bend[p] * x->growth6[p];
-        *size += w->size[p] * x->growth[p];
+    double most = 0.0, most6 = 0.0;
+    for (size_t p = 0; p < x->h->terms; p++) {
+        most += w->size[p] * x->growth[p];
+        most6 += w->size[p] * x->growth6[p];
     }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double side = fabs(x->side[s]);
-        *size += side * w->wave[s];
-        *bend += side * w->wave_bend[s];
-    }
+    *size = most;
+    *bend = most6;
 }
 
 /* By how much the exponential p has moved from t0 to where go() was. With a load far above its frequency the little by which it
@@ -332,23 +187,37 @@ static void amplitudes(struct modal_motion *x)
     }
     for (size_t p = 0; h->owner && p < e; p++) {
         x->now[h->owner[p]] += creal(moved(x, p));
-        x->work[h->owner[p]] += h->lr[p] * x->wr[p] - h->li[p] * x->wi[p];
+        x->work[h->owner[p]] += x->w1r[p];
     }
     for (size_t p = 0; !h->owner && p < e; p++) {
         const double complex z = moved(x, p);
         for (size_t k = 0; k < m; k++) {
             const double rr = h->rr[k * e + p], ri = h->ri[k * e + p];
             x->now[k] += rr * creal(z) - ri * cimag(z);
-            x->work[k] += rr * (h->lr[p] * x->wr[p] - h->li[p] * x->wi[p]) - ri * (h->lr[p] * x->wi[p] + h->li[p] * x->wr[p]);
+            x->work[k] += rr * x->w1r[p] - ri * x->w1i[p];
         }
     }
     for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s];
+        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s], dc = ct - x->cos_0[s],
+                     ds = st - x->sin_0[s];
         for (size_t k = 0; k < m; k++) {
             const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
+            x->now[k] += xr * dc - xi * ds;
             x->work[k] -= omega * (xr * st + xi * ct);
         }
+    }
+}
+
+/* What a harmonic of the base adds to velocities u, and has added to dq: the contacts that hold are carried along. */
+static void carry(struct modal_motion *x, size_t s, double *u)
+{
+    const struct modal *h = x->h;
+    const double omega = h->forcing[s].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
+    const double c = x->cos_t[s], d = x->sin_t[s], dc = by * (c - x->cos_0[s]), dd = by * (d - x->sin_0[s]);
+    for (size_t i = 0; i < h->moving; i++) {
+        const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
+        u[h->dof[i]] += yr * c - yi * d;
+        x->dq[h->dof[i]] += yr * dd + yi * dc;
     }
 }
 
@@ -364,14 +233,13 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
         memcpy(to, from, (2 * n + 1) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
-        double dq = h->y0[i] * tau, u = h->y0[i];
-        for (size_t s = 0; s < h->given; s++) {
-            const double omega = h->forcing[s].omega, yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
-            u += yr * x->cos_t[s] - yi * x->sin_t[s];
-            dq += omega != 0.0 ? (yr * (x->sin_t[s] - x->sin_0[s]) + yi * (x->cos_t[s] - x->cos_0[s])) / omega : 0.0;
+        x->dq[h->dof[i]] = h->y0[i] * tau;
+        to[n + h->dof[i]] = h->y0[i];
+    }
+    for (size_t s = 0; s < h->given; s++) {
+        if (sys->harmonic[s].drives == DRIVES_BASE) {
+            carry(x, s, to + n);
         }
-        x->dq[h->dof[i]] = dq;
-        to[n + h->dof[i]] = u;
     }
     for (size_t k = 0; k < h->modes; k++) {
         const double *phi = h->phi + k * h->moving, change = x->now[k];
@@ -434,10 +302,16 @@ static const double *find_steady_forces(const struct modal_motion *x, const trib
     return sys->limit_harmonics ? steady : x->contacts->force;
 }
 
-/* The harmonics at t0, those of limits as many times as the force of their contact follows them. */
+/* The harmonics at t0, those of limits as many times as the force of their contact follows them; and the nothing after them. */
 static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
     const struct modal *h = x->h;
+    const size_t e = h->exponents;
+    x->cos_0 = x->zr + e;
+    x->sin_0 = x->zi + e;
+    x->cos_t = x->wr + e;
+    x->sin_t = x->wi + e;
+    tribo_modal_terms_clear(x);
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
         const struct forcing *f = &h->forcing[s];
@@ -446,6 +320,8 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
         tribo_system_turn(sys, f->harmonic);
         x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
         x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
+        x->growth[e + s] = fabs(side);
+        x->growth6[e + s] = h->sixth[e + s] * fabs(side);
     }
 }
 
@@ -534,14 +410,23 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     }
 }
 
+/* At t0 nothing has moved; but what resonates pulls already. */
+static void rest_at_start(struct modal_motion *x)
+{
+    tribo_modal_terms_rest(x);
+    if (x->h->any_resonant) {
+        add_resonances(x, 0.0);
+    }
+}
+
 /* The part of the velocities of sliding contacts that is linear in time. */
 static void find_lines(struct modal_motion *x, const double *y)
 {
     const struct stick_slip *m = x->contacts;
     for (size_t o = 0; o < x->h->sliding; o++) {
         const size_t i = x->h->output[o].contact;
-        const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
-        tribo_modal_motion_line(x, &x->h->output[o], 1, v, &x->start[i], &x->ramp[i]);
+        struct sample at = {m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y), 0.0, 0.0};
+        x->line[i] = tribo_modal_motion_line(x, &x->h->output[o], 1, &at);
     }
 }
 
@@ -558,16 +443,16 @@ void tribo_modal_motion_bound(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double lambda = h->size[p], time = h->lr[p] > 0.0 ? x->longest : tau;
+        const double time = h->lr[p] > 0.0 ? x->longest : tau;
         x->growth[p] = hypot(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
-        x->growth6[p] = x->growth[p];
+        x->growth6[p] = h->sixth[p] * x->growth[p];
         for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
             const size_t at = s * h->modes + h->owner[p];
             if (h->resonant[at]) {
                 const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
                 /* the frequencies are within RESONANCE of each other */
                 x->growth[p] += force * x->longest;
-                x->growth6[p] += force * (x->longest + 6.1 / lambda);
+                x->growth6[p] += h->sixth[p] * force * (x->longest + 6.1 / h->size[p]);
             }
         }
     }
@@ -578,12 +463,11 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
     x->h = h;
     x->t0 = t;
     split_motion(x, x->sys, y);
+    rest_at_start(x);
+    x->longest = longest_phase(h, longest);
+    tribo_modal_motion_bound(x, 0.0);
     if (x->sys->limit_harmonics) {
         find_lines(x, y);
     }
-    x->tau = 0.0;
-    x->unmoved = 1;
-    x->longest = longest_phase(h, longest);
-    tribo_modal_motion_bound(x, 0.0);
     return x->longest;
 }

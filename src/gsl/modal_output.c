@@ -32,36 +32,26 @@ static void output_mode(const struct modal_build *b, struct output *w, size_t k,
 
 static int create_output(struct modal_build *b, struct output *w, size_t contact)
 {
-    const size_t p = b->h->exponents, s = b->h->harmonics, m = b->h->modes;
-    double *x = tribo_modal_keep(b, 8 * p + 4 * s + m);
+    const size_t terms = b->h->terms, p = b->h->exponents;
+    double *x = tribo_modal_keep(b, 3 * terms + b->h->modes);
     if (!x) {
         return 0;
     }
-    double *y = x + 8 * p;
-    *w = (struct output){contact,   x, x + p, x + 2 * p, x + 3 * p, x + 4 * p, x + 5 * p, x + 6 * p,
-                         x + 7 * p, y, y + s, y + 2 * s, y + 3 * s, y + 4 * s, 0.0};
+    double *cr = x, *ci = x + terms, *size = x + 2 * terms;
+    *w = (struct output){contact, cr, ci, size, cr + p, ci + p, size + p, x + 3 * terms, 0.0};
     return 1;
 }
 
-static double sixth_power(double x)
+/* |re + i im|, of which one is often zero. */
+static double absolute(double re, double im)
 {
-    return x * x * x * x * x * x;
+    return re == 0.0 ? fabs(im) : im == 0.0 ? fabs(re) : hypot(re, im);
 }
 
 static void finish_output(const struct modal_build *b, struct output *w)
 {
-    for (size_t p = 0; p < b->h->exponents; p++) {
-        const double lr = b->h->lr[p], li = b->h->li[p];
-        w->c1r[p] = w->cr[p] * lr - w->ci[p] * li;
-        w->c1i[p] = w->cr[p] * li + w->ci[p] * lr;
-        w->c2r[p] = w->c1r[p] * lr - w->c1i[p] * li;
-        w->c2i[p] = w->c1r[p] * li + w->c1i[p] * lr;
-        w->size[p] = hypot(w->cr[p], w->ci[p]);
-        w->bend[p] = w->size[p] * sixth_power(b->h->size[p]);
-    }
-    for (size_t s = 0; s < b->h->harmonics; s++) {
-        w->wave[s] = hypot(w->rr[s], w->ri[s]);
-        w->wave_bend[s] = w->wave[s] * sixth_power(b->h->forcing[s].omega);
+    for (size_t p = 0; p < b->h->terms; p++) {
+        w->size[p] = absolute(w->cr[p], w->ci[p]);
     }
 }
 
@@ -281,12 +271,46 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
     return 1;
 }
 
+static double sixth_power(double x)
+{
+    return x * x * x * x * x * x;
+}
+
+/* Harmonics become terms as exponents are. */
+static int find_terms(struct modal_build *b)
+{
+    struct modal *h = b->h;
+    const size_t p = h->exponents;
+    const size_t count = p + h->harmonics > 0 ? p + h->harmonics : 1;
+    h->terms = (count + TRIBO_TERMS - 1) / TRIBO_TERMS * TRIBO_TERMS;
+    double *x = tribo_modal_keep(b, 4 * h->terms);
+    if (!x) {
+        return 0;
+    }
+    memcpy(x, h->lr, p * sizeof *x);
+    memcpy(x + h->terms, h->li, p * sizeof *x);
+    h->lr = x;
+    h->li = x + h->terms;
+    h->size = x + 2 * h->terms;
+    h->sixth = x + 3 * h->terms;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        h->li[p + s] = h->forcing[s].omega;
+    }
+    h->swings = 1;
+    for (size_t k = 0; k < h->terms; k++) {
+        h->swings &= h->lr[k] == 0.0;
+        h->size[k] = absolute(h->lr[k], h->li[k]);
+        h->sixth[k] = sixth_power(h->size[k]);
+    }
+    return 1;
+}
+
 int tribo_modal_outputs(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t c = b->sys->ncontact;
     h->output = tribo_modal_keep_outputs(b, c);
-    if (!h->output) {
+    if (!h->output || !find_terms(b)) {
         return 0;
     }
     for (size_t i = 0; i < c; i++) {

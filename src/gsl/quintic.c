@@ -3,47 +3,97 @@
 
 #include <math.h>
 
-/* Bernstein coefficients of the quintic that has the samples' values and derivatives at its ends. */
-static void bernstein(const struct sample *a, const struct sample *b, double h, double *c)
+/* In Bernstein's basis. */
+enum { COEFFICIENTS = 7 };
+
+/* So often is an interval halved to see that a function is positive. */
+#define HALVINGS 3
+
+/* A step this short, beside the whole, leaves an error of its square. */
+#define CLOSE 1e-8
+
+/* The coefficients of a function that is nowhere above one with these samples. That one differs from the quintic which has the
+ * samples' values and derivatives by at most bend h^6/6! s^3 (1-s)^3, in Bernstein's basis of degree 6 the middle element alone,
+ * 20 s^3 (1-s)^3: the quintic, raised to that degree, with the middle coefficient less by this much. */
+static void bernstein(const struct sample *a, const struct sample *b, double h, double bend, double *c)
 {
-    c[0] = a->g;
-    c[1] = c[0] + 0.2 * h * a->d;
-    c[2] = c[1] + 0.2 * h * (a->d + 0.25 * h * a->e);
-    c[5] = b->g;
-    c[4] = c[5] - 0.2 * h * b->d;
-    c[3] = c[4] - 0.2 * h * (b->d - 0.25 * h * b->e);
+    const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);
+    const double p0 = a->g, p1 = p0 + 0.2 * h * a->d, p2 = p1 + 0.2 * h * (a->d + 0.25 * h * a->e);
+    const double p5 = b->g, p4 = p5 - 0.2 * h * b->d, p3 = p4 - 0.2 * h * (b->d - 0.25 * h * b->e);
+    c[0] = p0;
+    c[1] = (p0 + 5.0 * p1) * (1 / 6.);
+    c[2] = (p1 + 2.0 * p2) * (1 / 3.);
+    c[3] = 0.5 * (p2 + p3) - doubt;
+    c[4] = (2.0 * p3 + p4) * (1 / 3.);
+    c[5] = (5.0 * p4 + p5) * (1 / 6.);
+    c[6] = p5;
 }
 
-/* The function differs from the quintic by at most bend h^6/6! s^3 (1-s)^3, which in Bernstein's basis of degree 6 is the middle
- * element alone, 20 s^3 (1-s)^3. So the least of the coefficients of the quintic, raised to that degree, with the middle one less
- * by this much, is a lower bound. */
-double tribo_quintic_least(const struct sample *a, const struct sample *b, double h, double bend)
+/* The coefficients of the part before s (from), and after it (c). */
+static void split(double *c, double s, double *from)
 {
-    double c[6];
-    bernstein(a, b, h, c);
-    const double h_3 = h * h * h, doubt = bend * h_3 * h_3 / 14400.0;
-    const double least =
-        lesser(lesser(c[0] + 5.0 * c[1], 2.0 * c[1] + 4.0 * c[2]), lesser(4.0 * c[3] + 2.0 * c[4], 5.0 * c[4] + c[5])) / 6.0;
-    return lesser(lesser(least, lesser(c[0], c[5])), 0.5 * (c[2] + c[3]) - doubt);
+    for (int left = COEFFICIENTS; left > 0; left--) {
+        from[COEFFICIENTS - left] = c[0];
+        for (int k = 0; k + 1 < left; k++) {
+            c[k] += s * (c[k + 1] - c[k]);
+        }
+    }
 }
 
-double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
+/* A function is nowhere below the least of its coefficients; of those of its halves if that does not do. */
+static double least(double *c, double enough, int halvings)
+{
+    const double ends = lesser(c[0], c[6]);
+    const double all = lesser(lesser(lesser(c[1], c[2]), lesser(c[4], c[5])), lesser(ends, c[3]));
+    if (all >= enough || !(ends >= enough) || halvings == 0) {
+        return all;
+    }
+    double from[COEFFICIENTS];
+    split(c, 0.5, from);
+    const double first = least(from, enough, halvings - 1);
+    return first >= enough ? lesser(first, least(c, enough, halvings - 1)) : first;
+}
+
+double tribo_quintic_least(const struct sample *a, const struct sample *b, double h, double bend, double until, double enough)
+{
+    double c[COEFFICIENTS], from[COEFFICIENTS];
+    bernstein(a, b, h, bend, c);
+    if (until < h) {
+        split(c, until / h, from);
+    }
+    return least(until < h ? from : c, enough, HALVINGS);
+}
+
+double tribo_quintic_error(double at, double h, double bend)
+{
+    const double x = at * (h - at);
+    return bend * x * x * x * (1 / 720.);
+}
+
+/* The quintic in powers of s = t/h. */
+static void powers(const struct sample *a, const struct sample *b, double h, double *p)
 {
     const double d = h * a->d, e = h * h * a->e;
     const double rise = b->g - a->g - d - 0.5 * e, tilt = h * b->d - d - e, curve = h * h * b->e - e;
-    double p[6] = {a->g,
-                   d,
-                   0.5 * e,
-                   10.0 * rise - 4.0 * tilt + 0.5 * curve,
-                   7.0 * tilt - 15.0 * rise - curve,
-                   6.0 * rise - 3.0 * tilt + 0.5 * curve};
-    /* roots at the start are divided out */
+    p[0] = a->g;
+    p[1] = d;
+    p[2] = 0.5 * e;
+    p[3] = 10.0 * rise - 4.0 * tilt + 0.5 * curve;
+    p[4] = 7.0 * tilt - 15.0 * rise - curve;
+    p[5] = 6.0 * rise - 3.0 * tilt + 0.5 * curve;
+}
+
+/* Where that falls to zero, by Newton's method from s on, and by halves where it leaves the interval. Roots at the start are
+ * divided out. */
+static double zero(double *p, double s)
+{
     int first = 0;
     while (first < 3 && p[first] <= 0.0) {
         p[first++] = 0.0;
     }
-    double lo = 0.0, hi = 1.0, s = p[0] > 0.0 ? a->g / (a->g - b->g) : 0.5;
-    for (int i = 0; i < 30; i++) {
+    double lo = 0.0, hi = 1.0;
+    s = first ? 0.5 : s;
+    for (int i = 0; i < 40; i++) {
         double value = 0.0, slope = 0.0;
         for (int k = 5; k >= first; k--) {
             slope = slope * s + value;
@@ -51,12 +101,24 @@ double tribo_quintic_zero(const struct sample *a, const struct sample *b, double
         }
         *(value > 0.0 ? &lo : &hi) = s;
         const double next = s - value / slope;
-        const int inside = next > lo && next < hi;
-        /* a step this short leaves an error of its square */
-        if (slope < 0.0 && fabs(next - s) < 1e-6) {
-            return next * h;
+        if (slope < 0.0 && fabs(next - s) < CLOSE) {
+            return next;
         }
-        s = inside ? next : 0.5 * (lo + hi);
+        s = next > lo && next < hi ? next : 0.5 * (lo + hi);
     }
-    return s * h;
+    return s;
+}
+
+/* Near the end it is found from there, or rounding of what the other end tells would count. */
+double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
+{
+    double p[6];
+    powers(a, b, h, p);
+    const double s = zero(p, a->g / (a->g - b->g));
+    if (s <= 0.5 || !(b->g < 0.0)) {
+        return s * h;
+    }
+    const struct sample end = {-b->g, b->d, -b->e}, start = {-a->g, a->d, -a->e};
+    powers(&end, &start, h, p);
+    return h - zero(p, 1.0 - s) * h;
 }

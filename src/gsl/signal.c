@@ -77,13 +77,13 @@ struct course {
     struct first_zero *search;
 };
 
-static void look_at_slope(void *motion, double tau, size_t guards, struct guard *guard)
+static void look_at_slope(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
     const struct course *c = motion;
     double v[3];
     (void)guards;
     tribo_signal_at(c->s, c->from + tau, v);
-    guard->middle = (struct sample){c->side * v[0], c->side * v[1], c->side * v[2]};
+    guard[0]->middle = (struct sample){c->side * v[0], c->side * v[1], c->side * v[2]};
 }
 
 static double sixth(double x)
@@ -149,8 +149,8 @@ int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t
     if (!differentiate(s, slope)) {
         return 0;
     }
-    struct guard guard = {0};
-    struct first_zero search = {.guards = 1, .guard = &guard, .look = look_at_slope, .bound = bound};
+    struct guard guard = {0}, *watched = &guard;
+    struct first_zero search = {.guards = 1, .guard = &guard, .watched = &watched, .look = look_at_slope, .bound = bound};
     struct course course = {.s = slope, .search = &search};
     const struct guard *met = &guard;
     double v[3], when = 0.0;
