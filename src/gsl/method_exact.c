@@ -17,6 +17,7 @@
 struct exact {
     tribo_system *sys;
     struct events events;
+    struct modal_whole whole; /* what these are decompositions of; zeros until there is one */
     struct modal **held;
     size_t helds, room, bytes, revision;
 
@@ -34,6 +35,15 @@ static void drop_helds(struct exact *x)
     }
     x->helds = 0;
     x->bytes = 0;
+}
+
+static int find_whole(struct exact *x)
+{
+    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys);
+    if (status) {
+        tribo_modal_whole_free(&x->whole);
+    }
+    return status;
 }
 
 static int rests_like(const struct modal *h, const struct stick_slip *m, size_t n)
@@ -74,7 +84,8 @@ static int find_held(struct exact *x, const struct modal **found)
         x->room = room;
     }
     struct modal *h;
-    const int status = tribo_modal_create(&h, sys, x->events.stick_slip.slip, x->events.stick_slip.holds);
+    int status = find_whole(x);
+    status = status ? status : tribo_modal_create(&h, &x->whole, x->events.stick_slip.slip, x->events.stick_slip.holds);
     if (status) {
         return status;
     }
@@ -263,6 +274,7 @@ static void destroy(tribo_driver *drv)
     struct exact *x = drv->own;
     if (x) {
         drop_helds(x);
+        tribo_modal_whole_free(&x->whole);
         free(x->held);
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
@@ -326,6 +338,7 @@ static int open_events(tribo_driver *drv, struct events **events)
     }
     if (x->revision != sys->revision) {
         drop_helds(x);
+        tribo_modal_whole_free(&x->whole);
         x->revision = sys->revision;
     }
     *events = &x->events;

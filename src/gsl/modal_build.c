@@ -29,50 +29,23 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
     b->rest = tribo_modal_scratch_indices(b, b->sys->ncontact);
     for (size_t i = 0; b->rest && i < b->sys->ncontact; i++) {
-        if (holds[i]) {
-            b->rest[b->h->rest++] = i;
+        if (holds[b->contact[i]]) {
+            b->rest[b->rests++] = i;
         }
     }
-    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->mass, b->rest, b->h->rest, NULL)) {
+    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->mass, b->rest, b->rests, NULL)) {
         return 0;
     }
-    if (b->ties.rank < b->h->rest) {
+    if (b->ties.rank < b->rests) {
         b->status =
             tribo_system_fail(b->sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
-                              b->rest[b->ties.order[b->ties.rank]]);
+                              b->contact[b->rest[b->ties.order[b->ties.rank]]]);
         return 0;
     }
     return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
-
-/* K or C: as given, or M times what accelerates. */
-static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
-                                         struct matrix *own)
-{
-    if (given->rows || !sys->mass.rows) {
-        return given->rows ? given : accelerates;
-    }
-    double *mass = malloc(sys->ndof * sizeof *mass);
-    for (size_t d = 0; mass && d < sys->ndof; d++) {
-        mass[d] = tribo_matrix_get(&sys->mass, d, d);
-    }
-    const int done = mass && tribo_matrix_copy(own, accelerates);
-    if (done) {
-        tribo_matrix_scale_rows(own, mass);
-    }
-    free(mass);
-    return done ? own : NULL;
-}
-
-static int find_forces(struct modal_build *b)
-{
-    const tribo_system *sys = b->sys;
-    b->stiffness = force_matrix(sys, &sys->elastic, &sys->stiffness, &b->own_stiffness);
-    b->damping = sys->damping.rows ? force_matrix(sys, &sys->viscous, &sys->damping, &b->own_damping) : NULL;
-    return b->stiffness && (b->damping || !sys->damping.rows);
-}
 
 /* Factor of Z'MZ. Returns a status. */
 static int factorize_mass(struct modal_build *b, const struct matrix *z, struct cholesky *c)
@@ -117,7 +90,8 @@ static int find_modes(struct modal_build *b)
     struct matrix z = {0};
     struct cholesky own = {0};
     struct doubt doubt = {0};
-    int status = !b->h->rest || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    const int all_free = b->rests == 0 && b->n == b->whole->sys->ndof;
+    int status = all_free || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     status = status || !b->sys->massless.count ? status : tribo_modal_condense(b, &z);
     const int held = z.rows > 0;
     b->h->modes = held ? z.cols : b->n;
@@ -264,17 +238,41 @@ static int compress(struct modal_build *b)
     return 1;
 }
 
-static int build(struct modal_build *b, const signed char *mode, const unsigned char *holds)
+/* What a set is known by, in the whole and in the part. */
+static int find_keys(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    const size_t all = b->whole->sys->ncontact;
+    signed char *key = b->h->key = (signed char *)tribo_modal_keep_bytes(b, all);
+    b->key = (signed char *)tribo_modal_scratch_bytes(b, b->sys->ncontact);
+    for (size_t i = 0; key && i < all; i++) {
+        key[i] = (signed char)((slip[i] == 0) + holds[i]);
+    }
+    for (size_t i = 0; key && b->key && i < b->sys->ncontact; i++) {
+        b->key[i] = key[b->contact[i]];
+    }
+    return key && b->key;
+}
+
+/* Degrees of freedom and contacts of the part become those of the whole. */
+static void number_as_whole(struct modal_build *b)
 {
     struct modal *h = b->h;
-    h->key = (signed char *)tribo_modal_keep_bytes(b, b->sys->ncontact);
-    for (size_t i = 0; h->key && i < b->sys->ncontact; i++) {
-        h->key[i] = (signed char)((mode[i] == 0) + holds[i]);
+    for (size_t i = 0; i < h->moving; i++) {
+        h->dof[i] = b->dof[h->dof[i]];
     }
-    if (!h->key || !list_rest(b, holds) || !find_forces(b) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
-        !find_drifts(b)) {
-        return b->status ? b->status : TRIBO_ERR_MEMORY;
+    for (size_t k = 0; k < h->outputs; k++) {
+        h->output[k].contact = b->contact[h->output[k].contact];
     }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        size_t *contact = &h->forcing[s].contact;
+        *contact = *contact < b->sys->ncontact ? b->contact[*contact] : b->whole->sys->ncontact;
+    }
+}
+
+/* Exponents, and what is to be known of them. Returns a status. */
+static int find_exponents(struct modal_build *b)
+{
+    struct modal *h = b->h;
     const int status = tribo_modal_exponents(b);
     if (status) {
         return status;
@@ -285,28 +283,49 @@ static int build(struct modal_build *b, const signed char *mode, const unsigned 
         h->fastest = greater(h->fastest, h->size[p]);
         h->decay = greater(h->decay, -h->lr[p]);
     }
-    const int done = h->size && tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b);
+    return h->size ? TRIBO_OK : TRIBO_ERR_MEMORY;
+}
+
+static int build(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    struct modal *h = b->h;
+    if (!tribo_modal_divide(b, holds)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    b->sys = &b->part;
+    b->n = b->part.ndof;
+    if (!find_keys(b, slip, holds) || !list_rest(b, holds) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
+        !find_drifts(b)) {
+        return b->status ? b->status : TRIBO_ERR_MEMORY;
+    }
+    const int status = find_exponents(b);
+    if (status) {
+        return status;
+    }
+    const int done = tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b);
     h->quickest = h->fastest;
     for (size_t s = 0; done && s < h->harmonics; s++) {
         h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
     }
+    if (done) {
+        number_as_whole(b);
+    }
     return done ? TRIBO_OK : b->status ? b->status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *mode, const unsigned char *holds)
+int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds)
 {
-    struct modal_build b = {.sys = sys, .n = sys->ndof, .h = calloc(1, sizeof *b.h)};
-    int status = b.h ? build(&b, mode, holds) : TRIBO_ERR_MEMORY;
-    tribo_modal_give_back(b.scratch);
+    struct modal_build b = {.whole = whole, .h = calloc(1, sizeof *b.h)};
+    int status = b.h ? build(&b, slip, holds) : TRIBO_ERR_MEMORY;
+    tribo_modal_empty(&whole->scratch);
     tribo_constraints_free(&b.ties);
     tribo_matrix_free(&b.slack);
     tribo_cholesky_free(&b.slack_stiffness);
-    tribo_matrix_free(&b.own_stiffness);
-    tribo_matrix_free(&b.own_damping);
     if (status) {
         tribo_modal_free(b.h);
-        return status == TRIBO_ERR_MEMORY ? tribo_system_fail(sys, status, "out of memory for the modes of a held structure")
-                                          : status;
+        return status == TRIBO_ERR_MEMORY
+                   ? tribo_system_fail(whole->sys, status, "out of memory for the modes of a held structure")
+                   : status;
     }
     *modal = b.h;
     return TRIBO_OK;

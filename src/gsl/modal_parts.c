@@ -3,8 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Arrays are many and short: blocks of so many bytes hold several. */
-#define BLOCK 4096
+/* Arrays are many and short: blocks hold several, the first one so many bytes, the next ones twice as many as those before. A list
+ * of what is freed soon keeps no block of more than that. */
+#define BLOCK 2048
+#define LASTING ((size_t)1 << 20)
 
 /* With room for arrays behind it, as it is aligned for. */
 union block {
@@ -15,25 +17,35 @@ union block {
     double number;
 };
 
+static union block *add_block(void **list, size_t *bytes, size_t units)
+{
+    const union block *last = *list;
+    const size_t least = last ? 2 * last->has.room : BLOCK / sizeof(union block), room = units > least ? units : least;
+    union block *block = malloc((room + 1) * sizeof *block);
+    if (block) {
+        block->has.next = *list;
+        block->has.used = 0;
+        block->has.room = room;
+        *list = block;
+        *bytes += (room + 1) * sizeof *block;
+    }
+    return block;
+}
+
 /* Zeroed memory that belongs to a list. NULL if there is none left. */
 static void *take(void **list, size_t *bytes, size_t count, size_t size)
 {
     const size_t units = (count * size + sizeof(union block)) / sizeof(union block);
     union block *block = *list;
     if (!block || block->has.room - block->has.used < units) {
-        const size_t least = BLOCK / sizeof(union block), room = units > least ? units : least;
-        block = calloc(room + 1, sizeof *block);
+        block = add_block(list, bytes, units);
         if (!block) {
             return NULL;
         }
-        block->has.next = *list;
-        block->has.room = room;
-        *list = block;
-        *bytes += (room + 1) * sizeof *block;
     }
     void *array = block + 1 + block->has.used;
     block->has.used += units;
-    return array;
+    return memset(array, 0, count * size);
 }
 
 void tribo_modal_give_back(void *list)
@@ -42,6 +54,19 @@ void tribo_modal_give_back(void *list)
         union block *next = block->has.next;
         free(block);
         block = next;
+    }
+}
+
+void tribo_modal_empty(void **list)
+{
+    union block *block = *list;
+    if (block && block->has.room > LASTING / sizeof *block) {
+        tribo_modal_give_back(block);
+        *list = NULL;
+    } else if (block) {
+        tribo_modal_give_back(block->has.next);
+        block->has.next = NULL;
+        block->has.used = 0;
     }
 }
 
@@ -73,13 +98,25 @@ struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count)
 double *tribo_modal_scratch(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return take(&b->scratch, &ignored, count, sizeof(double));
+    return take(&b->whole->scratch, &ignored, count, sizeof(double));
 }
 
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return take(&b->scratch, &ignored, count, sizeof(size_t));
+    return take(&b->whole->scratch, &ignored, count, sizeof(size_t));
+}
+
+unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count)
+{
+    size_t ignored = 0;
+    return take(&b->whole->scratch, &ignored, count, 1);
+}
+
+struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count)
+{
+    size_t ignored = 0;
+    return take(&b->whole->scratch, &ignored, count, sizeof(struct harmonic));
 }
 
 /* ----------------------------------------------------------------------------------------------------- the contacts that hold */

@@ -4,24 +4,32 @@
 
 #include "constraint.h"
 #include "modal.h"
+#include "modal_whole.h"
 
-/* Vectors of the whole structure: [ndof], modes of it [modes][ndof]. */
+/* Degrees of freedom and contacts are those of the part that is looked at (modal_whole.h): vectors are [ndof] of it, modes
+ * [modes][ndof]. */
 struct modal_build {
-    tribo_system *sys;
+    struct modal_whole *whole;
+    tribo_system part;                        /* as much of it as is looked at, */
+    size_t *dof, *contact;                    /* [part.ndof], [part.ncontact] and where that is in the whole */
+    const struct matrix *stiffness, *damping; /* K and C of the part, or NULL */
+    struct matrix own_stiffness, own_damping; /* if it is not the whole */
+    const tribo_system *sys;                  /* the part */
     struct modal *h;
     size_t n;
-    size_t *rest;                             /* [h->rest] the contacts that hold */
-    struct constraints ties;                  /* and what they tie together */
-    const struct matrix *stiffness, *damping; /* K and C, or NULL */
-    struct matrix own_stiffness, own_damping; /* where the system has only AK and AC */
+    signed char *key;        /* [ncontact] as in h */
+    size_t rests, *rest;     /* [rests] the contacts that hold */
+    struct constraints ties; /* and what they tie together */
     struct matrix slack;               /* [ndof][..] displacements that are free and have no mass: they follow the others, */
     struct cholesky slack_stiffness;   /* by this */
     double *phi, *psi, *k_phi, *c_phi; /* and M phi, K phi, C phi */
     double *yr, *yi;                   /* [given][ndof] */
     double *y0;                        /* [ndof] velocities from belts of constant speed */
-    void *scratch;                     /* list of what is freed at the end */
     int status;                        /* of a failure other than of memory */
 };
+
+/* The part of the whole that is to be looked at if these hold: b->part and what goes with it. 0 if out of memory. */
+int tribo_modal_divide(struct modal_build *b, const unsigned char *holds);
 
 /* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
 double *tribo_modal_keep(struct modal_build *b, size_t count);
@@ -31,12 +39,15 @@ struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count);
 struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count);
 double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
+unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count);
+struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count);
 void tribo_modal_give_back(void *list);
+void tribo_modal_empty(void **list); /* what is on the list is nobody's, but it may keep a block for what comes */
 
 /* J_i phi_k. */
 double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k);
 
-/* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
+/* f [rests] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
 /* modal_slack.c: takes out of the displacements z that constraints allow (without rows: all) those without mass, and lets them
