@@ -33,6 +33,7 @@ static void drop_helds(struct exact *x)
     for (size_t i = 0; i < x->helds; i++) {
         tribo_modal_free(x->held[i]);
     }
+    tribo_modal_whole_free(&x->whole);
     x->helds = 0;
     x->bytes = 0;
 }
@@ -71,7 +72,7 @@ static int find_held(struct exact *x, const struct modal **found)
             return TRIBO_OK;
         }
     }
-    if (x->bytes > CACHE_BYTES) {
+    if (x->bytes + x->whole.bytes > CACHE_BYTES) {
         drop_helds(x);
     }
     if (x->helds == x->room) {
@@ -274,7 +275,6 @@ static void destroy(tribo_driver *drv)
     struct exact *x = drv->own;
     if (x) {
         drop_helds(x);
-        tribo_modal_whole_free(&x->whole);
         free(x->held);
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
@@ -338,7 +338,6 @@ static int open_events(tribo_driver *drv, struct events **events)
     }
     if (x->revision != sys->revision) {
         drop_helds(x);
-        tribo_modal_whole_free(&x->whole);
         x->revision = sys->revision;
     }
     *events = &x->events;

@@ -238,19 +238,26 @@ static int compress(struct modal_build *b)
     return 1;
 }
 
-/* What a set is known by, in the whole and in the part. */
-static int find_keys(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+/* What a set is known by. */
+static int find_key(struct modal_build *b, const signed char *slip, const unsigned char *holds)
 {
     const size_t all = b->whole->sys->ncontact;
     signed char *key = b->h->key = (signed char *)tribo_modal_keep_bytes(b, all);
-    b->key = (signed char *)tribo_modal_scratch_bytes(b, b->sys->ncontact);
     for (size_t i = 0; key && i < all; i++) {
         key[i] = (signed char)((slip[i] == 0) + holds[i]);
     }
-    for (size_t i = 0; key && b->key && i < b->sys->ncontact; i++) {
-        b->key[i] = key[b->contact[i]];
+    return key != NULL;
+}
+
+/* The same of the contacts of the part. */
+static int find_part_key(struct modal_build *b, const unsigned char *holds)
+{
+    b->key = (signed char *)tribo_modal_scratch_bytes(b, b->part.ncontact);
+    for (size_t i = 0; b->key && i < b->part.ncontact; i++) {
+        const size_t at = b->contact[i];
+        b->key[i] = b->h->key ? b->h->key[at] : (signed char)(2 * holds[at]);
     }
-    return key && b->key;
+    return b->key != NULL;
 }
 
 /* Degrees of freedom and contacts of the part become those of the whole. */
@@ -286,15 +293,12 @@ static int find_exponents(struct modal_build *b)
     return h->size ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-static int build(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+/* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
+static int find_all(struct modal_build *b, const unsigned char *holds)
 {
-    struct modal *h = b->h;
-    if (!tribo_modal_divide(b, holds)) {
-        return TRIBO_ERR_MEMORY;
-    }
     b->sys = &b->part;
     b->n = b->part.ndof;
-    if (!find_keys(b, slip, holds) || !list_rest(b, holds) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
+    if (!find_part_key(b, holds) || !list_rest(b, holds) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
         !find_drifts(b)) {
         return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
@@ -302,31 +306,70 @@ static int build(struct modal_build *b, const signed char *slip, const unsigned 
     if (status) {
         return status;
     }
-    const int done = tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b);
-    h->quickest = h->fastest;
-    for (size_t s = 0; done && s < h->harmonics; s++) {
-        h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
+    if (!tribo_modal_forcing(b) || !tribo_modal_response(b) || !tribo_modal_outputs(b) || !compress(b)) {
+        return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
-    if (done) {
-        number_as_whole(b);
+    number_as_whole(b);
+    return TRIBO_OK;
+}
+
+int tribo_modal_build(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    b->h = calloc(1, sizeof *b->h);
+    int status = b->h && (!slip || find_key(b, slip, holds)) && tribo_modal_extract(b) ? find_all(b, holds) : TRIBO_ERR_MEMORY;
+    tribo_constraints_free(&b->ties);
+    tribo_matrix_free(&b->slack);
+    tribo_cholesky_free(&b->slack_stiffness);
+    if (status) {
+        tribo_modal_free(b->h);
+        b->h = NULL;
     }
-    return done ? TRIBO_OK : b->status ? b->status : TRIBO_ERR_MEMORY;
+    return status;
+}
+
+static int from_pieces(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    b->part = *b->whole->sys;
+    b->sys = &b->part;
+    b->h = calloc(1, sizeof *b->h);
+    const int status = b->h && find_key(b, slip, holds) ? tribo_modal_from_pieces(b, holds) : TRIBO_ERR_MEMORY;
+    if (status || !b->whole->divides) {
+        tribo_modal_free(b->h);
+        b->h = NULL;
+    }
+    return status;
+}
+
+static int from_whole(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    tribo_modal_take_all(b->whole, holds);
+    const int status = tribo_modal_list(b, 0, holds) ? tribo_modal_build(b, slip, holds) : TRIBO_ERR_MEMORY;
+    tribo_modal_unlist(b);
+    tribo_modal_empty(&b->whole->scratch);
+    return status;
 }
 
 int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds)
 {
-    struct modal_build b = {.whole = whole, .h = calloc(1, sizeof *b.h)};
-    int status = b.h ? build(&b, slip, holds) : TRIBO_ERR_MEMORY;
-    tribo_modal_empty(&whole->scratch);
-    tribo_constraints_free(&b.ties);
-    tribo_matrix_free(&b.slack);
-    tribo_cholesky_free(&b.slack_stiffness);
+    struct modal_build b = {.whole = whole}, all = {.whole = whole};
+    if (whole->divides) {
+        tribo_modal_divide(whole, holds);
+    }
+    const int divided = whole->divides && (whole->parts != 1 || whole->first_own[1] < whole->sys->ndof);
+    int status = divided ? from_pieces(&b, slip, holds) : TRIBO_OK;
+    if (!status && !b.h) {
+        status = from_whole(&all, slip, holds);
+        b.h = all.h;
+    }
     if (status) {
-        tribo_modal_free(b.h);
         return status == TRIBO_ERR_MEMORY
                    ? tribo_system_fail(whole->sys, status, "out of memory for the modes of a held structure")
                    : status;
     }
-    *modal = b.h;
+    struct modal *h = *modal = b.h;
+    h->quickest = h->fastest;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
+    }
     return TRIBO_OK;
 }

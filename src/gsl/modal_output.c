@@ -30,7 +30,7 @@ static void output_mode(const struct modal_build *b, struct output *w, size_t k,
     }
 }
 
-static int create_output(struct modal_build *b, struct output *w, size_t contact)
+int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact)
 {
     const size_t p = b->h->exponents, s = b->h->harmonics, m = b->h->modes;
     double *x = tribo_modal_keep(b, 8 * p + 4 * s + m);
@@ -48,6 +48,14 @@ static double sixth_power(double x)
     return x * x * x * x * x * x;
 }
 
+void tribo_modal_finish_waves(const struct modal *h, struct output *w)
+{
+    for (size_t s = 0; s < h->harmonics; s++) {
+        w->wave[s] = hypot(w->rr[s], w->ri[s]);
+        w->wave_bend[s] = w->wave[s] * sixth_power(h->forcing[s].omega);
+    }
+}
+
 static void finish_output(const struct modal_build *b, struct output *w)
 {
     for (size_t p = 0; p < b->h->exponents; p++) {
@@ -59,10 +67,7 @@ static void finish_output(const struct modal_build *b, struct output *w)
         w->size[p] = hypot(w->cr[p], w->ci[p]);
         w->bend[p] = w->size[p] * sixth_power(b->h->size[p]);
     }
-    for (size_t s = 0; s < b->h->harmonics; s++) {
-        w->wave[s] = hypot(w->rr[s], w->ri[s]);
-        w->wave_bend[s] = w->wave[s] * sixth_power(b->h->forcing[s].omega);
-    }
+    tribo_modal_finish_waves(b->h, w);
 }
 
 /* The largest |x| + |y|. */
@@ -106,7 +111,7 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 /* v_i = J_i q' - b_i. */
 static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 {
-    if (!create_output(b, w, i)) {
+    if (!tribo_modal_create_output(b, w, i)) {
         return 0;
     }
     for (size_t k = 0; k < b->h->modes; k++) {
@@ -123,7 +128,7 @@ static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 static int output_parting(struct modal_build *b, struct output *all, size_t *used, size_t i)
 {
     struct output *w = &all[*used];
-    if (!create_output(b, w, i)) {
+    if (!tribo_modal_create_output(b, w, i)) {
         return 0;
     }
     *used += output_belts(b, w, i) != 0;
@@ -264,7 +269,7 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
             continue;
         }
         struct output *output = &all[(*used)++];
-        if (!create_output(b, output, b->rest[p])) {
+        if (!tribo_modal_create_output(b, output, b->rest[p])) {
             return 0;
         }
         output->ramp = f.ramp[p];

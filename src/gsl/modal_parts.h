@@ -11,15 +11,16 @@
 struct modal_build {
     struct modal_whole *whole;
     tribo_system part;                        /* as much of it as is looked at, */
-    size_t *dof, *contact;                    /* [part.ndof], [part.ncontact] and where that is in the whole */
+    size_t *dof, *contact;                    /* [part.ndof], [part.ncontact] and where that is in the whole; */
+    size_t owns;                              /* so many degrees of freedom are its own */
     const struct matrix *stiffness, *damping; /* K and C of the part, or NULL */
     struct matrix own_stiffness, own_damping; /* if it is not the whole */
     const tribo_system *sys;                  /* the part */
     struct modal *h;
     size_t n;
-    signed char *key;        /* [ncontact] as in h */
-    size_t rests, *rest;     /* [rests] the contacts that hold */
-    struct constraints ties; /* and what they tie together */
+    signed char *key;                  /* [ncontact] as in h */
+    size_t rests, *rest;               /* [rests] the contacts that hold */
+    struct constraints ties;           /* and what they tie together */
     struct matrix slack;               /* [ndof][..] displacements that are free and have no mass: they follow the others, */
     struct cholesky slack_stiffness;   /* by this */
     double *phi, *psi, *k_phi, *c_phi; /* and M phi, K phi, C phi */
@@ -28,8 +29,20 @@ struct modal_build {
     int status;                        /* of a failure other than of memory */
 };
 
-/* The part of the whole that is to be looked at if these hold: b->part and what goes with it. 0 if out of memory. */
-int tribo_modal_divide(struct modal_build *b, const unsigned char *holds);
+/* modal_extract.c: lists who belongs to a part of b->whole that is divided, until it is unlisted, and makes the part a system.
+ * These return 0 if out of memory. */
+int tribo_modal_list(struct modal_build *b, size_t part, const unsigned char *holds);
+void tribo_modal_unlist(struct modal_build *b);
+int tribo_modal_extract(struct modal_build *b);
+
+/* b->h = the part that is listed; its key is that of the whole, by slip, or, if that is NULL, it has none. Returns a status, and
+ * leaves b->h NULL on failure. */
+int tribo_modal_build(struct modal_build *b, const signed char *slip, const unsigned char *holds);
+
+/* modal_pieces.c: fills b->h, of which the key is known, from parts of the whole, which is divided. Nothing is done, and the
+ * whole divides no more, if damping turns out to couple modes. Returns a status. */
+int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds);
+void tribo_modal_forget_pieces(struct modal_whole *w);
 
 /* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
 double *tribo_modal_keep(struct modal_build *b, size_t count);
@@ -59,6 +72,12 @@ int tribo_modal_relax(struct modal_build *b, double *y);
 
 /* The exponents of eta. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);
+
+/* Lists the harmonics of the system, and then those of limits again, contact by contact that does not hold; an output, without
+ * anything; and the sizes of its harmonics. The former return 0 if out of memory. */
+int tribo_modal_list_forcing(struct modal_build *b);
+int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact);
+void tribo_modal_finish_waves(const struct modal *h, struct output *w);
 
 /* These return 0 if out of memory, or with the status of another failure in b. */
 int tribo_modal_forcing(struct modal_build *b);

@@ -37,8 +37,7 @@ static void base_part(const struct modal_build *b, const struct harmonic *w, int
     }
 }
 
-/* Lists the harmonics of the system, and then those of limits again, contact by contact that does not hold. */
-static int list_forcing(struct modal_build *b)
+int tribo_modal_list_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const tribo_system *sys = b->sys;
@@ -78,7 +77,7 @@ int tribo_modal_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes, count = b->sys->harmonics;
-    if (!list_forcing(b)) {
+    if (!tribo_modal_list_forcing(b)) {
         return 0;
     }
     h->gr = tribo_modal_keep(b, h->harmonics * m);

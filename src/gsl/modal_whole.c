@@ -7,11 +7,18 @@ void tribo_modal_whole_free(struct modal_whole *w)
 {
     tribo_matrix_free(&w->own_stiffness);
     tribo_matrix_free(&w->own_damping);
+    tribo_modal_forget_pieces(w);
     tribo_modal_give_back(w->scratch);
     free(w->first);
     free(w->beside);
+    free(w->first_contact);
+    free(w->contact);
     free(w->alone);
     free(w->always);
+    free(w->dof_place);
+    free(w->contact_place);
+    free(w->piece);
+    free(w->found);
     memset(w, 0, sizeof *w);
 }
 
@@ -126,219 +133,238 @@ static void note_harmonic(struct modal_whole *w, const struct harmonic *h, int s
     }
 }
 
-static int find_events(struct modal_whole *w)
+/* Who touches whom, of contacts and degrees of freedom. */
+static int list_contacts(struct modal_whole *w)
 {
-    const tribo_system *sys = w->sys;
-    w->alone = malloc((sys->ncontact + 1) * sizeof *w->alone);
-    w->always = calloc(sys->ndof, 1);
-    if (!w->alone || !w->always) {
+    const struct matrix *j = &w->sys->direction;
+    const size_t n = w->sys->ndof;
+    w->first_contact = calloc(n + 2, sizeof *w->first_contact);
+    w->contact = malloc((entries(j) + 1) * sizeof *w->contact);
+    w->alone = malloc((j->rows + 1) * sizeof *w->alone);
+    if (!w->first_contact || !w->contact || !w->alone) {
         return 0;
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        w->alone[i] = only_one(&sys->direction, i);
+    for (size_t k = 0; k < entries(j); k++) {
+        w->first_contact[j->col[k] + 2]++;
     }
+    for (size_t d = 0; d < n; d++) {
+        w->first_contact[d + 2] += w->first_contact[d + 1];
+    }
+    for (size_t i = 0; i < j->rows; i++) {
+        w->alone[i] = only_one(j, i);
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            w->contact[w->first_contact[j->col[k] + 1]++] = i;
+        }
+    }
+    return 1;
+}
+
+/* Marks what harmonics change; and whether parts can be looked at by themselves: with loads only, which act where they are, and
+ * contacts that touch something. */
+static int find_harmonics(struct modal_whole *w)
+{
+    const tribo_system *sys = w->sys;
     const int shares_mass = sys->mass.rows && !tribo_matrix_is_diagonal(&sys->mass);
-    for (size_t k = 0; k < sys->harmonics; k++) {
+    w->always = calloc(sys->ndof, 1);
+    w->divides = !shares_mass && sys->base_harmonics == 0 && sys->limit_harmonics == 0;
+    for (size_t k = 0; w->always && k < sys->harmonics; k++) {
         note_harmonic(w, &sys->harmonic[k], shares_mass);
     }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        w->divides &= sys->direction.first[i] < sys->direction.first[i + 1];
+    }
+    return w->always != NULL;
+}
+
+static int create_workspace(struct modal_whole *w)
+{
+    const size_t n = w->sys->ndof, c = w->sys->ncontact;
+    w->dof_place = malloc((4 * n + 2) * sizeof *w->dof_place + 2 * n);
+    w->contact_place = malloc((c + 1) * sizeof *w->contact_place);
+    w->piece = calloc(n + 1, sizeof(struct modal_piece *));
+    w->found = malloc((n + 1) * sizeof(struct modal *));
+    if (!w->dof_place || !w->contact_place || !w->piece || !w->found) {
+        return 0;
+    }
+    w->root = w->dof_place + n;
+    w->own = w->root + n;
+    w->first_own = w->own + n;
+    w->how = (unsigned char *)(w->first_own + n + 2);
+    w->ours = w->how + n;
+    memset(w->ours, 0, n);
+    memset(w->dof_place, 0xff, n * sizeof *w->dof_place);
+    memset(w->contact_place, 0xff, c * sizeof *w->contact_place);
     return 1;
 }
 
 int tribo_modal_whole_create(struct modal_whole *w, tribo_system *sys)
 {
     *w = (struct modal_whole){.sys = sys};
-    return find_forces(w) && find_beside(w) && find_events(w)
+    return find_forces(w) && find_beside(w) && list_contacts(w) && find_harmonics(w) && create_workspace(w)
                ? TRIBO_OK
                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrices of a structure to be held");
 }
 
-/* ------------------------------------------------------------------------------------------------------- what is to be looked at */
+/* -------------------------------------------------------------------------------------------------------------------- parts */
 
-/* How degrees of freedom move: freely, as the base of the one contact that holds them, or as contacts make them that tie them
- * together, or are too many. */
-enum { FREE, HELD, TIED };
-
-static void hold(const struct modal_whole *w, size_t i, unsigned char *how)
+static void hold(struct modal_whole *w, size_t i)
 {
     const struct matrix *j = &w->sys->direction;
     const size_t d = w->alone[i];
     if (d < w->sys->ndof) {
-        how[d] = how[d] == FREE ? HELD : TIED;
+        w->how[d] = w->how[d] == MOVES_FREELY ? MOVES_HELD : MOVES_TIED;
         return;
     }
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        how[j->col[k]] = j->val[k] != 0.0 ? TIED : how[j->col[k]];
+        if (j->val[k] != 0.0) {
+            w->how[j->col[k]] = MOVES_TIED;
+        }
     }
 }
 
-/* inside [ndof] = 1 for what may move, what is beside that, and the degrees of freedom of contacts that do not hold. */
-static void look_around(const struct modal_whole *w, const unsigned char *holds, const unsigned char *how, unsigned char *inside)
+static void find_how(struct modal_whole *w, const unsigned char *holds)
+{
+    memset(w->how, MOVES_FREELY, w->sys->ndof);
+    for (size_t i = 0; i < w->sys->ncontact; i++) {
+        if (holds[i]) {
+            hold(w, i);
+        }
+    }
+}
+
+static size_t root_of(const struct modal_whole *w, size_t d)
+{
+    while (w->root[d] != d) {
+        d = w->root[d] = w->root[w->root[d]];
+    }
+    return d;
+}
+
+/* The lower root becomes that of both: so it is the first of a part. */
+static void join(struct modal_whole *w, size_t d, size_t e)
+{
+    const size_t a = root_of(w, d), b = root_of(w, e);
+    w->root[a > b ? a : b] = a < b ? a : b;
+}
+
+static void join_moving(struct modal_whole *w, const unsigned char *holds)
 {
     const struct matrix *j = &w->sys->direction;
-    memcpy(inside, w->always, w->sys->ndof);
-    for (size_t d = 0; d < w->sys->ndof; d++) {
-        inside[d] |= how[d] != HELD;
-        for (size_t k = w->first[d]; how[d] != HELD && k < w->first[d + 1]; k++) {
-            inside[w->beside[k]] = 1;
+    const size_t n = w->sys->ndof;
+    for (size_t d = 0; d < n; d++) {
+        w->root[d] = d;
+    }
+    for (size_t d = 0; d < n; d++) {
+        for (size_t k = w->first[d]; w->how[d] != MOVES_HELD && k < w->first[d + 1]; k++) {
+            if (w->how[w->beside[k]] != MOVES_HELD) {
+                join(w, d, w->beside[k]);
+            }
         }
     }
     for (size_t i = 0; i < w->sys->ncontact; i++) {
+        size_t tied = n;
+        for (size_t k = j->first[i]; holds[i] && w->alone[i] == n && k < j->first[i + 1]; k++) {
+            if (j->val[k] != 0.0) {
+                join(w, j->col[k], tied < n ? tied : j->col[k]);
+                tied = j->col[k];
+            }
+        }
+    }
+}
+
+/* Numbers the trees, and leaves in root the number of the tree. Parents are lower than their children. */
+static void number_parts(struct modal_whole *w)
+{
+    size_t *number = w->own;
+    w->parts = 0;
+    for (size_t d = 0; d < w->sys->ndof; d++) {
+        w->root[d] = w->root[w->root[d]];
+        if (w->root[d] == d && w->how[d] != MOVES_HELD) {
+            number[d] = w->parts++;
+        }
+    }
+    for (size_t d = 0; d < w->sys->ndof; d++) {
+        w->root[d] = w->how[d] != MOVES_HELD ? number[w->root[d]] : NOWHERE;
+    }
+}
+
+static void list_parts(struct modal_whole *w)
+{
+    size_t *first = w->first_own;
+    memset(first, 0, (w->parts + 2) * sizeof *first);
+    for (size_t d = 0; d < w->sys->ndof; d++) {
+        if (w->root[d] != NOWHERE) {
+            first[w->root[d] + 2]++;
+        }
+    }
+    for (size_t k = 0; k < w->parts; k++) {
+        first[k + 2] += first[k + 1];
+    }
+    for (size_t d = 0; d < w->sys->ndof; d++) {
+        if (w->root[d] != NOWHERE) {
+            w->own[first[w->root[d] + 1]++] = d;
+        }
+    }
+}
+
+/* What is held and loaded is a part without motion. */
+static void list_still(struct modal_whole *w)
+{
+    size_t end = w->first_own[w->parts];
+    for (size_t d = 0; d < w->sys->ndof; d++) {
+        if (w->always[d] && w->how[d] == MOVES_HELD) {
+            w->own[end++] = d;
+        }
+    }
+    if (end > w->first_own[w->parts]) {
+        w->first_own[++w->parts] = end;
+    }
+}
+
+void tribo_modal_divide(struct modal_whole *w, const unsigned char *holds)
+{
+    find_how(w, holds);
+    join_moving(w, holds);
+    number_parts(w);
+    list_parts(w);
+    list_still(w);
+}
+
+/* inside [ndof] += what may move, and what is beside that. */
+static void mark_moving(const struct modal_whole *w, unsigned char *inside)
+{
+    for (size_t d = 0; d < w->sys->ndof; d++) {
+        inside[d] |= w->how[d] != MOVES_HELD;
+        for (size_t k = w->first[d]; w->how[d] != MOVES_HELD && k < w->first[d + 1]; k++) {
+            inside[w->beside[k]] = 1;
+        }
+    }
+}
+
+/* inside [ndof] += what contacts touch that do not hold. */
+static void mark_touched(const struct modal_whole *w, const unsigned char *holds, unsigned char *inside)
+{
+    const struct matrix *j = &w->sys->direction;
+    for (size_t i = 0; i < j->rows; i++) {
         for (size_t k = j->first[i]; !holds[i] && k < j->first[i + 1]; k++) {
             inside[j->col[k]] = 1;
         }
     }
 }
 
-/* Lists those inside, place [all] being where they are listed, or `all`. Returns how many they are. */
-static size_t list(const unsigned char *inside, size_t all, size_t *listed, size_t *place)
+void tribo_modal_take_all(struct modal_whole *w, const unsigned char *holds)
 {
-    size_t count = 0;
-    for (size_t k = 0; k < all; k++) {
-        place[k] = all;
-        if (inside[k]) {
-            place[k] = count;
-            listed[count++] = k;
+    unsigned char *inside = w->ours;
+    find_how(w, holds);
+    memcpy(inside, w->always, w->sys->ndof);
+    mark_moving(w, inside);
+    mark_touched(w, holds, inside);
+    w->parts = 1;
+    w->first_own[0] = w->first_own[1] = 0;
+    for (size_t d = 0; d < w->sys->ndof; d++) {
+        if (inside[d]) {
+            w->own[w->first_own[1]++] = d;
         }
+        inside[d] = 0;
     }
-    return count;
-}
-
-/* to = these rows of a matrix, and the columns that have a place among so many. Without what would speed up products. */
-static int extract(struct modal_build *b, const struct matrix *from, size_t rows, const size_t *row, size_t cols,
-                   const size_t *place, struct matrix *to)
-{
-    size_t room = 0, count = 0;
-    for (size_t i = 0; i < rows; i++) {
-        room += from->first[row[i] + 1] - from->first[row[i]];
-    }
-    *to = (struct matrix){.rows = rows,
-                          .cols = cols,
-                          .first = tribo_modal_scratch_indices(b, rows + 2),
-                          .col = tribo_modal_scratch_indices(b, room),
-                          .val = tribo_modal_scratch(b, room)};
-    if (!to->first || !to->col || !to->val) {
-        return 0;
-    }
-    for (size_t i = 0; i < rows; i++) {
-        for (size_t k = from->first[row[i]]; k < from->first[row[i] + 1]; k++) {
-            if (place[from->col[k]] < cols) {
-                to->col[count] = place[from->col[k]];
-                to->val[count++] = from->val[k];
-            }
-        }
-        to->first[i + 1] = count;
-    }
-    return 1;
-}
-
-/* The entries of a harmonic whose degrees of freedom, or contacts, have a place among so many. */
-static int extract_entries(struct modal_build *b, struct harmonic *h, size_t inside, const size_t *place)
-{
-    const struct harmonic from = *h;
-    h->count = 0;
-    h->index = tribo_modal_scratch_indices(b, from.count);
-    h->cosine = tribo_modal_scratch(b, from.count);
-    h->sine = tribo_modal_scratch(b, from.count);
-    if (!h->index || !h->cosine || !h->sine) {
-        return 0;
-    }
-    for (size_t k = 0; k < from.count; k++) {
-        if (place[from.index[k]] < inside) {
-            h->index[h->count] = place[from.index[k]];
-            h->cosine[h->count] = from.cosine[k];
-            h->sine[h->count++] = from.sine[k];
-        }
-    }
-    return 1;
-}
-
-/* Limits have an entry for each contact. */
-static int extract_limits(struct modal_build *b, struct harmonic *h)
-{
-    const struct harmonic from = *h;
-    h->cosine = tribo_modal_scratch(b, b->part.ncontact);
-    h->sine = tribo_modal_scratch(b, b->part.ncontact);
-    for (size_t i = 0; h->cosine && h->sine && i < b->part.ncontact; i++) {
-        h->cosine[i] = from.cosine[b->contact[i]];
-        h->sine[i] = from.sine[b->contact[i]];
-    }
-    return h->cosine && h->sine;
-}
-
-static int extract_harmonics(struct modal_build *b, const size_t *dof_place, const size_t *contact_place)
-{
-    tribo_system *sys = &b->part;
-    sys->harmonic = tribo_modal_scratch_harmonics(b, sys->harmonics);
-    int done = sys->harmonic != NULL;
-    for (size_t k = 0; done && k < sys->harmonics; k++) {
-        struct harmonic *h = &sys->harmonic[k];
-        *h = b->whole->sys->harmonic[k];
-        done = h->drives == DRIVES_LIMIT  ? extract_limits(b, h)
-               : h->drives == DRIVES_BASE ? extract_entries(b, h, sys->ncontact, contact_place)
-                                          : extract_entries(b, h, sys->ndof, dof_place);
-    }
-    return done;
-}
-
-/* The degrees of freedom inside, and the contacts there, with their matrices and harmonics, as a system of its own. */
-static int extract_part(struct modal_build *b, const size_t *dof_place, const size_t *contact_place)
-{
-    const struct modal_whole *w = b->whole;
-    const tribo_system *sys = w->sys;
-    const size_t n = b->part.ndof, c = b->part.ncontact;
-    b->part.massless.is = sys->massless.count ? tribo_modal_scratch_bytes(b, n) : NULL;
-    for (size_t d = 0; b->part.massless.is && d < n; d++) {
-        b->part.massless.is[d] = sys->massless.is[b->dof[d]];
-    }
-    return (b->part.massless.is || !sys->massless.count) &&
-           extract(b, &sys->direction, c, b->contact, n, dof_place, &b->part.direction) &&
-           (!sys->mass.rows || extract(b, &sys->mass, n, b->dof, n, dof_place, &b->part.mass)) &&
-           extract(b, w->stiffness, n, b->dof, n, dof_place, &b->own_stiffness) &&
-           (!w->damping || extract(b, w->damping, n, b->dof, n, dof_place, &b->own_damping)) &&
-           extract_harmonics(b, dof_place, contact_place);
-}
-
-/* Lists what is inside, and looks at the whole if that is all of it. */
-static int divide(struct modal_build *b, const unsigned char *inside, const unsigned char *holds, unsigned char *counts)
-{
-    const struct modal_whole *w = b->whole;
-    const size_t n = w->sys->ndof, c = w->sys->ncontact;
-    size_t *dof_place = tribo_modal_scratch_indices(b, n), *contact_place = tribo_modal_scratch_indices(b, c);
-    b->dof = tribo_modal_scratch_indices(b, n);
-    b->contact = tribo_modal_scratch_indices(b, c);
-    if (!dof_place || !contact_place || !b->dof || !b->contact) {
-        return 0;
-    }
-    for (size_t i = 0; i < c; i++) {
-        counts[i] = !holds[i] || w->alone[i] == n || inside[w->alone[i]];
-    }
-    b->part = *w->sys;
-    b->part.ndof = list(inside, n, b->dof, dof_place);
-    b->part.ncontact = list(counts, c, b->contact, contact_place);
-    b->stiffness = w->stiffness;
-    b->damping = w->damping;
-    if (b->part.ndof == n) {
-        return 1;
-    }
-    b->stiffness = &b->own_stiffness;
-    b->damping = w->damping ? &b->own_damping : NULL;
-    return extract_part(b, dof_place, contact_place);
-}
-
-int tribo_modal_divide(struct modal_build *b, const unsigned char *holds)
-{
-    const struct modal_whole *w = b->whole;
-    const size_t n = w->sys->ndof, c = w->sys->ncontact;
-    unsigned char *how = tribo_modal_scratch_bytes(b, n), *inside = tribo_modal_scratch_bytes(b, n);
-    unsigned char *counts = tribo_modal_scratch_bytes(b, c);
-    if (!how || !inside || !counts) {
-        return 0;
-    }
-    for (size_t i = 0; i < c; i++) {
-        if (holds[i]) {
-            hold(w, i, how);
-        }
-    }
-    look_around(w, holds, how, inside);
-    return divide(b, inside, holds, counts);
 }
