@@ -254,5 +254,8 @@ int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds)
         status = look_up(w, k, holds, &w->found[k]);
         w->divides &= status || !w->found[k]->coupling;
     }
+    if (!w->divides) {
+        tribo_modal_forget_pieces(w);
+    }
     return status || !w->divides || put_together(b, w->found) ? status : TRIBO_ERR_MEMORY;
 }
