@@ -32,8 +32,7 @@ static union block *add_block(void **list, size_t *bytes, size_t units)
     return block;
 }
 
-/* Zeroed memory that belongs to a list. NULL if there is none left. */
-static void *take(void **list, size_t *bytes, size_t count, size_t size)
+void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size)
 {
     const size_t units = (count * size + sizeof(union block)) / sizeof(union block);
     union block *block = *list;
@@ -72,51 +71,51 @@ void tribo_modal_empty(void **list)
 
 double *tribo_modal_keep(struct modal_build *b, size_t count)
 {
-    return take(&b->h->memory, &b->h->bytes, count, sizeof(double));
+    return tribo_modal_take(&b->h->memory, &b->h->bytes, count, sizeof(double));
 }
 
 size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count)
 {
-    return take(&b->h->memory, &b->h->bytes, count, sizeof(size_t));
+    return tribo_modal_take(&b->h->memory, &b->h->bytes, count, sizeof(size_t));
 }
 
 unsigned char *tribo_modal_keep_bytes(struct modal_build *b, size_t count)
 {
-    return take(&b->h->memory, &b->h->bytes, count, 1);
+    return tribo_modal_take(&b->h->memory, &b->h->bytes, count, 1);
 }
 
 struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count)
 {
-    return take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->output);
+    return tribo_modal_take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->output);
 }
 
 struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count)
 {
-    return take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->forcing);
+    return tribo_modal_take(&b->h->memory, &b->h->bytes, count, sizeof *b->h->forcing);
 }
 
 double *tribo_modal_scratch(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return take(&b->whole->scratch, &ignored, count, sizeof(double));
+    return tribo_modal_take(&b->whole->scratch, &ignored, count, sizeof(double));
 }
 
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return take(&b->whole->scratch, &ignored, count, sizeof(size_t));
+    return tribo_modal_take(&b->whole->scratch, &ignored, count, sizeof(size_t));
 }
 
 unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return take(&b->whole->scratch, &ignored, count, 1);
+    return tribo_modal_take(&b->whole->scratch, &ignored, count, 1);
 }
 
 struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return take(&b->whole->scratch, &ignored, count, sizeof(struct harmonic));
+    return tribo_modal_take(&b->whole->scratch, &ignored, count, sizeof(struct harmonic));
 }
 
 /* ----------------------------------------------------------------------------------------------------- the contacts that hold */

@@ -54,6 +54,7 @@ double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
 unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count);
 struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count);
+void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size); /* of a list, and adds to its bytes */
 void tribo_modal_give_back(void *list);
 void tribo_modal_empty(void **list); /* what is on the list is nobody's, but it may keep a block for what comes */
 

@@ -9,17 +9,15 @@ void tribo_modal_whole_free(struct modal_whole *w)
     tribo_matrix_free(&w->own_damping);
     tribo_modal_forget_pieces(w);
     tribo_modal_give_back(w->scratch);
-    free(w->first);
-    free(w->beside);
-    free(w->first_contact);
-    free(w->contact);
-    free(w->alone);
-    free(w->always);
-    free(w->dof_place);
-    free(w->contact_place);
-    free(w->piece);
-    free(w->found);
+    tribo_modal_give_back(w->memory);
     memset(w, 0, sizeof *w);
+}
+
+/* Zeros that are freed with the whole. NULL if there are none left. */
+static void *take(struct modal_whole *w, size_t count, size_t size)
+{
+    size_t ignored = 0;
+    return tribo_modal_take(&w->memory, &ignored, count, size);
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- matrices */
@@ -71,10 +69,10 @@ static int find_beside(struct modal_whole *w)
 {
     const size_t n = w->sys->ndof;
     const struct matrix *const shared[] = {w->stiffness, w->damping, &w->sys->mass};
-    w->first = calloc(n + 1, sizeof *w->first);
-    w->beside = malloc((entries(shared[0]) + entries(shared[1]) + entries(shared[2]) + 1) * sizeof *w->beside);
-    size_t *seen = calloc(n, sizeof *seen);
-    const int done = w->first && w->beside && seen;
+    w->first = take(w, n + 1, sizeof *w->first);
+    w->beside = take(w, entries(shared[0]) + entries(shared[1]) + entries(shared[2]), sizeof *w->beside);
+    size_t *seen = w->root;
+    const int done = w->first && w->beside;
     for (size_t d = 0; done && d < n; d++) {
         seen[d] = d + 1;
         w->first[d + 1] = w->first[d];
@@ -82,7 +80,6 @@ static int find_beside(struct modal_whole *w)
             list_beside(w, shared[k], d, seen);
         }
     }
-    free(seen);
     return done;
 }
 
@@ -138,9 +135,9 @@ static int list_contacts(struct modal_whole *w)
 {
     const struct matrix *j = &w->sys->direction;
     const size_t n = w->sys->ndof;
-    w->first_contact = calloc(n + 2, sizeof *w->first_contact);
-    w->contact = malloc((entries(j) + 1) * sizeof *w->contact);
-    w->alone = malloc((j->rows + 1) * sizeof *w->alone);
+    w->first_contact = take(w, n + 2, sizeof *w->first_contact);
+    w->contact = take(w, entries(j), sizeof *w->contact);
+    w->alone = take(w, j->rows, sizeof *w->alone);
     if (!w->first_contact || !w->contact || !w->alone) {
         return 0;
     }
@@ -165,7 +162,7 @@ static int find_harmonics(struct modal_whole *w)
 {
     const tribo_system *sys = w->sys;
     const int shares_mass = sys->mass.rows && !tribo_matrix_is_diagonal(&sys->mass);
-    w->always = calloc(sys->ndof, 1);
+    w->always = take(w, sys->ndof, 1);
     w->divides = !shares_mass && sys->base_harmonics == 0 && sys->limit_harmonics == 0;
     for (size_t k = 0; w->always && k < sys->harmonics; k++) {
         note_harmonic(w, &sys->harmonic[k], shares_mass);
@@ -179,28 +176,27 @@ static int find_harmonics(struct modal_whole *w)
 static int create_workspace(struct modal_whole *w)
 {
     const size_t n = w->sys->ndof, c = w->sys->ncontact;
-    w->dof_place = malloc((4 * n + 2) * sizeof *w->dof_place + 2 * n);
-    w->contact_place = malloc((c + 1) * sizeof *w->contact_place);
-    w->piece = calloc(n + 1, sizeof(struct modal_piece *));
-    w->found = malloc((n + 1) * sizeof(struct modal *));
-    if (!w->dof_place || !w->contact_place || !w->piece || !w->found) {
-        return 0;
+    size_t **const list[] = {&w->dof_place, &w->root, &w->own, &w->first_own, &w->contact_place};
+    const size_t count[] = {n, n, n, n + 2, c};
+    for (size_t k = 0; k < sizeof list / sizeof *list; k++) {
+        *list[k] = take(w, count[k], sizeof **list[k]);
+        if (!*list[k]) {
+            return 0;
+        }
     }
-    w->root = w->dof_place + n;
-    w->own = w->root + n;
-    w->first_own = w->own + n;
-    w->how = (unsigned char *)(w->first_own + n + 2);
-    w->ours = w->how + n;
-    memset(w->ours, 0, n);
+    w->how = take(w, n, 1);
+    w->ours = take(w, n, 1);
+    w->piece = take(w, n, sizeof(struct modal_piece *));
+    w->found = take(w, n + 1, sizeof(struct modal *));
     memset(w->dof_place, 0xff, n * sizeof *w->dof_place);
     memset(w->contact_place, 0xff, c * sizeof *w->contact_place);
-    return 1;
+    return w->how && w->ours && w->piece && w->found;
 }
 
 int tribo_modal_whole_create(struct modal_whole *w, tribo_system *sys)
 {
     *w = (struct modal_whole){.sys = sys};
-    return find_forces(w) && find_beside(w) && list_contacts(w) && find_harmonics(w) && create_workspace(w)
+    return create_workspace(w) && find_forces(w) && find_beside(w) && list_contacts(w) && find_harmonics(w)
                ? TRIBO_OK
                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrices of a structure to be held");
 }

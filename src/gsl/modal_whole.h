@@ -36,7 +36,7 @@ struct modal_whole {
     struct modal_piece **piece; /* [ndof] parts that are known, by their first degree of freedom */
     struct modal **found;       /* [ndof + 1] those of the set that is looked at */
     size_t bytes;               /* of parts that are known */
-    void *scratch;              /* memory for the next decomposition */
+    void *memory, *scratch;     /* of all arrays; for the next decomposition */
 };
 
 #define NOWHERE ((size_t)-1)
