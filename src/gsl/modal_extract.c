@@ -105,7 +105,7 @@ void tribo_modal_unlist(struct modal_build *b)
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------- what goes with them */
+/* ------------------------------------------------------------------------------------------------------- what goes with them */
 
 /* to = these rows of a matrix, and the columns of the part. Without what would speed up products. */
 static int extract(struct modal_build *b, const struct matrix *from, size_t rows, const size_t *row, struct matrix *to)

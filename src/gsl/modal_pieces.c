@@ -27,7 +27,7 @@ void tribo_modal_forget_pieces(struct modal_whole *w)
     w->bytes = 0;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ parts that are known */
+/* --------------------------------------------------------------------------------------------------------- parts that are known */
 
 /* key = the part that is listed in b. Returns its length. */
 static size_t write_key(const struct modal_build *b, size_t part, const unsigned char *holds, size_t *key)

@@ -54,14 +54,44 @@ static size_t entries(const struct matrix *a)
     return a && a->rows ? a->first[a->rows] : 0;
 }
 
-/* Appends to the list of those beside d whom a has there. seen [ndof] is d + 1 for those that the list has. */
-static void list_beside(struct modal_whole *w, const struct matrix *a, size_t d, size_t *seen)
+/* Counts for row d, at d + 2, who is beside it by an entry of a; of damping, the mirror image of an entry may be missing. */
+static void count_beside(const struct matrix *a, size_t *first)
 {
-    for (size_t k = a && a->rows ? a->first[d] : 0; a && a->rows && k < a->first[d + 1]; k++) {
-        if (a->val[k] != 0.0 && seen[a->col[k]] != d + 1) {
-            seen[a->col[k]] = d + 1;
-            w->beside[w->first[d + 1]++] = a->col[k];
+    for (size_t d = 0, k = 0; k < entries(a); d++) {
+        for (; k < a->first[d + 1]; k++) {
+            const int beside = a->val[k] != 0.0 && a->col[k] != d;
+            first[d + 2] += (size_t)beside;
+            first[a->col[k] + 2] += (size_t)beside;
         }
+    }
+}
+
+static void list_beside(const struct modal_whole *w, const struct matrix *a)
+{
+    for (size_t d = 0, k = 0; k < entries(a); d++) {
+        for (; k < a->first[d + 1]; k++) {
+            const size_t e = a->col[k];
+            if (a->val[k] != 0.0 && e != d) {
+                w->beside[w->first[d + 1]++] = e;
+                w->beside[w->first[e + 1]++] = d;
+            }
+        }
+    }
+}
+
+/* Leaves each of the lists with everyone once. */
+static void remove_repeats(const struct modal_whole *w)
+{
+    size_t *seen = w->root, kept = 0;
+    for (size_t d = 0, k = 0; d < w->sys->ndof; d++) {
+        const size_t end = w->first[d + 1];
+        for (; k < end; k++) {
+            if (seen[w->beside[k]] != d + 1) {
+                seen[w->beside[k]] = d + 1;
+                w->beside[kept++] = w->beside[k];
+            }
+        }
+        w->first[d + 1] = kept;
     }
 }
 
@@ -69,18 +99,21 @@ static int find_beside(struct modal_whole *w)
 {
     const size_t n = w->sys->ndof;
     const struct matrix *const shared[] = {w->stiffness, w->damping, &w->sys->mass};
-    w->first = take(w, n + 1, sizeof *w->first);
-    w->beside = take(w, entries(shared[0]) + entries(shared[1]) + entries(shared[2]), sizeof *w->beside);
-    size_t *seen = w->root;
-    const int done = w->first && w->beside;
-    for (size_t d = 0; done && d < n; d++) {
-        seen[d] = d + 1;
-        w->first[d + 1] = w->first[d];
-        for (size_t k = 0; k < 3; k++) {
-            list_beside(w, shared[k], d, seen);
-        }
+    w->first = take(w, n + 2, sizeof *w->first);
+    for (size_t k = 0; w->first && k < 3; k++) {
+        count_beside(shared[k], w->first);
     }
-    return done;
+    for (size_t d = 0; w->first && d < n; d++) {
+        w->first[d + 2] += w->first[d + 1];
+    }
+    w->beside = w->first ? take(w, w->first[n + 1], sizeof *w->beside) : NULL;
+    for (size_t k = 0; w->beside && k < 3; k++) {
+        list_beside(w, shared[k]);
+    }
+    if (w->beside) {
+        remove_repeats(w);
+    }
+    return w->beside != NULL;
 }
 
 /* ------------------------------------------------------------------------------------------------------- what happens to them */

@@ -271,4 +271,23 @@ TEST(coupled_part)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {coupled_part, 1})
+/* Damping of one side: body 1, which is held, feels how body 0 moves, and not the other way round. */
+TEST(one_sided)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {4.0, 0.0, 0.0, 1.0}, damping[] = {0.0, 0.0, 0.25, 0.0};
+    const double direction[] = {0.0, 1.0};
+    const signed char slip[] = {0};
+    const unsigned char holds[] = {1};
+    tribo_system *sys;
+    struct modal *h;
+    assert_ok(tribo_system_linear(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(decompose(&h, sys, slip, holds));
+    ck_assert_uint_eq(h->modes, 1);
+    ck_assert_uint_eq(h->outputs, 1);
+    assert_close(h->output[0].size[0], 0.25 * 2.0, 1e-14);
+    tribo_modal_free(h);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {coupled_part, 1},
+          {one_sided, 1})
