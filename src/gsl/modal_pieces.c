@@ -10,7 +10,7 @@
 struct modal_piece {
     struct modal_piece *next; /* with the same first degree of freedom */
     struct modal *modal;
-    size_t count, key[1]; /* [count] */
+    size_t count, key[]; /* [count] */
 };
 
 void tribo_modal_forget_pieces(struct modal_whole *w)
@@ -27,7 +27,7 @@ void tribo_modal_forget_pieces(struct modal_whole *w)
     w->bytes = 0;
 }
 
-/* --------------------------------------------------------------------------------------------------------- parts that are known */
+/* ------------------------------------------------------------------------------------------------------ parts that are known */
 
 /* key = the part that is listed in b. Returns its length. */
 static size_t write_key(const struct modal_build *b, size_t part, const unsigned char *holds, size_t *key)
@@ -87,7 +87,7 @@ static int look_up(struct modal_whole *w, size_t part, const unsigned char *hold
     return status;
 }
 
-/* ------------------------------------------------------------------------------------------------------------ put together */
+/* -------------------------------------------------------------------------------------------------------------- put together */
 
 /* Where something of a part stands among all. */
 struct place {
