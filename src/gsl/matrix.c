@@ -80,15 +80,21 @@ static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *pl
 {
     a->diagonals = diagonals;
     a->offset = malloc(diagonals * sizeof *a->offset);
-    a->block = malloc(blocks_of(a) * sizeof *a->block);
-    a->fast = malloc((blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
-    if (!a->offset || !a->block || !a->fast) {
+    if (!a->offset) {
         return 0;
     }
     for (size_t d = 0; d < a->rows + a->cols + 1; d++) {
         if (place[d]) {
             a->offset[place[d] - 1] = (ptrdiff_t)d - (ptrdiff_t)a->rows;
         }
+    }
+    if (a->rows <= MATRIX_FEW) {
+        return 1;
+    }
+    a->block = malloc(blocks_of(a) * sizeof *a->block);
+    a->fast = malloc((blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
+    if (!a->block || !a->fast) {
+        return 0;
     }
     take_diagonals(a);
     return 1;
@@ -370,7 +376,7 @@ void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
             a->fast[i * a->cols + j] *= factor[i];
         }
     }
-    if (a->diagonals) {
+    if (a->diagonals && a->fast) {
         take_diagonals(a);
     }
 }

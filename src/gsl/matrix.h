@@ -11,11 +11,14 @@
 /* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
 enum { MATRIX_BLOCK = 128 };
 
+/* So few rows are multiplied with sooner entry by entry, and have no blocks. */
+enum { MATRIX_FEW = 4 };
+
 struct matrix {
     size_t rows, cols;
     size_t *first, *col; /* row i: entries first[i] to first[i+1] - 1, columns ascending */
     double *val;
-    size_t diagonals; /* number of diagonals in `fast`, 0 if it holds no diagonals */
+    size_t diagonals; /* number of full ones, which `fast` has if rows are not few; 0 if it has none, or all entries */
     ptrdiff_t *offset;
     size_t *block; /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
     double *fast;  /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */

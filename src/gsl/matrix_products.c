@@ -8,9 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* So few rows are multiplied with sooner entry by entry. */
-#define FEW_ROWS 4
-
 /* y [rows] = z + factor times rows `begin` and following of A x, all of one block and with all diagonals inside the matrix; z
  * NULL: y. Three diagonals at a time, so that y is passed over as seldom as can be, but in the order of one after the other. */
 static inline void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
@@ -105,7 +102,7 @@ static double dense_dot(size_t n, const double *restrict val, const double *rest
 void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
 {
     if (a->diagonals) {
-        (end - begin > FEW_ROWS ? add_banded_rows : add_outer_rows)(a, begin, end, factor, x, y);
+        (end - begin > MATRIX_FEW ? add_banded_rows : add_outer_rows)(a, begin, end, factor, x, y);
         return;
     }
     for (size_t i = begin; i < end; i++) {
@@ -125,7 +122,7 @@ static void subtract_outer_rows(const struct matrix *a, size_t begin, size_t end
 
 void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y)
 {
-    const int banded = a->diagonals && end - begin > FEW_ROWS;
+    const int banded = a->diagonals && end - begin > MATRIX_FEW;
     const size_t first = banded ? between(inner_begin(a), begin, end) : end,
                  last = banded ? between(inner_end(a), first, end) : end;
     if (!banded && a->fast && !a->diagonals) {
@@ -150,7 +147,7 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
 
 static int is_small(const struct matrix *a)
 {
-    return a->rows <= FEW_ROWS && a->cols <= 4 * FEW_ROWS;
+    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
 }
 
 /* y += factor A x of a small matrix. */

@@ -26,6 +26,7 @@ struct course {
 struct exact {
     tribo_system *sys;
     struct events events;
+    struct modal_whole whole; /* what these are decompositions of; zeros until there is one */
     struct modal **held;
     size_t helds, room, bytes, revision;
 
@@ -42,8 +43,18 @@ static void drop_helds(struct exact *x)
     for (size_t i = 0; i < x->helds; i++) {
         tribo_modal_free(x->held[i]);
     }
+    tribo_modal_whole_free(&x->whole);
     x->helds = 0;
     x->bytes = 0;
+}
+
+static int find_whole(struct exact *x)
+{
+    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys);
+    if (status) {
+        tribo_modal_whole_free(&x->whole);
+    }
+    return status;
 }
 
 static int rests_like(const struct modal *h, const struct stick_slip *m, size_t n)
@@ -71,7 +82,7 @@ static int find_held(struct exact *x, const struct modal **found)
             return TRIBO_OK;
         }
     }
-    if (x->bytes > CACHE_BYTES) {
+    if (x->bytes + x->whole.bytes > CACHE_BYTES) {
         drop_helds(x);
     }
     if (x->helds == x->room) {
@@ -84,7 +95,8 @@ static int find_held(struct exact *x, const struct modal **found)
         x->room = room;
     }
     struct modal *h;
-    const int status = tribo_modal_create(&h, sys, x->events.stick_slip.slip, x->events.stick_slip.holds);
+    int status = find_whole(x);
+    status = status ? status : tribo_modal_create(&h, &x->whole, x->events.stick_slip.slip, x->events.stick_slip.holds);
     if (status) {
         return status;
     }

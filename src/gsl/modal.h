@@ -8,7 +8,7 @@
 #ifndef TRIBO_MODAL_H
 #define TRIBO_MODAL_H
 
-#include "system.h"
+#include "modal_whole.h"
 
 /* So many terms side by side: their number is a multiple of this. */
 enum { TRIBO_TERMS = 4 };
@@ -32,7 +32,6 @@ struct forcing {
 
 struct modal {
     signed char *key; /* [ncontact] 1: the contact rests, 2: and holds */
-    size_t rest;      /* contacts at rest that hold; others depend on them */
 
     size_t moving, *dof; /* degrees of freedom that move */
     size_t modes;
@@ -67,9 +66,9 @@ struct modal {
     size_t bytes;
 };
 
-/* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h). Returns a status; its message is on
- * the system's context. */
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *slip, const unsigned char *holds);
+/* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h); the others at rest depend on those.
+ * Returns a status; its message is on the system's context. */
+int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds);
 void tribo_modal_free(struct modal *h);
 
 #endif

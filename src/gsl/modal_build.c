@@ -29,50 +29,23 @@ static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
     b->rest = tribo_modal_scratch_indices(b, b->sys->ncontact);
     for (size_t i = 0; b->rest && i < b->sys->ncontact; i++) {
-        if (holds[i]) {
-            b->rest[b->h->rest++] = i;
+        if (holds[b->contact[i]]) {
+            b->rest[b->rests++] = i;
         }
     }
-    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->mass, b->rest, b->h->rest, NULL)) {
+    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->mass, b->rest, b->rests, NULL)) {
         return 0;
     }
-    if (b->ties.rank < b->h->rest) {
+    if (b->ties.rank < b->rests) {
         b->status =
             tribo_system_fail(b->sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
-                              b->rest[b->ties.order[b->ties.rank]]);
+                              b->contact[b->rest[b->ties.order[b->ties.rank]]]);
         return 0;
     }
     return 1;
 }
 
 /* ------------------------------------------------------------------------------------------------- modes of vibration */
-
-/* K or C: as given, or M times what accelerates. */
-static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
-                                         struct matrix *own)
-{
-    if (given->rows || !sys->mass.rows) {
-        return given->rows ? given : accelerates;
-    }
-    double *mass = malloc(sys->ndof * sizeof *mass);
-    for (size_t d = 0; mass && d < sys->ndof; d++) {
-        mass[d] = tribo_matrix_get(&sys->mass, d, d);
-    }
-    const int done = mass && tribo_matrix_copy(own, accelerates);
-    if (done) {
-        tribo_matrix_scale_rows(own, mass);
-    }
-    free(mass);
-    return done ? own : NULL;
-}
-
-static int find_forces(struct modal_build *b)
-{
-    const tribo_system *sys = b->sys;
-    b->stiffness = force_matrix(sys, &sys->elastic, &sys->stiffness, &b->own_stiffness);
-    b->damping = sys->damping.rows ? force_matrix(sys, &sys->viscous, &sys->damping, &b->own_damping) : NULL;
-    return b->stiffness && (b->damping || !sys->damping.rows);
-}
 
 /* Factor of Z'MZ. Returns a status. */
 static int factorize_mass(struct modal_build *b, const struct matrix *z, struct cholesky *c)
@@ -117,7 +90,8 @@ static int find_modes(struct modal_build *b)
     struct matrix z = {0};
     struct cholesky own = {0};
     struct doubt doubt = {0};
-    int status = !b->h->rest || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    const int all_free = b->rests == 0 && b->n == b->whole->sys->ndof;
+    int status = all_free || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     status = status || !b->sys->massless.count ? status : tribo_modal_condense(b, &z);
     const int held = z.rows > 0;
     b->h->modes = held ? z.cols : b->n;
@@ -264,17 +238,48 @@ static int compress(struct modal_build *b)
     return 1;
 }
 
-static int build(struct modal_build *b, const signed char *mode, const unsigned char *holds)
+/* What a set is known by. */
+static int find_key(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    const size_t all = b->whole->sys->ncontact;
+    signed char *key = b->h->key = (signed char *)tribo_modal_keep_bytes(b, all);
+    for (size_t i = 0; key && i < all; i++) {
+        key[i] = (signed char)((slip[i] == 0) + holds[i]);
+    }
+    return key != NULL;
+}
+
+/* The same of the contacts of the part. */
+static int find_part_key(struct modal_build *b, const unsigned char *holds)
+{
+    b->key = (signed char *)tribo_modal_scratch_bytes(b, b->part.ncontact);
+    for (size_t i = 0; b->key && i < b->part.ncontact; i++) {
+        const size_t at = b->contact[i];
+        b->key[i] = b->h->key ? b->h->key[at] : (signed char)(2 * holds[at]);
+    }
+    return b->key != NULL;
+}
+
+/* Degrees of freedom and contacts of the part become those of the whole. */
+static void number_as_whole(struct modal_build *b)
 {
     struct modal *h = b->h;
-    h->key = (signed char *)tribo_modal_keep_bytes(b, b->sys->ncontact);
-    for (size_t i = 0; h->key && i < b->sys->ncontact; i++) {
-        h->key[i] = (signed char)((mode[i] == 0) + holds[i]);
+    for (size_t i = 0; i < h->moving; i++) {
+        h->dof[i] = b->dof[h->dof[i]];
     }
-    if (!h->key || !list_rest(b, holds) || !find_forces(b) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
-        !find_drifts(b)) {
-        return b->status ? b->status : TRIBO_ERR_MEMORY;
+    for (size_t k = 0; k < h->outputs; k++) {
+        h->output[k].contact = b->contact[h->output[k].contact];
     }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        size_t *contact = &h->forcing[s].contact;
+        *contact = *contact < b->sys->ncontact ? b->contact[*contact] : b->whole->sys->ncontact;
+    }
+}
+
+/* Exponents, and what is to be known of them. Returns a status. */
+static int find_exponents(struct modal_build *b)
+{
+    struct modal *h = b->h;
     const int status = tribo_modal_exponents(b);
     if (status) {
         return status;
@@ -285,29 +290,86 @@ static int build(struct modal_build *b, const signed char *mode, const unsigned 
         h->fastest = greater(h->fastest, h->size[p]);
         h->decay = greater(h->decay, -h->lr[p]);
     }
-    const int done = h->size && tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b);
-    h->quickest = h->fastest;
-    for (size_t s = 0; done && s < h->harmonics; s++) {
-        h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
-    }
-    return done ? TRIBO_OK : b->status ? b->status : TRIBO_ERR_MEMORY;
+    return h->size ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-int tribo_modal_create(struct modal **modal, tribo_system *sys, const signed char *mode, const unsigned char *holds)
+/* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
+static int find_all(struct modal_build *b, const unsigned char *holds)
 {
-    struct modal_build b = {.sys = sys, .n = sys->ndof, .h = calloc(1, sizeof *b.h)};
-    int status = b.h ? build(&b, mode, holds) : TRIBO_ERR_MEMORY;
-    tribo_modal_give_back(b.scratch);
-    tribo_constraints_free(&b.ties);
-    tribo_matrix_free(&b.slack);
-    tribo_cholesky_free(&b.slack_stiffness);
-    tribo_matrix_free(&b.own_stiffness);
-    tribo_matrix_free(&b.own_damping);
-    if (status) {
-        tribo_modal_free(b.h);
-        return status == TRIBO_ERR_MEMORY ? tribo_system_fail(sys, status, "out of memory for the modes of a held structure")
-                                          : status;
+    b->sys = &b->part;
+    b->n = b->part.ndof;
+    if (!find_part_key(b, holds) || !list_rest(b, holds) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
+        !find_drifts(b)) {
+        return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
-    *modal = b.h;
+    const int status = find_exponents(b);
+    if (status) {
+        return status;
+    }
+    if (!tribo_modal_forcing(b) || !tribo_modal_response(b) || !tribo_modal_outputs(b) || !compress(b)) {
+        return b->status ? b->status : TRIBO_ERR_MEMORY;
+    }
+    number_as_whole(b);
+    return TRIBO_OK;
+}
+
+int tribo_modal_build(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    b->h = calloc(1, sizeof *b->h);
+    int status = b->h && (!slip || find_key(b, slip, holds)) && tribo_modal_extract(b) ? find_all(b, holds) : TRIBO_ERR_MEMORY;
+    tribo_constraints_free(&b->ties);
+    tribo_matrix_free(&b->slack);
+    tribo_cholesky_free(&b->slack_stiffness);
+    if (status) {
+        tribo_modal_free(b->h);
+        b->h = NULL;
+    }
+    return status;
+}
+
+static int from_pieces(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    b->part = *b->whole->sys;
+    b->sys = &b->part;
+    b->h = calloc(1, sizeof *b->h);
+    const int status = b->h && find_key(b, slip, holds) ? tribo_modal_from_pieces(b, holds) : TRIBO_ERR_MEMORY;
+    if (status || !b->whole->divides) {
+        tribo_modal_free(b->h);
+        b->h = NULL;
+    }
+    return status;
+}
+
+static int from_whole(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+{
+    tribo_modal_take_all(b->whole, holds);
+    const int status = tribo_modal_list(b, 0, holds) ? tribo_modal_build(b, slip, holds) : TRIBO_ERR_MEMORY;
+    tribo_modal_unlist(b);
+    tribo_modal_empty(&b->whole->scratch);
+    return status;
+}
+
+int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds)
+{
+    struct modal_build b = {.whole = whole}, all = {.whole = whole};
+    if (whole->divides) {
+        tribo_modal_divide(whole, holds);
+    }
+    const int divided = whole->divides && (whole->parts != 1 || whole->first_own[1] < whole->sys->ndof);
+    int status = divided ? from_pieces(&b, slip, holds) : TRIBO_OK;
+    if (!status && !b.h) {
+        status = from_whole(&all, slip, holds);
+        b.h = all.h;
+    }
+    if (status) {
+        return status == TRIBO_ERR_MEMORY
+                   ? tribo_system_fail(whole->sys, status, "out of memory for the modes of a held structure")
+                   : status;
+    }
+    struct modal *h = *modal = b.h;
+    h->quickest = h->fastest;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
+    }
     return TRIBO_OK;
 }

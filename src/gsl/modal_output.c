@@ -30,7 +30,7 @@ static void output_mode(const struct modal_build *b, struct output *w, size_t k,
     }
 }
 
-static int create_output(struct modal_build *b, struct output *w, size_t contact)
+int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact)
 {
     const size_t terms = b->h->terms, p = b->h->exponents;
     double *x = tribo_modal_keep(b, 3 * terms + b->h->modes);
@@ -48,9 +48,9 @@ static double absolute(double re, double im)
     return re == 0.0 ? fabs(im) : im == 0.0 ? fabs(re) : hypot(re, im);
 }
 
-static void finish_output(const struct modal_build *b, struct output *w)
+void tribo_modal_finish_output(const struct modal *h, struct output *w)
 {
-    for (size_t p = 0; p < b->h->terms; p++) {
+    for (size_t p = 0; p < h->terms; p++) {
         w->size[p] = absolute(w->cr[p], w->ci[p]);
     }
 }
@@ -96,7 +96,7 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 /* v_i = J_i q' - b_i. */
 static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 {
-    if (!create_output(b, w, i)) {
+    if (!tribo_modal_create_output(b, w, i)) {
         return 0;
     }
     for (size_t k = 0; k < b->h->modes; k++) {
@@ -105,7 +105,7 @@ static int output_sliding(struct modal_build *b, struct output *w, size_t i)
         output_mode(b, w, k, 0.0, shape);
     }
     output_belts(b, w, i);
-    finish_output(b, w);
+    tribo_modal_finish_output(b->h, w);
     return 1;
 }
 
@@ -113,11 +113,11 @@ static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 static int output_parting(struct modal_build *b, struct output *all, size_t *used, size_t i)
 {
     struct output *w = &all[*used];
-    if (!create_output(b, w, i)) {
+    if (!tribo_modal_create_output(b, w, i)) {
         return 0;
     }
     *used += output_belts(b, w, i) != 0;
-    finish_output(b, w);
+    tribo_modal_finish_output(b->h, w);
     return 1;
 }
 
@@ -133,7 +133,7 @@ struct holding {
 static void hold_mode(const struct modal_build *b, struct holding *f, size_t k)
 {
     const struct modal *h = b->h;
-    const size_t n = b->n, s = h->rest;
+    const size_t n = b->n, s = b->rests;
     const double *psi = b->psi + k * n;
     memcpy(f->load, b->k_phi + k * n, n * sizeof *f->load);
     tribo_add(f->load, -h->omega2[k], psi, n);
@@ -187,7 +187,7 @@ static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t
 {
     const struct forcing *forcing = &b->h->forcing[w];
     const struct harmonic *wave = &b->sys->harmonic[forcing->harmonic];
-    const size_t n = b->n, s = b->h->rest;
+    const size_t n = b->n, s = b->rests;
     memset(f->force[0], 0, n * sizeof **f->force);
     memset(f->force[1], 0, n * sizeof **f->force);
     if (forcing->contact < b->sys->ncontact) {
@@ -204,7 +204,7 @@ static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t
 static int find_holding(struct modal_build *b, struct holding *f)
 {
     const struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, s = h->rest;
+    const size_t n = b->n, m = h->modes, s = b->rests;
     double **const all[] = {&f->by_q, &f->by_u, &f->wave_r, &f->wave_i, &f->ramp, &f->force[0], &f->force[1], &f->load};
     const size_t count[] = {m * s, m * s, h->harmonics * s, h->harmonics * s, s, n, n, n};
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
@@ -233,10 +233,10 @@ static int changes(const struct modal_build *b, const struct holding *f, size_t 
     const struct modal *h = b->h;
     int found = f->ramp[p] != 0.0 || tribo_system_swing(b->sys, b->rest[p]) > 0.0;
     for (size_t k = 0; k < h->modes; k++) {
-        found |= f->by_q[k * h->rest + p] != 0.0 || f->by_u[k * h->rest + p] != 0.0;
+        found |= f->by_q[k * b->rests + p] != 0.0 || f->by_u[k * b->rests + p] != 0.0;
     }
     for (size_t w = 0; w < h->harmonics; w++) {
-        found |= f->wave_r[w * h->rest + p] != 0.0 || f->wave_i[w * h->rest + p] != 0.0;
+        found |= f->wave_r[w * b->rests + p] != 0.0 || f->wave_i[w * b->rests + p] != 0.0;
     }
     return found;
 }
@@ -249,24 +249,24 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
     if (!find_holding(b, &f)) {
         return 0;
     }
-    for (size_t p = 0; p < h->rest; p++) {
+    for (size_t p = 0; p < b->rests; p++) {
         if (!changes(b, &f, p)) {
             continue;
         }
         struct output *output = &all[(*used)++];
-        if (!create_output(b, output, b->rest[p])) {
+        if (!tribo_modal_create_output(b, output, b->rest[p])) {
             return 0;
         }
         output->ramp = f.ramp[p];
         for (size_t k = 0; k < h->modes; k++) {
-            output->on_rate[k] = f.by_q[k * h->rest + p];
-            output_mode(b, output, k, f.by_q[k * h->rest + p], f.by_u[k * h->rest + p]);
+            output->on_rate[k] = f.by_q[k * b->rests + p];
+            output_mode(b, output, k, f.by_q[k * b->rests + p], f.by_u[k * b->rests + p]);
         }
         for (size_t w = 0; w < h->harmonics; w++) {
-            output->rr[w] += f.wave_r[w * h->rest + p];
-            output->ri[w] += f.wave_i[w * h->rest + p];
+            output->rr[w] += f.wave_r[w * b->rests + p];
+            output->ri[w] += f.wave_i[w * b->rests + p];
         }
-        finish_output(b, output);
+        tribo_modal_finish_output(b->h, output);
     }
     return 1;
 }
@@ -276,8 +276,7 @@ static double sixth_power(double x)
     return x * x * x * x * x * x;
 }
 
-/* Harmonics become terms as exponents are. */
-static int find_terms(struct modal_build *b)
+int tribo_modal_find_terms(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t p = h->exponents;
@@ -310,12 +309,12 @@ int tribo_modal_outputs(struct modal_build *b)
     struct modal *h = b->h;
     const size_t c = b->sys->ncontact;
     h->output = tribo_modal_keep_outputs(b, c);
-    if (!h->output || !find_terms(b)) {
+    if (!h->output || !tribo_modal_find_terms(b)) {
         return 0;
     }
     for (size_t i = 0; i < c; i++) {
-        const int done = h->key[i] == 0   ? output_sliding(b, &h->output[h->outputs++], i)
-                         : h->key[i] == 1 ? output_parting(b, h->output, &h->outputs, i)
+        const int done = b->key[i] == 0   ? output_sliding(b, &h->output[h->outputs++], i)
+                         : b->key[i] == 1 ? output_parting(b, h->output, &h->outputs, i)
                                           : 1;
         if (!done) {
             return 0;

@@ -4,24 +4,45 @@
 
 #include "constraint.h"
 #include "modal.h"
+#include "modal_whole.h"
 
-/* Vectors of the whole structure: [ndof], modes of it [modes][ndof]. */
+/* Degrees of freedom and contacts are those of the part that is looked at (modal_whole.h): vectors are [ndof] of it, modes
+ * [modes][ndof]. */
 struct modal_build {
-    tribo_system *sys;
+    struct modal_whole *whole;
+    tribo_system part;                        /* as much of it as is looked at, */
+    size_t *dof, *contact;                    /* [part.ndof], [part.ncontact] and where that is in the whole; */
+    size_t owns;                              /* so many degrees of freedom are its own */
+    const struct matrix *stiffness, *damping; /* K and C of the part, or NULL */
+    struct matrix own_stiffness, own_damping; /* if it is not the whole */
+    const tribo_system *sys;                  /* the part */
     struct modal *h;
     size_t n;
-    size_t *rest;                             /* [h->rest] the contacts that hold */
-    struct constraints ties;                  /* and what they tie together */
-    const struct matrix *stiffness, *damping; /* K and C, or NULL */
-    struct matrix own_stiffness, own_damping; /* where the system has only AK and AC */
+    signed char *key;                  /* [ncontact] as in h */
+    size_t rests, *rest;               /* [rests] the contacts that hold */
+    struct constraints ties;           /* and what they tie together */
     struct matrix slack;               /* [ndof][..] displacements that are free and have no mass: they follow the others, */
     struct cholesky slack_stiffness;   /* by this */
     double *phi, *psi, *k_phi, *c_phi; /* and M phi, K phi, C phi */
     double *yr, *yi;                   /* [given][ndof] */
     double *y0;                        /* [ndof] velocities from belts of constant speed */
-    void *scratch;                     /* list of what is freed at the end */
     int status;                        /* of a failure other than of memory */
 };
+
+/* modal_extract.c: lists who belongs to a part of b->whole that is divided, until it is unlisted, and makes the part a system.
+ * These return 0 if out of memory. */
+int tribo_modal_list(struct modal_build *b, size_t part, const unsigned char *holds);
+void tribo_modal_unlist(struct modal_build *b);
+int tribo_modal_extract(struct modal_build *b);
+
+/* b->h = the part that is listed; its key is that of the whole, by slip, or, if that is NULL, it has none. Returns a status, and
+ * leaves b->h NULL on failure. */
+int tribo_modal_build(struct modal_build *b, const signed char *slip, const unsigned char *holds);
+
+/* modal_pieces.c: fills b->h, of which the key is known, from parts of the whole, which is divided. Nothing is done, and the
+ * whole divides no more, if damping turns out to couple modes. Returns a status. */
+int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds);
+void tribo_modal_forget_pieces(struct modal_whole *w);
 
 /* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
 double *tribo_modal_keep(struct modal_build *b, size_t count);
@@ -31,12 +52,16 @@ struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count);
 struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count);
 double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
+unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count);
+struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count);
+void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size); /* of a list, and adds to its bytes */
 void tribo_modal_give_back(void *list);
+void tribo_modal_empty(void **list); /* what is on the list is nobody's, but it may keep a block for what comes */
 
 /* J_i phi_k. */
 double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k);
 
-/* f [rest] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
+/* f [rests] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
 /* modal_slack.c: takes out of the displacements z that constraints allow (without rows: all) those without mass, and lets them
@@ -48,6 +73,13 @@ int tribo_modal_relax(struct modal_build *b, double *y);
 
 /* The exponents of eta. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);
+
+/* Lists the harmonics of the system, and then those of limits again, contact by contact that does not hold; lets them be terms as
+ * exponents are; an output, without anything, and the sizes of its terms. The first three return 0 if out of memory. */
+int tribo_modal_list_forcing(struct modal_build *b);
+int tribo_modal_find_terms(struct modal_build *b);
+int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact);
+void tribo_modal_finish_output(const struct modal *h, struct output *w);
 
 /* These return 0 if out of memory, or with the status of another failure in b. */
 int tribo_modal_forcing(struct modal_build *b);

@@ -27,7 +27,7 @@ static int belt_velocities(struct modal_build *b, const double *x, double *y)
 /* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
 static void base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
 {
-    for (size_t p = 0; p < b->h->rest; p++) {
+    for (size_t p = 0; p < b->rests; p++) {
         x[p] = 0.0;
         for (size_t i = 0; i < w->count; i++) {
             if (w->index[i] == b->rest[p]) {
@@ -37,14 +37,13 @@ static void base_part(const struct modal_build *b, const struct harmonic *w, int
     }
 }
 
-/* Lists the harmonics of the system, and then those of limits again, contact by contact that does not hold. */
-static int list_forcing(struct modal_build *b)
+int tribo_modal_list_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const tribo_system *sys = b->sys;
     const size_t c = sys->ncontact;
     h->given = h->harmonics = sys->harmonics;
-    h->forcing = tribo_modal_keep_forcing(b, sys->harmonics + sys->limit_harmonics * (c - h->rest));
+    h->forcing = tribo_modal_keep_forcing(b, sys->harmonics + sys->limit_harmonics * (c - b->rests));
     if (!h->forcing) {
         return 0;
     }
@@ -52,7 +51,7 @@ static int list_forcing(struct modal_build *b)
         const struct harmonic *w = &sys->harmonic[k];
         h->forcing[k] = (struct forcing){w->omega, k, c};
         for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
-            if (h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
+            if (b->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
                 h->forcing[h->harmonics++] = (struct forcing){w->omega, k, i};
             }
         }
@@ -78,7 +77,7 @@ int tribo_modal_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes, count = b->sys->harmonics;
-    if (!list_forcing(b)) {
+    if (!tribo_modal_list_forcing(b)) {
         return 0;
     }
     h->gr = tribo_modal_keep(b, h->harmonics * m);
@@ -88,7 +87,7 @@ int tribo_modal_forcing(struct modal_build *b)
     b->yr = tribo_modal_scratch(b, count * n);
     b->yi = tribo_modal_scratch(b, count * n);
     b->y0 = tribo_modal_scratch(b, n);
-    double *x = tribo_modal_scratch(b, h->rest), *pull = tribo_modal_scratch(b, n), *drag = tribo_modal_scratch(b, n);
+    double *x = tribo_modal_scratch(b, b->rests), *pull = tribo_modal_scratch(b, n), *drag = tribo_modal_scratch(b, n);
     if (!h->gr || !h->gi || !h->ramp || !h->constant || !b->yr || !b->yi || !b->y0 || !x || !pull || !drag) {
         return 0;
     }

@@ -2,6 +2,15 @@
 #include "modal.h"
 #include "support.h"
 
+static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)
+{
+    struct modal_whole whole;
+    int status = tribo_modal_whole_create(&whole, sys);
+    status = status ? status : tribo_modal_create(h, &whole, slip, holds);
+    tribo_modal_whole_free(&whole);
+    return status;
+}
+
 /* Body 2 on a spring of 4 to body 1, which is heavy; contacts between the ground and the light body 0, and between 0 and 1. */
 static tribo_system *sandwich(double light)
 {
@@ -21,7 +30,7 @@ TEST(both_hold)
     const unsigned char holds[] = {1, 1};
     tribo_system *sys = sandwich(pow(10.0, -_i));
     struct modal *h;
-    const int status = tribo_modal_create(&h, sys, mode, holds);
+    const int status = decompose(&h, sys, mode, holds);
     require(status == TRIBO_OK, "%s", tribo_message(tribo_system_context(sys)));
     ck_assert_uint_eq(h->modes, 1);
     ck_assert_uint_eq(h->exponents, 1);
@@ -48,7 +57,7 @@ TEST(upper_holds)
     const unsigned char holds[] = {0, 1};
     tribo_system *sys = sandwich(light);
     struct modal *h;
-    assert_ok(tribo_modal_create(&h, sys, mode, holds));
+    assert_ok(decompose(&h, sys, mode, holds));
     ck_assert_uint_eq(h->modes, 2);
     ck_assert_uint_eq(h->outputs, 2);
     ck_assert_uint_eq(h->sliding, 1);
@@ -76,7 +85,7 @@ TEST(lever)
     tribo_system *sys;
     struct modal *h;
     assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
-    assert_ok(tribo_modal_create(&h, sys, mode, holds));
+    assert_ok(decompose(&h, sys, mode, holds));
     ck_assert_uint_eq(h->modes, 1);
     assert_close(h->omega2[0], omega2, 1e-15);
     assert_close(h->output[0].size[0], fabs((7.0 - 3.0 * omega2) * 2.0 * phi), 1e-14);
@@ -94,10 +103,191 @@ TEST(too_many_hold)
     struct modal *h;
     stain(&h, sizeof h);
     assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
-    assert_status(tribo_modal_create(&h, sys, mode, holds), TRIBO_ERR_INDEFINITE);
+    assert_status(decompose(&h, sys, mode, holds), TRIBO_ERR_INDEFINITE);
     assert_says(tribo_message(tribo_system_context(sys)), "contact 1 cannot hold");
     ck_assert(stained(&h, sizeof h));
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1})
+/* ---------------------------------------------------------------------------------------------------------------- parts */
+
+#define BODIES 9
+#define CONTACTS (BODIES + 1)
+
+/* A row of bodies on springs, each on a contact, and a contact between bodies 1 and 5. Loads on bodies 0 and 6. */
+static tribo_system *row_of_bodies(struct random *r, double damping)
+{
+    double mass[BODIES * BODIES] = {0.0}, stiffness[BODIES * BODIES] = {0.0}, viscous[BODIES * BODIES] = {0.0};
+    double direction[CONTACTS * BODIES] = {0.0};
+    const double load[BODIES] = {1.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.5};
+    for (size_t i = 0; i < BODIES; i++) {
+        const double spring = uniform(r, 0.5, 2.0);
+        mass[i * BODIES + i] = uniform(r, 1.0, 3.0);
+        direction[i * BODIES + i] = uniform(r, 0.5, 1.5);
+        stiffness[i * BODIES + i] += 0.1 + spring;
+        if (i + 1 < BODIES) {
+            stiffness[(i + 1) * BODIES + i + 1] += spring;
+            stiffness[i * BODIES + i + 1] = stiffness[(i + 1) * BODIES + i] = -spring;
+        }
+    }
+    for (size_t k = 0; k < BODIES * BODIES; k++) {
+        viscous[k] = damping * stiffness[k];
+    }
+    direction[BODIES * BODIES + 1] = 1.0;
+    direction[BODIES * BODIES + 5] = -1.0;
+    tribo_system *sys;
+    assert_ok(
+        tribo_system_linear(&sys, BODIES, CONTACTS, mass, damping > 0.0 ? viscous : NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_system_add_load(sys, 0.3, load, NULL));
+    return sys;
+}
+
+/* The p-th smallest of n numbers. */
+static double smallest(const double *x, size_t n, size_t p)
+{
+    for (size_t k = 0; k < n; k++) {
+        size_t below_it = 0;
+        for (size_t l = 0; l < n; l++) {
+            below_it += x[l] < x[k] || (x[l] == x[k] && l < k);
+        }
+        if (below_it == p) {
+            return x[k];
+        }
+    }
+    return NAN;
+}
+
+/* Sums that do not depend on the order and the signs of modes. */
+static double sum_of(const double *x, size_t n)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < n; k++) {
+        sum += x[k];
+    }
+    return sum;
+}
+
+static double sum_of_squares(const double *x, const double *y, size_t n)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < n; k++) {
+        sum += x[k] * y[k];
+    }
+    return sum;
+}
+
+static void compare_outputs(const struct modal *g, const struct modal *h)
+{
+    for (size_t k = 0; k < g->outputs; k++) {
+        const struct output *x = &g->output[k], *y = &h->output[k];
+        ck_assert_uint_eq(x->contact, y->contact);
+        assert_close(sum_of(x->size, g->terms), sum_of(y->size, g->terms), 1e-12);
+        assert_close(sum_of_squares(x->size, g->sixth, g->terms), sum_of_squares(y->size, h->sixth, g->terms), 1e-10);
+        assert_close(sum_of_squares(x->on_rate, x->on_rate, g->modes), sum_of_squares(y->on_rate, y->on_rate, g->modes), 1e-12);
+        assert_close(x->rr[0], y->rr[0], 1e-13);
+        assert_close(x->ri[0], y->ri[0], 1e-13);
+        assert_close(x->wave[0], y->wave[0], 1e-13);
+    }
+}
+
+static void compare(const struct modal *g, const struct modal *h)
+{
+    ck_assert_uint_eq(g->modes, h->modes);
+    ck_assert_uint_eq(g->exponents, h->exponents);
+    ck_assert_uint_eq(g->terms, h->terms);
+    ck_assert_uint_eq(g->moving, h->moving);
+    ck_assert_uint_eq(g->sliding, h->sliding);
+    ck_assert_uint_eq(g->outputs, h->outputs);
+    for (size_t k = 0; k < g->modes; k++) {
+        assert_close(smallest(g->omega2, g->modes, k), smallest(h->omega2, g->modes, k), 1e-13);
+    }
+    assert_close(sum_of_squares(g->phi, g->psi, g->modes * g->moving), sum_of_squares(h->phi, h->psi, g->modes * g->moving),
+                 1e-13);
+    assert_close(sum_of_squares(g->xr, g->gr, g->modes), sum_of_squares(h->xr, h->gr, g->modes), 1e-13);
+    assert_close(g->fastest, h->fastest, 1e-13);
+    assert_close(g->quickest, h->quickest, 1e-13);
+    assert_close(g->decay, h->decay, 1e-13);
+    compare_outputs(g, h);
+}
+
+/* A set that is put together from parts is what it is as a whole, whichever bodies are held; and what is known of parts is not
+ * sought again. */
+TEST(parts)
+{
+    struct random r = random_of(_i);
+    tribo_system *sys = row_of_bodies(&r, _i % 2 ? 0.05 : 0.0);
+    struct modal_whole divided, undivided;
+    assert_ok(tribo_modal_whole_create(&divided, sys));
+    assert_ok(tribo_modal_whole_create(&undivided, sys));
+    ck_assert(divided.divides);
+    undivided.divides = 0;
+    for (int k = 0; k < 20; k++) {
+        signed char slip[CONTACTS];
+        unsigned char holds[CONTACTS];
+        struct modal *g, *h, *again;
+        for (size_t i = 0; i < CONTACTS; i++) {
+            holds[i] = i < BODIES && below(&r, 3) > 0;
+            slip[i] = !holds[i];
+        }
+        assert_ok(tribo_modal_create(&g, &undivided, slip, holds));
+        assert_ok(tribo_modal_create(&h, &divided, slip, holds));
+        compare(g, h);
+        const size_t bytes = divided.bytes;
+        assert_ok(tribo_modal_create(&again, &divided, slip, holds));
+        ck_assert_uint_eq(divided.bytes, bytes);
+        tribo_modal_free(g);
+        tribo_modal_free(h);
+        tribo_modal_free(again);
+    }
+    ck_assert(divided.divides);
+    ck_assert_uint_gt(divided.bytes, 0);
+    ck_assert_uint_eq(undivided.bytes, 0);
+    tribo_modal_whole_free(&divided);
+    tribo_modal_whole_free(&undivided);
+    tribo_system_destroy(sys);
+}
+
+/* Damping that couples the modes of a part: the set is one again, and the same. */
+TEST(coupled_part)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0},
+                 stiffness[] = {2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 2.0};
+    const double damping[] = {0.1, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0}, direction[] = {0.0, 0.0, 1.0};
+    const signed char slip[] = {0};
+    const unsigned char holds[] = {1};
+    tribo_system *sys;
+    struct modal_whole whole;
+    struct modal *h;
+    assert_ok(tribo_system_linear(&sys, 3, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_modal_whole_create(&whole, sys));
+    ck_assert(whole.divides);
+    assert_ok(tribo_modal_create(&h, &whole, slip, holds));
+    ck_assert(!whole.divides);
+    ck_assert_ptr_nonnull(h->coupling);
+    ck_assert_uint_eq(h->modes, 2);
+    ck_assert_uint_eq(h->outputs, 1);
+    tribo_modal_free(h);
+    tribo_modal_whole_free(&whole);
+    tribo_system_destroy(sys);
+}
+
+/* Damping of one side: body 1, which is held, feels how body 0 moves, and not the other way round. */
+TEST(one_sided)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {4.0, 0.0, 0.0, 1.0}, damping[] = {0.0, 0.0, 0.25, 0.0};
+    const double direction[] = {0.0, 1.0};
+    const signed char slip[] = {0};
+    const unsigned char holds[] = {1};
+    tribo_system *sys;
+    struct modal *h;
+    assert_ok(tribo_system_linear(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(decompose(&h, sys, slip, holds));
+    ck_assert_uint_eq(h->modes, 1);
+    ck_assert_uint_eq(h->outputs, 1);
+    assert_close(h->output[0].size[0], 0.25 * 2.0, 1e-14);
+    tribo_modal_free(h);
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {coupled_part, 1},
+          {one_sided, 1})
