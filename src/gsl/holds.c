@@ -18,7 +18,7 @@ static int take_holds(struct stick_slip *m, double *f)
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 {
     for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        f[i] = !m->loose[i] ? -a[i] / m->diagonal[i] : 0.0;
+        f[i] = tribo_stick_slip_balance_alone(m, i, a[i]);
     }
     const int status = m->hold_differs && !m->uncoupled ? take_holds(m, f) : TRIBO_OK;
     return status || m->uncoupled ? status : tribo_balance(m->hold, m->still, a, f, NULL);
@@ -62,22 +62,39 @@ static size_t take_rest(struct stick_slip *m)
     return changes;
 }
 
+/* All contacts at rest hold that can. */
+static void hold_all(struct stick_slip *m)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->holds[i] = (m->slip[i] == 0) & m->can_hold[i];
+    }
+}
+
+/* What follows from who holds. */
+static void note_holds(struct stick_slip *m, const tribo_system *sys)
+{
+    unsigned char dependents = 0, differs = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        const signed char loose = !m->holds[i] || tribo_massless_touches(&sys->massless, i);
+        dependents |= (m->slip[i] == 0) & !m->holds[i];
+        differs |= loose != m->loose[i];
+        m->loose[i] = loose;
+    }
+    m->dependents = dependents;
+    m->hold_differs |= differs;
+}
+
+/* Where contacts are independent, holding is a matter of each alone. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
-    if (take_rest(m) == 0 && !m->fresh) {
+    if (!m->independent && take_rest(m) == 0 && !m->fresh) {
         return TRIBO_OK;
     }
+    m->hold_differs |= m->fresh;
     m->fresh = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->holds[i] = m->slip[i] == 0 && (m->diagonal[i] > 0.0 || tribo_massless_touches(&sys->massless, i));
-    }
+    hold_all(m);
     const int status = m->independent ? TRIBO_OK : choose_holds(m, sys);
-    m->dependents = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->dependents += m->slip[i] == 0 && !m->holds[i];
-        m->loose[i] = !m->holds[i] || tribo_massless_touches(&sys->massless, i);
-    }
-    m->hold_differs = 1;
+    note_holds(m, sys);
     return status;
 }
 

@@ -43,7 +43,8 @@ static double force_alone(const struct stick_slip *m, size_t i, double a)
 /* Rounding of R may hide a heavy body, that of its factors does not. */
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         v[i] = a[i] + (m->uncoupled ? m->diagonal[i] * f[i] : 0.0);
     }
     if (!m->uncoupled) {
@@ -82,7 +83,8 @@ static void solve_only(struct stick_slip *m, const tribo_system *sys, size_t onl
 static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
     size_t only;
-    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
+    for (size_t k = 0; m->uncoupled && k < m->asks; k++) {
+        const size_t i = m->asked[k];
         f[i] = force_alone(m, i, a[i]);
     }
     if (m->uncoupled) {
@@ -98,7 +100,8 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
 
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
         m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
         m->hi[i] = m->slip[i] == 1 ? -limit : limit;
@@ -118,10 +121,10 @@ void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char directi
 }
 
 /* Where static limits were lost, all that began to slide while they held are decided about once more, too: the other way they
- * might go, or none. */
+ * might go, or none. Contacts that are not coupled do not mind. */
 static void rest_again(struct stick_slip *m)
 {
-    for (size_t i = 0; m->again && i < m->contacts; i++) {
+    for (size_t i = 0; m->again && !m->uncoupled && i < m->contacts; i++) {
         m->slip[i] = m->rested[i] ? 0 : m->slip[i];
     }
     m->again = 0;
@@ -144,21 +147,46 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
     return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
+static int is_close(const struct stick_slip *m, const tribo_system *sys, size_t i)
+{
+    return tribo_stick_slip_searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
+}
+
+/* How many are close to their limits. Where contacts are not coupled, others are decided about, unless they may part. */
+static size_t find_close(struct stick_slip *m, const tribo_system *sys)
+{
+    size_t found = 0, kept = 0;
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        const int close = is_close(m, sys, i);
+        m->tied[i] = 0;
+        m->asked[kept] = i;
+        kept += close || !m->uncoupled || tribo_stick_slip_may_part(m, i);
+        found += (size_t)close;
+    }
+    m->asks = kept;
+    return found;
+}
+
+static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    for (size_t k = 0; k < m->asks; k++) {
+        tribo_stick_slip_find_gain(m, sys, y, m->asked[k]);
+    }
+}
+
 /* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
 static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
 {
-    size_t close = 0, changes = 0;
+    size_t changes = 0;
     *ties = 0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->tied[i] = 0;
-        close += tribo_stick_slip_searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
-    }
-    if (close == 0) {
+    if (find_close(m, sys) == 0) {
         return 0;
     }
-    tribo_stick_slip_find_gains(m, sys, y);
+    find_gains(m, sys, y);
     tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double room = m->stick[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
         if (tribo_stick_slip_searches(m, sys, i) && room <= within) {
@@ -196,7 +224,8 @@ static void find_falling(struct stick_slip *m, const tribo_system *sys, const do
 {
     find_static(m, sys, y);
     tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
         m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
     }
@@ -204,7 +233,8 @@ static void find_falling(struct stick_slip *m, const tribo_system *sys, const do
 
 static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
         if (tribo_massless_touches(&sys->massless, i)) {
             m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
@@ -222,13 +252,14 @@ static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
 /* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
-    tribo_stick_slip_find_gains(m, sys, y);
+    find_gains(m, sys, y);
     if (m->breakaway.falls) {
         find_falling(m, sys, y);
     }
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         m->v[i] = m->a[i] + m->horizon * m->v[i];
     }
     set_bounds_ahead(m, sys);
@@ -238,7 +269,8 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     }
     memset(m->pulled, 0, sys->ncontact);
     tribo_stick_slip_accelerate(m, sys, m->v, m->f, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
         if (tribo_stick_slip_searches(m, sys, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
@@ -254,6 +286,14 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
+static void ask_all(struct stick_slip *m)
+{
+    m->asks = m->contacts;
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->asked[i] = i;
+    }
+}
+
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_stick_slip_begin_decision(m, sys, t, y);
@@ -265,9 +305,8 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_elastic_hold(m, sys, y);
         tribo_system_free_acceleration(sys, t, y, m->free);
         tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->a);
-        m->sized = 0;
-        memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
-        memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
+        tribo_stick_slip_forget_gains(m, sys);
+        ask_all(m);
     }
     for (size_t changes = 1; !status && changes;) {
         size_t ties;

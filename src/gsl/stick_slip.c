@@ -31,8 +31,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(8, c);
-    m->at = malloc(c * sizeof *m->at);
+    m->slip = calloc(9, c);
+    m->at = malloc(2 * c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
     const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
@@ -53,12 +53,15 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->rested = (unsigned char *)m->slip + 5 * c;
     m->slid = m->slip + 6 * c;
     m->pulled = m->slip + 7 * c;
+    m->can_hold = (unsigned char *)m->slip + 8 * c;
+    m->asked = m->at + c;
     /* these two know directions only */
     tribo_set_planar(m->box, 0, NULL);
     tribo_set_planar(m->hold, 0, NULL);
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
+        m->can_hold[i] = m->diagonal[i] > 0.0 || tribo_massless_touches(&sys->massless, i);
         m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
     size_t islands;
@@ -126,35 +129,49 @@ static void find_noise(struct stick_slip *m, const tribo_system *sys, const doub
     }
 }
 
-/* The sizes of all that q'' is the sum of. */
-static void find_sizes(struct stick_slip *m, const tribo_system *sys, const double *y)
+void tribo_stick_slip_forget_gains(struct stick_slip *m, const tribo_system *sys)
 {
-    memset(m->size, 0, sys->ndof * sizeof *m->size);
-    tribo_system_tables(sys, 0, 1.0, 0, sys->ndof, m->size);
     for (size_t d = 0; d < sys->ndof; d++) {
-        m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
-                     tribo_matrix_row_size(&sys->response, d, m->force);
+        m->size[d] = -1.0;
     }
-    if (sys->damping.rows) {
-        tribo_matrix_add_sizes(&sys->damping, y + sys->ndof, m->size);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->gain[i] = -1.0;
+        m->allowance[i] = m->excess[i] = 0.0;
     }
 }
 
-/* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are
- * the sum of. */
-void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+/* The size of all that q'' of degree of freedom d is the sum of. */
+static double size_of(const struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
-    if (m->sized) {
+    double table = 0.0;
+    tribo_system_tables(sys, 0, 1.0, d, d + 1, &table);
+    const double size = m->load_size[d] + fabs(table) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                        tribo_matrix_row_size(&sys->response, d, m->force);
+    return size + (sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0);
+}
+
+void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
+{
+    const struct matrix *j = &sys->direction;
+    double size = 0.0;
+    if (m->gain[i] >= 0.0) {
         return;
     }
-    m->sized = 1;
-    find_sizes(m, sys, y);
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        double *part = &m->size[j->col[k]];
+        *part = *part < 0.0 ? size_of(m, sys, y, j->col[k]) : *part;
+        size += fabs(j->val[k] * *part);
+    }
+    m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
+    m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+    m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
+    m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+}
+
+void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double size = m->base_rate_size[i] + tribo_matrix_row_size(&sys->direction, i, m->size);
-        m->gain[i] = NOISE * m->doubt * size;
-        m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
-        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
-        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+        tribo_stick_slip_find_gain(m, sys, y, i);
     }
 }
 
@@ -201,9 +218,14 @@ static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i
 
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    if (tribo_system_limits_vary(sys) || m->breakaway.some) {
+    const int varies = tribo_system_limits_vary(sys) || m->breakaway.some;
+    if (m->steady) {
+        return;
+    }
+    if (varies) {
         tribo_system_limits(sys, m->limit, m->limit_rate);
     }
+    m->steady = !varies;
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (!presses(m, sys, i)) {
             m->limit[i] = m->limit_rate[i] = 0.0;
@@ -360,6 +382,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
         m->swing[i] = tribo_system_swing(sys, i);
     }
     m->fresh = 1;
+    m->steady = 0;
     m->doubt = 1.0;
     m->reached = m->contacts;
     m->base_moves = 0;

@@ -30,7 +30,8 @@ struct stick_slip {
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
-    size_t dependents;     /* how many rest by themselves */
+    int dependents;        /* some rest by themselves */
+    int steady;            /* limits are those that update_limits has seen */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     double *limit, *limit_rate; /* [ncontact] by which contacts slide, and its rate */
     double *stick, *stick_rate; /* [ncontact] by which those at rest hold: these, unless there are static limits */
@@ -47,11 +48,12 @@ struct stick_slip {
     double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known */
     double *diagonal;           /* [ncontact] R_ii */
     double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
-    double *gain, *lo, *hi, *f; /* [ncontact] workspace: what accelerations of contacts may be rounding; bounds, forces */
-    double *free, *acceleration, *rate, *size; /* [ndof] workspace: q'' without friction, with it, its rate, sizes of its parts */
+    double *lo, *hi, *f;        /* [ncontact] workspace: bounds, forces */
+    double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
+    double *size;               /* [ndof] from the sizes of the parts of q''; both -1 while they are not known in a decision */
+    double *free, *acceleration, *rate; /* [ndof] workspace: q'' without friction, with it, its rate */
     double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
-    int sized;                                 /* size is that of this decision */
     signed char *tied;   /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
     signed char *before; /* [ncontact] what find_holds saw last */
@@ -60,6 +62,8 @@ struct stick_slip {
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */
+    size_t *asked, asks;                  /* [ncontact] the contacts that a decision still asks about: all if R couples them */
+    unsigned char *can_hold;              /* [ncontact] 1: its force, if it rests, is one that moves something */
     size_t *at;                           /* [ncontact] workspace of find_holds, */
     unsigned char *last;                  /* [ncontact] and this */
 };
@@ -78,20 +82,22 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 
 /* What a decision is made of. It begins at time t, with base and noise there. Limits, and with them which contacts are open, are
  * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status.
- * What accelerations of contacts may be rounding, and how far forces may go; q'' [ndof] with the forces found, also after a
- * decision; its rate while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
- * derivative of b. */
+ * Then it is not known any more, and is found for one contact, or all, what its acceleration may be by rounding, and how far its
+ * force may go; q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what
+ * they are; and to [ncontact] = J acceleration - order-th derivative of b. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
+void tribo_stick_slip_forget_gains(struct stick_slip *m, const tribo_system *sys);
+void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 
-/* scalar_slip.c: whether contact i is at rest by a force that is to be found; that of elastic ones is known. Forces, with
- * contacts at rest as they are marked; a status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. A
- * contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
+/* scalar_slip.c: whether contact i is at rest by a force that is to be found; that of elastic ones is known. Of the contacts that
+ * are asked about: forces, with contacts at rest as they are marked; a status. v [ncontact] = a + R f, the accelerations that
+ * forces f leave; v may be a. A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
 int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
@@ -119,6 +125,12 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 
 /* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
+
+/* The force by which contact i, coupled with no other one, holds; 0 if it does not. */
+static inline double tribo_stick_slip_balance_alone(const struct stick_slip *m, size_t i, double a)
+{
+    return m->loose[i] ? 0.0 : -a / m->diagonal[i];
+}
 
 /* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
