@@ -247,7 +247,9 @@ static double to_a_number(const tribo_system *sys, double t, double reach, doubl
 
 static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
-    return m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
+    const int status = m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
+    memset(m->seen, 0, m->contacts * sizeof *m->seen);
+    return status;
 }
 
 /* One phase, from (t, y) to its end and the decision there. */

@@ -24,12 +24,6 @@ int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
     return status || m->uncoupled ? status : tribo_balance(m->hold, m->still, a, f, NULL);
 }
 
-/* Whether the force of contact i at rest is to be found, and not known from the state, and holds. */
-static int may_hold(const struct stick_slip *m, const tribo_system *sys, size_t i)
-{
-    return m->diagonal[i] > 0.0 && !tribo_massless_touches(&sys->massless, i);
-}
-
 /* Of the contacts at rest, marks only an independent set as holding; rather such that are inside their limits, or go there. */
 static int choose_holds(struct stick_slip *m, const tribo_system *sys)
 {
@@ -39,7 +33,7 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys)
         const signed char tied = m->tied[i];
         m->at[rest] = i;
         m->last[rest] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
-        rest += m->slip[i] == 0 && may_hold(m, sys, i);
+        rest += tribo_stick_slip_searches(m, i) && m->can_hold[i];
     }
     const int done = rest < 2 || tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
     for (size_t k = done && rest > 1 ? c.rank : rest; k < rest; k++) {
@@ -63,22 +57,25 @@ static size_t take_rest(struct stick_slip *m)
 }
 
 /* All contacts at rest hold that can. */
-static void hold_all(struct stick_slip *m)
+static void hold_all(size_t n, const signed char *restrict slip, const unsigned char *restrict can, unsigned char *restrict holds)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->holds[i] = (m->slip[i] == 0) & m->can_hold[i];
+    for (size_t i = 0; i < n; i++) {
+        holds[i] = (slip[i] == 0) & can[i];
     }
 }
 
-/* What follows from who holds. */
-static void note_holds(struct stick_slip *m, const tribo_system *sys)
+/* What follows from who holds: who is loose, and whether that has changed; and whether some rest by themselves. */
+static void note_holds(struct stick_slip *m)
 {
-    unsigned char dependents = 0, differs = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        const signed char loose = !m->holds[i] || tribo_massless_touches(&sys->massless, i);
-        dependents |= (m->slip[i] == 0) & !m->holds[i];
-        differs |= loose != m->loose[i];
-        m->loose[i] = loose;
+    const signed char *restrict slip = m->slip;
+    const unsigned char *restrict holds = m->holds, *restrict elastic = m->elastic;
+    signed char *restrict loose = m->loose, differs = 0, dependents = 0;
+    const size_t n = m->contacts;
+    for (size_t i = 0; i < n; i++) {
+        const signed char is = (holds[i] == 0) | elastic[i];
+        differs |= is ^ loose[i];
+        dependents |= (slip[i] == 0) & (holds[i] == 0);
+        loose[i] = is;
     }
     m->dependents = dependents;
     m->hold_differs |= differs;
@@ -92,9 +89,9 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
     }
     m->hold_differs |= m->fresh;
     m->fresh = 0;
-    hold_all(m);
+    hold_all(m->contacts, m->slip, m->can_hold, m->holds);
     const int status = m->independent ? TRIBO_OK : choose_holds(m, sys);
-    note_holds(m, sys);
+    note_holds(m);
     return status;
 }
 

@@ -163,7 +163,9 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
     for (size_t k = 0; k < m->plane->count; k++) {
         struct planar_contact *p = &m->plane->contact[k];
         double v[2];
-        velocity(m, sys, p, y, v);
+        for (size_t d = 0; d < 2; d++) {
+            v[d] = tribo_stick_slip_find_velocity(m, sys, p->at + d, y);
+        }
         p->most = greater(p->most, length(v));
         p->begins = SLIDES_ON;
         if (m->slip[p->at] == TRIBO_IN_PLANE && length(v) <= nothing(m, p)) {

@@ -27,11 +27,6 @@
 
 /* ------------------------------------------------------------------------------------------------------------- forces */
 
-int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
-{
-    return m->slip[i] == 0 && !tribo_massless_touches(&sys->massless, i);
-}
-
 /* The force within bounds that lets contact i go on as it does, where without it the acceleration is a. One that friction cannot
  * move takes all that it can of any pull. */
 static double force_alone(const struct stick_slip *m, size_t i, double a)
@@ -98,16 +93,20 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
     return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
 }
 
+/* Bounds of the force that contact i has as it does what it is marked to do. */
+static void set_bounds(struct stick_slip *m, size_t i)
+{
+    const int slip = m->slip[i];
+    const double given = m->elastic[i] ? m->spring[i] : slip == 2 ? 0.0 : -slip * m->limit[i];
+    const int searches = tribo_stick_slip_searches(m, i);
+    m->lo[i] = searches ? -m->stick[i] : given;
+    m->hi[i] = searches ? m->stick[i] : given;
+}
+
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 {
     for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
-        m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
-        m->hi[i] = m->slip[i] == 1 ? -limit : limit;
-        if (tribo_massless_touches(&sys->massless, i)) {
-            m->lo[i] = m->hi[i] = m->spring[i];
-        }
+        set_bounds(m, m->asked[k]);
     }
     return solve(m, sys, m->a, m->force);
 }
@@ -147,23 +146,24 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
     return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
-static int is_close(const struct stick_slip *m, const tribo_system *sys, size_t i)
+static int is_close(const struct stick_slip *m, size_t i)
 {
-    return tribo_stick_slip_searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
+    return tribo_stick_slip_searches(m, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
 }
 
 /* How many are close to their limits. Where contacts are not coupled, others are decided about, unless they may part. */
-static size_t find_close(struct stick_slip *m, const tribo_system *sys)
+static size_t find_close(struct stick_slip *m)
 {
     size_t found = 0, kept = 0;
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
-        const int close = is_close(m, sys, i);
+        const int close = is_close(m, i);
         m->tied[i] = 0;
-        m->asked[kept] = i;
+        m->some[kept] = i;
         kept += close || !m->uncoupled || tribo_stick_slip_may_part(m, i);
         found += (size_t)close;
     }
+    m->asked = m->some;
     m->asks = kept;
     return found;
 }
@@ -180,7 +180,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
 {
     size_t changes = 0;
     *ties = 0;
-    if (find_close(m, sys) == 0) {
+    if (find_close(m) == 0) {
         return 0;
     }
     find_gains(m, sys, y);
@@ -189,7 +189,7 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
         const size_t i = m->asked[k];
         const double room = m->stick[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
-        if (tribo_stick_slip_searches(m, sys, i) && room <= within) {
+        if (tribo_stick_slip_searches(m, i) && room <= within) {
             const signed char direction = direction_of(m, i, m->force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->tied[i] = 1;
@@ -231,12 +231,12 @@ static void find_falling(struct stick_slip *m, const tribo_system *sys, const do
     }
 }
 
-static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
+static void set_bounds_ahead(struct stick_slip *m)
 {
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
-        if (tribo_massless_touches(&sys->massless, i)) {
+        if (m->elastic[i]) {
             m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
             continue;
         }
@@ -262,7 +262,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
         const size_t i = m->asked[k];
         m->v[i] = m->a[i] + m->horizon * m->v[i];
     }
-    set_bounds_ahead(m, sys);
+    set_bounds_ahead(m);
     const int status = solve(m, sys, m->v, m->f);
     if (status) {
         return status;
@@ -272,7 +272,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (tribo_stick_slip_searches(m, sys, i) && room >= 0.0) {
+        if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
             const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
@@ -286,14 +286,6 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-static void ask_all(struct stick_slip *m)
-{
-    m->asks = m->contacts;
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->asked[i] = i;
-    }
-}
-
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_stick_slip_begin_decision(m, sys, t, y);
@@ -306,7 +298,8 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_system_free_acceleration(sys, t, y, m->free);
         tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->a);
         tribo_stick_slip_forget_gains(m, sys);
-        ask_all(m);
+        m->asked = m->all;
+        m->asks = m->contacts;
     }
     for (size_t changes = 1; !status && changes;) {
         size_t ties;

@@ -31,8 +31,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(9, c);
-    m->at = malloc(2 * c * sizeof *m->at);
+    m->slip = calloc(10, c);
+    m->at = malloc(3 * c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
     const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
@@ -54,14 +54,18 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->slid = m->slip + 6 * c;
     m->pulled = m->slip + 7 * c;
     m->can_hold = (unsigned char *)m->slip + 8 * c;
-    m->asked = m->at + c;
+    m->elastic = (unsigned char *)m->slip + 9 * c;
+    m->asked = m->all = m->at + c;
+    m->some = m->at + 2 * c;
     /* these two know directions only */
     tribo_set_planar(m->box, 0, NULL);
     tribo_set_planar(m->hold, 0, NULL);
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
-        m->can_hold[i] = m->diagonal[i] > 0.0 || tribo_massless_touches(&sys->massless, i);
+        m->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
+        m->can_hold[i] = m->diagonal[i] > 0.0 || m->elastic[i];
+        m->all[i] = i;
         m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
     size_t islands;
@@ -119,32 +123,35 @@ static void find_outer_sizes(struct stick_slip *m, const tribo_system *sys)
     add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
 }
 
-/* What of the velocities may be rounding, as far as the state tells, and the phase before. */
-static void find_noise(struct stick_slip *m, const tribo_system *sys, const double *y)
+double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double size = m->base_size[i] + tribo_matrix_row_size(&sys->direction, i, y + sys->ndof);
-        m->noise[i] = VELOCITY_NOISE * greater(size, m->seen[i]);
-        m->seen[i] = 0.0;
+    const struct matrix *j = &sys->direction;
+    const double *u = y + sys->ndof;
+    double v = -m->base[i], size = 0.0;
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        const double part = j->val[k] * u[j->col[k]];
+        v += part;
+        size += fabs(part);
     }
+    m->noise[i] = VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
+    return v;
 }
 
 void tribo_stick_slip_forget_gains(struct stick_slip *m, const tribo_system *sys)
 {
-    for (size_t d = 0; d < sys->ndof; d++) {
-        m->size[d] = -1.0;
-    }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->gain[i] = -1.0;
-        m->allowance[i] = m->excess[i] = 0.0;
-    }
+    memset(m->size, 0, sys->ndof * sizeof *m->size);
+    memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
+    memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
+    memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
 }
 
 /* The size of all that q'' of degree of freedom d is the sum of. */
 static double size_of(const struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
     double table = 0.0;
-    tribo_system_tables(sys, 0, 1.0, d, d + 1, &table);
+    if (sys->tables) {
+        tribo_system_tables(sys, 0, 1.0, d, d + 1, &table);
+    }
     const double size = m->load_size[d] + fabs(table) + tribo_matrix_row_size(&sys->stiffness, d, y) +
                         tribo_matrix_row_size(&sys->response, d, m->force);
     return size + (sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0);
@@ -154,12 +161,13 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
 {
     const struct matrix *j = &sys->direction;
     double size = 0.0;
-    if (m->gain[i] >= 0.0) {
+    if (m->gain[i] > 0.0) {
         return;
     }
+    tribo_stick_slip_find_velocity(m, sys, i, y);
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
         double *part = &m->size[j->col[k]];
-        *part = *part < 0.0 ? size_of(m, sys, y, j->col[k]) : *part;
+        *part = *part > 0.0 ? *part : size_of(m, sys, y, j->col[k]);
         size += fabs(j->val[k] * *part);
     }
     m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
@@ -186,11 +194,6 @@ double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
     return m->slip[i] == 2 ? 0.0 : -m->slip[i];
 }
 
-int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
-{
-    return m->base_moves && m->slip[i] == 0 && !m->holds[i];
-}
-
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
 {
     return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0;
@@ -206,8 +209,10 @@ double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system 
     return v;
 }
 
-static signed char slip_of(const struct stick_slip *m, size_t i, double v)
+/* Whether contact i slides in a state, and which way. */
+static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
+    const double v = tribo_stick_slip_find_velocity(m, sys, i, y);
     return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? 0 : v > 0.0 ? 1 : -1);
 }
 
@@ -231,7 +236,7 @@ void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sy
             m->limit[i] = m->limit_rate[i] = 0.0;
             m->slip[i] = 2;
         } else if (m->slip[i] == 2) {
-            m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
+            m->slip[i] = slip_of(m, sys, i, y);
         }
         m->limit[i] = greater(m->limit[i], 0.0);
     }
@@ -249,31 +254,54 @@ static int not_unique(const tribo_system *sys, size_t i)
                              i);
 }
 
+/* Those that have no velocity in the direction of their slip any more rest; returns how many. */
+static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const signed char slip = m->slip[i];
+        if ((slip == 1 || slip == -1) && slip != slip_of(m, sys, i, y)) {
+            m->slip[i] = 0;
+            found++;
+        }
+    }
+    return found;
+}
+
+/* Where bases part, a contact that rests by itself goes with them. */
+static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    int status = TRIBO_OK;
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        if (m->slip[i] == 0 && !m->holds[i]) {
+            m->slip[i] = slip_of(m, sys, i, y);
+            status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
+        }
+    }
+    return status;
+}
+
+static void note_rest(size_t n, const signed char *restrict slip, unsigned char *restrict rested)
+{
+    for (size_t i = 0; i < n; i++) {
+        rested[i] = slip[i] == 0;
+    }
+}
+
 /* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
- * But where bases part, a contact that rests by itself goes with them. */
+ */
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;
     for (size_t found = 1; !status && found;) {
         status = tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
-        found = 0;
-        for (size_t i = 0; !status && i < sys->ncontact; i++) {
-            if ((m->slip[i] == 1 || m->slip[i] == -1) && m->slip[i] != slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y))) {
-                m->slip[i] = 0;
-                found++;
-            }
-        }
+        found = status ? 0 : stop(m, sys, y);
     }
-    for (size_t i = 0; !status && m->dependents && m->base_moves && i < sys->ncontact; i++) {
-        if (m->slip[i] == 0 && !m->holds[i]) {
-            m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
-            status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
-        }
+    if (!status && m->dependents && m->base_moves) {
+        status = part(m, sys, y);
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->rested[i] = m->slip[i] == 0;
-    }
+    note_rest(m->contacts, m->slip, m->rested);
     return status;
 }
 
@@ -358,7 +386,6 @@ void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, do
     find_base(m, sys);
     memset(m->tied, 0, sys->ncontact);
     tribo_elastic_release(sys, y);
-    find_noise(m, sys, y);
 }
 
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
@@ -370,9 +397,9 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
     find_base(m, sys);
     find_outer_sizes(m, sys);
-    find_noise(m, sys, y);
+    memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
-        m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+        m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, sys, i, y));
         m->rested[i] = 0;
     }
     if (!continues) {

@@ -44,13 +44,13 @@ struct stick_slip {
     double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts */
     double *excess;             /* [ncontact] and by how much they do where this begins */
     double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
-    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding */
-    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known */
+    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
+    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
     double *diagonal;           /* [ncontact] R_ii */
     double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
     double *lo, *hi, *f;        /* [ncontact] workspace: bounds, forces */
     double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
-    double *size;               /* [ndof] from the sizes of the parts of q''; both -1 while they are not known in a decision */
+    double *size;               /* [ndof] from the sizes of the parts of q''; both 0 while they are not known in a decision */
     double *free, *acceleration, *rate; /* [ndof] workspace: q'' without friction, with it, its rate */
     double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
@@ -62,8 +62,9 @@ struct stick_slip {
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */
-    size_t *asked, asks;                  /* [ncontact] the contacts that a decision still asks about: all if R couples them */
-    unsigned char *can_hold;              /* [ncontact] 1: its force, if it rests, is one that moves something */
+    const size_t *asked;                  /* [asks] the contacts that a decision still asks about: all if R couples them */
+    size_t asks, *all, *some;             /* the latter are [ncontact]: all of them, and room for some */
+    unsigned char *elastic, *can_hold;    /* [ncontact] 1: an elastic contact; one that holds something, if it rests */
     size_t *at;                           /* [ncontact] workspace of find_holds, */
     unsigned char *last;                  /* [ncontact] and this */
 };
@@ -80,7 +81,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
  * of their velocities in y. Sets slip, holds, force and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* What a decision is made of. It begins at time t, with base and noise there. Limits, and with them which contacts are open, are
+/* What a decision is made of. It begins at time t, with the base there. Limits, and with them which contacts are open, are
  * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status.
  * Then it is not known any more, and is found for one contact, or all, what its acceleration may be by rounding, and how far its
  * force may go; q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what
@@ -95,10 +96,14 @@ const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tri
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 
-/* scalar_slip.c: whether contact i is at rest by a force that is to be found; that of elastic ones is known. Of the contacts that
- * are asked about: forces, with contacts at rest as they are marked; a status. v [ncontact] = a + R f, the accelerations that
+/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
+static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i)
+{
+    return m->slip[i] == 0 && !m->elastic[i];
+}
+
+/* scalar_slip.c, of the contacts that are asked about: forces, with contacts at rest as they are marked; a status. v [ncontact] = a + R f, the accelerations that
  * forces f leave; v may be a. A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
-int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction);
@@ -146,13 +151,17 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
 /* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
-int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i);
+static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
+{
+    return m->base_moves && m->slip[i] == 0 && !m->holds[i];
+}
 
 /* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does not
  * count. */
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i);
 
-/* v_i in a state, at the time that was last decided for. */
+/* v_i in a state, at the time that was last decided for; and the same, with its noise found. */
 double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
+double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
 
 #endif

@@ -65,7 +65,7 @@ static int share_anew(struct stick_slip *m, tribo_system *sys)
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         const double room = m->stick[i] - fabs(m->force[i]);
-        m->tied[i] = tribo_stick_slip_searches(m, sys, i) && room <= m->allowance[i];
+        m->tied[i] = tribo_stick_slip_searches(m, i) && room <= m->allowance[i];
     }
     return status ? status : find_holding_forces(m, sys);
 }
