@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* Tells the context that finds the forces of those that hold who they are. f [ncontact] is workspace. */
 static int take_holds(struct stick_slip *m, double *f)
@@ -44,15 +45,23 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys)
                 : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
 }
 
-/* Takes down who is at rest, and tied; returns for how many that has changed. */
-static size_t take_rest(struct stick_slip *m)
+/* Whether who is at rest, or tied, is not what it was; takes it down. */
+static int take_rest(struct stick_slip *m)
 {
-    size_t changes = 0;
+    int changes = 0;
     for (size_t i = 0; i < m->contacts; i++) {
         const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
-        changes += now != m->before[i];
+        changes |= now != m->before[i];
         m->before[i] = now;
     }
+    return changes;
+}
+
+/* The same where contacts are independent: holding is a matter of each alone. */
+static int take_slip(struct stick_slip *m)
+{
+    const int changes = memcmp(m->before, m->slip, m->contacts) != 0;
+    memcpy(m->before, m->slip, m->contacts);
     return changes;
 }
 
@@ -81,10 +90,10 @@ static void note_holds(struct stick_slip *m)
     m->hold_differs |= differs;
 }
 
-/* Where contacts are independent, holding is a matter of each alone. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
-    if (!m->independent && take_rest(m) == 0 && !m->fresh) {
+    const int changes = m->independent ? take_slip(m) : take_rest(m);
+    if (!changes && !m->fresh) {
         return TRIBO_OK;
     }
     m->hold_differs |= m->fresh;

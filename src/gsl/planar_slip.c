@@ -401,7 +401,7 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     if (status) {
         return status;
     }
-    tribo_stick_slip_forget_gains(m, sys);
+    tribo_stick_slip_forget_gains(m);
     tribo_stick_slip_find_gains(m, sys, y);
     const size_t ties = break_away(m);
     status = ties ? look_ahead(m, sys, y) : TRIBO_OK;

@@ -16,8 +16,10 @@
 #include <math.h>
 #include <string.h>
 
-/* A force this close to the limit might be taken beyond it by rounding, or in a moment. */
+/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. Beside this,
+ * rounding is nothing. */
 #define CLOSE 0.1
+#define NEAR 1e-3
 
 /* Of redundant contacts the solver may leave so many times the noise of accelerations. */
 #define CERTAIN 1e3
@@ -74,17 +76,9 @@ static void solve_only(struct stick_slip *m, const tribo_system *sys, size_t onl
     }
 }
 
-/* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
-static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+static int solve_coupled(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
     size_t only;
-    for (size_t k = 0; m->uncoupled && k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        f[i] = force_alone(m, i, a[i]);
-    }
-    if (m->uncoupled) {
-        return TRIBO_OK;
-    }
     if (m->independent && find_only(m, &only)) {
         solve_only(m, sys, only, a, f);
         return TRIBO_OK;
@@ -93,14 +87,34 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
     return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
 }
 
-/* Bounds of the force that contact i has as it does what it is marked to do. */
+/* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
+static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+{
+    if (!m->uncoupled) {
+        return solve_coupled(m, sys, a, f);
+    }
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        f[i] = force_alone(m, i, a[i]);
+    }
+    return TRIBO_OK;
+}
+
+/* The force that contact i has whatever the others do. */
+static double given_force(const struct stick_slip *m, size_t i)
+{
+    return m->elastic[i] ? m->spring[i] : m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->limit[i];
+}
+
+/* Bounds of the force of contact i, as it does what it is marked to do. */
 static void set_bounds(struct stick_slip *m, size_t i)
 {
-    const int slip = m->slip[i];
-    const double given = m->elastic[i] ? m->spring[i] : slip == 2 ? 0.0 : -slip * m->limit[i];
-    const int searches = tribo_stick_slip_searches(m, i);
-    m->lo[i] = searches ? -m->stick[i] : given;
-    m->hi[i] = searches ? m->stick[i] : given;
+    if (tribo_stick_slip_searches(m, i)) {
+        m->lo[i] = -m->stick[i];
+        m->hi[i] = m->stick[i];
+    } else {
+        m->lo[i] = m->hi[i] = given_force(m, i);
+    }
 }
 
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
@@ -119,10 +133,11 @@ void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char directi
     m->again |= again;
 }
 
-/* Where static limits were lost, all that began to slide while they held are decided about once more, too: the other way they
- * might go, or none. Contacts that are not coupled do not mind. */
-static void rest_again(struct stick_slip *m)
+/* Nobody is tied as another round begins. Where static limits were lost, all that began to slide while they held are decided
+ * about once more, too: the other way they might go, or none. Contacts that are not coupled do not mind. */
+static void begin_again(struct stick_slip *m)
 {
+    memset(m->tied, 0, m->contacts);
     for (size_t i = 0; m->again && !m->uncoupled && i < m->contacts; i++) {
         m->slip[i] = m->rested[i] ? 0 : m->slip[i];
     }
@@ -148,19 +163,21 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
 
 static int is_close(const struct stick_slip *m, size_t i)
 {
-    return tribo_stick_slip_searches(m, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
+    const double within = m->uncoupled && i != m->reached ? NEAR : CLOSE;
+    return tribo_stick_slip_searches(m, i) && fabs(m->force[i]) >= (1.0 - within) * m->stick[i];
 }
 
 /* How many are close to their limits. Where contacts are not coupled, others are decided about, unless they may part. */
 static size_t find_close(struct stick_slip *m)
 {
+    const int all = !m->uncoupled || (m->dependents && m->base_moves);
+    const size_t asks = m->asks;
     size_t found = 0, kept = 0;
-    for (size_t k = 0; k < m->asks; k++) {
+    for (size_t k = 0; k < asks; k++) {
         const size_t i = m->asked[k];
         const int close = is_close(m, i);
-        m->tied[i] = 0;
         m->some[kept] = i;
-        kept += close || !m->uncoupled || tribo_stick_slip_may_part(m, i);
+        kept += (size_t)(close | all);
         found += (size_t)close;
     }
     m->asked = m->some;
@@ -297,7 +314,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_elastic_hold(m, sys, y);
         tribo_system_free_acceleration(sys, t, y, m->free);
         tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->a);
-        tribo_stick_slip_forget_gains(m, sys);
+        tribo_stick_slip_forget_gains(m);
         m->asked = m->all;
         m->asks = m->contacts;
     }
@@ -311,7 +328,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         if (!status && !changes && ties) {
             status = tribo_stick_slip_relieve(m, sys, &changes);
         }
-        rest_again(m);
+        if (changes) {
+            begin_again(m);
+        }
     }
     m->reached = m->contacts;
     if (m->breakaway.some && !status) {

@@ -23,12 +23,11 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force,         &m->allowance, &m->base,
-                                   &m->noise, &m->diagonal,   &m->seen,          &m->parting,   &m->excess,
-                                   &m->v,     &m->a,          &m->gain,          &m->lo,        &m->hi,
-                                   &m->f,     &m->still,      &m->swing,         &m->spring,    &m->spring_rate,
-                                   &m->slack, &m->base_size,  &m->base_rate_size};
-    double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size, &m->load_size};
+    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force,     &m->base,        &m->noise, &m->diagonal,
+                                   &m->seen,  &m->parting,    &m->v,         &m->a,           &m->lo,    &m->hi,
+                                   &m->f,     &m->still,      &m->swing,     &m->spring,      &m->slack, &m->spring_rate,
+                                   &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance,  &m->excess};
+    double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
     m->slip = calloc(10, c);
@@ -46,6 +45,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     for (size_t k = 0; k < dof_arrays; k++) {
         *by_dof[k] = work + contact_arrays * c + k * n;
     }
+    m->found = m->gain; /* with what follows it */
+    m->founds = 3 * c + n;
     m->tied = m->slip + c;
     m->before = m->slip + 2 * c;
     m->loose = m->slip + 3 * c;
@@ -137,12 +138,9 @@ double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *
     return v;
 }
 
-void tribo_stick_slip_forget_gains(struct stick_slip *m, const tribo_system *sys)
+void tribo_stick_slip_forget_gains(struct stick_slip *m)
 {
-    memset(m->size, 0, sys->ndof * sizeof *m->size);
-    memset(m->gain, 0, sys->ncontact * sizeof *m->gain);
-    memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
-    memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
+    memset(m->found, 0, m->founds * sizeof *m->found);
 }
 
 /* The size of all that q'' of degree of freedom d is the sum of. */

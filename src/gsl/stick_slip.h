@@ -41,22 +41,24 @@ struct stick_slip {
     struct planar_slip *plane;  /* of planar contacts; NULL if there are none */
     double abstol, reltol;      /* of the driver */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
-    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts */
-    double *excess;             /* [ncontact] and by how much they do where this begins */
+    double *found;              /* [founds] what is found out in a decision, where it is needed, and 0 before: */
+    size_t founds;
+    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts, */
+    double *excess;             /* [ncontact] by how much they do where this begins, */
+    double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
+    double *size;               /* [ndof] from the sizes of the parts of q'' */
     double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
     double *base, *noise;       /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
     double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
     double *diagonal;           /* [ncontact] R_ii */
     double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
     double *lo, *hi, *f;        /* [ncontact] workspace: bounds, forces */
-    double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
-    double *size;               /* [ndof] from the sizes of the parts of q''; both 0 while they are not known in a decision */
     double *free, *acceleration, *rate; /* [ndof] workspace: q'' without friction, with it, its rate */
     double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
     signed char *tied;   /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
-    signed char *before; /* [ncontact] what find_holds saw last */
+    signed char *before; /* [ncontact] who rested, and was tied if that matters, when find_holds looked last */
     int fresh;           /* it saw nothing yet */
     int hold_differs;    /* hold has not been told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
@@ -89,7 +91,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
-void tribo_stick_slip_forget_gains(struct stick_slip *m, const tribo_system *sys);
+void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
