@@ -302,7 +302,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (event) {
         status = count_event(e, drv, event->contact, *t, fastest);
         if (event->slides == SLIDES) {
-            e->stick_slip.slip[event->contact] = 0;
+            tribo_stick_slip_set(&e->stick_slip, event->contact, 0);
         } else {
             e->stick_slip.reached = event->contact;
         }

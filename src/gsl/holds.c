@@ -45,23 +45,11 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys)
                 : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
 }
 
-/* Whether who is at rest, or tied, is not what it was; takes it down. */
-static int take_rest(struct stick_slip *m)
+/* Whether others are tied than before; takes it down. Whoever is may rest by others. */
+static int take_ties(struct stick_slip *m)
 {
-    int changes = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
-        changes |= now != m->before[i];
-        m->before[i] = now;
-    }
-    return changes;
-}
-
-/* The same where contacts are independent: holding is a matter of each alone. */
-static int take_slip(struct stick_slip *m)
-{
-    const int changes = memcmp(m->before, m->slip, m->contacts) != 0;
-    memcpy(m->before, m->slip, m->contacts);
+    const int changes = memcmp(m->before, m->tied, m->contacts) != 0;
+    memcpy(m->before, m->tied, m->contacts);
     return changes;
 }
 
@@ -92,11 +80,10 @@ static void note_holds(struct stick_slip *m)
 
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
-    const int changes = m->independent ? take_slip(m) : take_rest(m);
-    if (!changes && !m->fresh) {
+    const int others = !m->independent && take_ties(m);
+    if (!m->fresh && !others) {
         return TRIBO_OK;
     }
-    m->hold_differs |= m->fresh;
     m->fresh = 0;
     hold_all(m->contacts, m->slip, m->can_hold, m->holds);
     const int status = m->independent ? TRIBO_OK : choose_holds(m, sys);

@@ -129,7 +129,8 @@ static double nothing(const struct stick_slip *m, const struct planar_contact *p
 
 static void set_slip(struct stick_slip *m, const struct planar_contact *p, signed char slip)
 {
-    m->slip[p->at] = m->slip[p->at + 1] = slip;
+    tribo_stick_slip_set(m, p->at, slip);
+    tribo_stick_slip_set(m, p->at + 1, slip);
 }
 
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues)
@@ -310,7 +311,7 @@ static int leaves_line(const struct stick_slip *m, size_t i, const double *f)
 
 static void let_go_line(struct stick_slip *m, size_t i)
 {
-    m->slip[i] = m->force[i] > 0.0 ? -1 : 1;
+    tribo_stick_slip_set(m, i, m->force[i] > 0.0 ? -1 : 1);
     m->force[i] = -m->slip[i] * m->limit[i];
 }
 

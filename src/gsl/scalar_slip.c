@@ -128,7 +128,7 @@ int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     const int again = tribo_breakaway_lets_go(&m->breakaway, i);
-    m->slip[i] = again ? 0 : direction;
+    tribo_stick_slip_set(m, i, again ? 0 : direction);
     m->tied[i] = 0;
     m->again |= again;
 }
@@ -139,7 +139,7 @@ static void begin_again(struct stick_slip *m)
 {
     memset(m->tied, 0, m->contacts);
     for (size_t i = 0; m->again && !m->uncoupled && i < m->contacts; i++) {
-        m->slip[i] = m->rested[i] ? 0 : m->slip[i];
+        tribo_stick_slip_set(m, i, m->rested[i] ? 0 : m->slip[i]);
     }
     m->again = 0;
 }
@@ -161,9 +161,8 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
     return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
-static int is_close(const struct stick_slip *m, size_t i)
+static int is_close(const struct stick_slip *m, size_t i, double within)
 {
-    const double within = m->uncoupled && i != m->reached ? NEAR : CLOSE;
     return tribo_stick_slip_searches(m, i) && fabs(m->force[i]) >= (1.0 - within) * m->stick[i];
 }
 
@@ -171,11 +170,12 @@ static int is_close(const struct stick_slip *m, size_t i)
 static size_t find_close(struct stick_slip *m)
 {
     const int all = !m->uncoupled || (m->dependents && m->base_moves);
-    const size_t asks = m->asks;
+    const size_t asks = m->asks, reached = m->uncoupled ? m->reached : m->contacts;
+    const double within = m->uncoupled ? NEAR : CLOSE;
     size_t found = 0, kept = 0;
     for (size_t k = 0; k < asks; k++) {
         const size_t i = m->asked[k];
-        const int close = is_close(m, i);
+        const int close = is_close(m, i, i == reached ? CLOSE : within);
         m->some[kept] = i;
         kept += (size_t)(close | all);
         found += (size_t)close;
@@ -284,10 +284,10 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     if (status) {
         return status;
     }
-    memset(m->pulled, 0, sys->ncontact);
     tribo_stick_slip_accelerate(m, sys, m->v, m->f, m->v);
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
+        m->pulled[i] = 0;
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
         if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);

@@ -232,9 +232,9 @@ void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sy
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (!presses(m, sys, i)) {
             m->limit[i] = m->limit_rate[i] = 0.0;
-            m->slip[i] = 2;
+            tribo_stick_slip_set(m, i, 2);
         } else if (m->slip[i] == 2) {
-            m->slip[i] = slip_of(m, sys, i, y);
+            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
         }
         m->limit[i] = greater(m->limit[i], 0.0);
     }
@@ -259,7 +259,7 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
     for (size_t i = 0; i < sys->ncontact; i++) {
         const signed char slip = m->slip[i];
         if ((slip == 1 || slip == -1) && slip != slip_of(m, sys, i, y)) {
-            m->slip[i] = 0;
+            tribo_stick_slip_set(m, i, 0);
             found++;
         }
     }
@@ -272,7 +272,7 @@ static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
     int status = TRIBO_OK;
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
         if (m->slip[i] == 0 && !m->holds[i]) {
-            m->slip[i] = slip_of(m, sys, i, y);
+            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
             status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
         }
     }
@@ -397,7 +397,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     find_outer_sizes(m, sys);
     memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
-        m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, sys, i, y));
+        tribo_stick_slip_set(m, i, (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, sys, i, y)));
         m->rested[i] = 0;
     }
     if (!continues) {
@@ -406,7 +406,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->swing[i] = tribo_system_swing(sys, i);
     }
-    m->fresh = 1;
+    m->fresh = m->hold_differs = 1;
     m->steady = 0;
     m->doubt = 1.0;
     m->reached = m->contacts;

@@ -26,7 +26,7 @@ struct stick_slip {
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
-    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open, TRIBO_IN_PLANE */
+    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open, TRIBO_IN_PLANE; see below */
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
@@ -58,8 +58,8 @@ struct stick_slip {
     double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
     signed char *tied;   /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
-    signed char *before; /* [ncontact] who rested, and was tied if that matters, when find_holds looked last */
-    int fresh;           /* it saw nothing yet */
+    signed char *before; /* [ncontact] who was tied when find_holds looked last, if contacts depend on each other */
+    int fresh;           /* some slip has changed since then */
     int hold_differs;    /* hold has not been told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
@@ -74,6 +74,13 @@ struct stick_slip {
 /* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
+
+/* Contact i does this from here on: nobody else writes slip. */
+static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
+{
+    m->fresh |= slip != m->slip[i];
+    m->slip[i] = slip;
+}
 
 /* Takes limits from the system, and, unless it continues, from the state who is at rest: contacts whose velocity is zero to
  * rounding. A decision must follow. */

@@ -30,7 +30,8 @@ void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *
     tribo_elastic_enter(sys, m->limit, m->rate, m->spring, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (m->elastic[i]) {
-            m->slid[i] = m->slip[i] = (signed char)(m->limit[i] > 0.0 ? 0 : 2);
+            m->slid[i] = (signed char)(m->limit[i] > 0.0 ? 0 : 2);
+            tribo_stick_slip_set(m, i, m->slid[i]);
         }
     }
 }
@@ -56,13 +57,13 @@ static void place(struct stick_slip *m, size_t i, double v)
     if (slides && m->slid[i] == before) {
         m->spring[i] = -before * limit;
     } else if (i != m->reached && !stopped && fabs(m->spring[i]) < limit - m->slack[i]) {
-        m->slip[i] = 0;
+        tribo_stick_slip_set(m, i, 0);
         return;
     }
     const signed char against = (signed char)(m->spring[i] > 0.0 ? -1 : 1);
     const int still = stopped || fabs(v) <= m->doubt * m->noise[i];
     m->spring[i] = -against * limit;
-    m->slip[i] = (signed char)(!still && against * v > 0.0 ? against : 0);
+    tribo_stick_slip_set(m, i, (signed char)(!still && against * v > 0.0 ? against : 0));
 }
 
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
