@@ -161,21 +161,18 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
     return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
-static int is_close(const struct stick_slip *m, size_t i, double within)
-{
-    return tribo_stick_slip_searches(m, i) && fabs(m->force[i]) >= (1.0 - within) * m->stick[i];
-}
-
-/* How many are close to their limits. Where contacts are not coupled, others are decided about, unless they may part. */
+/* How many are close to their limits, or have reached them. Where contacts are not coupled, others are decided about, unless they
+ * may part. */
 static size_t find_close(struct stick_slip *m)
 {
     const int all = !m->uncoupled || (m->dependents && m->base_moves);
-    const size_t asks = m->asks, reached = m->uncoupled ? m->reached : m->contacts;
-    const double within = m->uncoupled ? NEAR : CLOSE;
+    const double part = 1.0 - (m->uncoupled ? NEAR : CLOSE);
+    const size_t asks = m->asks;
     size_t found = 0, kept = 0;
     for (size_t k = 0; k < asks; k++) {
         const size_t i = m->asked[k];
-        const int close = is_close(m, i, i == reached ? CLOSE : within);
+        const int near = fabs(m->force[i]) >= part * m->stick[i] || i == m->reached;
+        const int close = near && tribo_stick_slip_searches(m, i);
         m->some[kept] = i;
         kept += (size_t)(close | all);
         found += (size_t)close;

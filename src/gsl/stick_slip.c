@@ -23,10 +23,10 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force,     &m->base,        &m->noise, &m->diagonal,
-                                   &m->seen,  &m->parting,    &m->v,         &m->a,           &m->lo,    &m->hi,
-                                   &m->f,     &m->still,      &m->swing,     &m->spring,      &m->slack, &m->spring_rate,
-                                   &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance,  &m->excess};
+    double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
+                                   &m->seen,      &m->parting,        &m->v,     &m->a,         &m->lo,    &m->hi,
+                                   &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
+                                   &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
@@ -308,13 +308,10 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 /* to = J acceleration - order-th derivative of b. */
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
-    if (sys->base_harmonics == 0) {
-        tribo_matrix_multiply(&sys->direction, acceleration, to);
-        return;
+    tribo_matrix_multiply(&sys->direction, acceleration, to);
+    if (sys->base_harmonics) {
+        tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
     }
-    memset(to, 0, sys->ncontact * sizeof *to);
-    tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys)

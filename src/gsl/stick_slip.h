@@ -43,20 +43,20 @@ struct stick_slip {
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *found;              /* [founds] what is found out in a decision, where it is needed, and 0 before: */
     size_t founds;
-    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts, */
-    double *excess;             /* [ncontact] by how much they do where this begins, */
-    double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
-    double *size;               /* [ndof] from the sizes of the parts of q'' */
-    double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
-    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
-    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
-    double *diagonal;           /* [ncontact] R_ii */
-    double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
-    double *lo, *hi, *f;        /* [ncontact] workspace: bounds, forces */
+    double *gain;         /* [ncontact] what accelerations of contacts may be rounding, */
+    double *allowance;    /* [ncontact] by how much forces may exceed their limits before that counts, */
+    double *excess;       /* [ncontact] by how much they do where this begins, */
+    double *size;         /* [ndof] and how large the parts of q'' are */
+    double *parting;      /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
+    double *base, *noise; /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
+    double *seen;         /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
+    double *diagonal;     /* [ncontact] R_ii */
+    double *v, *a;        /* [ncontact] relative velocity; acceleration without friction */
+    double *lo, *hi, *f;  /* [ncontact] workspace: bounds, forces */
     double *free, *acceleration, *rate; /* [ndof] workspace: q'' without friction, with it, its rate */
-    double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
-    double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
-    signed char *tied;   /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    double *base_size, *base_rate_size; /* [ncontact] how large b, and its rate, ever are */
+    double *load_size;                  /* [ndof] how large accelerations by harmonic loads ever are */
+    signed char *tied;                  /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
     signed char *before; /* [ncontact] who was tied when find_holds looked last, if contacts depend on each other */
     int fresh;           /* some slip has changed since then */
@@ -111,8 +111,9 @@ static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i
     return m->slip[i] == 0 && !m->elastic[i];
 }
 
-/* scalar_slip.c, of the contacts that are asked about: forces, with contacts at rest as they are marked; a status. v [ncontact] = a + R f, the accelerations that
- * forces f leave; v may be a. A contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
+/* scalar_slip.c, of the contacts that are asked about: forces, with contacts at rest as they are marked; a status. v [ncontact]
+ * = a + R f, the accelerations that forces f leave; v may be a. A contact that cannot hold slides; but if it held by a static
+ * limit, it is decided about once more by the other one. */
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction);
