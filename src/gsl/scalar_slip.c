@@ -9,16 +9,20 @@
  *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on, and
  *         others that began to slide are at rest again
  *     until none begins to slide
- *     an independent set of those at rest holds: it keeps all of them where they are */
+ *     an independent set of those at rest holds: it keeps all of them where they are
+ *
+ * Where no contact is coupled with another one, each is decided about alone, and who is not near its limit by its force: all that
+ * follows is asked about the others only. */
 #include "stick_slip.h"
 #include "../common/real.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. Beside this,
- * rounding is nothing. */
+/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
 #define CLOSE 0.1
+
+/* By rounding alone, which is far less. */
 #define NEAR 1e-3
 
 /* Of redundant contacts the solver may leave so many times the noise of accelerations. */

@@ -45,7 +45,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     for (size_t k = 0; k < dof_arrays; k++) {
         *by_dof[k] = work + contact_arrays * c + k * n;
     }
-    m->found = m->gain; /* with what follows it */
+    m->found = m->gain; /* three arrays of contacts, the last ones, and one of degrees of freedom, the first one */
     m->founds = 3 * c + n;
     m->tied = m->slip + c;
     m->before = m->slip + 2 * c;
@@ -221,10 +221,10 @@ static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i
 
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    const int varies = tribo_system_limits_vary(sys) || m->breakaway.some;
     if (m->steady) {
         return;
     }
+    const int varies = tribo_system_limits_vary(sys) || m->breakaway.some;
     if (varies) {
         tribo_system_limits(sys, m->limit, m->limit_rate);
     }
@@ -286,8 +286,7 @@ static void note_rest(size_t n, const signed char *restrict slip, unsigned char 
     }
 }
 
-/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
- */
+/* Those that another contact holds from here on are at rest, too. */
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;

@@ -26,7 +26,7 @@ struct stick_slip {
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
-    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open, TRIBO_IN_PLANE; see below */
+    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open, TRIBO_IN_PLANE */
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
@@ -41,7 +41,7 @@ struct stick_slip {
     struct planar_slip *plane;  /* of planar contacts; NULL if there are none */
     double abstol, reltol;      /* of the driver */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
-    double *found;              /* [founds] what is found out in a decision, where it is needed, and 0 before: */
+    double *found;              /* [founds] what a decision finds out where that is needed, and else is 0: */
     size_t founds;
     double *gain;         /* [ncontact] what accelerations of contacts may be rounding, */
     double *allowance;    /* [ncontact] by how much forces may exceed their limits before that counts, */
@@ -75,7 +75,7 @@ struct stick_slip {
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 
-/* Contact i does this from here on: nobody else writes slip. */
+/* Contact i does this from here on. Nobody else writes slip: who holds follows from it. */
 static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
 {
     m->fresh |= slip != m->slip[i];
@@ -92,9 +92,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
 
 /* What a decision is made of. It begins at time t, with the base there. Limits, and with them which contacts are open, are
  * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status.
- * Then it is not known any more, and is found for one contact, or all, what its acceleration may be by rounding, and how far its
- * force may go; q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what
- * they are; and to [ncontact] = J acceleration - order-th derivative of b. */
+ * What accelerations of contacts may be rounding, and how far forces may go, is forgotten, and found anew of one contact, or all;
+ * q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
+ * to [ncontact] = J acceleration - order-th derivative of b. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
