@@ -66,13 +66,14 @@ static void note_holds(struct stick_slip *m)
 {
     const signed char *restrict slip = m->slip;
     const unsigned char *restrict holds = m->holds, *restrict elastic = m->elastic;
-    signed char *restrict loose = m->loose, differs = 0, dependents = 0;
+    signed char *restrict loose = m->loose;
+    unsigned char differs = 0, dependents = 0;
     const size_t n = m->contacts;
     for (size_t i = 0; i < n; i++) {
-        const signed char is = (holds[i] == 0) | elastic[i];
-        differs |= is ^ loose[i];
+        const unsigned char is = (holds[i] == 0) | elastic[i];
+        differs |= is != loose[i];
         dependents |= (slip[i] == 0) & (holds[i] == 0);
-        loose[i] = is;
+        loose[i] = (signed char)is;
     }
     m->dependents = dependents;
     m->hold_differs |= differs;

@@ -143,16 +143,13 @@ void tribo_stick_slip_forget_gains(struct stick_slip *m)
     memset(m->found, 0, m->founds * sizeof *m->found);
 }
 
-/* The size of all that q'' of degree of freedom d is the sum of. */
-static double size_of(const struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
+/* The size of all that q'' of degree of freedom d is the sum of, which is not known yet. */
+static void find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
-    double table = 0.0;
-    if (sys->tables) {
-        tribo_system_tables(sys, 0, 1.0, d, d + 1, &table);
-    }
-    const double size = m->load_size[d] + fabs(table) + tribo_matrix_row_size(&sys->stiffness, d, y) +
-                        tribo_matrix_row_size(&sys->response, d, m->force);
-    return size + (sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0);
+    tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
+    m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                 tribo_matrix_row_size(&sys->response, d, m->force);
+    m->size[d] += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
 }
 
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
@@ -164,9 +161,10 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
     }
     tribo_stick_slip_find_velocity(m, sys, i, y);
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        double *part = &m->size[j->col[k]];
-        *part = *part > 0.0 ? *part : size_of(m, sys, y, j->col[k]);
-        size += fabs(j->val[k] * *part);
+        if (!(m->size[j->col[k]] > 0.0)) {
+            find_size(m, sys, y, j->col[k]);
+        }
+        size += fabs(j->val[k] * m->size[j->col[k]]);
     }
     m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
     m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
