@@ -146,7 +146,9 @@ void tribo_stick_slip_forget_gains(struct stick_slip *m)
 /* The size of all that q'' of degree of freedom d is the sum of, which is not known yet. */
 static void find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
-    tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
+    if (sys->tables) {
+        tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
+    }
     m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
                  tribo_matrix_row_size(&sys->response, d, m->force);
     m->size[d] += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
