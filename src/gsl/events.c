@@ -249,7 +249,9 @@ static double to_a_number(const tribo_system *sys, double t, double reach, doubl
 
 static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
-    return m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
+    const int status = m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
+    memset(m->seen, 0, m->contacts * sizeof *m->seen);
+    return status;
 }
 
 /* One phase, from (t, y) to its end and the decision there. */
@@ -302,7 +304,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (event) {
         status = count_event(e, drv, event->contact, *t, fastest);
         if (event->slides == SLIDES) {
-            e->stick_slip.slip[event->contact] = 0;
+            tribo_stick_slip_set(&e->stick_slip, event->contact, 0);
         } else {
             e->stick_slip.reached = event->contact;
         }

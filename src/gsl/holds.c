@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 /* Tells the context that finds the forces of those that hold who they are. f [ncontact] is workspace. */
 static int take_holds(struct stick_slip *m, double *f)
@@ -18,16 +19,10 @@ static int take_holds(struct stick_slip *m, double *f)
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f)
 {
     for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        f[i] = !m->loose[i] ? -a[i] / m->diagonal[i] : 0.0;
+        f[i] = tribo_stick_slip_balance_alone(m, i, a[i]);
     }
     const int status = m->hold_differs && !m->uncoupled ? take_holds(m, f) : TRIBO_OK;
     return status || m->uncoupled ? status : tribo_balance(m->hold, m->still, a, f, NULL);
-}
-
-/* Whether the force of contact i at rest is to be found, and not known from the state, and holds. */
-static int may_hold(const struct stick_slip *m, const tribo_system *sys, size_t i)
-{
-    return m->diagonal[i] > 0.0 && !tribo_massless_touches(&sys->massless, i);
 }
 
 /* Of the contacts at rest, marks only an independent set as holding; rather such that are inside their limits, or go there. */
@@ -39,7 +34,7 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys)
         const signed char tied = m->tied[i];
         m->at[rest] = i;
         m->last[rest] = (unsigned char)(tied == 0 ? 0 : tied == 2 ? 1 : 2);
-        rest += m->slip[i] == 0 && may_hold(m, sys, i);
+        rest += tribo_stick_slip_searches(m, i) && m->can_hold[i];
     }
     const int done = rest < 2 || tribo_constraints_create(&c, &sys->direction, &sys->mass, m->at, rest, m->last);
     for (size_t k = done && rest > 1 ? c.rank : rest; k < rest; k++) {
@@ -50,34 +45,50 @@ static int choose_holds(struct stick_slip *m, const tribo_system *sys)
                 : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s at rest", rest, plural(rest));
 }
 
-/* Takes down who is at rest, and tied; returns for how many that has changed. */
-static size_t take_rest(struct stick_slip *m)
+/* Whether others are tied than before; takes it down. Whoever is may rest by others. */
+static int take_ties(struct stick_slip *m)
 {
-    size_t changes = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        const signed char now = (signed char)(m->slip[i] == 0 ? 1 + m->tied[i] : 0);
-        changes += now != m->before[i];
-        m->before[i] = now;
-    }
+    const int changes = memcmp(m->before, m->tied, m->contacts) != 0;
+    memcpy(m->before, m->tied, m->contacts);
     return changes;
+}
+
+/* All contacts at rest hold that can. */
+static void hold_all(size_t n, const signed char *restrict slip, const unsigned char *restrict can, unsigned char *restrict holds)
+{
+    for (size_t i = 0; i < n; i++) {
+        holds[i] = (slip[i] == 0) & can[i];
+    }
+}
+
+/* What follows from who holds: who is loose, and whether that has changed; and whether some rest by themselves. */
+static void note_holds(struct stick_slip *m)
+{
+    const signed char *restrict slip = m->slip;
+    const unsigned char *restrict holds = m->holds, *restrict elastic = m->elastic;
+    signed char *restrict loose = m->loose;
+    unsigned char differs = 0, dependents = 0;
+    const size_t n = m->contacts;
+    for (size_t i = 0; i < n; i++) {
+        const unsigned char is = (holds[i] == 0) | elastic[i];
+        differs |= is != loose[i];
+        dependents |= (slip[i] == 0) & (holds[i] == 0);
+        loose[i] = (signed char)is;
+    }
+    m->dependents = dependents;
+    m->hold_differs |= differs;
 }
 
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
-    if (take_rest(m) == 0 && !m->fresh) {
+    const int others = !m->independent && take_ties(m);
+    if (!m->fresh && !others) {
         return TRIBO_OK;
     }
     m->fresh = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->holds[i] = m->slip[i] == 0 && (m->diagonal[i] > 0.0 || tribo_massless_touches(&sys->massless, i));
-    }
+    hold_all(m->contacts, m->slip, m->can_hold, m->holds);
     const int status = m->independent ? TRIBO_OK : choose_holds(m, sys);
-    m->dependents = 0;
-    for (size_t i = 0; i < m->contacts; i++) {
-        m->dependents += m->slip[i] == 0 && !m->holds[i];
-        m->loose[i] = !m->holds[i] || tribo_massless_touches(&sys->massless, i);
-    }
-    m->hold_differs = 1;
+    note_holds(m);
     return status;
 }
 

@@ -129,7 +129,8 @@ static double nothing(const struct stick_slip *m, const struct planar_contact *p
 
 static void set_slip(struct stick_slip *m, const struct planar_contact *p, signed char slip)
 {
-    m->slip[p->at] = m->slip[p->at + 1] = slip;
+    tribo_stick_slip_set(m, p->at, slip);
+    tribo_stick_slip_set(m, p->at + 1, slip);
 }
 
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues)
@@ -163,7 +164,9 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
     for (size_t k = 0; k < m->plane->count; k++) {
         struct planar_contact *p = &m->plane->contact[k];
         double v[2];
-        velocity(m, sys, p, y, v);
+        for (size_t d = 0; d < 2; d++) {
+            v[d] = tribo_stick_slip_find_velocity(m, sys, p->at + d, y);
+        }
         p->most = greater(p->most, length(v));
         p->begins = SLIDES_ON;
         if (m->slip[p->at] == TRIBO_IN_PLANE && length(v) <= nothing(m, p)) {
@@ -308,7 +311,7 @@ static int leaves_line(const struct stick_slip *m, size_t i, const double *f)
 
 static void let_go_line(struct stick_slip *m, size_t i)
 {
-    m->slip[i] = m->force[i] > 0.0 ? -1 : 1;
+    tribo_stick_slip_set(m, i, m->force[i] > 0.0 ? -1 : 1);
     m->force[i] = -m->slip[i] * m->limit[i];
 }
 
@@ -399,8 +402,7 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     if (status) {
         return status;
     }
-    m->sized = 0;
-    memset(m->excess, 0, m->contacts * sizeof *m->excess);
+    tribo_stick_slip_forget_gains(m);
     tribo_stick_slip_find_gains(m, sys, y);
     const size_t ties = break_away(m);
     status = ties ? look_ahead(m, sys, y) : TRIBO_OK;

@@ -9,15 +9,21 @@
  *         one that held by a static limit does not slide yet: the limit by which it slides is its bound from here on, and
  *         others that began to slide are at rest again
  *     until none begins to slide
- *     an independent set of those at rest holds: it keeps all of them where they are */
+ *     an independent set of those at rest holds: it keeps all of them where they are
+ *
+ * Where no contact is coupled with another one, each is decided about alone, and who is not near its limit by its force: all that
+ * follows is asked about the others only. */
 #include "stick_slip.h"
 #include "../common/real.h"
 
 #include <math.h>
 #include <string.h>
 
-/* A force this close to the limit might be taken beyond it by rounding, or in a moment. */
+/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
 #define CLOSE 0.1
+
+/* By rounding alone, which is far less. */
+#define NEAR 1e-3
 
 /* Of redundant contacts the solver may leave so many times the noise of accelerations. */
 #define CERTAIN 1e3
@@ -26,11 +32,6 @@
 #define WIDER 0.02
 
 /* ------------------------------------------------------------------------------------------------------------- forces */
-
-int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i)
-{
-    return m->slip[i] == 0 && !tribo_massless_touches(&sys->massless, i);
-}
 
 /* The force within bounds that lets contact i go on as it does, where without it the acceleration is a. One that friction cannot
  * move takes all that it can of any pull. */
@@ -43,7 +44,8 @@ static double force_alone(const struct stick_slip *m, size_t i, double a)
 /* Rounding of R may hide a heavy body, that of its factors does not. */
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         v[i] = a[i] + (m->uncoupled ? m->diagonal[i] * f[i] : 0.0);
     }
     if (!m->uncoupled) {
@@ -78,16 +80,9 @@ static void solve_only(struct stick_slip *m, const tribo_system *sys, size_t onl
     }
 }
 
-/* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
-static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+static int solve_coupled(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
     size_t only;
-    for (size_t i = 0; m->uncoupled && i < m->contacts; i++) {
-        f[i] = force_alone(m, i, a[i]);
-    }
-    if (m->uncoupled) {
-        return TRIBO_OK;
-    }
     if (m->independent && find_only(m, &only)) {
         solve_only(m, sys, only, a, f);
         return TRIBO_OK;
@@ -96,15 +91,40 @@ static int solve(struct stick_slip *m, const tribo_system *sys, const double *a,
     return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
 }
 
+/* f [ncontact] = the solution for accelerations a without friction, within lo and hi. */
+static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+{
+    if (!m->uncoupled) {
+        return solve_coupled(m, sys, a, f);
+    }
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        f[i] = force_alone(m, i, a[i]);
+    }
+    return TRIBO_OK;
+}
+
+/* The force that contact i has whatever the others do. */
+static double given_force(const struct stick_slip *m, size_t i)
+{
+    return m->elastic[i] ? m->spring[i] : m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->limit[i];
+}
+
+/* Bounds of the force of contact i, as it does what it is marked to do. */
+static void set_bounds(struct stick_slip *m, size_t i)
+{
+    if (tribo_stick_slip_searches(m, i)) {
+        m->lo[i] = -m->stick[i];
+        m->hi[i] = m->stick[i];
+    } else {
+        m->lo[i] = m->hi[i] = given_force(m, i);
+    }
+}
+
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double limit = m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? m->stick[i] : m->limit[i];
-        m->lo[i] = m->slip[i] == 1 || m->slip[i] == 0 ? -limit : limit;
-        m->hi[i] = m->slip[i] == 1 ? -limit : limit;
-        if (tribo_massless_touches(&sys->massless, i)) {
-            m->lo[i] = m->hi[i] = m->spring[i];
-        }
+    for (size_t k = 0; k < m->asks; k++) {
+        set_bounds(m, m->asked[k]);
     }
     return solve(m, sys, m->a, m->force);
 }
@@ -112,17 +132,18 @@ int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     const int again = tribo_breakaway_lets_go(&m->breakaway, i);
-    m->slip[i] = again ? 0 : direction;
+    tribo_stick_slip_set(m, i, again ? 0 : direction);
     m->tied[i] = 0;
     m->again |= again;
 }
 
-/* Where static limits were lost, all that began to slide while they held are decided about once more, too: the other way they
- * might go, or none. */
-static void rest_again(struct stick_slip *m)
+/* Nobody is tied as another round begins. Where static limits were lost, all that began to slide while they held are decided
+ * about once more, too: the other way they might go, or none. Contacts that are not coupled do not mind. */
+static void begin_again(struct stick_slip *m)
 {
-    for (size_t i = 0; m->again && i < m->contacts; i++) {
-        m->slip[i] = m->rested[i] ? 0 : m->slip[i];
+    memset(m->tied, 0, m->contacts);
+    for (size_t i = 0; m->again && !m->uncoupled && i < m->contacts; i++) {
+        tribo_stick_slip_set(m, i, m->rested[i] ? 0 : m->slip[i]);
     }
     m->again = 0;
 }
@@ -144,24 +165,49 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
     return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
+/* How many are close to their limits, or have reached them. Where contacts are not coupled, others are decided about, unless they
+ * may part. */
+static size_t find_close(struct stick_slip *m)
+{
+    const int all = !m->uncoupled || (m->dependents && m->base_moves);
+    const double part = 1.0 - (m->uncoupled ? NEAR : CLOSE);
+    const size_t asks = m->asks;
+    size_t found = 0, kept = 0;
+    for (size_t k = 0; k < asks; k++) {
+        const size_t i = m->asked[k];
+        const int near = fabs(m->force[i]) >= part * m->stick[i] || i == m->reached;
+        const int close = near && tribo_stick_slip_searches(m, i);
+        m->some[kept] = i;
+        kept += (size_t)(close | all);
+        found += (size_t)close;
+    }
+    m->asked = m->some;
+    m->asks = kept;
+    return found;
+}
+
+static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    for (size_t k = 0; k < m->asks; k++) {
+        tribo_stick_slip_find_gain(m, sys, y, m->asked[k]);
+    }
+}
+
 /* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
 static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
 {
-    size_t close = 0, changes = 0;
+    size_t changes = 0;
     *ties = 0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->tied[i] = 0;
-        close += tribo_stick_slip_searches(m, sys, i) && fabs(m->force[i]) >= (1.0 - CLOSE) * m->stick[i];
-    }
-    if (close == 0) {
+    if (find_close(m) == 0) {
         return 0;
     }
-    tribo_stick_slip_find_gains(m, sys, y);
+    find_gains(m, sys, y);
     tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double room = m->stick[i] - fabs(m->force[i]);
         const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
-        if (tribo_stick_slip_searches(m, sys, i) && room <= within) {
+        if (tribo_stick_slip_searches(m, i) && room <= within) {
             const signed char direction = direction_of(m, i, m->force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->tied[i] = 1;
@@ -196,17 +242,19 @@ static void find_falling(struct stick_slip *m, const tribo_system *sys, const do
 {
     find_static(m, sys, y);
     tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
         m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
     }
 }
 
-static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
+static void set_bounds_ahead(struct stick_slip *m)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
-        if (tribo_massless_touches(&sys->massless, i)) {
+        if (m->elastic[i]) {
             m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
             continue;
         }
@@ -222,25 +270,27 @@ static void set_bounds_ahead(struct stick_slip *m, const tribo_system *sys)
 /* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
-    tribo_stick_slip_find_gains(m, sys, y);
+    find_gains(m, sys, y);
     if (m->breakaway.falls) {
         find_falling(m, sys, y);
     }
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         m->v[i] = m->a[i] + m->horizon * m->v[i];
     }
-    set_bounds_ahead(m, sys);
+    set_bounds_ahead(m);
     const int status = solve(m, sys, m->v, m->f);
     if (status) {
         return status;
     }
-    memset(m->pulled, 0, sys->ncontact);
     tribo_stick_slip_accelerate(m, sys, m->v, m->f, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        m->pulled[i] = 0;
         const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
-        if (tribo_stick_slip_searches(m, sys, i) && room >= 0.0) {
+        if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
             const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
@@ -265,9 +315,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         tribo_elastic_hold(m, sys, y);
         tribo_system_free_acceleration(sys, t, y, m->free);
         tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->a);
-        m->sized = 0;
-        memset(m->allowance, 0, sys->ncontact * sizeof *m->allowance);
-        memset(m->excess, 0, sys->ncontact * sizeof *m->excess);
+        tribo_stick_slip_forget_gains(m);
+        m->asked = m->all;
+        m->asks = m->contacts;
     }
     for (size_t changes = 1; !status && changes;) {
         size_t ties;
@@ -279,7 +329,9 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         if (!status && !changes && ties) {
             status = tribo_stick_slip_relieve(m, sys, &changes);
         }
-        rest_again(m);
+        if (changes) {
+            begin_again(m);
+        }
     }
     m->reached = m->contacts;
     if (m->breakaway.some && !status) {

@@ -23,16 +23,15 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->doubt = 1.0;
     int status = tribo_clone(sys->contacts, &m->box);
     status = status ? status : tribo_clone(sys->contacts, &m->hold);
-    double **const by_contact[] = {&m->limit, &m->limit_rate, &m->force,         &m->allowance, &m->base,
-                                   &m->noise, &m->diagonal,   &m->seen,          &m->parting,   &m->excess,
-                                   &m->v,     &m->a,          &m->gain,          &m->lo,        &m->hi,
-                                   &m->f,     &m->still,      &m->swing,         &m->spring,    &m->spring_rate,
-                                   &m->slack, &m->base_size,  &m->base_rate_size};
-    double **const by_dof[] = {&m->acceleration, &m->free, &m->rate, &m->size, &m->load_size};
+    double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
+                                   &m->seen,      &m->parting,        &m->v,     &m->a,         &m->lo,    &m->hi,
+                                   &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
+                                   &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
+    double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(8, c);
-    m->at = malloc(c * sizeof *m->at);
+    m->slip = calloc(10, c);
+    m->at = malloc(3 * c * sizeof *m->at);
     m->last = malloc(c);
     m->limit = work;
     const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
@@ -46,6 +45,8 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     for (size_t k = 0; k < dof_arrays; k++) {
         *by_dof[k] = work + contact_arrays * c + k * n;
     }
+    m->found = m->gain; /* three arrays of contacts, the last ones, and one of degrees of freedom, the first one */
+    m->founds = 3 * c + n;
     m->tied = m->slip + c;
     m->before = m->slip + 2 * c;
     m->loose = m->slip + 3 * c;
@@ -53,12 +54,19 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->rested = (unsigned char *)m->slip + 5 * c;
     m->slid = m->slip + 6 * c;
     m->pulled = m->slip + 7 * c;
+    m->can_hold = (unsigned char *)m->slip + 8 * c;
+    m->elastic = (unsigned char *)m->slip + 9 * c;
+    m->asked = m->all = m->at + c;
+    m->some = m->at + 2 * c;
     /* these two know directions only */
     tribo_set_planar(m->box, 0, NULL);
     tribo_set_planar(m->hold, 0, NULL);
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
+        m->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
+        m->can_hold[i] = m->diagonal[i] > 0.0 || m->elastic[i];
+        m->all[i] = i;
         m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
     size_t islands;
@@ -116,45 +124,60 @@ static void find_outer_sizes(struct stick_slip *m, const tribo_system *sys)
     add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
 }
 
-/* What of the velocities may be rounding, as far as the state tells, and the phase before. */
-static void find_noise(struct stick_slip *m, const tribo_system *sys, const double *y)
+double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double size = m->base_size[i] + tribo_matrix_row_size(&sys->direction, i, y + sys->ndof);
-        m->noise[i] = VELOCITY_NOISE * greater(size, m->seen[i]);
-        m->seen[i] = 0.0;
+    const struct matrix *j = &sys->direction;
+    const double *u = y + sys->ndof;
+    double v = -m->base[i], size = 0.0;
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        const double part = j->val[k] * u[j->col[k]];
+        v += part;
+        size += fabs(part);
     }
+    m->noise[i] = VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
+    return v;
 }
 
-/* The sizes of all that q'' is the sum of. */
-static void find_sizes(struct stick_slip *m, const tribo_system *sys, const double *y)
+void tribo_stick_slip_forget_gains(struct stick_slip *m)
 {
-    memset(m->size, 0, sys->ndof * sizeof *m->size);
-    tribo_system_tables(sys, 0, 1.0, 0, sys->ndof, m->size);
-    for (size_t d = 0; d < sys->ndof; d++) {
-        m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
-                     tribo_matrix_row_size(&sys->response, d, m->force);
-    }
-    if (sys->damping.rows) {
-        tribo_matrix_add_sizes(&sys->damping, y + sys->ndof, m->size);
-    }
+    memset(m->found, 0, m->founds * sizeof *m->found);
 }
 
-/* What of the accelerations of contacts may be rounding, and from that how far their forces may go: sizes of all that they are
- * the sum of. */
-void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+/* The size of all that q'' of degree of freedom d is the sum of, which is not known yet. */
+static void find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
-    if (m->sized) {
+    if (sys->tables) {
+        tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
+    }
+    m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                 tribo_matrix_row_size(&sys->response, d, m->force);
+    m->size[d] += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
+}
+
+void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
+{
+    const struct matrix *j = &sys->direction;
+    double size = 0.0;
+    if (m->gain[i] > 0.0) {
         return;
     }
-    m->sized = 1;
-    find_sizes(m, sys, y);
+    tribo_stick_slip_find_velocity(m, sys, i, y);
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        if (!(m->size[j->col[k]] > 0.0)) {
+            find_size(m, sys, y, j->col[k]);
+        }
+        size += fabs(j->val[k] * m->size[j->col[k]]);
+    }
+    m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
+    m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+    m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
+    m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+}
+
+void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double size = m->base_rate_size[i] + tribo_matrix_row_size(&sys->direction, i, m->size);
-        m->gain[i] = NOISE * m->doubt * size;
-        m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
-        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
-        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+        tribo_stick_slip_find_gain(m, sys, y, i);
     }
 }
 
@@ -167,11 +190,6 @@ double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
         return m->holds[i] || !m->tied[i] ? 0.0 : m->force[i] > 0.0 ? ratio : -ratio;
     }
     return m->slip[i] == 2 ? 0.0 : -m->slip[i];
-}
-
-int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
-{
-    return m->base_moves && m->slip[i] == 0 && !m->holds[i];
 }
 
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
@@ -189,8 +207,10 @@ double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system 
     return v;
 }
 
-static signed char slip_of(const struct stick_slip *m, size_t i, double v)
+/* Whether contact i slides in a state, and which way. */
+static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
+    const double v = tribo_stick_slip_find_velocity(m, sys, i, y);
     return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? 0 : v > 0.0 ? 1 : -1);
 }
 
@@ -201,15 +221,20 @@ static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i
 
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    if (tribo_system_limits_vary(sys) || m->breakaway.some) {
+    if (m->steady) {
+        return;
+    }
+    const int varies = tribo_system_limits_vary(sys) || m->breakaway.some;
+    if (varies) {
         tribo_system_limits(sys, m->limit, m->limit_rate);
     }
+    m->steady = !varies;
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (!presses(m, sys, i)) {
             m->limit[i] = m->limit_rate[i] = 0.0;
-            m->slip[i] = 2;
+            tribo_stick_slip_set(m, i, 2);
         } else if (m->slip[i] == 2) {
-            m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
+            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
         }
         m->limit[i] = greater(m->limit[i], 0.0);
     }
@@ -227,31 +252,53 @@ static int not_unique(const tribo_system *sys, size_t i)
                              i);
 }
 
-/* Whoever has no velocity, or none in the direction of its slip any more, is at rest, also those that another contact now holds.
- * But where bases part, a contact that rests by itself goes with them. */
+/* Those that have no velocity in the direction of their slip any more rest; returns how many. */
+static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const signed char slip = m->slip[i];
+        if ((slip == 1 || slip == -1) && slip != slip_of(m, sys, i, y)) {
+            tribo_stick_slip_set(m, i, 0);
+            found++;
+        }
+    }
+    return found;
+}
+
+/* Where bases part, a contact that rests by itself goes with them. */
+static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    int status = TRIBO_OK;
+    for (size_t i = 0; !status && i < sys->ncontact; i++) {
+        if (m->slip[i] == 0 && !m->holds[i]) {
+            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
+            status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
+        }
+    }
+    return status;
+}
+
+static void note_rest(size_t n, const signed char *restrict slip, unsigned char *restrict rested)
+{
+    for (size_t i = 0; i < n; i++) {
+        rested[i] = slip[i] == 0;
+    }
+}
+
+/* Those that another contact holds from here on are at rest, too. */
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
 {
     int status = TRIBO_OK;
     for (size_t found = 1; !status && found;) {
         status = tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
-        found = 0;
-        for (size_t i = 0; !status && i < sys->ncontact; i++) {
-            if ((m->slip[i] == 1 || m->slip[i] == -1) && m->slip[i] != slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y))) {
-                m->slip[i] = 0;
-                found++;
-            }
-        }
+        found = status ? 0 : stop(m, sys, y);
     }
-    for (size_t i = 0; !status && m->dependents && m->base_moves && i < sys->ncontact; i++) {
-        if (m->slip[i] == 0 && !m->holds[i]) {
-            m->slip[i] = slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y));
-            status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
-        }
+    if (!status && m->dependents && m->base_moves) {
+        status = part(m, sys, y);
     }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->rested[i] = m->slip[i] == 0;
-    }
+    note_rest(m->contacts, m->slip, m->rested);
     return status;
 }
 
@@ -260,13 +307,10 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 /* to = J acceleration - order-th derivative of b. */
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
-    if (sys->base_harmonics == 0) {
-        tribo_matrix_multiply(&sys->direction, acceleration, to);
-        return;
+    tribo_matrix_multiply(&sys->direction, acceleration, to);
+    if (sys->base_harmonics) {
+        tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
     }
-    memset(to, 0, sys->ncontact * sizeof *to);
-    tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, to);
 }
 
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys)
@@ -336,7 +380,6 @@ void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, do
     find_base(m, sys);
     memset(m->tied, 0, sys->ncontact);
     tribo_elastic_release(sys, y);
-    find_noise(m, sys, y);
 }
 
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
@@ -348,9 +391,9 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
     find_base(m, sys);
     find_outer_sizes(m, sys);
-    find_noise(m, sys, y);
+    memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
     for (size_t i = 0; !continues && i < sys->ncontact; i++) {
-        m->slip[i] = (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, i, tribo_stick_slip_velocity(m, sys, i, y)));
+        tribo_stick_slip_set(m, i, (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, sys, i, y)));
         m->rested[i] = 0;
     }
     if (!continues) {
@@ -359,7 +402,8 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->swing[i] = tribo_system_swing(sys, i);
     }
-    m->fresh = 1;
+    m->fresh = m->hold_differs = 1;
+    m->steady = 0;
     m->doubt = 1.0;
     m->reached = m->contacts;
     m->base_moves = 0;

@@ -30,7 +30,8 @@ struct stick_slip {
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
-    size_t dependents;     /* how many rest by themselves */
+    int dependents;        /* some rest by themselves */
+    int steady;            /* limits are those that update_limits has seen */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     double *limit, *limit_rate; /* [ncontact] by which contacts slide, and its rate */
     double *stick, *stick_rate; /* [ncontact] by which those at rest hold: these, unless there are static limits */
@@ -40,26 +41,32 @@ struct stick_slip {
     struct planar_slip *plane;  /* of planar contacts; NULL if there are none */
     double abstol, reltol;      /* of the driver */
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
-    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts */
-    double *excess;             /* [ncontact] and by how much they do where this begins */
-    double *parting;            /* [ncontact] and by how much the velocity of one that rests by itself may differ from zero */
-    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding */
-    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known */
-    double *diagonal;           /* [ncontact] R_ii */
-    double *v, *a;              /* [ncontact] relative velocity; acceleration without friction */
-    double *gain, *lo, *hi, *f; /* [ncontact] workspace: what accelerations of contacts may be rounding; bounds, forces */
-    double *free, *acceleration, *rate, *size; /* [ndof] workspace: q'' without friction, with it, its rate, sizes of its parts */
-    double *base_size, *base_rate_size;        /* [ncontact] how large b, and its rate, ever are */
-    double *load_size;                         /* [ndof] how large accelerations by harmonic loads ever are */
-    int sized;                                 /* size is that of this decision */
-    signed char *tied;   /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
+    double *found;              /* [founds] what a decision finds out where that is needed, and else is 0: */
+    size_t founds;
+    double *gain;         /* [ncontact] what accelerations of contacts may be rounding, */
+    double *allowance;    /* [ncontact] by how much forces may exceed their limits before that counts, */
+    double *excess;       /* [ncontact] by how much they do where this begins, */
+    double *size;         /* [ndof] and how large the parts of q'' are */
+    double *parting;      /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
+    double *base, *noise; /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
+    double *seen;         /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
+    double *diagonal;     /* [ncontact] R_ii */
+    double *v, *a;        /* [ncontact] relative velocity; acceleration without friction */
+    double *lo, *hi, *f;  /* [ncontact] workspace: bounds, forces */
+    double *free, *acceleration, *rate; /* [ndof] workspace: q'' without friction, with it, its rate */
+    double *base_size, *base_rate_size; /* [ncontact] how large b, and its rate, ever are */
+    double *load_size;                  /* [ndof] how large accelerations by harmonic loads ever are */
+    signed char *tied;                  /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
-    signed char *before; /* [ncontact] what find_holds saw last */
-    int fresh;           /* it saw nothing yet */
+    signed char *before; /* [ncontact] who was tied when find_holds looked last, if contacts depend on each other */
+    int fresh;           /* some slip has changed since then */
     int hold_differs;    /* hold has not been told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */
+    const size_t *asked;                  /* [asks] the contacts that a decision still asks about: all if R couples them */
+    size_t asks, *all, *some;             /* the latter are [ncontact]: all of them, and room for some */
+    unsigned char *elastic, *can_hold;    /* [ncontact] 1: an elastic contact; one that holds something, if it rests */
     size_t *at;                           /* [ncontact] workspace of find_holds, */
     unsigned char *last;                  /* [ncontact] and this */
 };
@@ -67,6 +74,13 @@ struct stick_slip {
 /* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
+
+/* Contact i does this from here on. Nobody else writes slip: who holds follows from it. */
+static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
+{
+    m->fresh |= slip != m->slip[i];
+    m->slip[i] = slip;
+}
 
 /* Takes limits from the system, and, unless it continues, from the state who is at rest: contacts whose velocity is zero to
  * rounding. A decision must follow. */
@@ -76,23 +90,30 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
  * of their velocities in y. Sets slip, holds, force and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* What a decision is made of. It begins at time t, with base and noise there. Limits, and with them which contacts are open, are
+/* What a decision is made of. It begins at time t, with the base there. Limits, and with them which contacts are open, are
  * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status.
- * What accelerations of contacts may be rounding, and how far forces may go; q'' [ndof] with the forces found, also after a
- * decision; its rate while the forces of contacts at rest are what they are; and to [ncontact] = J acceleration - order-th
- * derivative of b. */
+ * What accelerations of contacts may be rounding, and how far forces may go, is forgotten, and found anew of one contact, or all;
+ * q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
+ * to [ncontact] = J acceleration - order-th derivative of b. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
+void tribo_stick_slip_forget_gains(struct stick_slip *m);
+void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
 
-/* scalar_slip.c: whether contact i is at rest by a force that is to be found; that of elastic ones is known. Forces, with
- * contacts at rest as they are marked; a status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. A
- * contact that cannot hold slides; but if it held by a static limit, it is decided about once more by the other one. */
-int tribo_stick_slip_searches(const struct stick_slip *m, const tribo_system *sys, size_t i);
+/* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
+static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i)
+{
+    return m->slip[i] == 0 && !m->elastic[i];
+}
+
+/* scalar_slip.c, of the contacts that are asked about: forces, with contacts at rest as they are marked; a status. v [ncontact]
+ * = a + R f, the accelerations that forces f leave; v may be a. A contact that cannot hold slides; but if it held by a static
+ * limit, it is decided about once more by the other one. */
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
 void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction);
@@ -120,6 +141,12 @@ int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 /* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
 
+/* The force by which contact i, coupled with no other one, holds; 0 if it does not. */
+static inline double tribo_stick_slip_balance_alone(const struct stick_slip *m, size_t i, double a)
+{
+    return m->loose[i] ? 0.0 : -a / m->diagonal[i];
+}
+
 /* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
 
@@ -134,13 +161,17 @@ int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const d
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 
 /* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
-int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i);
+static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
+{
+    return m->base_moves && m->slip[i] == 0 && !m->holds[i];
+}
 
 /* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does not
  * count. */
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i);
 
-/* v_i in a state, at the time that was last decided for. */
+/* v_i in a state, at the time that was last decided for; and the same, with its noise found. */
 double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
+double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
 
 #endif

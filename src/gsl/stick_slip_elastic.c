@@ -29,8 +29,9 @@ void tribo_elastic_start(struct stick_slip *m, const tribo_system *sys, double *
     }
     tribo_elastic_enter(sys, m->limit, m->rate, m->spring, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (tribo_massless_touches(&sys->massless, i)) {
-            m->slid[i] = m->slip[i] = (signed char)(m->limit[i] > 0.0 ? 0 : 2);
+        if (m->elastic[i]) {
+            m->slid[i] = (signed char)(m->limit[i] > 0.0 ? 0 : 2);
+            tribo_stick_slip_set(m, i, m->slid[i]);
         }
     }
 }
@@ -56,13 +57,13 @@ static void place(struct stick_slip *m, size_t i, double v)
     if (slides && m->slid[i] == before) {
         m->spring[i] = -before * limit;
     } else if (i != m->reached && !stopped && fabs(m->spring[i]) < limit - m->slack[i]) {
-        m->slip[i] = 0;
+        tribo_stick_slip_set(m, i, 0);
         return;
     }
     const signed char against = (signed char)(m->spring[i] > 0.0 ? -1 : 1);
     const int still = stopped || fabs(v) <= m->doubt * m->noise[i];
     m->spring[i] = -against * limit;
-    m->slip[i] = (signed char)(!still && against * v > 0.0 ? against : 0);
+    tribo_stick_slip_set(m, i, (signed char)(!still && against * v > 0.0 ? against : 0));
 }
 
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
@@ -72,8 +73,8 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     }
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (tribo_massless_touches(&sys->massless, i)) {
-            place(m, i, tribo_matrix_row_dot(&sys->direction, i, y + sys->ndof) - m->base[i]);
+        if (m->elastic[i]) {
+            place(m, i, tribo_stick_slip_find_velocity(m, sys, i, y));
         }
     }
     tribo_elastic_give(sys, m->spring, y);
@@ -89,7 +90,7 @@ void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; sys->massless.count && i < sys->ncontact; i++) {
-        m->allowance[i] = tribo_massless_touches(&sys->massless, i) ? m->slack[i] : m->allowance[i];
+        m->allowance[i] = m->elastic[i] ? m->slack[i] : m->allowance[i];
         m->slid[i] = m->slip[i];
     }
 }

@@ -19,11 +19,18 @@
 static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
 {
     int status = tribo_stick_slip_find_holds(m, sys);
+    for (size_t k = 0; m->uncoupled && k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        m->f[i] = tribo_stick_slip_balance_alone(m, i, m->a[i]);
+    }
+    if (status || m->uncoupled) {
+        return status;
+    }
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->f[i] = m->loose[i] ? m->force[i] : 0.0;
     }
     tribo_stick_slip_accelerate(m, sys, m->a, m->f, m->v);
-    status = status ? status : tribo_stick_slip_balance(m, m->v, m->f);
+    status = tribo_stick_slip_balance(m, m->v, m->f);
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
 
@@ -37,7 +44,8 @@ static size_t most_overloaded(const struct stick_slip *m)
 {
     size_t worst = m->contacts;
     double most = 1.0;
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const int sure = tribo_stick_slip_must_be_sure(m, i);
         const double excess = fabs(m->f[i]) - m->stick[i], allowance = (sure ? AT_THE_EVENT : 1.0) * m->allowance[i];
         if ((sure || m->tied[i]) && m->holds[i] && excess > most * allowance) {
@@ -54,9 +62,10 @@ static int share_anew(struct stick_slip *m, tribo_system *sys)
     tribo_set_sharing(m->box, TRIBO_SHARE_LEAST_NORM);
     const int status = tribo_stick_slip_find_forces(m, sys);
     tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
-    for (size_t i = 0; i < sys->ncontact; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         const double room = m->stick[i] - fabs(m->force[i]);
-        m->tied[i] = tribo_stick_slip_searches(m, sys, i) && room <= m->allowance[i];
+        m->tied[i] = tribo_stick_slip_searches(m, i) && room <= m->allowance[i];
     }
     return status ? status : find_holding_forces(m, sys);
 }
@@ -66,7 +75,8 @@ static void let_overloaded_go(struct stick_slip *m, size_t worst, signed char di
 {
     const int sudden = tribo_breakaway_is_sudden(&m->breakaway, worst);
     int gone = 0;
-    for (size_t i = 0; sudden && i < m->contacts; i++) {
+    for (size_t k = 0; sudden && k < m->asks; k++) {
+        const size_t i = m->asked[k];
         if (m->pulled[i]) {
             tribo_stick_slip_let_go(m, i, m->pulled[i]);
             gone = 1;
@@ -80,7 +90,8 @@ static void let_overloaded_go(struct stick_slip *m, size_t worst, signed char di
 /* f are the forces. */
 static void keep_forces(struct stick_slip *m)
 {
-    for (size_t i = 0; i < m->contacts; i++) {
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
         m->force[i] = m->loose[i] ? m->force[i] : clamp(m->f[i], -m->stick[i], m->stick[i]);
         m->excess[i] = m->loose[i] ? 0.0 : fabs(m->f[i] - m->force[i]);
     }
