@@ -43,7 +43,7 @@ static double take_steps(tribo_driver *drv, double left, const double *t, double
                          const struct fixed_method *method, int *status)
 {
     const size_t count = left < AHEAD ? (size_t)left : AHEAD;
-    size_t s = method->run && !drv->seen ? method->run(drv, count, t, *from, status) : 0;
+    size_t s = method->run && !drv->seen ? method->run(drv, count, t, *from) : 0;
     drv->time = t[s];
     drv->steps += s;
     for (; s < count && !*status; s++) {
