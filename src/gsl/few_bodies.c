@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "cos_sin.h"
@@ -122,13 +123,14 @@ int tribo_few_take(struct few_bodies *b, tribo_system *sys)
 /* ---------------------------------------------------------------------------------------------------- what acts in a run */
 
 /* The harmonic's part of rows, at count times. */
-static void add_harmonic(const struct harmonic *h, size_t count, const double *cosine, const double *sine,
+static void add_harmonic(const struct harmonic *h, size_t count, const double *restrict cosine, const double *restrict sine,
                          double to[FEW][FORESIGHT])
 {
     for (size_t e = 0; e < h->count; e++) {
-        double *row = to[h->index[e]];
+        const double c = h->cosine[e], d = h->sine[e];
+        double *restrict row = to[h->index[e]];
         for (size_t s = 0; s < count; s++) {
-            row[s] += h->cosine[e] * cosine[s] + h->sine[e] * sine[s];
+            row[s] += c * cosine[s] + d * sine[s];
         }
     }
 }
@@ -153,12 +155,16 @@ static void find_loads(struct few_bodies *b, const tribo_system *sys, size_t cou
 }
 
 /* last: the length of the step before. */
-static void find_times(struct few_bodies *b, size_t count, const double *t, double last)
+static void find_times(struct few_bodies *b, size_t count, const double *restrict t, double last)
 {
+    double *restrict h = b->h, *restrict to = b->to, *restrict time = b->time;
+    h[0] = last;
     for (size_t s = 0; s < count; s++) {
-        b->h[s] = t[s + 1] - t[s];
-        b->to[s] = t[s] + 0.5 * b->h[s];
-        b->time[s] = b->to[s] - (t[s] - 0.5 * (s ? b->h[s - 1] : last));
+        h[s + 1] = t[s + 1] - t[s];
+        to[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
+    }
+    for (size_t s = 0; s < count; s++) {
+        time[s] = to[s] - (t[s] - 0.5 * h[s]);
     }
 }
 
@@ -213,176 +219,7 @@ static int find_all(struct few_bodies *b, tribo_system *sys, size_t count, const
     return find_others(b, sys, count, t);
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- steps */
-
-/* What steps carry on, apart from other memory: compilers keep it in registers. */
-struct carried {
-    double q[FEW], u[FEW], v[FEW], energy;
-    struct few_slip slip;
-};
-
-/* What of a system there is, and of which sizes. */
-struct parts {
-    size_t n, c;
-    int damped, bases, vary;
-};
-
-/* The contacts in a step: bounds of impulses, velocities without friction; impulses, and velocities at the end. */
-struct impulses {
-    double most[FEW], v[FEW], p[FEW], end[FEW];
-};
-
-/* Row i of A x, the matrix being of m columns. */
-static inline double row_times(size_t m, const double a[FEW], const double *x)
-{
-    double sum = a[0] * x[0];
-    for (size_t j = 1; j < m; j++) {
-        sum += a[j] * x[j];
-    }
-    return sum;
-}
-
-static inline int rests(const struct few_slip *slip, size_t i)
-{
-    return slip->resting >> i & 1;
-}
-
-/* What rounding leaves of doubt about the velocity of contact i. */
-static inline double noise_of(const struct few_bodies *b, size_t c, size_t i, const struct impulses *x)
-{
-    double size = fabs(x->v[i]);
-    for (size_t j = 0; j < c; j++) {
-        size += fabs(b->r[i][j]) * x->most[j];
-    }
-    return 4.0 * DBL_EPSILON * size;
-}
-
-/* Contacts whose impulse is beyond its bound slide; those that move where friction pushes them hold. Returns whether any
- * changes. */
-static inline int revise(const struct few_bodies *b, size_t c, const struct impulses *x, struct few_slip *slip)
-{
-    int changed = 0;
-    for (size_t i = 0; i < c; i++) {
-        const double along = slip->side[i] * x->end[i];
-        if (rests(slip, i) && fabs(x->p[i]) > x->most[i]) {
-            slip->side[i] = x->p[i] > 0.0 ? 1.0 : -1.0;
-            slip->resting &= ~(1u << i);
-            changed = 1;
-        } else if (along > 0.0 && along > noise_of(b, c, i, x) && x->most[i] > 0.0) {
-            slip->side[i] = 0.0;
-            slip->resting |= 1u << i;
-            changed = 1;
-        }
-    }
-    return changed;
-}
-
-/* Impulses and velocities at the end, of contacts that do this. */
-static inline void push(const struct few_bodies *b, size_t c, const struct few_slip *slip, struct impulses *x)
-{
-    double held[FEW] = {0.0};
-    for (size_t i = 0; i < c; i++) {
-        x->p[i] = slip->side[i] * x->most[i];
-    }
-    for (size_t i = 0; i < c; i++) {
-        x->end[i] = x->v[i] + row_times(c, b->r[i], x->p);
-    }
-    for (size_t i = 0; slip->resting && i < c; i++) {
-        held[i] = row_times(c, b->inverse[slip->resting][i], x->end);
-    }
-    for (size_t i = 0; slip->resting && i < c; i++) {
-        x->p[i] -= held[i];
-        x->end[i] = rests(slip, i) ? 0.0 : x->end[i] - row_times(c, b->r[i], held);
-    }
-}
-
-/* 0 if no end comes of it. */
-static inline int settle(const struct few_bodies *b, size_t c, struct few_slip *slip, struct impulses *x)
-{
-    enum { ROUNDS = 2 * FEW + 2 };
-    int changed = 1;
-    for (int round = 0; changed && round < ROUNDS; round++) {
-        push(b, c, slip, x);
-        changed = revise(b, c, x, slip);
-    }
-    return !changed;
-}
-
-/* Takes the rounding out of the velocities of contacts at rest: one at its limit is not. */
-static inline void snap(const struct few_bodies *b, struct parts has, size_t s, const struct few_slip *slip,
-                        const struct impulses *x, double *u)
-{
-    for (size_t i = 0; i < has.c; i++) {
-        const struct few_snap *to = &b->snap[i];
-        const double base = has.bases ? b->base[i][s] : 0.0;
-        for (size_t d = 0; rests(slip, i) && fabs(x->p[i]) < x->most[i] && d < has.n; d++) {
-            u[d] = to->to == d ? (base - row_times(has.n, to->rest, u)) / to->turn : u[d];
-        }
-    }
-}
-
-/* The velocities u without friction. */
-static inline void kick_freely(const struct few_bodies *b, struct parts has, size_t s, const struct carried *m, double *u)
-{
-    for (size_t d = 0; d < has.n; d++) {
-        const double a = b->load[d][s] - row_times(has.n, b->stiffness[d], m->q);
-        u[d] = m->u[d] + b->time[s] * (has.damped ? a - row_times(has.n, b->damping[d], m->u) : a);
-    }
-}
-
-/* 0, and nothing is changed but slip, if the step is for others. */
-static inline int step(const struct few_bodies *b, struct parts has, size_t s, struct carried *m)
-{
-    struct impulses x = {{0.0}, {0.0}, {0.0}, {0.0}};
-    double u[FEW] = {0.0}, work = 0.0;
-    kick_freely(b, has, s, m, u);
-    for (size_t i = 0; i < has.c; i++) {
-        x.v[i] = row_times(has.n, b->direction[i], u) - (has.bases ? b->base[i][s] : 0.0);
-        x.most[i] = b->time[s] * (has.vary ? b->limits[i][s] : b->limit[i]);
-    }
-    if (!settle(b, has.c, &m->slip, &x)) {
-        return 0;
-    }
-    for (size_t d = 0; d < has.n; d++) {
-        u[d] += row_times(has.c, b->response[d], x.p);
-    }
-    if (m->slip.resting) {
-        snap(b, has, s, &m->slip, &x, u);
-    }
-    for (size_t i = 0; i < has.c; i++) {
-        work += b->tally[i] * x.p[i] * (m->v[i] + x.end[i]);
-        m->v[i] = x.end[i];
-    }
-    for (size_t d = 0; d < has.n; d++) {
-        m->q[d] += b->h[s] * u[d];
-        m->u[d] = u[d];
-    }
-    m->energy -= 0.5 * work;
-    return 1;
-}
-
-static inline size_t steps(const struct few_bodies *b, struct parts has, size_t count, struct carried *to)
-{
-    struct carried m = *to;
-    size_t s = 0;
-    while (s < count && step(b, has, s, &m)) {
-        s++;
-    }
-    *to = m;
-    return s;
-}
-
-/* The smallest systems by themselves, so that compilers see their sizes. */
-static size_t take_steps(const struct few_bodies *b, struct parts has, size_t count, struct carried *m)
-{
-    if (has.n == 1 && has.c == 1) {
-        return steps(b, (struct parts){1, 1, has.damped, has.bases, has.vary}, count, m);
-    }
-    if (has.n == 2 && has.c == 2) {
-        return steps(b, (struct parts){2, 2, has.damped, has.bases, has.vary}, count, m);
-    }
-    return steps(b, has, count, m);
-}
+/* ----------------------------------------------------------------------------------------------------------------- runs */
 
 /* Of so few numbers that a call would take longer. */
 static inline void copy_few(size_t n, const double *from, double *to)
@@ -393,7 +230,7 @@ static inline void copy_few(size_t n, const double *from, double *to)
 }
 
 /* Numbers that are not finite come back in every step that follows. */
-static int is_finite(const struct few_bodies *b, const struct carried *m)
+static int is_finite(const struct few_bodies *b, const struct few_carried *m)
 {
     int finite = isfinite(m->energy) != 0;
     for (size_t d = 0; d < b->n; d++) {
@@ -405,8 +242,8 @@ static int is_finite(const struct few_bodies *b, const struct carried *m)
 size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, struct few_motion *m)
 {
     const size_t n = b->n, c = b->c;
-    const struct parts has = {n, c, sys->damping.rows > 0, sys->base_harmonics > 0, tribo_system_limits_vary(sys)};
-    struct carried x;
+    const struct few_parts has = {n, c, sys->damping.rows > 0, sys->base_harmonics > 0, tribo_system_limits_vary(sys)};
+    struct few_carried x;
     if (!find_all(b, sys, count, t, m->last)) {
         return 0;
     }
@@ -415,7 +252,7 @@ size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, cons
     copy_few(c, m->v, x.v);
     x.energy = m->energy;
     x.slip = b->slip;
-    const size_t taken = take_steps(b, has, count, &x);
+    const size_t taken = tribo_few_steps(b, has, count, &x);
     if (taken == 0 || !is_finite(b, &x)) {
         return 0;
     }
@@ -423,7 +260,7 @@ size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, cons
     copy_few(n, x.u, m->u);
     copy_few(c, x.v, m->v);
     m->energy = x.energy;
-    m->last = b->h[taken - 1];
+    m->last = b->h[taken];
     b->slip = x.slip;
     return taken;
 }

@@ -36,8 +36,9 @@ struct few_bodies {
     double limit[FEW], tally[FEW];
     struct few_snap snap[FEW];
     struct few_slip slip; /* of the step before */
-    /* by steps of a run: the times for which velocities and places go on, when the velocities are those; and what acts */
-    double time[FORESIGHT], h[FORESIGHT], to[FORESIGHT];
+    /* by steps of a run: the times for which velocities go on, and those at which they are known then; the lengths, that of the
+     * step before the run first; and what acts */
+    double time[FORESIGHT], to[FORESIGHT], h[FORESIGHT + 1];
     double load[FEW][FORESIGHT], base[FEW][FORESIGHT], limits[FEW][FORESIGHT];
 };
 
@@ -46,6 +47,21 @@ struct few_bodies {
 struct few_motion {
     double *q, *u, *v, energy, last;
 };
+
+/* What steps carry on, apart from other memory: compilers keep it in registers. */
+struct few_carried {
+    double q[FEW], u[FEW], v[FEW], energy;
+    struct few_slip slip;
+};
+
+/* What of a system there is, and of which sizes. */
+struct few_parts {
+    size_t n, c;
+    int damped, bases, vary;
+};
+
+/* few_steps.c: the first steps of a run, as many of count as can be taken, for which all that acts is found. Returns how many. */
+size_t tribo_few_steps(const struct few_bodies *b, struct few_parts has, size_t count, struct few_carried *m);
 
 /* Takes over settings that have changed. Returns whether runs can be taken with them. */
 int tribo_few_take(struct few_bodies *b, tribo_system *sys);

@@ -13,7 +13,7 @@
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
 
 /* So many times can be foreseen. */
-enum { FORESIGHT = 16 };
+enum { FORESIGHT = 32 };
 
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
 struct harmonic {
