@@ -42,12 +42,13 @@ static int invert(struct few_bodies *b, unsigned set, size_t i)
     for (size_t k = 0; k <= i; k++) {
         pivot += b->r[i][k] * z[k];
     }
-    for (size_t k = 0; k < FEW; k++) {
+    const int fits = pivot > LEAST_PIVOT * b->r[i][i];
+    for (size_t k = 0; fits && k < FEW; k++) {
         for (size_t l = 0; l < FEW; l++) {
             to[k][l] = less[k][l] + z[k] * z[l] / pivot;
         }
     }
-    return pivot > LEAST_PIVOT * b->r[i][i];
+    return fits;
 }
 
 /* 0 if R is no matrix for runs. */

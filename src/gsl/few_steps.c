@@ -151,14 +151,25 @@ static inline size_t steps(const struct few_bodies *b, struct few_parts has, siz
     return s;
 }
 
-/* The smallest systems by themselves, so that compilers see their sizes. */
+/* With as many contacts as degrees of freedom. */
+static inline size_t square_steps(const struct few_bodies *b, struct few_parts has, size_t n, size_t count, struct few_carried *m)
+{
+    return steps(b, (struct few_parts){n, n, has.damped, has.bases, has.vary}, count, m);
+}
+
+/* One for each size, so that compilers see it, and one for the others. */
 size_t tribo_few_steps(const struct few_bodies *b, struct few_parts has, size_t count, struct few_carried *m)
 {
-    if (has.n == 1 && has.c == 1) {
-        return steps(b, (struct few_parts){1, 1, has.damped, has.bases, has.vary}, count, m);
+    switch (has.n == has.c ? has.n : 0) {
+    case 1:
+        return square_steps(b, has, 1, count, m);
+    case 2:
+        return square_steps(b, has, 2, count, m);
+    case 3:
+        return square_steps(b, has, 3, count, m);
+    case 4:
+        return square_steps(b, has, 4, count, m);
+    default:
+        return steps(b, has, count, m);
     }
-    if (has.n == 2 && has.c == 2) {
-        return steps(b, (struct few_parts){2, 2, has.damped, has.bases, has.vary}, count, m);
-    }
-    return steps(b, has, count, m);
 }
