@@ -1,6 +1,6 @@
 /* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
- * 2/omega_max. Damping acts on the velocity of half a step before. Steps of small systems are taken in runs by few_bodies.c, those
- * of others where contacts share no body by bodies_alone.c. */
+ * 2/omega_max. Damping acts on the velocity of half a step before. Steps of small systems are taken in runs by few_bodies.c,
+ * those of others where contacts share no body by bodies_alone.c. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
