@@ -203,7 +203,7 @@ typedef struct tribo_driver tribo_driver;
  *               Second order; but for scalar contacts that reverse without sticking, and central with damping: there first order.
  *               With planar contacts, and with static limits, by tribo_step_force_mean, else by tribo_step_force. Where no two
  *               contacts share a body, central leaves out bodies that rest among others at rest, and TRIBO_COUNT_RESTED counts
- *               them
+ *               them, but in systems of up to 4 degrees of freedom
  *               "auto": exact where it can do the system, of up to 200 degrees of freedom, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
  *               Planar contacts: event, and not exact. They must have limits that do not change, and those at rest must not be

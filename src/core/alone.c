@@ -7,11 +7,9 @@
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* whose forces stay in the first-level cache */
 
-/* What a call is given, and how the forces f [n] of its chunk k are found: returns whether all contacts slide; or that of the
- * only contact. */
+/* What a call is given, and how the forces f [n] of its chunk k are found: returns whether all contacts slide. */
 struct call {
     int (*find)(const tribo_context *ctx, const struct call *call, size_t k, double *f);
-    double (*find_one)(const tribo_context *ctx, const struct call *call);
     double holds; /* see struct last */
     const double *v, *a;
     double *feq; /* or NULL */
@@ -73,15 +71,23 @@ static void keep_forces(tribo_context *ctx, double holds)
     ctx->last.holds = holds;
 }
 
-/* The only contact, without what many are worth. */
-static void find_one(tribo_context *ctx, const struct call *call, double *f)
+/* What calls have found besides forces. */
+static void finish(tribo_context *ctx)
 {
-    const double force = call->find_one(ctx, call);
+    ctx->last.rank = 0;
+    ctx->last.linearized = 0;
+    ctx->count.skipped += ctx->op->islands;
+}
+
+/* The force of the only contact: calls for one do without what many are worth. */
+static void put_one(tribo_context *ctx, double force, double holds, double *f)
+{
     *ctx->last.f = force;
     if (f) {
         *f = force;
     }
-    keep_forces(ctx, call->holds);
+    keep_forces(ctx, holds);
+    finish(ctx);
 }
 
 /* The forces of a few contacts are kept. */
@@ -113,10 +119,8 @@ static void find_many(tribo_context *ctx, const struct call *call, double *f)
 
 static void find_all(tribo_context *ctx, const struct call *call, double *f)
 {
-    (ctx->n == 1 ? find_one : ctx->n <= FEW ? find_few : find_many)(ctx, call, f);
-    ctx->last.rank = 0;
-    ctx->last.linearized = 0;
-    ctx->count.skipped += ctx->op->islands;
+    (ctx->n <= FEW ? find_few : find_many)(ctx, call, f);
+    finish(ctx);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- balance */
@@ -146,15 +150,16 @@ static int balance_chunk(const tribo_context *ctx, const struct call *call, size
     return ctx->set.law->uses_feq && !reads;
 }
 
-static double balance_one(const tribo_context *ctx, const struct call *call)
+/* f_eq NULL: nobody asks for it. */
+static double balance_one(const tribo_context *ctx, double v, double a, int plain, double *feq)
 {
     const struct contacts *c = &ctx->follow.contacts;
-    const int plain = call->plain && ctx->follow.chunk->plain;
-    const double a = *call->a, inverse = *ctx->op->inverse, feq = plain ? tribo_alone(a, inverse) : tribo_alone_far(a, inverse);
-    if (call->feq) {
-        *call->feq = *c->limit > 0.0 ? feq : 0.0;
+    const double inverse = *ctx->op->inverse;
+    const double balance = plain && ctx->follow.chunk->plain ? tribo_alone(a, inverse) : tribo_alone_far(a, inverse);
+    if (feq) {
+        *feq = *c->limit > 0.0 ? balance : 0.0;
     }
-    return ctx->set.law->force_of_one(c, *call->v, feq);
+    return ctx->set.law->force_of_one(c, v, balance);
 }
 
 int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, double *feq, double *f)
@@ -162,12 +167,17 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
     const int within = v && a ? tribo_motion_within(v, a, TRIBO_PLAIN, ctx->n) : 0, plain = within & 2;
     int status = within & 1 ? TRIBO_OK : tribo_check_finite(ctx, "v", v, ctx->n);
     status = status || plain ? status : tribo_check_finite(ctx, "a", a, ctx->n);
-    if (!status) {
-        const struct call call = {balance_chunk, balance_one, ctx->set.law->holds, v, a, feq, 0.0, plain};
-        find_all(ctx, &call, f);
-        ctx->last.residual = 0.0;
+    if (status) {
+        return status;
     }
-    return status;
+    const double holds = ctx->set.law->holds;
+    if (ctx->n == 1) {
+        put_one(ctx, balance_one(ctx, *v, *a, plain, feq), holds, f);
+    } else {
+        find_all(ctx, &(const struct call){balance_chunk, holds, v, a, feq, 0.0, plain}, f);
+    }
+    ctx->last.residual = 0.0;
+    return TRIBO_OK;
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- step */
@@ -249,16 +259,23 @@ static int step_chunk(const tribo_context *ctx, const struct call *call, size_t 
     return 1;
 }
 
-static double step_one(const tribo_context *ctx, const struct call *call)
+static double step_one(const tribo_context *ctx, double dt, double v)
 {
+    const struct bounds b = {NULL, ctx->follow.contacts.limit};
     double f;
-    tribo_stop_alone(ctx, 0, call->dt, call->v, (struct bounds){NULL, ctx->follow.contacts.limit}, &f);
+    if (ctx->follow.chunk->plain && dt >= LEAST_STEP && tribo_within(v, TRIBO_PLAIN)) {
+        return clamp(tribo_alone(v * quotient(1.0, dt), *ctx->op->inverse), -*b.upper, *b.upper);
+    }
+    stop_far(1, dt, &v, ctx->op->inverse, &b, &f);
     return f;
 }
 
 int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f)
 {
-    const struct call call = {.find = step_chunk, .find_one = step_one, .holds = 1.0, .v = v, .dt = dt};
-    find_all(ctx, &call, f);
+    if (ctx->n == 1) {
+        put_one(ctx, step_one(ctx, dt, *v), 1.0, f);
+    } else {
+        find_all(ctx, &(const struct call){.find = step_chunk, .holds = 1.0, .v = v, .dt = dt}, f);
+    }
     return TRIBO_OK;
 }

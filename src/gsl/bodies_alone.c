@@ -1,4 +1,5 @@
 #include "bodies_alone.h"
+#include "few_bodies.h"
 
 #include <float.h>
 #include <math.h>
@@ -8,9 +9,6 @@
 
 #include "../common/real.h"
 #include "../common/simd.h"
-
-/* So many degrees of freedom are few. */
-enum { FEW = 4 };
 
 /* ----------------------------------------------------------------------------------------------------------------- life */
 
@@ -235,12 +233,6 @@ int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
     return b->fits;
 }
 
-int tribo_bodies_can_run(const struct bodies_alone *b, const tribo_system *sys)
-{
-    return b->fits && sys->ndof <= FEW && b->driven[0] && sys->foreseen && !sys->tables && !sys->base_harmonics &&
-           !tribo_system_limits_vary(sys);
-}
-
 /* ---------------------------------------------------------------------------------------------------------------- steps */
 
 static void find_bases(struct bodies_alone *b, tribo_system *sys, double t, double *velocity)
@@ -394,63 +386,6 @@ static inline double free_one(const struct bodies_alone *b, const tribo_system *
     return sys->damping.rows ? a - tribo_matrix_row_dot(&sys->damping, i, u) : a;
 }
 
-static inline struct moved step_one(const struct bodies_alone *b, const tribo_system *sys, size_t i, double time, double h,
-                                    const double *q, const double *u)
-{
-    const int bases = sys->base_harmonics > 0;
-    return move_one(time, h, b->mass[i], b->brake[i], bases ? b->before[i] : 0.0, bases ? b->after[i] : 0.0, q[i], u[i],
-                    free_one(b, sys, i, q, u));
-}
-
-/* A few degrees of freedom are not worth vectors. to [ndof]; returns what friction does to all of them, twice. */
-static inline double step_rows(const struct bodies_alone *b, const tribo_system *sys, double time, double h, const double *q,
-                               const double *u, struct moved *to, struct fate *fate)
-{
-    double work = 0.0;
-    for (size_t i = 0; i < sys->ndof; i++) {
-        to[i] = step_one(b, sys, i, time, h, q, u);
-        note(fate, u[i], &to[i]);
-        work += to[i].work;
-    }
-    return work;
-}
-
-static inline void put(size_t n, const struct moved *to, double *q, double *u)
-{
-    for (size_t i = 0; i < n; i++) {
-        q[i] = to[i].q;
-        u[i] = to[i].u;
-    }
-}
-
-static int step_few(const struct bodies_alone *b, const tribo_system *sys, const struct body_step *s, double *energy)
-{
-    struct moved to[FEW];
-    struct fate fate = {0, 0};
-    *energy -= 0.5 * step_rows(b, sys, s->to - s->from, s->h, s->q, s->u, to, &fate);
-    put(sys->ndof, to, s->q_to, s->u_to);
-    return told(&fate);
-}
-
-size_t tribo_bodies_run(struct bodies_alone *b, tribo_system *sys, size_t count, const double *t, struct body_run *r)
-{
-    for (size_t s = 0; s < count; s++) {
-        const double h = t[s + 1] - t[s], time = (t[s] + 0.5 * h) - (t[s] - 0.5 * r->last);
-        struct moved to[FEW];
-        struct fate fate = {0, 0};
-        tribo_system_set_foreseen(sys, s);
-        find_loads(b, sys);
-        const double energy = r->energy - 0.5 * step_rows(b, sys, time, h, r->q, r->u, to, &fate);
-        if (fate.grows || !isfinite(energy)) {
-            return s;
-        }
-        put(sys->ndof, to, r->q, r->u);
-        r->energy = energy;
-        r->last = h;
-    }
-    return count;
-}
-
 static void accelerate_few(const struct bodies_alone *b, const tribo_system *sys, const double *q, const double *u, double *a)
 {
     for (size_t i = 0; i < sys->ndof; i++) {
@@ -548,7 +483,7 @@ int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct bo
     size_t left = sys->ndof;
     prepare(b, sys, s);
     for (size_t k = next_awake(b, 0); k < b->blocks; k = next_awake(b, k + 1)) {
-        const int did = sys->ndof <= FEW ? step_few(b, sys, s, energy) : step_block(b, sys, s, k, energy);
+        const int did = step_block(b, sys, s, k, energy);
         all |= did;
         left -= tribo_bodies_of_block(sys, k);
         wake(b, k, did & STIRS);

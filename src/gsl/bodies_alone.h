@@ -22,23 +22,23 @@ struct body_rows {
 };
 
 struct bodies_alone {
-    size_t *body;                   /* [ncontact] degree of freedom; NULL: contacts share bodies */
-    double *turn;                   /* [ncontact] J_i there */
-    double *mass;                   /* [ndof] times how often the energy counts the contact; 0 without contact */
-    double *brake;                  /* [ndof] by what the contact can slow it down in a unit of time: |B| limit */
-    struct body_rows *rows;         /* [blocks] where these two are read */
-    double *before, *after;         /* [ndof] velocities of the bases at both ends of a step, 0 where there are none */
-    double *load;                   /* [ndof] accelerations */
-    double *room;                   /* [ncontact] */
-    size_t blocks, skipped;         /* degrees of freedom left out, step by step, so far */
-    size_t *first, *pulled;         /* block k pulls at blocks pulled[first[k]] to pulled[first[k + 1] - 1] */
-    unsigned char *driven;          /* [blocks] load, base or limits depend on time: never at rest */
-    unsigned char *loaded;          /* [blocks] there is a load */
-    unsigned char *awake, *wakes;   /* [blocks] 1: this step still has to look at it, the next one looks at it; else 0 */
-    size_t *still, stills;          /* those that this step has looked at, and that have not moved */
-    int goes_on;                    /* after is what the next step begins with */
-    int fits;                       /* the settings are such that steps can be taken */
-    size_t revision;                /* of the system */
+    size_t *body;                 /* [ncontact] degree of freedom; NULL: contacts share bodies */
+    double *turn;                 /* [ncontact] J_i there */
+    double *mass;                 /* [ndof] times how often the energy counts the contact; 0 without contact */
+    double *brake;                /* [ndof] by what the contact can slow it down in a unit of time: |B| limit */
+    struct body_rows *rows;       /* [blocks] where these two are read */
+    double *before, *after;       /* [ndof] velocities of the bases at both ends of a step, 0 where there are none */
+    double *load;                 /* [ndof] accelerations */
+    double *room;                 /* [ncontact] */
+    size_t blocks, skipped;       /* degrees of freedom left out, step by step, so far */
+    size_t *first, *pulled;       /* block k pulls at blocks pulled[first[k]] to pulled[first[k + 1] - 1] */
+    unsigned char *driven;        /* [blocks] load, base or limits depend on time: never at rest */
+    unsigned char *loaded;        /* [blocks] there is a load */
+    unsigned char *awake, *wakes; /* [blocks] 1: this step still has to look at it, the next one looks at it; else 0 */
+    size_t *still, stills;        /* those that this step has looked at, and that have not moved */
+    int goes_on;                  /* after is what the next step begins with */
+    int fits;                     /* the settings are such that steps can be taken */
+    size_t revision;              /* of the system */
 };
 
 /* A step: velocities u at the time from become those at to, by the forces at t and q, and q moves on with them for a time
@@ -70,18 +70,6 @@ void tribo_bodies_set_time(struct bodies_alone *b, tribo_system *sys, double t);
  * the system. */
 void tribo_bodies_accelerate(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
                              double *a);
-
-/* A motion as steps leave it: places and velocities [ndof], what friction has dissipated, and the length of the last step. */
-struct body_run {
-    double *q, *u, energy, last;
-};
-
-/* Whether many steps can be taken at once: of a few degrees of freedom that nothing but harmonic loads drives. */
-int tribo_bodies_can_run(const struct bodies_alone *b, const tribo_system *sys);
-
-/* Steps between the times t [count + 1], of which all but the last are those that the system foresees. Returns how many were
- * taken: after the next one the motion would no longer be finite, if that is not all. */
-size_t tribo_bodies_run(struct bodies_alone *b, tribo_system *sys, size_t count, const double *t, struct body_run *r);
 
 /* Adds what friction dissipates to the energy. 0 if the motion is no longer finite, else 1. */
 int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct body_step *s, double *energy);

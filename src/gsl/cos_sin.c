@@ -57,10 +57,19 @@ TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restric
     }
 }
 
+TRIBO_SIMD static int any_far(double omega, size_t n, const double *t)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t k = 0; k < n; k++) {
+        any |= fabs(omega * t[k]) <= COS_SIN_NEAR ? 0 : -1;
+    }
+    return any != 0;
+}
+
 /* How many of the times, from the first on, are near. */
 static size_t near_run(double omega, size_t n, const double *t)
 {
-    size_t k = 0;
+    size_t k = any_far(omega, n, t) ? 0 : n;
     while (k < n && fabs(omega * t[k]) <= COS_SIN_NEAR) {
         k++;
     }

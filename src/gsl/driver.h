@@ -73,8 +73,8 @@ int tribo_driver_show(tribo_driver *drv, double t, const double *y, int event);
 typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
 
 /* Steps between the times t [count + 1] at once, from the state y at t[0] to that which follows, in its place. Returns how many
- * were taken, 0 if that is not the way; and a status if the next one fails. */
-typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y, int *status);
+ * were taken: the next one is for tribo_fixed_step. */
+typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
 
 /* A method's step; a run of steps where nobody watches, or NULL; and the times that a step asks the system for: at so many
  * parts of it. */

@@ -11,39 +11,40 @@ struct march {
     double begin, h, steps, t1;
 };
 
-/* Where the k-th step ends. */
-static double end_of(const struct march *m, double k)
-{
-    return k < m->steps ? m->begin + k * m->h : m->t1;
-}
-
 /* So many steps are looked ahead. */
 enum { AHEAD = FORESIGHT / 2 };
 
-/* t [AHEAD + 1] = when the k-th step begins, it ends, and the next ones end; the system foresees them. */
-static void look_ahead(tribo_driver *drv, const struct march *m, double k, const struct fixed_method *method, double *t)
+/* t [count + 1] = when the k-th step begins, it ends, and the next ones end. */
+static void find_times(struct march m, double begin, double k, size_t count, double *t)
 {
-    double times[FORESIGHT];
-    size_t count = 0;
-    t[0] = drv->time;
-    for (size_t s = 0; s < AHEAD; s++) {
-        t[s + 1] = end_of(m, k + (double)s);
-        for (size_t i = 0; i < method->times; i++) {
-            times[count++] = t[s] + method->part[i] * (t[s + 1] - t[s]);
-        }
-    }
-    if (drv->sys->harmonics > drv->sys->base_harmonics + drv->sys->limit_harmonics) {
-        tribo_system_foresee(drv->sys, count, times);
+    t[0] = begin;
+    for (size_t s = 0; s < count; s++) {
+        const double number = k + (double)s;
+        t[s + 1] = number < m.steps ? m.begin + number * m.h : m.t1;
     }
 }
 
-/* Steps from the k-th on until loads have to be looked up again: from and to take each other's place after each. Returns how
- * many. */
-static double take_steps(tribo_driver *drv, double left, const double *t, double **from, double **to,
-                         const struct fixed_method *method, int *status)
+/* The system foresees what steps between these times ask it for. */
+static void foresee(tribo_system *sys, const struct fixed_method *method, size_t count, const double *t)
 {
-    const size_t count = left < AHEAD ? (size_t)left : AHEAD;
-    size_t s = method->run && !drv->seen ? method->run(drv, count, t, *from, status) : 0;
+    double times[FORESIGHT];
+    const size_t each = method->times;
+    for (size_t i = 0; i < each; i++) {
+        const double part = method->part[i];
+        for (size_t s = 0; s < count; s++) {
+            times[s * each + i] = t[s] + part * (t[s + 1] - t[s]);
+        }
+    }
+    if (sys->harmonics > sys->base_harmonics + sys->limit_harmonics) {
+        tribo_system_foresee(sys, each * count, times);
+    }
+}
+
+/* Steps between these times until loads have to be looked up again: from and to take each other's place after each. */
+static void take_steps(tribo_driver *drv, size_t count, const double *t, double **from, double **to,
+                       const struct fixed_method *method, int *status)
+{
+    size_t s = method->run && !drv->seen ? method->run(drv, count, t, *from) : 0;
     drv->time = t[s];
     drv->steps += s;
     for (; s < count && !*status; s++) {
@@ -57,7 +58,6 @@ static double take_steps(tribo_driver *drv, double left, const double *t, double
             *status = drv->seen ? tribo_driver_show(drv, drv->time, *from, 0) : TRIBO_OK;
         }
     }
-    return (double)count;
 }
 
 /* All steps: from and to are the last good state and room for the next in turn. Returns the former. */
@@ -65,10 +65,13 @@ static double *march(tribo_driver *drv, const struct march *m, double *from, dou
                      int *status)
 {
     *status = TRIBO_OK;
-    for (double k = 1.0; k <= m->steps && !*status;) {
+    for (double k = 1.0; k <= m->steps && !*status; k += AHEAD) {
         double t[AHEAD + 1];
-        look_ahead(drv, m, k, method, t);
-        k += take_steps(drv, m->steps - k + 1.0, t, &from, &to, method, status);
+        const double left = m->steps - k + 1.0;
+        const size_t ahead = left < AHEAD ? (size_t)left + 1 : AHEAD; /* loads at the end are asked for, too */
+        find_times(*m, drv->time, k, ahead, t);
+        foresee(drv->sys, method, ahead, t);
+        take_steps(drv, left < AHEAD ? (size_t)left : AHEAD, t, &from, &to, method, status);
     }
     return from;
 }

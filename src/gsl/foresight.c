@@ -11,20 +11,25 @@ static int is_foreseen(const tribo_system *sys, const struct harmonic *h)
     return sys->foreseen && h->drives == DRIVES_LOAD;
 }
 
-/* Where time t stands among those foreseen, which are asked for in their order, if at all; FORESIGHT if it is none of them. */
-static size_t place_of(const struct harmonic *h, const tribo_system *sys, double t)
+/* Looked for from place k on. */
+static size_t place_from(const tribo_system *sys, size_t k, double t)
 {
-    size_t k = h->next;
     while (k < sys->foreseen && sys->foresight[k] < t) {
         k++;
     }
     return k < sys->foreseen && sys->foresight[k] == t ? k : FORESIGHT;
 }
 
+size_t tribo_system_place(const tribo_system *sys, double t)
+{
+    return place_from(sys, 0, t);
+}
+
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
 {
     const double t = sys->time;
-    const size_t k = is_foreseen(sys, h) ? place_of(h, sys, t) : FORESIGHT;
+    /* times are asked for in their order, if at all */
+    const size_t k = is_foreseen(sys, h) ? place_from(sys, h->next, t) : FORESIGHT;
     h->time = t;
     if (k < FORESIGHT) {
         h->next = k;

@@ -1,18 +1,21 @@
 /* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
- * 2/omega_max. Damping acts on the velocity of half a step before. Where contacts share no body, bodies_alone.c takes the
- * steps. */
+ * 2/omega_max. Damping acts on the velocity of half a step before. Steps of small systems are taken in runs by few_bodies.c,
+ * those of others where contacts share no body by bodies_alone.c. */
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "bodies_alone.h"
+#include "few_bodies.h"
 #include "spectrum.h"
 #include "step_form.h"
 #include "../common/real.h"
 
 struct central {
     struct step_form common;
+    struct few_bodies few;
     struct bodies_alone alone;
     double *next;        /* [ndof] room for u of the next step */
     double energy, last; /* dissipated up to u; the step before, 0: u is the velocity at t */
@@ -35,6 +38,7 @@ static int create(tribo_driver *drv)
     struct central *x = calloc(1, sizeof *x);
     drv->own = x;
     if (x) {
+        x->few.revision = SIZE_MAX;
         x->next = calloc(drv->sys->ndof, sizeof *x->next);
     }
     if (!x || !x->next || !tribo_step_form_create(&x->common, drv->sys) || !tribo_bodies_create(&x->alone, drv->sys)) {
@@ -140,42 +144,72 @@ static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
     return TRIBO_OK;
 }
 
-static int central_step(tribo_driver *drv, double t, double next, const double *from, double *y)
+/* As many of the steps between the times t [count + 1] as can be taken at once, of the motion in y and u. */
+static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    tribo_system *sys = drv->sys;
+    if (!x->few.fits) {
+        return 0;
+    }
+    if (!s->goes_on) {
+        tribo_step_form_find_base(s, sys, t[0] - 0.5 * x->last);
+        tribo_step_form_relative(s, sys, s->u, s->end);
+    }
+    struct few_motion m = {y, s->u, s->end, x->energy, x->last};
+    const size_t taken = tribo_few_run(&x->few, sys, count, t, &m);
+    s->goes_on = 1;
+    x->last = m.last;
+    y[2 * sys->ndof] = x->energy = m.energy;
+    sys->evaluations += taken;
+    return taken;
+}
+
+static void take_settings(struct central *x, tribo_system *sys)
+{
+    if (!tribo_few_take(&x->few, sys)) {
+        tribo_bodies_begin(&x->alone, sys);
+    }
+}
+
+/* A step of others than central_run. */
+static int step_many(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const double h = next - t;
     const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, h, from, s->u, y, x->next};
-    /* nobody but the observer changes anything meanwhile */
-    if (drv->seen && x->alone.revision != tribo_system_revision(drv->sys)) {
-        tribo_bodies_begin(&x->alone, drv->sys);
+    const int status = x->few.fits || !x->alone.fits ? step_all(drv, &k, y) : step_alone(drv, &k, y);
+    if (!status) {
+        x->next = s->u;
+        s->u = k.u_to;
+        x->last = h;
     }
-    const int status = x->alone.fits ? step_alone(drv, &k, y) : step_all(drv, &k, y);
-    if (status) {
-        return status;
-    }
-    x->next = s->u;
-    s->u = k.u_to;
-    x->last = h;
-    return drv->seen ? synchronise(drv, next, y) : TRIBO_OK;
+    return status;
 }
 
-/* As many of the steps between the times t [count + 1] as can be taken at once. */
-static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y, int *status)
+/* A run of one. */
+static size_t step_few(tribo_driver *drv, const double *t, const double *from, double *y)
 {
-    struct central *x = drv->own;
-    tribo_system *sys = drv->sys;
-    if (!tribo_bodies_can_run(&x->alone, sys)) {
+    const struct central *x = drv->own;
+    if (!x->few.fits) {
         return 0;
     }
-    struct body_run run = {y, x->common.u, x->energy, x->last};
-    const size_t taken = tribo_bodies_run(&x->alone, sys, count, t, &run);
-    x->common.goes_on = 0;
-    x->last = run.last;
-    y[2 * sys->ndof] = x->energy = run.energy;
-    sys->evaluations += taken;
-    *status = taken < count ? tribo_step_form_grew(drv, t[taken]) : TRIBO_OK;
-    return taken;
+    memcpy(y, from, drv->sys->ndof * sizeof *y);
+    return central_run(drv, 1, t, y);
+}
+
+static int central_step(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    struct central *x = drv->own;
+    const double times[] = {t, next};
+    /* nobody but the observer changes anything meanwhile */
+    if (drv->seen && x->few.revision != tribo_system_revision(drv->sys)) {
+        take_settings(x, drv->sys);
+    }
+    const int status = step_few(drv, times, from, y) ? TRIBO_OK : step_many(drv, t, next, from, y);
+    return status || !drv->seen ? status : synchronise(drv, next, y);
 }
 
 /* Refuses steps with which the motion would grow without bound: steps of h are stable while h^2 AK + 2 h AC has no eigenvalue of
@@ -223,7 +257,7 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
         x->last = 0.0;
         s->goes_on = 0;
     }
-    tribo_bodies_begin(&x->alone, drv->sys);
+    take_settings(x, drv->sys);
     tribo_step_form_start(s, drv->sys);
     status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
     if (status && *t > begin && !drv->seen) {

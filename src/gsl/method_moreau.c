@@ -125,7 +125,7 @@ static size_t planar_of(const tribo_context *contacts)
 /* Whether the system's contacts may have become planar, or others than before. */
 static int planar_changed(const struct moreau *m, const tribo_system *sys)
 {
-    return (planar_of(sys->contacts) || planar_of(m->contacts)) && m->settings != tribo_revision(sys->contacts);
+    return m->settings != tribo_revision(sys->contacts) && (planar_of(sys->contacts) || planar_of(m->contacts));
 }
 
 /* Contacts of its own, planar where the system's are. */

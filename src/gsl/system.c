@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -175,6 +176,19 @@ static size_t follows(const tribo_system *sys, size_t i, size_t first)
     return yield_of(sys, dof[1], i) >= 1e-3 * yield_of(sys, dof[0], i);
 }
 
+/* Whether two entries of a row of J, of which this is the first, take a difference, or a sum. */
+static inline int are_alike(const struct matrix *j, size_t first)
+{
+    return fabs(j->val[first]) == fabs(j->val[first + 1]);
+}
+
+size_t tribo_system_follower(const tribo_system *sys, size_t i)
+{
+    const struct matrix *j = &sys->direction;
+    const size_t first = j->first[i], count = j->first[i + 1] - first;
+    return count == 1 ? j->col[first] : count == 2 && are_alike(j, first) ? j->col[first + follows(sys, i, first)] : SIZE_MAX;
+}
+
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
@@ -182,7 +196,7 @@ void tribo_system_snap(const tribo_system *sys, const signed char *loose, const 
         const size_t first = j->first[i], count = j->first[i + 1] - first;
         if (!loose[i] && count == 1) {
             x[j->col[first]] = base[i] / j->val[first];
-        } else if (!loose[i] && count == 2 && fabs(j->val[first]) == fabs(j->val[first + 1])) {
+        } else if (!loose[i] && count == 2 && are_alike(j, first)) {
             const size_t to = first + follows(sys, i, first), from = 2 * first + 1 - to;
             x[j->col[to]] = (base[i] - j->val[from] * x[j->col[from]]) / j->val[to];
         }

@@ -13,7 +13,7 @@
 enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
 
 /* So many times can be foreseen. */
-enum { FORESIGHT = 16 };
+enum { FORESIGHT = 32 };
 
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
 struct harmonic {
@@ -117,17 +117,8 @@ void tribo_system_foresee(tribo_system *sys, size_t count, const double *t);
 /* What is set, or foreseen, is of loads or times that are others now. */
 void tribo_system_forget_time(tribo_system *sys);
 
-/* Prepares the loads for the k-th of the times foreseen, where nothing but harmonic loads changes with time. */
-static inline void tribo_system_set_foreseen(tribo_system *sys, size_t k)
-{
-    sys->time = sys->foresight[k];
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        struct harmonic *h = &sys->harmonic[s];
-        h->time = sys->time;
-        h->cos_t = h->cos_ahead[k];
-        h->sin_t = h->sin_ahead[k];
-    }
-}
+/* Where time t stands among those foreseen; FORESIGHT if it is none of them. */
+size_t tribo_system_place(const tribo_system *sys, double t);
 
 /* Harmonic k becomes that of the time set, if it is not: whoever reads cos_t and sin_t asks for it first. */
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
@@ -187,8 +178,11 @@ double tribo_system_fastest(const tribo_system *sys);
 /* R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
-/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0) and have one degree of freedom, or
- * the difference of two. */
+/* The degree of freedom that contact i at rest takes along: its only one, or one of two of which J takes the difference;
+ * SIZE_MAX: neither is so. */
+size_t tribo_system_follower(const tribo_system *sys, size_t i);
+
+/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), by what follows them. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
 /* q'' without friction, [ndof]. */
