@@ -11,9 +11,15 @@
 /* So few rows are multiplied with sooner entry by entry. */
 #define FEW_ROWS 4
 
+/* y + factor u x; minus, which is a constant, stands for a factor of -1, and spares a change of sign. */
+static inline double add_product_to(double y, int minus, double factor, double u, double x)
+{
+    return minus ? y - u * x : y + factor * u * x;
+}
+
 /* y [rows] = z + factor times rows `begin` and following of A x, all of one block and with all diagonals inside the matrix; z
  * NULL: y. Three diagonals at a time, so that y is passed over as seldom as can be, but in the order of one after the other. */
-static inline void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
+static inline void add_diagonals(const struct matrix *a, size_t begin, size_t rows, int minus, double factor, const double *x,
                                  const double *restrict z, double *restrict y)
 {
     const double *restrict val = a->fast + a->block[begin / MATRIX_BLOCK] + begin % MATRIX_BLOCK, *restrict at = x + begin;
@@ -22,19 +28,21 @@ static inline void add_diagonals(const struct matrix *a, size_t begin, size_t ro
         const double *restrict u = val + d * MATRIX_BLOCK, *restrict v = u + MATRIX_BLOCK, *restrict w = v + MATRIX_BLOCK;
         const double *restrict p = at + a->offset[d], *restrict q = at + a->offset[d + 1], *restrict r = at + a->offset[d + 2];
         for (size_t i = 0; z && d == 0 && i < rows; i++) {
-            y[i] = ((z[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
+            const double sum = add_product_to(add_product_to(z[i], minus, factor, u[i], p[i]), minus, factor, v[i], q[i]);
+            y[i] = add_product_to(sum, minus, factor, w[i], r[i]);
         }
         for (size_t i = 0; !(z && d == 0) && i < rows; i++) {
-            y[i] = ((y[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
+            const double sum = add_product_to(add_product_to(y[i], minus, factor, u[i], p[i]), minus, factor, v[i], q[i]);
+            y[i] = add_product_to(sum, minus, factor, w[i], r[i]);
         }
     }
     for (; d < a->diagonals; d++) {
         const double *restrict u = val + d * MATRIX_BLOCK, *restrict p = at + a->offset[d];
         for (size_t i = 0; z && d == 0 && i < rows; i++) {
-            y[i] = z[i] + factor * u[i] * p[i];
+            y[i] = add_product_to(z[i], minus, factor, u[i], p[i]);
         }
         for (size_t i = 0; !(z && d == 0) && i < rows; i++) {
-            y[i] += factor * u[i] * p[i];
+            y[i] = add_product_to(y[i], minus, factor, u[i], p[i]);
         }
     }
 }
@@ -44,18 +52,18 @@ TRIBO_SIMD static void add_inner_rows(const struct matrix *a, size_t begin, size
                                       double *restrict y)
 {
     if (factor == -1.0) {
-        add_diagonals(a, begin, rows, -1.0, x, NULL, y);
+        add_diagonals(a, begin, rows, 1, -1.0, x, NULL, y);
     } else if (factor == 1.0) {
-        add_diagonals(a, begin, rows, 1.0, x, NULL, y);
+        add_diagonals(a, begin, rows, 0, 1.0, x, NULL, y);
     } else {
-        add_diagonals(a, begin, rows, factor, x, NULL, y);
+        add_diagonals(a, begin, rows, 0, factor, x, NULL, y);
     }
 }
 
 TRIBO_SIMD static void subtract_inner_rows(const struct matrix *a, size_t begin, size_t rows, const double *x,
                                            const double *restrict z, double *restrict y)
 {
-    add_diagonals(a, begin, rows, -1.0, x, z, y);
+    add_diagonals(a, begin, rows, 1, -1.0, x, z, y);
 }
 
 /* The first row, and the one behind the last, all of whose diagonals lie inside the matrix. */

@@ -1,4 +1,5 @@
 #include "rates_alone.h"
+#include "linalg.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -163,57 +164,55 @@ void tribo_rates_set_time(struct rates_alone *r, tribo_system *sys, size_t k, do
     tribo_bodies_set_time(&r->bodies, sys, t);
 }
 
-/* What a contact takes from the acceleration a of its body at velocity u; grip is a constant. */
-static inline double braked(enum grip grip, double a, double u, double brake, double band, double rate)
+/* a = accelerations of bodies at velocities u, from those without friction, with which each contact agrees up to what it can hold;
+ * heat = what becomes of the power of friction. */
+TRIBO_SIMD static void relax(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
+                             const double *restrict rate, const double *restrict u, double *restrict a, double *restrict heat)
 {
-    const double slid = copysign(brake, u), held = clamp(a, -brake, brake);
-    if (grip == HOLDS) {
-        return fabs(u) > band ? slid : held;
-    }
-    return clamp((grip == CREEPS ? 0.0 : held) + rate * clamp(u, -band, band), -brake, brake);
-}
-
-/* Takes it from all; grip is a constant. Returns what of it becomes heat. */
-static inline double brake_rows(enum grip grip, size_t n, const double *restrict mass, const double *restrict brake,
-                                const double *restrict band, const double *restrict rate, const double *restrict u,
-                                double *restrict a)
-{
-    enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
-    double part[LANES] = {0.0}, sum = 0.0;
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = i; k < i + LANES; k++) {
-            const double taken = braked(grip, a[k], u[k], brake[k], band[k], rate[k]);
-            a[k] -= taken;
-            part[k - i] += mass[k] * taken * u[k];
-        }
-    }
-    for (; i < n; i++) {
-        const double taken = braked(grip, a[i], u[i], brake[i], band[i], rate[i]);
+    for (size_t i = 0; i < n; i++) {
+        const double held = clamp(a[i], -brake[i], brake[i]), slowed = rate[i] * clamp(u[i], -band[i], band[i]);
+        const double taken = clamp(held + slowed, -brake[i], brake[i]);
         a[i] -= taken;
-        sum += mass[i] * taken * u[i];
+        heat[i] = mass[i] * taken * u[i];
     }
-    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
 }
 
-TRIBO_SIMD static double brake_all(enum grip grip, size_t n, const double *restrict mass, const double *restrict brake,
-                                   const double *restrict band, const double *restrict rate, const double *restrict u,
-                                   double *restrict a)
+TRIBO_SIMD static void creep(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
+                             const double *restrict rate, const double *restrict u, double *restrict a, double *restrict heat)
 {
-    if (grip == RELAXES) {
-        return brake_rows(RELAXES, n, mass, brake, band, rate, u, a);
+    for (size_t i = 0; i < n; i++) {
+        const double taken = clamp(rate[i] * clamp(u[i], -band[i], band[i]), -brake[i], brake[i]);
+        a[i] -= taken;
+        heat[i] = mass[i] * taken * u[i];
     }
-    if (grip == CREEPS) {
-        return brake_rows(CREEPS, n, mass, brake, band, rate, u, a);
+}
+
+TRIBO_SIMD static void hold(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
+                            const double *restrict u, double *restrict a, double *restrict heat)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double held = clamp(a[i], -brake[i], brake[i]), slid = copysign(brake[i], u[i]);
+        const double taken = fabs(u[i]) > band[i] ? slid : held;
+        a[i] -= taken;
+        heat[i] = mass[i] * taken * u[i];
     }
-    return brake_rows(HOLDS, n, mass, brake, band, rate, u, a);
 }
 
 double tribo_rates_block(struct rates_alone *r, const tribo_system *sys, size_t time, size_t k, const double *q, const double *u,
                          double *a)
 {
     const struct rates_block *b = &r->block[k];
+    const size_t n = tribo_bodies_of_block(sys, k);
+    const double *v = u + k * MATRIX_BLOCK;
+    double heat[MATRIX_BLOCK];
     r->bodies.load = r->load[time];
     tribo_bodies_accelerate(&r->bodies, sys, k, q, u, a);
-    return brake_all(r->grip, tribo_bodies_of_block(sys, k), b->mass, b->brake, b->band, b->rate, u + k * MATRIX_BLOCK, a);
+    if (r->grip == RELAXES) {
+        relax(n, b->mass, b->brake, b->band, b->rate, v, a, heat);
+    } else if (r->grip == CREEPS) {
+        creep(n, b->mass, b->brake, b->band, b->rate, v, a, heat);
+    } else {
+        hold(n, b->mass, b->brake, b->band, v, a, heat);
+    }
+    return tribo_sum(n, heat);
 }
