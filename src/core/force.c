@@ -150,6 +150,19 @@ static void evaluate(const tribo_context *ctx, int plain, const double *v, const
     }
 }
 
+/* Forces where laws take f_eq as it is. Chunks that are alike are one loop: memory is far away where a loop begins. */
+static void evaluate_plain(const tribo_context *ctx, const double *v, const double *feq, double *f)
+{
+    for (size_t i = 0, n; i < ctx->n; i += n) {
+        const struct contacts c = tribo_chunk_contacts(ctx, i);
+        n = tribo_chunk_size(ctx, i);
+        while (i + n < ctx->n && ctx->follow.chunk[(i + n) / TRIBO_CHUNK].alike == EVEN_AS_BEFORE) {
+            n += tribo_chunk_size(ctx, i + n);
+        }
+        ctx->set.law->force(&c, n, v + i, legible_feq(ctx, 1, i, n, v, feq, NULL), f + i);
+    }
+}
+
 int tribo_force(const tribo_context *ctx, const double *v, const double *feq, double *f)
 {
     if (!ctx) {
@@ -167,7 +180,11 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
         *f = ctx->set.law->force_of_one(&ctx->follow.contacts, *v, ctx->set.law->uses_feq ? *feq : 0.0);
         return TRIBO_OK;
     }
-    evaluate(ctx, plain, v, feq, &(struct outputs){f, {NULL, NULL, NULL}, 0});
+    if (plain && !ctx->set.breaking) {
+        evaluate_plain(ctx, v, feq, f);
+    } else {
+        evaluate(ctx, plain, v, feq, &(struct outputs){f, {NULL, NULL, NULL}, 0});
+    }
     return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 

@@ -56,6 +56,16 @@ static int even(size_t n, const double *x)
     return !differ;
 }
 
+/* Of the n contacts of the chunk that begins with i. */
+static int evenness(const tribo_context *ctx, size_t i, size_t n)
+{
+    const double *width = ctx->set.width + i, *rate = ctx->set.rate + i;
+    if (!even(n, width) || !even(n, rate)) {
+        return UNEVEN;
+    }
+    return i && ctx->follow.chunk[i / TRIBO_CHUNK - 1].even && width[-1] == *width && rate[-1] == *rate ? EVEN_AS_BEFORE : EVEN;
+}
+
 static void find_widths(tribo_context *ctx)
 {
     const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
@@ -63,7 +73,7 @@ static void find_widths(tribo_context *ctx)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
-        ctx->follow.chunk[k].even = even(n, ctx->set.width + i) && even(n, ctx->set.rate + i);
+        ctx->follow.chunk[k].even = evenness(ctx, i, n);
         ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
     }
 }
@@ -104,7 +114,7 @@ static void cut_far(tribo_context *ctx)
         ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->follow.chunk[k].alike = 0;
+        ctx->follow.chunk[k].alike = UNEVEN;
     }
     c->bound = ctx->follow.cut_limit;
     *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
@@ -117,6 +127,16 @@ static double band_of(const struct chunk *chunk, int follows)
     }
     const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
     return widest < TRIBO_FAR ? widest : DBL_MAX;
+}
+
+/* Of chunk k, the one before being known. */
+static int likeness(const tribo_context *ctx, size_t k)
+{
+    const struct chunk *chunk = &ctx->follow.chunk[k];
+    if (ctx->set.breaking || !chunk->even || chunk->least != chunk->largest || chunk->largest == 0.0) {
+        return UNEVEN;
+    }
+    return chunk->even == EVEN_AS_BEFORE && chunk[-1].alike && chunk[-1].largest == chunk->largest ? EVEN_AS_BEFORE : EVEN;
 }
 
 void tribo_refresh_limits(tribo_context *ctx)
@@ -132,7 +152,7 @@ void tribo_refresh_limits(tribo_context *ctx)
         struct chunk *chunk = &ctx->follow.chunk[k];
         ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
         chunk->band = band_of(chunk, follows);
-        chunk->alike = !ctx->set.breaking && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
+        chunk->alike = likeness(ctx, k);
     }
     if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);
