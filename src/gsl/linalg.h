@@ -8,13 +8,13 @@
 /* x'y; the largest |x_i|; to += factor x; 1 if no x is an infinity or a NaN. All [n]. */
 double tribo_dot(const double *x, const double *y, size_t n);
 double tribo_largest(const double *x, size_t n);
-
-/* The sum of x [n], in eight parts that are added at the end. */
-double tribo_sum(size_t n, const double *x);
 void tribo_add(double *to, double factor, const double *x, size_t n);
 int tribo_dense_finite(const double *x, size_t n);
 
-/* The same, without a call where there are few. */
+/* The sum of x [n], in eight parts that are added at the end. */
+double tribo_sum(size_t n, const double *x);
+
+/* tribo_dense_finite without a call where there are few. */
 static inline int tribo_few_finite(const double *x, size_t n)
 {
     double sum = 0.0;

@@ -75,12 +75,10 @@ static struct rates_block own_block(const struct rates_alone *r, const tribo_sys
 }
 
 /* 1, or 0 if the law is none of these. */
-static int take_law(struct rates_alone *r, const tribo_system *sys)
+static int find_grip(int law, enum grip *grip)
 {
-    int law;
-    tribo_get_law(sys->contacts, &law);
-    r->grip = law == TRIBO_QUINN ? RELAXES : law == TRIBO_VELOCITY_LIMITED ? CREEPS : HOLDS;
-    return law == TRIBO_QUINN || law == TRIBO_VELOCITY_LIMITED || law == TRIBO_KARNOPP || law == TRIBO_COULOMB;
+    *grip = law == TRIBO_QUINN ? RELAXES : law == TRIBO_VELOCITY_LIMITED ? CREEPS : HOLDS;
+    return *grip != HOLDS || law == TRIBO_KARNOPP || law == TRIBO_COULOMB;
 }
 
 /* The part of |B| limit by which the law brakes at the edge of the band, rather more than less. */
@@ -96,13 +94,12 @@ static double rate_of(double part, double brake, double band)
 #define MOST 1e100
 
 /* What all degrees of freedom have by their contacts: 1, or 0 if that is beyond what can be reckoned with. */
-static int take_contacts(struct rates_alone *r, tribo_system *sys)
+static int take_contacts(struct rates_alone *r, tribo_system *sys, int law)
 {
     const struct bodies_alone *b = &r->bodies;
     const struct rates_block all = own_block(r, sys, 0);
     const double part = edge[r->grip];
-    int law, fits = 1;
-    tribo_get_law(sys->contacts, &law);
+    int fits = 1;
     for (size_t d = 0; d < sys->ndof; d++) {
         all.mass[d] = b->mass[d];
         all.brake[d] = all.rate[d] = 0.0;
@@ -142,9 +139,11 @@ static void share_blocks(struct rates_alone *r, const tribo_system *sys)
 
 void tribo_rates_prepare(struct rates_alone *r, tribo_system *sys)
 {
+    int law;
+    tribo_get_law(sys->contacts, &law);
     r->revision = tribo_system_revision(sys);
-    r->fits = tribo_bodies_begin(&r->bodies, sys) && take_law(r, sys) && !sys->base_harmonics && !tribo_system_limits_vary(sys) &&
-              take_contacts(r, sys);
+    r->fits = tribo_bodies_begin(&r->bodies, sys) && find_grip(law, &r->grip) && !sys->base_harmonics &&
+              !tribo_system_limits_vary(sys) && take_contacts(r, sys, law);
     if (r->fits) {
         memset(r->load[0], 0, RATES_TIMES * stride_of(sys) * sizeof *r->load[0]);
         share_blocks(r, sys);
@@ -164,8 +163,8 @@ void tribo_rates_set_time(struct rates_alone *r, tribo_system *sys, size_t k, do
     tribo_bodies_set_time(&r->bodies, sys, t);
 }
 
-/* a = accelerations of bodies at velocities u, from those without friction, with which each contact agrees up to what it can hold;
- * heat = what becomes of the power of friction. */
+/* By the law of each grip: takes from the accelerations a of bodies, at velocities u, what their contacts hold against; heat is
+ * what each dissipates. */
 TRIBO_SIMD static void relax(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
                              const double *restrict rate, const double *restrict u, double *restrict a, double *restrict heat)
 {

@@ -2,8 +2,8 @@
  * error, which nobody asks for here, and takes twelve evaluations instead of four.
  *
  * From one evaluation follows the state of the next, or of the end, place by place. Where contacts share no body all is done block
- * by block, and an evaluation follows the one before as closely as can be: as soon as this has left behind what pulls at a block.
- * So a step passes once through memory, and what is written is read again while it is near. */
+ * by block, and an evaluation follows the one before as closely as can be, as soon as this has left behind what pulls at a block:
+ * what is written is read again while it is near. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -17,8 +17,8 @@ enum { STAGES = 4 };
 struct rk4 {
     struct rates_alone alone;
     double *memory;
-    double *k;                 /* [ndof] or a block's: accelerations; of the slope of q, which is the velocity, there is no copy */
-    double *sum;               /* [ndof] weighted sum of accelerations */
+    double *k;   /* [ndof] or a block's: accelerations; of the slope of q, which is the velocity, there is no copy */
+    double *sum; /* [ndof] weighted sum of accelerations */
     double *stage[STAGES - 1]; /* [2 ndof] states of the second evaluation and the following */
     double power[STAGES];      /* what friction dissipates */
     double time;               /* of the last evaluation */
@@ -126,7 +126,7 @@ static int evaluate_blocks(struct rk4 *r, tribo_system *sys, const struct evalua
     int finite = 1;
     for (size_t s = 0; s < STAGES; s++) {
         r->power[s] = 0.0;
-        if (s != 2) {
+        if (s == 0 || all[s].time != all[s - 1].time) {
             tribo_rates_set_time(&r->alone, sys, all[s].time, all[s].t);
         }
     }
@@ -140,7 +140,7 @@ static int evaluate_blocks(struct rk4 *r, tribo_system *sys, const struct evalua
     return finite;
 }
 
-/* Each of all degrees of freedom at once; a status. */
+/* Each evaluation for all degrees of freedom at once; a status. */
 static int evaluate_all(struct rk4 *r, tribo_system *sys, const struct evaluation *all)
 {
     int status = TRIBO_OK;
@@ -175,16 +175,15 @@ static int evaluate(tribo_driver *drv, const struct evaluation *all, double h, c
 {
     struct rk4 *r = drv->own;
     const size_t place = 2 * drv->sys->ndof;
-    int status = TRIBO_OK;
     if (r->blockwise && evaluate_blocks(r, drv->sys, all)) {
         y[place] = energy_of(r, h, from[place]);
         if (isfinite(y[place])) {
             return TRIBO_OK;
         }
     }
-    status = evaluate_all(r, drv->sys, all);
+    const int status = evaluate_all(r, drv->sys, all);
     y[place] = energy_of(r, h, from[place]);
-    return status ? tribo_driver_explain(drv, drv->time, h) : tribo_driver_check(drv, y);
+    return status ? tribo_driver_explain(drv, all[0].t, h) : tribo_driver_check(drv, y);
 }
 
 static int step(tribo_driver *drv, double t, double next, const double *from, double *y)
@@ -200,7 +199,10 @@ static int step(tribo_driver *drv, double t, double next, const double *from, do
     }
     r->time = t + h;
     const int status = evaluate(drv, all, h, from, y);
-    return status || !drv->seen || !tell_contacts(drv) ? status : tribo_driver_explain(drv, t, h);
+    if (!status && drv->seen && tell_contacts(drv)) {
+        return tribo_driver_explain(drv, t, h);
+    }
+    return status;
 }
 
 /* So many steps are worth contacts for new settings. */

@@ -184,8 +184,8 @@ static double *motion(const char *method, const struct row *r, int setting, int 
     return y;
 }
 
-static const struct row rows[] = {{1, 0, 0, 0, 0},   {2, 0, 0, 0, 0},   {5, 0, 0, 0, 0},
-                                  {131, 4, 0, 0, 0}, {400, 3, 0, 0, 0}, {512, 255, 0, 0, 255}, {1500, 0, 0, 0, 0}};
+static const struct row rows[] = {{1, 0, 0, 0, 0},   {2, 0, 0, 0, 0},       {5, 0, 0, 0, 0},   {131, 4, 0, 0, 0},
+                                  {400, 3, 0, 0, 0}, {512, 255, 0, 0, 255}, {1500, 0, 0, 0, 0}};
 
 static const char *const methods[] = {"central/fixed", "rk4/fixed"};
 enum { CASES = (int)COUNT(rows) * SETTINGS };
@@ -391,5 +391,5 @@ TEST(steps_cost_what_moves)
     free(y);
 }
 
-TEST_MAIN("bodies_alone", {as_solved_for_together, 4 * CASES}, {laws_as_solved_for_together, 6}, {watched_or_not, 2 * CASES}, {left_out_or_not, CASES},
-          {coupled_masses, 1}, {hardly_held, 1}, {grows, 1}, {steps_cost_what_moves, 1})
+TEST_MAIN("bodies_alone", {as_solved_for_together, 4 * CASES}, {laws_as_solved_for_together, 6}, {watched_or_not, 2 * CASES},
+          {left_out_or_not, CASES}, {coupled_masses, 1}, {hardly_held, 1}, {grows, 1}, {steps_cost_what_moves, 1})
