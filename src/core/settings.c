@@ -114,7 +114,7 @@ static void cut_far(tribo_context *ctx)
         ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->follow.chunk[k].alike = UNEVEN;
+        ctx->follow.chunk[k].alike = 0;
     }
     c->bound = ctx->follow.cut_limit;
     *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
@@ -127,16 +127,6 @@ static double band_of(const struct chunk *chunk, int follows)
     }
     const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
     return widest < TRIBO_FAR ? widest : DBL_MAX;
-}
-
-/* Of chunk k, the one before being known. */
-static int likeness(const tribo_context *ctx, size_t k)
-{
-    const struct chunk *chunk = &ctx->follow.chunk[k];
-    if (ctx->set.breaking || !chunk->even || chunk->least != chunk->largest || chunk->largest == 0.0) {
-        return UNEVEN;
-    }
-    return chunk->even == EVEN_AS_BEFORE && chunk[-1].alike && chunk[-1].largest == chunk->largest ? EVEN_AS_BEFORE : EVEN;
 }
 
 void tribo_refresh_limits(tribo_context *ctx)
@@ -152,7 +142,7 @@ void tribo_refresh_limits(tribo_context *ctx)
         struct chunk *chunk = &ctx->follow.chunk[k];
         ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
         chunk->band = band_of(chunk, follows);
-        chunk->alike = likeness(ctx, k);
+        chunk->alike = !ctx->set.breaking && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
     }
     if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);

@@ -205,7 +205,7 @@ static int step(tribo_driver *drv, double t, double next, const double *from, do
     return status;
 }
 
-/* So many steps are worth contacts for new settings. */
+/* For so many steps new settings are taken. */
 enum { MANY = 20 };
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
