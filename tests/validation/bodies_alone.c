@@ -369,6 +369,27 @@ TEST(grows)
     tribo_system_destroy(sys);
 }
 
+/* Nothing but the end of the step shows it: what is dissipated, and all before, is finite. */
+TEST(ends_beyond_numbers)
+{
+    enum { N = 6 };
+    double mass[N * N] = {0}, stiffness[N * N] = {0}, y[2 * N + 1] = {0}, t = 0.0;
+    tribo_system *sys;
+    for (size_t i = 0; i < N; i++) {
+        mass[i * N + i] = 1.0;
+    }
+    assert_ok(tribo_system_linear(&sys, N, N, mass, NULL, stiffness, mass, 0, NULL, 0));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.01));
+    y[N] = 1e308;
+    tribo_driver *drv = driver_create(sys, "rk4/fixed", 1.0, 0.0);
+    assert_status(tribo_driver_advance(drv, &t, 30.0, y), TRIBO_ERR_NOT_FINITE);
+    assert_says(tribo_driver_message(drv), "y[0] = inf");
+    assert_exact(t, 0.0);
+    assert_exact(y[N], 1e308);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
 /* Of the paper's chain a load moves 1%: its blocks are all that steps look at, from beginning to end, and the few beside them. */
 TEST(steps_cost_what_moves)
 {
@@ -392,4 +413,5 @@ TEST(steps_cost_what_moves)
 }
 
 TEST_MAIN("bodies_alone", {as_solved_for_together, 4 * CASES}, {laws_as_solved_for_together, 6}, {watched_or_not, 2 * CASES},
-          {left_out_or_not, CASES}, {coupled_masses, 1}, {hardly_held, 1}, {grows, 1}, {steps_cost_what_moves, 1})
+          {left_out_or_not, CASES}, {coupled_masses, 1}, {hardly_held, 1}, {grows, 1}, {ends_beyond_numbers, 1},
+          {steps_cost_what_moves, 1})
