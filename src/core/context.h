@@ -23,6 +23,9 @@ struct message;
  * of them stays in the first-level cache. */
 #define TRIBO_CHUNK 128
 
+/* Whether all contacts of a chunk have the same width and rate, and also those of the chunk before. */
+enum { UNEVEN, EVEN, EVEN_AS_BEFORE };
+
 /* What of a chunk's contacts changes with settings only. */
 struct chunk {
     double least, largest; /* limit */
@@ -31,8 +34,8 @@ struct chunk {
     double quickest;       /* R_ii */
     size_t like;           /* from this contact on 1/R_ii are the same: the first of all such chunks, which is near as a rule */
     int plain;             /* 1/R_ii are TRIBO_PLAIN at most */
-    int even;              /* all have the same width and rate */
-    int alike;             /* and the same limit, above 0 */
+    int even;              /* UNEVEN, ... */
+    int alike;             /* all have the same width, rate, and limit, above 0 */
 };
 
 /* From this number of contacts on an output does not stay in any cache. */

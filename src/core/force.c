@@ -132,7 +132,26 @@ static void stream_chunk(const tribo_context *ctx, const struct contacts *c, siz
     }
 }
 
-static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
+/* Whether all contacts of a chunk and of the one before are alike. */
+static inline int goes_on(const struct chunk *chunk)
+{
+    return chunk->alike && chunk[-1].alike && chunk->even == EVEN_AS_BEFORE && chunk->largest == chunk[-1].largest;
+}
+
+/* Forces where laws take f_eq as it is. Chunks that are alike are one loop: memory is far away where a loop begins. */
+static void evaluate_plain(const tribo_context *ctx, const double *v, const double *feq, double *f)
+{
+    for (size_t i = 0, n; i < ctx->n; i += n) {
+        const struct contacts c = tribo_chunk_contacts(ctx, i);
+        n = tribo_chunk_size(ctx, i);
+        while (i + n < ctx->n && goes_on(&ctx->follow.chunk[(i + n) / TRIBO_CHUNK])) {
+            n += tribo_chunk_size(ctx, i + n);
+        }
+        ctx->set.law->force(&c, n, v + i, legible_feq(ctx, 1, i, n, v, feq, NULL), f + i);
+    }
+}
+
+static void evaluate_chunks(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
 {
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double room[TRIBO_CHUNK], limit[TRIBO_CHUNK];
@@ -147,6 +166,16 @@ static void evaluate(const tribo_context *ctx, int plain, const double *v, const
     }
     if (out->streams) {
         tribo_stream_end();
+    }
+}
+
+static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
+{
+    const int only_f = out->f && !out->d.dv && !out->d.dfeq && !out->d.dlimit;
+    if (only_f && plain && !ctx->set.breaking) {
+        evaluate_plain(ctx, v, feq, out->f);
+    } else {
+        evaluate_chunks(ctx, plain, v, feq, out);
     }
 }
 

@@ -56,6 +56,16 @@ static int even(size_t n, const double *x)
     return !differ;
 }
 
+/* Of the n contacts of the chunk that begins with i. */
+static int evenness(const tribo_context *ctx, size_t i, size_t n)
+{
+    const double *width = ctx->set.width + i, *rate = ctx->set.rate + i;
+    if (!even(n, width) || !even(n, rate)) {
+        return UNEVEN;
+    }
+    return i && ctx->follow.chunk[i / TRIBO_CHUNK - 1].even && width[-1] == *width && rate[-1] == *rate ? EVEN_AS_BEFORE : EVEN;
+}
+
 static void find_widths(tribo_context *ctx)
 {
     const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
@@ -63,7 +73,7 @@ static void find_widths(tribo_context *ctx)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
-        ctx->follow.chunk[k].even = even(n, ctx->set.width + i) && even(n, ctx->set.rate + i);
+        ctx->follow.chunk[k].even = evenness(ctx, i, n);
         ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
     }
 }

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "linalg.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -363,22 +364,6 @@ TRIBO_SIMD static int move(size_t n, double time, double h, const double *restri
     return told(&fate);
 }
 
-TRIBO_SIMD static double sum_of(size_t n, const double *x)
-{
-    enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
-    double part[LANES] = {0.0}, sum = 0.0;
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            part[k] += x[i + k];
-        }
-    }
-    for (; i < n; i++) {
-        sum += x[i];
-    }
-    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
-}
-
 /* The acceleration of degree of freedom i without friction, by its rows. */
 static inline double free_one(const struct bodies_alone *b, const tribo_system *sys, size_t i, const double *q, const double *u)
 {
@@ -424,7 +409,7 @@ static int step_block(const struct bodies_alone *b, const tribo_system *sys, con
     accelerate_block(b, sys, k, s->q, s->u, work);
     const int did = move(n, s->to - s->from, s->h, b->rows[k].mass, b->rows[k].brake, before, after, s->q + i, s->u + i,
                          s->q_to + i, s->u_to + i, work);
-    *energy -= 0.5 * sum_of(n, work);
+    *energy -= 0.5 * tribo_sum(n, work);
     return did;
 }
 

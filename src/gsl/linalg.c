@@ -29,6 +29,22 @@ void tribo_add(double *to, double factor, const double *x, size_t n)
     }
 }
 
+TRIBO_SIMD double tribo_sum(size_t n, const double *x)
+{
+    enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
+    double part[LANES] = {0.0}, sum = 0.0;
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[k] += x[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        sum += x[i];
+    }
+    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
+}
+
 double tribo_largest(const double *x, size_t n)
 {
     double most = 0.0;

@@ -11,7 +11,10 @@ double tribo_largest(const double *x, size_t n);
 void tribo_add(double *to, double factor, const double *x, size_t n);
 int tribo_dense_finite(const double *x, size_t n);
 
-/* The same, without a call where there are few. */
+/* The sum of x [n], in eight parts that are added at the end. */
+double tribo_sum(size_t n, const double *x);
+
+/* tribo_dense_finite without a call where there are few. */
 static inline int tribo_few_finite(const double *x, size_t n)
 {
     double sum = 0.0;

@@ -8,51 +8,64 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* y [rows] = z + factor times rows `begin` and following of A x, all of one block and with all diagonals inside the matrix; z
- * NULL: y. Three diagonals at a time, so that y is passed over as seldom as can be, but in the order of one after the other. */
-static inline void add_diagonals(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
-                                 const double *restrict z, double *restrict y)
+/* y [rows] += factor times rows `begin` and following of A x, all of one block and with all diagonals inside the matrix, from
+ * diagonal d on. Three diagonals at a time, so that y is passed over as seldom as can be, but in the order of one after the
+ * other. */
+static inline void add_diagonals(const struct matrix *a, size_t d, size_t begin, size_t rows, double factor, const double *x,
+                                 double *restrict y)
 {
     const double *restrict val = a->fast + a->block[begin / MATRIX_BLOCK] + begin % MATRIX_BLOCK, *restrict at = x + begin;
-    size_t d = 0;
     for (; d + 3 <= a->diagonals; d += 3) {
         const double *restrict u = val + d * MATRIX_BLOCK, *restrict v = u + MATRIX_BLOCK, *restrict w = v + MATRIX_BLOCK;
         const double *restrict p = at + a->offset[d], *restrict q = at + a->offset[d + 1], *restrict r = at + a->offset[d + 2];
-        for (size_t i = 0; z && d == 0 && i < rows; i++) {
-            y[i] = ((z[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
-        }
-        for (size_t i = 0; !(z && d == 0) && i < rows; i++) {
+        for (size_t i = 0; i < rows; i++) {
             y[i] = ((y[i] + factor * u[i] * p[i]) + factor * v[i] * q[i]) + factor * w[i] * r[i];
         }
     }
     for (; d < a->diagonals; d++) {
         const double *restrict u = val + d * MATRIX_BLOCK, *restrict p = at + a->offset[d];
-        for (size_t i = 0; z && d == 0 && i < rows; i++) {
-            y[i] = z[i] + factor * u[i] * p[i];
-        }
-        for (size_t i = 0; !(z && d == 0) && i < rows; i++) {
+        for (size_t i = 0; i < rows; i++) {
             y[i] += factor * u[i] * p[i];
         }
     }
 }
 
 /* A factor of 1 or -1 is no product, and the compiler knows. */
-TRIBO_SIMD static void add_inner_rows(const struct matrix *a, size_t begin, size_t rows, double factor, const double *x,
+TRIBO_SIMD static void add_inner_rows(const struct matrix *a, size_t d, size_t begin, size_t rows, double factor, const double *x,
                                       double *restrict y)
 {
     if (factor == -1.0) {
-        add_diagonals(a, begin, rows, -1.0, x, NULL, y);
+        add_diagonals(a, d, begin, rows, -1.0, x, y);
     } else if (factor == 1.0) {
-        add_diagonals(a, begin, rows, 1.0, x, NULL, y);
+        add_diagonals(a, d, begin, rows, 1.0, x, y);
     } else {
-        add_diagonals(a, begin, rows, factor, x, NULL, y);
+        add_diagonals(a, d, begin, rows, factor, x, y);
     }
 }
 
-TRIBO_SIMD static void subtract_inner_rows(const struct matrix *a, size_t begin, size_t rows, const double *x,
-                                           const double *restrict z, double *restrict y)
+/* y [rows] = z minus three diagonals val [3][MATRIX_BLOCK], which are multiplied with p, q and r. */
+TRIBO_SIMD static void subtract_three(size_t rows, const double *restrict z, const double *restrict val, const double *restrict p,
+                                      const double *restrict q, const double *restrict r, double *restrict y)
 {
-    add_diagonals(a, begin, rows, -1.0, x, z, y);
+    const double *restrict u = val, *restrict v = val + MATRIX_BLOCK, *restrict w = v + MATRIX_BLOCK;
+    for (size_t i = 0; i < rows; i++) {
+        y[i] = ((z[i] - u[i] * p[i]) - v[i] * q[i]) - w[i] * r[i];
+    }
+}
+
+/* The same as add_inner_rows with y = z - A x: chains, which have three diagonals, pass over everything once. */
+static void subtract_inner_rows(const struct matrix *a, size_t begin, size_t rows, const double *x, const double *z, double *y)
+{
+    const double *val = a->fast + a->block[begin / MATRIX_BLOCK] + begin % MATRIX_BLOCK, *at = x + begin;
+    const size_t done = a->diagonals < 3 ? 0 : 3;
+    if (done) {
+        subtract_three(rows, z, val, at + a->offset[0], at + a->offset[1], at + a->offset[2], y);
+    } else {
+        memcpy(y, z, rows * sizeof *y);
+    }
+    if (a->diagonals > done) {
+        add_inner_rows(a, done, begin, rows, -1.0, x, y);
+    }
 }
 
 /* The first row, and the one behind the last, all of whose diagonals lie inside the matrix. */
@@ -86,7 +99,7 @@ static void add_banded_rows(const struct matrix *a, size_t begin, size_t end, do
 {
     const size_t first = between(inner_begin(a), begin, end), last = between(inner_end(a), first, end);
     add_outer_rows(a, begin, first, factor, x, y);
-    add_inner_rows(a, first, last - first, factor, x, y + (first - begin));
+    add_inner_rows(a, 0, first, last - first, factor, x, y + (first - begin));
     add_outer_rows(a, last, end, factor, x, y + (last - begin));
 }
 

@@ -1,27 +1,17 @@
 #include "rates_alone.h"
+#include "linalg.h"
+#include "../common/real.h"
 #include "../common/simd.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* ----------------------------------------------------------------------------------------------------------------- life */
 
-static void forget_contacts(struct rates_alone *r)
-{
-    for (size_t k = 0; k < r->blocks; k++) {
-        if (k == 0 || r->block[k].contacts != r->block[k - 1].contacts) {
-            tribo_destroy(r->block[k].contacts);
-        }
-    }
-    for (size_t k = 0; k < r->blocks; k++) {
-        r->block[k].contacts = NULL;
-    }
-    r->fits = 0;
-}
-
 void tribo_rates_free(struct rates_alone *r)
 {
-    forget_contacts(r);
     tribo_bodies_free(&r->bodies);
     free(r->block);
     free(r->memory);
@@ -34,8 +24,25 @@ static size_t stride_of(const tribo_system *sys)
     return (sys->ndof + TRIBO_LINE - 1) / TRIBO_LINE * TRIBO_LINE;
 }
 
+static size_t apart(size_t x, size_t y)
+{
+    return x > y ? x - y : y - x;
+}
+
+static size_t find_reach(const struct bodies_alone *b)
+{
+    size_t reach = 0;
+    for (size_t k = 0; k < b->blocks; k++) {
+        for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
+            reach = apart(k, b->pulled[e]) > reach ? apart(k, b->pulled[e]) : reach;
+        }
+    }
+    return reach;
+}
+
 int tribo_rates_create(struct rates_alone *r, const tribo_system *sys)
 {
+    const size_t n = stride_of(sys);
     memset(r, 0, sizeof *r);
     if (!tribo_bodies_create(&r->bodies, sys)) {
         return 0;
@@ -43,16 +50,17 @@ int tribo_rates_create(struct rates_alone *r, const tribo_system *sys)
     if (!r->bodies.body) {
         return 1;
     }
-    r->memory = malloc((3 * MATRIX_BLOCK + 6 * stride_of(sys) + TRIBO_LINE) * sizeof *r->memory);
+    r->memory = malloc(((4 + RATES_TIMES) * n + TRIBO_LINE) * sizeof *r->memory);
     r->block = calloc(r->bodies.blocks, sizeof *r->block);
     if (!r->memory || !r->block) {
         return 0;
     }
     r->blocks = r->bodies.blocks;
-    r->f = tribo_aligned(r->memory);
-    r->v = r->f + MATRIX_BLOCK;
-    r->a = r->v + MATRIX_BLOCK;
-    r->own = r->a + MATRIX_BLOCK;
+    r->reach = find_reach(&r->bodies);
+    r->own = tribo_aligned(r->memory);
+    for (size_t k = 0; k < RATES_TIMES; k++) {
+        r->load[k] = r->own + (4 + k) * n;
+    }
     return 1;
 }
 
@@ -63,29 +71,49 @@ static struct rates_block own_block(const struct rates_alone *r, const tribo_sys
 {
     const size_t n = stride_of(sys);
     double *m = r->own + k * MATRIX_BLOCK;
-    return (struct rates_block){NULL, m, m + n, m + 2 * n, m + 3 * n, m + 4 * n, m + 5 * n, 1};
+    return (struct rates_block){m, m + n, m + 2 * n, m + 3 * n};
 }
 
-/* What all degrees of freedom have by their contacts. */
-static void take_contacts(struct rates_alone *r, tribo_system *sys)
+/* 1, or 0 if the law is none of these. */
+static int find_grip(int law, enum grip *grip)
+{
+    *grip = law == TRIBO_QUINN ? RELAXES : law == TRIBO_VELOCITY_LIMITED ? CREEPS : HOLDS;
+    return *grip != HOLDS || law == TRIBO_KARNOPP || law == TRIBO_COULOMB;
+}
+
+/* The part of |B| limit by which the law brakes at the edge of the band, rather more than less. */
+static const double edge[] = {[RELAXES] = 2.0, [CREEPS] = 1.0, [HOLDS] = 0.0};
+
+static double rate_of(double part, double brake, double band)
+{
+    const double rate = part * quotient(brake, band);
+    return rate * band < part * brake ? rate * (1.0 + DBL_EPSILON) : rate;
+}
+
+/* Beyond this, sums of accelerations or products with masses might not be numbers. */
+#define MOST 1e100
+
+/* What all degrees of freedom have by their contacts: 1, or 0 if that is beyond what can be reckoned with. */
+static int take_contacts(struct rates_alone *r, tribo_system *sys, int law)
 {
     const struct bodies_alone *b = &r->bodies;
     const struct rates_block all = own_block(r, sys, 0);
+    const double part = edge[r->grip];
+    int fits = 1;
     for (size_t d = 0; d < sys->ndof; d++) {
-        all.turn[d] = all.mobility[d] = all.tally[d] = all.limit[d] = 0.0;
-        all.epsilon[d] = all.r[d] = 1.0;
+        all.mass[d] = b->mass[d];
+        all.brake[d] = all.rate[d] = 0.0;
+        all.band[d] = 1.0;
     }
-    tribo_get_limit(sys->contacts, sys->v);
-    tribo_get_epsilon(sys->contacts, sys->a);
+    tribo_get_epsilon(sys->contacts, sys->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
         const size_t d = b->body[i];
-        all.turn[d] = b->turn[i];
-        all.mobility[d] = tribo_matrix_get(&sys->response, d, i);
-        all.tally[d] = sys->tally[i];
-        all.limit[d] = sys->v[i];
-        all.epsilon[d] = sys->a[i];
-        all.r[d] = all.turn[d] * all.mobility[d];
+        all.brake[d] = b->brake[d];
+        all.band[d] = law == TRIBO_COULOMB ? 0.0 : quotient(sys->v[i], fabs(b->turn[i]));
+        all.rate[d] = part > 0.0 ? rate_of(part, all.brake[d], all.band[d]) : 0.0;
+        fits &= all.mass[d] <= MOST && all.brake[d] <= MOST && all.rate[d] * all.band[d] >= part * all.brake[d];
     }
+    return fits;
 }
 
 static int same_row(const double *x, const double *y, size_t n)
@@ -95,46 +123,30 @@ static int same_row(const double *x, const double *y, size_t n)
 
 static int alike(const struct rates_block *x, const struct rates_block *y, size_t n)
 {
-    return same_row(x->turn, y->turn, n) && same_row(x->mobility, y->mobility, n) && same_row(x->tally, y->tally, n) &&
-           same_row(x->limit, y->limit, n) && same_row(x->epsilon, y->epsilon, n) && same_row(x->r, y->r, n);
+    return same_row(x->mass, y->mass, n) && same_row(x->brake, y->brake, n) && same_row(x->band, y->band, n) &&
+           same_row(x->rate, y->rate, n);
 }
 
-/* 1, or 0 if contacts cannot be made. */
-static int make_contacts(struct rates_block *t, size_t n, int law)
+/* Blocks, which are read where the one before is if they are alike. */
+static void share_blocks(struct rates_alone *r, const tribo_system *sys)
 {
-    for (size_t d = 0; d < n; d++) {
-        t->direct &= t->turn[d] == 1.0;
+    for (size_t k = 0; k < r->blocks; k++) {
+        const struct rates_block own = own_block(r, sys, k);
+        const int same = k && alike(&r->block[k - 1], &own, tribo_bodies_of_block(sys, k));
+        r->block[k] = same ? r->block[k - 1] : own;
     }
-    return !tribo_create(&t->contacts, n) && !tribo_set_law(t->contacts, law) && !tribo_set_limit(t->contacts, t->limit) &&
-           !tribo_set_operator_diagonal(t->contacts, t->r) && !tribo_set_epsilon(t->contacts, t->epsilon);
-}
-
-/* Blocks, which share all with the one before if that is alike and as long. */
-static int make_blocks(struct rates_alone *r, const tribo_system *sys, int law)
-{
-    int done = 1;
-    for (size_t k = 0; done && k < r->blocks; k++) {
-        const size_t n = tribo_bodies_of_block(sys, k);
-        r->block[k] = own_block(r, sys, k);
-        if (k && n == MATRIX_BLOCK && alike(&r->block[k - 1], &r->block[k], n)) {
-            r->block[k] = r->block[k - 1];
-        } else {
-            done = make_contacts(&r->block[k], n, law);
-        }
-    }
-    return done;
 }
 
 void tribo_rates_prepare(struct rates_alone *r, tribo_system *sys)
 {
     int law;
     tribo_get_law(sys->contacts, &law);
-    forget_contacts(r);
     r->revision = tribo_system_revision(sys);
-    if (tribo_bodies_begin(&r->bodies, sys) && law != TRIBO_QUINN_REVERSAL && !sys->base_harmonics &&
-        !tribo_system_limits_vary(sys)) {
-        take_contacts(r, sys);
-        r->fits = make_blocks(r, sys, law);
+    r->fits = tribo_bodies_begin(&r->bodies, sys) && find_grip(law, &r->grip) && !sys->base_harmonics &&
+              !tribo_system_limits_vary(sys) && take_contacts(r, sys, law);
+    if (r->fits) {
+        memset(r->load[0], 0, RATES_TIMES * stride_of(sys) * sizeof *r->load[0]);
+        share_blocks(r, sys);
     }
 }
 
@@ -145,50 +157,61 @@ int tribo_rates_fit(const struct rates_alone *r, const tribo_system *sys)
 
 /* ---------------------------------------------------------------------------------------------------------------- rates */
 
-/* v = J u, and the accelerations b of contacts = J a. */
-TRIBO_SIMD static void turn(size_t n, const double *restrict j, const double *restrict u, const double *restrict a,
-                            double *restrict v, double *restrict b)
+void tribo_rates_set_time(struct rates_alone *r, tribo_system *sys, size_t k, double t)
+{
+    r->bodies.load = r->load[k];
+    tribo_bodies_set_time(&r->bodies, sys, t);
+}
+
+/* By the law of each grip: takes from the accelerations a of bodies, at velocities u, what their contacts hold against; heat is
+ * what each dissipates. */
+TRIBO_SIMD static void relax(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
+                             const double *restrict rate, const double *restrict u, double *restrict a, double *restrict heat)
 {
     for (size_t i = 0; i < n; i++) {
-        v[i] = j[i] * u[i];
-        b[i] = j[i] * a[i];
+        const double held = clamp(a[i], -brake[i], brake[i]), slowed = rate[i] * clamp(u[i], -band[i], band[i]);
+        const double taken = clamp(held + slowed, -brake[i], brake[i]);
+        a[i] -= taken;
+        heat[i] = mass[i] * taken * u[i];
     }
 }
 
-/* a += B f; returns what friction dissipates. */
-TRIBO_SIMD static double push(size_t n, const double *restrict mobility, const double *restrict tally, const double *restrict f,
-                              const double *restrict v, double *restrict a)
+TRIBO_SIMD static void creep(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
+                             const double *restrict rate, const double *restrict u, double *restrict a, double *restrict heat)
 {
-    enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
-    double part[LANES] = {0.0}, sum = 0.0;
-    size_t i = 0;
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            a[i + k] += mobility[i + k] * f[i + k];
-            part[k] -= tally[i + k] * f[i + k] * v[i + k];
-        }
+    for (size_t i = 0; i < n; i++) {
+        const double taken = clamp(rate[i] * clamp(u[i], -band[i], band[i]), -brake[i], brake[i]);
+        a[i] -= taken;
+        heat[i] = mass[i] * taken * u[i];
     }
-    for (; i < n; i++) {
-        a[i] += mobility[i] * f[i];
-        sum -= tally[i] * f[i] * v[i];
-    }
-    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
 }
 
-int tribo_rates_block(const struct rates_alone *r, const tribo_system *sys, size_t k, const double *q, const double *u, double *a,
-                      double *power)
+TRIBO_SIMD static void hold(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
+                            const double *restrict u, double *restrict a, double *restrict heat)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double held = clamp(a[i], -brake[i], brake[i]), slid = copysign(brake[i], u[i]);
+        const double taken = fabs(u[i]) > band[i] ? slid : held;
+        a[i] -= taken;
+        heat[i] = mass[i] * taken * u[i];
+    }
+}
+
+double tribo_rates_block(struct rates_alone *r, const tribo_system *sys, size_t time, size_t k, const double *q, const double *u,
+                         double *a)
 {
     const struct rates_block *b = &r->block[k];
     const size_t n = tribo_bodies_of_block(sys, k);
     const double *v = u + k * MATRIX_BLOCK;
+    double heat[MATRIX_BLOCK];
+    r->bodies.load = r->load[time];
     tribo_bodies_accelerate(&r->bodies, sys, k, q, u, a);
-    if (!b->direct) {
-        turn(n, b->turn, v, a, r->v, r->a);
-        v = r->v;
+    if (r->grip == RELAXES) {
+        relax(n, b->mass, b->brake, b->band, b->rate, v, a, heat);
+    } else if (r->grip == CREEPS) {
+        creep(n, b->mass, b->brake, b->band, b->rate, v, a, heat);
+    } else {
+        hold(n, b->mass, b->brake, b->band, v, a, heat);
     }
-    const int status = tribo_balance(b->contacts, v, b->direct ? a : r->a, NULL, r->f);
-    if (!status) {
-        *power += push(n, b->mobility, b->tally, r->f, v, a);
-    }
-    return status;
+    return tribo_sum(n, heat);
 }

@@ -1,22 +1,28 @@
 /* Method "rk4/fixed": the classical Runge-Kutta method in steps of a fixed size. GSL's doubles each step for an estimate of its
  * error, which nobody asks for here, and takes twelve evaluations instead of four.
  *
- * From one evaluation follows the state of the next, or of the end, place by place: so where contacts share no body all is done
- * block by block. What neighbours pull at has to stay meanwhile: stages take turns in two places. */
+ * From one evaluation follows the state of the next, or of the end, place by place. Where contacts share no body all is done block
+ * by block, and an evaluation follows the one before as closely as can be, as soon as this has left behind what pulls at a block:
+ * what is written is read again while it is near. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "driver.h"
+#include "linalg.h"
 #include "rates_alone.h"
 #include "../common/simd.h"
+
+enum { STAGES = 4 };
 
 struct rk4 {
     struct rates_alone alone;
     double *memory;
-    double *k;              /* [ndof] or a block's: accelerations; of the slope of q, which is the velocity, there is no copy */
-    double *sum, *stage[2]; /* [dimension] weighted sum of slopes, states of stages */
-    double power[4];        /* of the stages: what friction dissipates */
-    double time;            /* of the last stage */
-    int blockwise;          /* the next step goes block by block */
+    double *k;   /* [ndof] or a block's: accelerations; of the slope of q, which is the velocity, there is no copy */
+    double *sum; /* [ndof] weighted sum of accelerations */
+    double *stage[STAGES - 1]; /* [2 ndof] states of the second evaluation and the following */
+    double power[STAGES];      /* what friction dissipates */
+    double time;               /* of the last evaluation */
+    int blockwise;             /* the next step goes block by block */
 };
 
 static void destroy(tribo_driver *drv)
@@ -38,100 +44,112 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method rk4/fixed");
     }
     r->k = tribo_aligned(r->memory);
-    r->sum = r->k + n;
-    r->stage[0] = r->sum + n;
-    r->stage[1] = r->stage[0] + n;
+    r->sum = r->k + drv->sys->ndof;
+    for (size_t s = 0; s < STAGES - 1; s++) {
+        r->stage[s] = r->sum + drv->sys->ndof + s * 2 * drv->sys->ndof;
+    }
     tribo_rates_prepare(&r->alone, drv->sys);
     return TRIBO_OK;
 }
 
-/* The first stage goes on from y by the slope k, with which the sum begins. */
-TRIBO_SIMD static void first_stage(size_t n, const double *restrict y, double h, const double *restrict k, double *restrict sum,
-                                   double *restrict stage)
+/* From q and u the second state, by the accelerations a, with which the sum begins. */
+TRIBO_SIMD static void first_stage(size_t n, double h, const double *restrict q, const double *restrict u,
+                                   const double *restrict a, double *restrict sum, double *restrict to_q, double *restrict to_u)
 {
-    for (size_t j = 0; j < n; j++) {
-        stage[j] = y[j] + h * k[j];
-        sum[j] = k[j];
+    for (size_t i = 0; i < n; i++) {
+        to_q[i] = q[i] + h * u[i];
+        to_u[i] = u[i] + h * a[i];
+        sum[i] = a[i];
     }
 }
 
-TRIBO_SIMD static void next_stage(size_t n, const double *restrict y, double h, const double *restrict k, double *restrict sum,
-                                  double *restrict stage)
+/* From q and u the third or fourth, by the velocities v and accelerations of the last one. */
+TRIBO_SIMD static void next_stage(size_t n, double h, const double *restrict q, const double *restrict u,
+                                  const double *restrict v, const double *restrict a, double *restrict sum, double *restrict to_q,
+                                  double *restrict to_u)
 {
-    for (size_t j = 0; j < n; j++) {
-        stage[j] = y[j] + h * k[j];
-        sum[j] += 2.0 * k[j];
+    for (size_t i = 0; i < n; i++) {
+        to_q[i] = q[i] + h * v[i];
+        to_u[i] = u[i] + h * a[i];
+        sum[i] += 2.0 * a[i];
     }
 }
 
-TRIBO_SIMD static void finish(size_t n, const double *restrict from, double h, const double *restrict k,
-                              const double *restrict sum, double *restrict y)
+/* The end of the step, v_1 to v_3 being the velocities of the states between, and a the accelerations of the last one. */
+TRIBO_SIMD static void finish(size_t n, double h, const double *restrict q, const double *restrict u, const double *restrict v_1,
+                              const double *restrict v_2, const double *restrict v_3, const double *restrict sum,
+                              const double *restrict a, double *restrict to_q, double *restrict to_u)
 {
-    for (size_t j = 0; j < n; j++) {
-        y[j] = from[j] + h * (sum[j] + k[j]);
+    for (size_t i = 0; i < n; i++) {
+        to_q[i] = q[i] + h * (((u[i] + 2.0 * v_1[i]) + 2.0 * v_2[i]) + v_3[i]);
+        to_u[i] = u[i] + h * (sum[i] + a[i]);
     }
 }
 
-/* An evaluation of a step from `from`: at a time and a state, and the state to, that which follows a time h later by its
- * slopes. */
+/* An evaluation of a step from `from`: at a time, which has a number, and a state, and the state to, that which follows a time h
+ * later by its slopes. */
 struct evaluation {
-    int number; /* 0 to 3 */
+    size_t number, time;
     double t, h;
     const double *from, *at;
     double *to;
 };
 
-/* n numbers of the state from place i on, their slopes being k. */
-static void proceed(const struct rk4 *r, const struct evaluation *e, size_t i, size_t n, const double *k)
+/* n degrees of freedom from i on, their accelerations being a. */
+static void proceed(const struct rk4 *r, size_t ndof, const struct evaluation *e, size_t i, size_t n, const double *a)
 {
+    const double *q = e->from + i, *u = q + ndof, *v = e->at + ndof + i;
+    double *sum = r->sum + i, *to_q = e->to + i, *to_u = to_q + ndof;
     if (e->number == 0) {
-        first_stage(n, e->from + i, e->h, k, r->sum + i, e->to + i);
-    } else if (e->number < 3) {
-        next_stage(n, e->from + i, e->h, k, r->sum + i, e->to + i);
+        first_stage(n, e->h, q, u, a, sum, to_q, to_u);
+    } else if (e->number < STAGES - 1) {
+        next_stage(n, e->h, q, u, v, a, sum, to_q, to_u);
     } else {
-        finish(n, e->from + i, e->h, k, r->sum + i, e->to + i);
+        finish(n, e->h, q, u, r->stage[0] + ndof + i, r->stage[1] + ndof + i, v, sum, a, to_q, to_u);
     }
 }
 
-/* Block by block; a status. */
-static int evaluate_blocks(struct rk4 *r, tribo_system *sys, const struct evaluation *e)
+/* Evaluation e of block k; returns whether what it writes is finite, of the last one. */
+static int evaluate_block(struct rk4 *r, const tribo_system *sys, const struct evaluation *e, size_t k)
 {
-    const size_t n = sys->ndof;
-    double *power = &r->power[e->number];
-    *power = 0.0;
-    tribo_bodies_set_time(&r->alone.bodies, sys, e->t);
-    for (size_t k = 0, i = 0; k < r->alone.blocks; k++, i += MATRIX_BLOCK) {
-        const size_t count = tribo_bodies_of_block(sys, k);
-        const int status = tribo_rates_block(&r->alone, sys, k, e->at, e->at + n, r->k, power);
-        if (status) {
-            return status;
+    const size_t ndof = sys->ndof, i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
+    r->power[e->number] += tribo_rates_block(&r->alone, sys, e->time, k, e->at, e->at + ndof, r->k);
+    proceed(r, ndof, e, i, n, r->k);
+    return e->number < STAGES - 1 || (tribo_dense_finite(e->to + i, n) && tribo_dense_finite(e->to + ndof + i, n));
+}
+
+/* All evaluations, each so many blocks behind the last one that nothing pulls at its block that is not there yet. Whatever is not
+ * finite on the way comes to the end: returns whether nothing is. */
+static int evaluate_blocks(struct rk4 *r, tribo_system *sys, const struct evaluation *all)
+{
+    const size_t blocks = r->alone.blocks, lag = r->alone.reach;
+    int finite = 1;
+    for (size_t s = 0; s < STAGES; s++) {
+        r->power[s] = 0.0;
+        if (s == 0 || all[s].time != all[s - 1].time) {
+            tribo_rates_set_time(&r->alone, sys, all[s].time, all[s].t);
         }
-        proceed(r, e, i, count, e->at + n + i);
-        proceed(r, e, n + i, count, r->k);
     }
-    return TRIBO_OK;
+    for (size_t front = 0; finite && front < blocks + (STAGES - 1) * lag; front++) {
+        for (size_t s = 0; s < STAGES && s * lag <= front; s++) {
+            const size_t k = front - s * lag;
+            finite &= k >= blocks || evaluate_block(r, sys, &all[s], k);
+        }
+    }
+    sys->evaluations += STAGES;
+    return finite;
 }
 
-/* All at once. */
-static int evaluate_all(struct rk4 *r, tribo_system *sys, const struct evaluation *e)
+/* Each evaluation for all degrees of freedom at once; a status. */
+static int evaluate_all(struct rk4 *r, tribo_system *sys, const struct evaluation *all)
 {
-    const size_t n = sys->ndof;
-    const int status = (e->number ? tribo_system_rates : tribo_system_begin_rates)(sys, e->t, e->at, r->k, &r->power[e->number]);
-    if (!status) {
-        proceed(r, e, 0, n, e->at + n);
-        proceed(r, e, n, n, r->k);
+    int status = TRIBO_OK;
+    for (size_t s = 0; !status && s < STAGES; s++) {
+        const struct evaluation *e = &all[s];
+        status = (s ? tribo_system_rates : tribo_system_begin_rates)(sys, e->t, e->at, r->k, &r->power[s]);
+        proceed(r, sys->ndof, e, 0, status ? 0 : sys->ndof, r->k);
     }
     return status;
-}
-
-/* What cannot be done block by block can all at once, or tells why not. */
-static int evaluate(struct rk4 *r, tribo_system *sys, const struct evaluation *e)
-{
-    if (r->blockwise && evaluate_blocks(r, sys, e) == TRIBO_OK) {
-        sys->evaluations++;
-        return TRIBO_OK;
-    }
-    return evaluate_all(r, sys, e);
 }
 
 /* The system's contacts are told of the last evaluation, for those who ask them. */
@@ -140,7 +158,8 @@ static int tell_contacts(tribo_driver *drv)
     struct rk4 *r = drv->own;
     tribo_system *sys = drv->sys;
     const size_t evaluations = sys->evaluations;
-    const int status = r->blockwise ? tribo_system_rates(sys, r->time, r->stage[0], r->k, &r->power[3]) : TRIBO_OK;
+    const int status =
+        r->blockwise ? tribo_system_rates(sys, r->time, r->stage[STAGES - 2], r->k, &r->power[STAGES - 1]) : TRIBO_OK;
     sys->evaluations = evaluations;
     return status;
 }
@@ -151,30 +170,42 @@ static double energy_of(const struct rk4 *r, double h, double from)
     return from + h / 6.0 * (((p[0] + 2.0 * p[1]) + 2.0 * p[2]) + p[3]);
 }
 
+/* What cannot be done block by block can all at once, or tells why not. */
+static int evaluate(tribo_driver *drv, const struct evaluation *all, double h, const double *from, double *y)
+{
+    struct rk4 *r = drv->own;
+    const size_t place = 2 * drv->sys->ndof;
+    if (r->blockwise && evaluate_blocks(r, drv->sys, all)) {
+        y[place] = energy_of(r, h, from[place]);
+        if (isfinite(y[place])) {
+            return TRIBO_OK;
+        }
+    }
+    const int status = evaluate_all(r, drv->sys, all);
+    y[place] = energy_of(r, h, from[place]);
+    return status ? tribo_driver_explain(drv, all[0].t, h) : tribo_driver_check(drv, y);
+}
+
 static int step(tribo_driver *drv, double t, double next, const double *from, double *y)
 {
     struct rk4 *r = drv->own;
     const double h = next - t;
-    const struct evaluation all[] = {{0, t, 0.5 * h, from, from, r->stage[0]},
-                                     {1, t + 0.5 * h, 0.5 * h, from, r->stage[0], r->stage[1]},
-                                     {2, t + 0.5 * h, h, from, r->stage[1], r->stage[0]},
-                                     {3, t + h, h / 6.0, from, r->stage[0], y}};
-    int status = TRIBO_OK;
+    const struct evaluation all[STAGES] = {{0, 0, t, 0.5 * h, from, from, r->stage[0]},
+                                           {1, 1, t + 0.5 * h, 0.5 * h, from, r->stage[0], r->stage[1]},
+                                           {2, 1, t + 0.5 * h, h, from, r->stage[1], r->stage[2]},
+                                           {3, 2, t + h, h / 6.0, from, r->stage[2], y}};
     if (drv->seen) {
         r->blockwise = tribo_rates_fit(&r->alone, drv->sys);
     }
-    for (size_t i = 0; !status && i < sizeof all / sizeof *all; i++) {
-        status = evaluate(r, drv->sys, &all[i]);
-    }
     r->time = t + h;
-    y[2 * drv->sys->ndof] = energy_of(r, h, from[2 * drv->sys->ndof]);
-    if (status || (drv->seen && tell_contacts(drv))) {
+    const int status = evaluate(drv, all, h, from, y);
+    if (!status && drv->seen && tell_contacts(drv)) {
         return tribo_driver_explain(drv, t, h);
     }
-    return tribo_driver_check(drv, y);
+    return status;
 }
 
-/* So many steps are worth contacts for new settings. */
+/* For so many steps new settings are taken. */
 enum { MANY = 20 };
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)

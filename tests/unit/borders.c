@@ -127,15 +127,16 @@ struct scene {
     double r[MOST], limit[MOST], epsilon[MOST], v[MOST], a[MOST];
 };
 
-/* Chunks in which all contacts have one limit and one epsilon, chunks in which one has not, and others. */
+/* Chunks in which all contacts have one limit and one epsilon, chunks in which one has not, and others; and all of the first kind,
+ * of which only some have those of the chunk before. */
 static struct scene draw(struct random *g, int kind)
 {
     struct scene s;
     for (size_t i = 0; i < MOST; i++) {
         const int alike = kind == 0 || (kind == 1 && i != 130 && i != MOST - 1) || (kind == 2 && i < 128);
         s.r[i] = i % 50 ? log_uniform(g, 2.0) : 0.0;
-        s.limit[i] = alike ? 1.25 : below(g, 9) ? log_uniform(g, 1.0) : 0.0;
-        s.epsilon[i] = alike ? 0.75 : log_uniform(g, 1.0);
+        s.limit[i] = kind == 4 ? 1.0 + (double)(i / 256 % 2) : alike ? 1.25 : below(g, 9) ? log_uniform(g, 1.0) : 0.0;
+        s.epsilon[i] = kind == 4 ? 1.5 + (double)(i / 384 % 2) : alike ? 0.75 : log_uniform(g, 1.0);
         s.v[i] = below(g, 4) ? uniform(g, -2.0, 2.0) * s.epsilon[i] : below(g, 2) ? s.epsilon[i] : 0.0;
         s.a[i] = uniform(g, -2.0, 2.0) * s.limit[i] * (i % 7 ? 1.0 : s.r[i]);
     }
@@ -168,7 +169,7 @@ TEST(as_alone)
 {
     static struct results many, each;
     struct random g = random_of(_i);
-    const struct scene s = draw(&g, _i % 4);
+    const struct scene s = draw(&g, _i % 5);
     for (int law = 0; law < tribo_law_count(); law++) {
         for (int follows = 0; follows < 2; follows++) {
             call(law, follows, &s, 0, MOST, &many);
@@ -260,5 +261,5 @@ TEST(feq_of_any_size)
     tribo_destroy(c);
 }
 
-TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 8}, {steps_as_alone, 20},
+TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 10}, {steps_as_alone, 20},
           {feq_of_any_size, 1})
