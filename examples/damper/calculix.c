@@ -8,20 +8,20 @@
 /* ---------------------------------------------------------------------------------------------------------------- matrices */
 
 /* Nothing announces how many entries there are; but they end with the last row's, on the diagonal. */
-static void check_diagonal(const char *path, const char *seen, size_t rows)
+static void check_diagonal(const char *path, const char *seen, const struct rows *rows)
 {
-    const char *missing = memchr(seen, 0, rows);
+    const char *missing = memchr(seen, 0, rows->count);
     if (missing) {
         die("%s: row %zu of %zu has no entry on the diagonal: is the file cut off, or does it belong to other degrees of "
-            "freedom?",
-            path, (size_t)(missing - seen) + 1, rows);
+            "freedom than those in %s?",
+            path, (size_t)(missing - seen) + 1, rows->count, rows->path);
     }
 }
 
-void read_calculix_matrix(const char *path, size_t rows, struct entries *all)
+void read_calculix_matrix(const char *path, const struct rows *rows, struct entries *all)
 {
     struct lines l = open_lines(path);
-    char *seen = need_memory(rows, 1);
+    char *seen = need_memory(rows->count, 1);
     while (next_data(&l)) {
         struct entry e = read_entry(&l, rows);
         if (e.column > e.row) {

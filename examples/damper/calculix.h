@@ -8,7 +8,7 @@
 #include "lines.h"
 
 /* A matrix: lines "row column value" without a head, each pair of rows once, and all of the diagonal. */
-void read_calculix_matrix(const char *path, size_t rows, struct entries *all);
+void read_calculix_matrix(const char *path, const struct rows *rows, struct entries *all);
 
 /* A line "node.direction". */
 struct degree read_calculix_degree(struct lines *l, size_t row);

@@ -3,11 +3,20 @@
 #include <limits.h>
 #include <stdlib.h>
 
-struct entry read_entry(struct lines *l, size_t rows)
+static size_t next_index(struct lines *l, const char *what, const struct rows *rows)
+{
+    const size_t index = next_whole(l, what, 1, INT_MAX);
+    if (index > rows->count) {
+        die_at(l, "%s %zu, but the degrees of freedom in %s are %zu", what, index, rows->path, rows->count);
+    }
+    return index;
+}
+
+struct entry read_entry(struct lines *l, const struct rows *rows)
 {
     struct entry e = {.line = l->line};
-    e.row = next_whole(l, "row", 1, rows);
-    e.column = next_whole(l, "column", 1, rows);
+    e.row = next_index(l, "row", rows);
+    e.column = next_index(l, "column", rows);
     e.value = next_real(l, "value");
     expect_end(l);
     return e;

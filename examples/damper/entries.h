@@ -7,6 +7,12 @@
 
 #include "lines.h"
 
+/* How many rows and columns a matrix has, by the degrees of freedom in the file of that path. */
+struct rows {
+    size_t count;
+    const char *path;
+};
+
 /* Entries of a matrix as a file has them. */
 struct entry {
     size_t row, column, line; /* row and column counted from 1 */
@@ -19,7 +25,7 @@ struct entries {
 };
 
 /* What is left of the line: "row column value". */
-struct entry read_entry(struct lines *l, size_t rows);
+struct entry read_entry(struct lines *l, const struct rows *rows);
 
 void add_entry(struct entries *all, const struct entry *e);
 

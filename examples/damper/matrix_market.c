@@ -33,7 +33,7 @@ static int read_header(struct lines *l)
 }
 
 /* The line with the sizes; returns the number of entries. */
-static size_t read_sizes(struct lines *l, size_t expected)
+static size_t read_sizes(struct lines *l, const struct rows *expected)
 {
     if (!next_data(l)) {
         die("%s ends before the line with its sizes", l->path);
@@ -42,13 +42,14 @@ static size_t read_sizes(struct lines *l, size_t expected)
                  columns = next_whole(l, "the number of columns", 1, INT_MAX),
                  entries = next_whole(l, "the number of entries", 0, INT_MAX);
     expect_end(l);
-    if (rows != expected || columns != expected) {
-        die_at(l, "%zu rows and %zu columns; the structure has %zu degrees of freedom", rows, columns, expected);
+    if (rows != expected->count || columns != expected->count) {
+        die_at(l, "%zu rows and %zu columns, but the degrees of freedom in %s are %zu", rows, columns, expected->path,
+               expected->count);
     }
     return entries;
 }
 
-static void read_entries(struct lines *l, size_t announced, size_t rows, int symmetric, struct entries *all)
+static void read_entries(struct lines *l, size_t announced, const struct rows *rows, int symmetric, struct entries *all)
 {
     while (next_data(l)) {
         if (all->count == announced) {
@@ -65,7 +66,7 @@ static void read_entries(struct lines *l, size_t announced, size_t rows, int sym
     }
 }
 
-int read_matrix_market(const char *path, size_t rows, struct entries *all)
+int read_matrix_market(const char *path, const struct rows *rows, struct entries *all)
 {
     struct lines l = open_lines(path);
     const int symmetric = read_header(&l);

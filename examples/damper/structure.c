@@ -12,8 +12,9 @@ struct structure read_structure(const char *mass, const char *stiffness, const c
 {
     struct structure s = {0};
     s.dof = read_degrees(dofs, &s.ndof);
-    s.mass = read_matrix(mass, s.ndof);
-    s.stiffness = read_matrix(stiffness, s.ndof);
+    const struct rows rows = {s.ndof, dofs};
+    s.mass = read_matrix(mass, &rows);
+    s.stiffness = read_matrix(stiffness, &rows);
     return s;
 }
 

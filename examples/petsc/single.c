@@ -67,10 +67,11 @@ static tribo_system *read_system(char **file, size_t n, double damping)
     size_t contacts;
     char message[200] = "";
     tribo_system *sys;
-    gsl_spmatrix *mass = read_matrix(file[0], n), *stiffness = read_matrix(file[1], n), *damper = NULL,
+    const struct rows rows = {n, "the arguments"};
+    gsl_spmatrix *mass = read_matrix(file[0], &rows), *stiffness = read_matrix(file[1], &rows), *damper = NULL,
                  *direction = read_contacts(file[2], n, limit, &contacts);
     if (damping > 0.0) {
-        damper = read_matrix(file[1], n);
+        damper = read_matrix(file[1], &rows);
         gsl_spmatrix_scale(damper, damping);
     }
     need(tribo_system_linear_sparse(&sys, mass, damper, stiffness, direction, damper ? 0 : n, message, sizeof message), message);

@@ -76,7 +76,7 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     tribo_step_form_find_base(s, sys, k->to);
     tribo_step_form_relative(s, sys, k->u_to, s->end);
     tribo_step_form_set_limits(sys, k->t);
-    const int status = tribo_step_form_force(s, sys->contacts, time);
+    const int status = tribo_step_form_force(s, sys, sys->contacts, time);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, k->t);
     }

@@ -386,7 +386,7 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     tribo_step_form_relative(s, sys, s->u, s->end);
     take_both_ends(s, sys);
     give_limits(m, sys);
-    const int status = tribo_step_form_force(s, m->contacts, h);
+    const int status = tribo_step_form_force(s, sys, m->contacts, h);
     if (status) {
         return status;
     }

@@ -27,6 +27,7 @@ void tribo_step_form_free(struct step_form *s)
 
 void tribo_step_form_start(struct step_form *s, const tribo_system *sys)
 {
+    s->settings = tribo_system_revision(sys);
     s->statics = 0;
     tribo_get_static(sys->contacts, s->f, NULL);
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -68,9 +69,12 @@ void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, con
     }
 }
 
-int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h)
+int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_context *contacts, double h)
 {
     size_t planar;
+    if (s->settings != tribo_system_revision(sys)) {
+        tribo_step_form_start(s, sys);
+    }
     const int status = tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar);
     if (status) {
         return status;

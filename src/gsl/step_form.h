@@ -10,6 +10,7 @@ struct step_form {
     double *v, *end, *f; /* [ncontact] velocity before and at the end, force */
     double *base;        /* [ncontact] b at the end */
     int statics;         /* there are static limits */
+    size_t settings;     /* revision of the system in which that is so */
     int goes_on;         /* end is the velocity that the next step begins with */
     signed char *mode;   /* [ncontact] */
     size_t revision;     /* of the system that a method has prepared for */
@@ -19,7 +20,7 @@ struct step_form {
 int tribo_step_form_create(struct step_form *s, const tribo_system *sys);
 void tribo_step_form_free(struct step_form *s);
 
-/* At the beginning of an advance: looks whether limits are static. */
+/* Looks whether limits are static: at the beginning of an advance, and whenever an observer has changed the system. */
 void tribo_step_form_start(struct step_form *s, const tribo_system *sys);
 
 /* base = b(t), if the base moves at all. */
@@ -37,7 +38,7 @@ void tribo_step_form_begin(struct step_form *s, tribo_system *sys, double t, con
 /* f over a step of h, from v and end. By tribo_step_force_mean if there are planar contacts, or static limits, of which it knows
  * who has lost them; else by tribo_step_force, which stops contacts where they reverse: with the mean, light bodies between heavy
  * ones come out worse. */
-int tribo_step_form_force(struct step_form *s, tribo_context *contacts, double h);
+int tribo_step_form_force(struct step_form *s, const tribo_system *sys, tribo_context *contacts, double h);
 
 /* The power that f dissipates at the mean of two velocities. */
 double tribo_step_form_power(const tribo_system *sys, const double *f, const double *before, const double *after);

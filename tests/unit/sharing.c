@@ -269,5 +269,25 @@ TEST(twins_share_beside_twins_at_limits)
     tribo_destroy(c);
 }
 
+/* Four contacts between two bodies, each of which may carry one way only, share nothing where nothing pulls, whatever they carried
+ * before. */
+TEST(nothing_is_shared_of_nothing)
+{
+    static const double sign[4] = {1.0, -1.0, -1.0, 1.0}, none[4] = {0.0, 0.0, 0.0, 0.0}, vfree[4] = {1.0, 2.0, -1.0, 0.5},
+                        lower[4] = {-2.0, 0.0, -2.0, 0.0}, upper[4] = {0.0, 2.0, 0.0, 2.0};
+    double r[16], f[4];
+    tribo_context *c;
+    for (size_t i = 0; i < 16; i++) {
+        r[i] = 3.28380076 * sign[i / 4] * sign[i % 4];
+    }
+    assert_ok(tribo_create(&c, 4));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_limit_all(c, 2.0));
+    assert_ok(tribo_step_force(c, 1.0, vfree, f));
+    assert_ok(tribo_solve_box(c, none, lower, upper, f));
+    assert_all_close(f, none, 4, 1e-15);
+    tribo_destroy(c);
+}
+
 TEST_MAIN("sharing", {identical_contacts_share, 100}, {twins_share_beside_twins_at_limits, 1}, {share_without_order, 200},
-          {least_norm, 200}, {shares_that_last, 40}, {shares_after_sliding, 1})
+          {least_norm, 200}, {shares_that_last, 40}, {shares_after_sliding, 1}, {nothing_is_shared_of_nothing, 1})

@@ -17,6 +17,8 @@
 
 enum { ROWS = 4, TEXT = 2000 };
 
+static const struct rows rows = {ROWS, "other.dof"};
+
 /* A chain of four masses, and its stiffness in both formats; entries that are zero, and in no order. */
 static const double chain[ROWS][ROWS] = {
     {400.0, -200.0, 0.0, 0.0}, {-200.0, 400.0, -200.0, 0.0}, {0.0, -200.0, 400.0, -200.0}, {0.0, 0.0, -200.0, 200.0}};
@@ -74,7 +76,7 @@ static void read_any(const char *path)
     if (is_list(path)) {
         free(read_degrees(path, &count));
     } else {
-        gsl_spmatrix_free(read_matrix(path, ROWS));
+        gsl_spmatrix_free(read_matrix(path, &rows));
     }
 }
 
@@ -108,7 +110,7 @@ static void assert_refused(const char *path, const char *text, const char *messa
 
 static void assert_is_chain(const char *path)
 {
-    gsl_spmatrix *m = read_matrix(path, ROWS);
+    gsl_spmatrix *m = read_matrix(path, &rows);
     require(m->nz == 10, "%s: %zu entries", path, m->nz);
     for (size_t i = 0; i < ROWS; i++) {
         for (size_t j = 0; j < ROWS; j++) {
@@ -172,7 +174,7 @@ TEST(order)
         }
     }
     fclose(file);
-    gsl_spmatrix *m = read_matrix("many.mas", MANY);
+    gsl_spmatrix *m = read_matrix("many.mas", &(struct rows){MANY, "many.dof"});
     remove("many.mas");
     require(m->nz == 3 * MANY - 2, "%zu entries", m->nz);
     for (size_t i = 0; i < MANY; i++) {
@@ -192,19 +194,23 @@ TEST(refusals)
         const char *path, *text, *message;
     } bad[] = {
         {"p.sti", "1 1 1\n2 2 1\n3 3\n", "p.sti:3: the line ends before value"},
-        {"p.sti", "1 1 1\n2 2 1\n5 3 1\n", "p.sti:3: row \"5\" is no whole number from 1 to 4"},
-        {"p.sti", "1 1 1\n2 0 1\n", "p.sti:2: column \"0\" is no whole number from 1 to 4"},
+        {"p.sti", "1 1 1\n2 2 1\n5 3 1\n", "p.sti:3: row 5, but the degrees of freedom in other.dof are 4"},
+        {"p.sti", "1 1 1\n2 0 1\n", "p.sti:2: column \"0\" is no whole number from 1 to 2147483647"},
+        {"p.sti", "1 1 1\n2 5 1\n", "p.sti:2: column 5, but the degrees of freedom in other.dof are 4"},
         {"p.sti", "1 1 1\n2 2 nan\n", "p.sti:2: value \"nan\" is no finite number"},
         {"p.sti", "1 1 1\n2 2 1e999\n", "p.sti:2: value \"1e999\" is no finite number"},
         {"p.sti", "1 1 1\n2 2 1 7\n", "p.sti:2: \"7\" is too much"},
         {"p.sti", "1 1 1\n1 2 3\n2 2 1\n2 1 3\n3 3 1\n4 4 1\n", "p.sti:4: row 2, column 1 has been given in line 2"},
-        {"p.mas", "1 1 1\n2 2 1\n4 4 1\n", "p.mas: row 3 of 4 has no entry on the diagonal"},
+        {"p.mas", "1 1 1\n2 2 1\n4 4 1\n",
+         "p.mas: row 3 of 4 has no entry on the diagonal: is the file cut off, or does it belong to other degrees of "
+         "freedom than those in other.dof?"},
         {"p.mas", "", "p.mas: row 1 of 4 has no entry on the diagonal"},
         {"K.mtx", "%%MatrixMarket matrix coordinate real general\n4 4 2\n1 1 1\n", "K.mtx:3: the file ends after 1 entries of 2"},
         {"K.mtx", "%%MatrixMarket matrix coordinate real general\n4 4 1\n1 1 1\n2 2 1\n", "K.mtx:4: more entries than the 1"},
         {"K.mtx", "%%MatrixMarket matrix coordinate real general\n4 4 2\n1 2 1\n1 2 2\n",
          "K.mtx:4: row 1, column 2 has been given"},
-        {"K.mtx", "%%MatrixMarket matrix coordinate real general\n5 5 1\n1 2 1\n", "K.mtx:2: 5 rows and 5 columns"},
+        {"K.mtx", "%%MatrixMarket matrix coordinate real general\n5 5 1\n1 2 1\n",
+         "K.mtx:2: 5 rows and 5 columns, but the degrees of freedom in other.dof are 4"},
         {"p.dof", "11.1\n12\n", "p.dof:2: expected node.direction"},
         {"p.dof", "11.1\n12.3.1\n", "p.dof:2: expected node.direction"},
         {"p.dof", "11.1\n12.4\n", "p.dof:2: direction \"4\" is no whole number from 1 to 3"},

@@ -429,6 +429,44 @@ TEST(synchronous)
     require(order_of(dt, error, 4) > 1.7, "order %.2f, errors %g to %g", order_of(dt, error, 4), error[0], error[3]);
 }
 
+static int raise_static(double t, const double *y, int event, void *data)
+{
+    const double ratio = 4.0;
+    (void)y;
+    (void)event;
+    if (fabs(t - 0.5) < 1e-9) {
+        assert_ok(tribo_set_static(data, &ratio, NULL));
+    }
+    return 0;
+}
+
+/* Static limits that an observer sets count from the next step on, as they do from the next advance on: a block that slides to rest
+ * does so by the limit to slide. */
+TEST(static_limits_by_an_observer)
+{
+    const double one = 1.0, limit = 1.0;
+    double y[2][3] = {{0.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+    for (int watched = 0; watched < 2; watched++) {
+        double t = 0.0;
+        tribo_system *sys;
+        assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &(double){0.0}, &one, 0, NULL, 0));
+        tribo_context *contacts = tribo_system_context(sys);
+        assert_ok(tribo_set_limit(contacts, &limit));
+        tribo_driver *drv = driver_create(sys, methods[_i], 0.0625, 0.0);
+        if (watched) {
+            assert_ok(tribo_driver_set_observer(drv, raise_static, contacts));
+        } else {
+            driver_advance(drv, &t, 0.5, y[0]);
+            raise_static(t, y[0], 0, contacts);
+        }
+        driver_advance(drv, &t, 2.0, y[watched]);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    assert_close(y[0][0], 0.5, 0.01);
+    assert_all_close(y[1], y[0], 3, 1e-12);
+}
+
 /* ---------------------------------------------------------------------------------------------------------------- tables */
 
 /* Closed forms as in the suite event: load 0, 2, 0 at t = 0, 2, 4 on limit 1; and limit 2, 0, 0 at t = 0, 2, 3 under load 1. */
@@ -484,4 +522,4 @@ TEST(observer_stops)
 
 TEST_MAIN("step_form", {orders, 2 * REFERENCES}, {errors_seen, COUNT(seen)}, {counts, 2}, {balance_of_energy, 12},
           {no_epsilon, 2}, {stuck, 2}, {no_creep, 2}, {limit_of_stability, 1}, {largest_stable_step, 8}, {long_chains, 1},
-          {damping, 1}, {synchronous, 2}, {tables, 2}, {observer_stops, 2})
+          {damping, 1}, {static_limits_by_an_observer, 2}, {synchronous, 2}, {tables, 2}, {observer_stops, 2})

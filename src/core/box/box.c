@@ -257,27 +257,50 @@ int tribo_box_solve(struct box_qp *p)
     return box_primal_dual(p) || box_primal(p);
 }
 
-/* The rounding of shares may be much to a contact that carries little: then it is taken away again, where the boxes have room for
- * that, and otherwise the contacts share as they did before. */
-void tribo_box_share(struct box_qp *p)
+/* Of solutions takes the one of least norm. The rounding of shares may be much to a contact that carries little: then it is taken
+ * away again, where the boxes have room for that. Returns how far x is from a solution; before is the x that it comes from, and
+ * after is x. */
+static double box_share_once(struct box_qp *p, double *before, double *after)
 {
-    double *before = p->spare[0], *split = p->spare[1];
     memcpy(before, p->x, p->group->size * sizeof *before);
     if (!tribo_least_norm(p)) {
-        return;
+        return 0.0;
     }
-    memcpy(split, p->x, p->group->size * sizeof *split);
+    memcpy(after, p->x, p->group->size * sizeof *after);
     tribo_box_gradients(p, 0);
     box_refine(p);
     if (!box_inside(p)) {
-        box_restore(p, split);
+        box_restore(p, after);
     }
-    const double after = box_violation(p);
-    if (after > TRIBO_SETTLED) {
-        memcpy(split, p->x, p->group->size * sizeof *split);
+    memcpy(after, p->x, p->group->size * sizeof *after);
+    return box_violation(p);
+}
+
+/* A solution as without earlier calls. Returns 0 if none is found with patience. */
+static int box_solve_afresh(struct box_qp *p)
+{
+    tribo_box_forget_low(p);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = clamp(0.0, p->lo[i], p->hi[i]);
+    }
+    tribo_box_enter(p, 0);
+    return box_primal_dual(p);
+}
+
+/* Of large forces of earlier calls that come to nothing there is left what was rounding of them, and that may be too much: then all
+ * begins without them. Where that does not do either, contacts share as they did before. */
+void tribo_box_share(struct box_qp *p)
+{
+    double *before = p->spare[0], *after = p->spare[1];
+    double violation = box_share_once(p, before, after);
+    if (violation > TRIBO_SETTLED && box_solve_afresh(p)) {
+        violation = box_share_once(p, before, after);
+    }
+    if (violation > TRIBO_SETTLED) {
         box_restore(p, before);
-        if (box_violation(p) > after) {
-            box_restore(p, split);
+        if (box_violation(p) > violation) {
+            box_restore(p, after);
         }
     }
 }

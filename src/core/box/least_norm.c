@@ -10,6 +10,9 @@
 #include <math.h>
 #include <string.h>
 
+/* Null vectors are found through a factor, which leaves more than the rounding of a sum. */
+#define NULL_NOISE 64.0
+
 void tribo_null_vector(const struct box_qp *p, size_t d, double *y)
 {
     const struct group *g = p->group;
@@ -103,7 +106,7 @@ static int can_move(struct box_qp *p, size_t vectors, size_t i)
     for (size_t j = 0; j < vectors; j++) {
         square += p->basis[j * p->group->size + i] * p->basis[j * p->group->size + i];
     }
-    const int can = sqrt(square) > tribo_resolution(p->group->size);
+    const int can = sqrt(square) > NULL_NOISE * tribo_resolution(p->group->size);
     for (size_t j = 0; !can && j < vectors; j++) {
         p->basis[j * p->group->size + i] = 0.0;
     }
