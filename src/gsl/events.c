@@ -193,6 +193,7 @@ static void forget(struct events *e, int continues)
 {
     e->begun = NULL;
     e->search.expected = 0.0;
+    e->anew = !continues;
     if (!continues) {
         memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
     }

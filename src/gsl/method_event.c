@@ -244,6 +244,7 @@ static void destroy(tribo_driver *drv)
         free(e->q);
         free(e->cosine);
         tribo_planar_series_free(&e->planar);
+        tribo_creep_free(&e->creep);
         tribo_series_transition_free(&e->perturbed);
         free(e);
     }
@@ -348,26 +349,108 @@ static void state(void *motion, double tau, const double *from, double *to)
  * velocities and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
 #define LONGEST 3.0
 
+static double longest(const struct event *e, double most)
+{
+    return fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most;
+}
+
 static double planar_length(struct event *e, double most)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const double error = wanted(e, e->u, e->sys->ndof, HUGE_VAL);
     tribo_planar_series_errors(&e->planar, m, m->plane->error);
-    double h = lesser(step_length(e), fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most);
+    double h = lesser(step_length(e), longest(e, most));
     while (!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) && h > 0.0) {
         h *= 0.8;
     }
     return h;
 }
 
+/* Contacts have to creep for so many steps by series before longer ones are tried; and at most for so many after a trial that
+ * failed. Such steps change by these factors, and a trial ends at steps that are so many times shorter than its first one. */
+#define PATIENCE 8
+#define MOST_PATIENCE 128
+#define GROWS 4.0
+#define SHRINKS 0.2
+#define GIVES_UP 0.05
+
+/* A first step, in parts of the longest one. */
+#define FIRST 0.25
+
+/* How many times as long a step may be as one that has this defect, with some reserve. */
+static double change(double defect)
+{
+    return lesser(greater(0.8 * pow(defect, -1.0 / TRIBO_CREEP_NODES), SHRINKS), GROWS);
+}
+
+/* Tries steps with directions by collocation, the first one of length h. *length is that of the one that is good enough, or 0. */
+static int try_creep(struct event *e, double t, const double *y, double h, double *length)
+{
+    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL), least = GIVES_UP * h;
+    struct stick_slip *m = &e->events.stick_slip;
+    for (*length = 0.0; *length == 0.0 && h > least;) {
+        double defect = HUGE_VAL;
+        const int status = tribo_creep_expand(e, t, y, h, error, &defect);
+        if (status) {
+            return status;
+        }
+        tribo_planar_series_errors(&e->planar, m, m->plane->error);
+        const double part = step_length(e) / h;
+        *length = defect <= 1.0 && part >= 1.0 ? h : 0.0;
+        h *= defect <= 1.0 && part < 1.0 ? greater(0.9 * part, SHRINKS) : change(defect);
+    }
+    e->creep.length = *length > 0.0 ? h : 0.0;
+    return TRIBO_OK;
+}
+
+/* The same if contacts creep, and have done so for a while; most is the longest step. */
+static int creep(struct event *e, double t, const double *y, double most, double *length)
+{
+    struct creep *c = &e->creep;
+    if (e->events.anew) {
+        e->events.anew = 0;
+        c->length = 0.0;
+        c->wait = PATIENCE;
+        c->waited = 0;
+    }
+    *length = 0.0;
+    if (!tribo_creep_may(e, y, most)) {
+        c->waited = 0;
+        return TRIBO_OK;
+    }
+    if (c->length == 0.0 && c->waited++ < c->wait) {
+        return TRIBO_OK;
+    }
+    const int status = try_creep(e, t, y, c->length > 0.0 ? lesser(c->length, most) : FIRST * most, length);
+    c->wait = *length > 0.0 ? PATIENCE : c->wait < MOST_PATIENCE ? 2 * c->wait : MOST_PATIENCE;
+    c->waited = 0;
+    return status;
+}
+
+/* The series from (t, y) on, and how far it may serve. */
+static int expand(struct event *e, double t, const double *y, double most, double *length)
+{
+    if (!e->events.stick_slip.plane) {
+        const int status = tribo_event_expand(e, t, y);
+        *length = status ? 0.0 : step_length(e);
+        return status;
+    }
+    int status = creep(e, t, y, longest(e, most), length);
+    if (!status && *length == 0.0) {
+        status = tribo_event_expand(e, t, y);
+        *length = status ? 0.0 : planar_length(e, most);
+    }
+    return status;
+}
+
 static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
-    const int status = tribo_event_expand(e, t, y);
+    double length;
+    const int status = expand(e, t, y, *reach, &length);
     if (status) {
         return status;
     }
-    const double length = e->events.stick_slip.plane ? planar_length(e, *reach) : step_length(e);
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;

@@ -1,0 +1,392 @@
+#include "event_series.h"
+#include "../common/real.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NODES TRIBO_CREEP_NODES
+
+/* More contacts than these follow their series: Newton's matrices are dense. */
+#define MOST_CONTACTS 32
+
+/* A step pays that is longer than so many times in which friction would stop a contact. */
+#define PAYS 40.0
+
+#define MOST_ITERATIONS 10
+
+/* Newton's method ends with steps of this part of what directions may be off; and fails at steps of this angle. */
+#define ENOUGH 1e-2
+#define TOO_FAR 1.5
+
+/* Directions may be off by so much, however little it moves. */
+#define MOST_OFF 1e-4
+
+/* Zeros of P_8 - P_7, Legendre's polynomials, on [0, 1]. */
+static const double node[NODES] = {0.022479386438712498, 0.11467905316090423, 0.26578982278458947, 0.45284637366944461,
+                                   0.64737528288683036,  0.81975930826310764, 0.94373743946307788, 1.0};
+
+void tribo_creep_free(struct creep *c)
+{
+    free(c->weight);
+    free(c->slip);
+    free(c->slides);
+    memset(c, 0, sizeof *c);
+}
+
+/* --------------------------------------------------------------------------------------------------------- what it takes */
+
+static void set_basis(struct creep *c)
+{
+    memset(c->basis, 0, sizeof c->basis);
+    for (size_t i = 0; i < NODES; i++) {
+        double *b = c->basis[i];
+        b[0] = 1.0;
+        for (size_t j = 0; j < NODES; j++) { /* times (x - node_j)/(node_i - node_j) */
+            for (size_t k = NODES - 1; j != i && k < NODES; k--) {
+                b[k] = ((k ? b[k - 1] : 0.0) - node[j] * b[k]) / (node[i] - node[j]);
+            }
+        }
+    }
+}
+
+/* What a constant force does with time^m, one that is time^k does with m! k!/(m + k)! time^(m + k). */
+static void set_weights(struct creep *c)
+{
+    for (size_t m = 0; m < c->terms; m++) {
+        for (size_t j = 0; j < NODES; j++) {
+            double *w = c->weight + (m * NODES + j) * NODES, part = pow(node[j], (double)m);
+            memset(w, 0, NODES * sizeof *w);
+            for (size_t k = 0; k < NODES; k++) {
+                for (size_t i = 0; i < NODES; i++) {
+                    w[i] += part * c->basis[i][k];
+                }
+                part *= node[j] * (double)(k + 1) / (double)(m + k + 1);
+            }
+        }
+    }
+}
+
+static int reserve(struct event *e)
+{
+    struct creep *c = &e->creep;
+    const size_t contacts = e->events.stick_slip.plane->count, terms = e->most_order + 1, unknowns = contacts * NODES;
+    if (c->weight && c->contacts >= contacts) {
+        return TRIBO_OK;
+    }
+    tribo_creep_free(c);
+    const size_t response = 4 * contacts * contacts * terms;
+    c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 2)) * sizeof *c->weight);
+    c->slip = malloc(2 * e->sys->ncontact);
+    c->slides = malloc((contacts + unknowns) * sizeof *c->slides);
+    if (!c->weight || !c->slip || !c->slides) {
+        tribo_creep_free(c);
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", contacts,
+                                 plural(contacts));
+    }
+    c->response = c->weight + terms * NODES * NODES;
+    c->matrix = c->response + response;
+    c->rest = c->matrix + unknowns * unknowns;
+    c->angle = c->rest + unknowns;
+    c->holds = (unsigned char *)c->slip + e->sys->ncontact;
+    c->pivot = c->slides + contacts;
+    c->contacts = contacts;
+    c->terms = terms;
+    set_basis(c);
+    set_weights(c);
+    return TRIBO_OK;
+}
+
+/* Those that slide, to c->slides. Returns how many. */
+static size_t find_sliding(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    size_t count = 0;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        if (m->slip[m->plane->contact[k].at] == TRIBO_IN_PLANE) {
+            e->creep.slides[count++] = k;
+        }
+    }
+    return count;
+}
+
+int tribo_creep_may(const struct event *e, const double *y, double length)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    size_t slides = 0;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
+        slides += (size_t)moves;
+        if (moves && p->begins != SLIDES_ON) {
+            return 0;
+        }
+    }
+    return slides > 0 && slides <= MOST_CONTACTS && !m->breakaway.falls && length < HUGE_VAL &&
+           length > PAYS * tribo_planar_series_stop(m, e->sys, y);
+}
+
+/* --------------------------------------------------------------------------------------------------------- directions */
+
+/* The directions of contact k as c->angle says. */
+static void fit(struct event *e, size_t k, double h)
+{
+    const struct creep *c = &e->creep;
+    struct planar_line *l = &e->planar.line[k];
+    double power = 1.0;
+    memset(l->un, 0, (e->order + 1) * sizeof *l->un);
+    memset(l->ut, 0, (e->order + 1) * sizeof *l->ut);
+    for (size_t p = 0; p < NODES; p++) {
+        for (size_t i = 0; i < NODES; i++) {
+            l->un[p] += power * c->basis[i][p] * cos(c->angle[k * NODES + i]);
+            l->ut[p] += power * c->basis[i][p] * sin(c->angle[k * NODES + i]);
+        }
+        power /= h;
+    }
+}
+
+/* As the direction turns where the last step ended it may go on. */
+static void guess(struct event *e, size_t k, double h)
+{
+    const struct planar_line *l = &e->planar.line[k];
+    double turn = 0.0, power = 1.0, un = l->un[0], ut = l->ut[0], dn = 0.0, dt = 0.0;
+    for (size_t p = 1; p <= e->order; p++) {
+        dn += (double)p * power * l->un[p];
+        dt += (double)p * power * l->ut[p];
+        power *= e->length;
+        un += power * l->un[p];
+        ut += power * l->ut[p];
+    }
+    turn = un * dt - ut * dn;
+    for (size_t i = 0; i < NODES; i++) {
+        e->creep.angle[k * NODES + i] = fabs(turn * h) < 1.0 ? turn * h * node[i] : 0.0;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ response */
+
+/* to [terms][2 contacts] += factor times the series of x. */
+static void add_series(const struct event *e, double factor, double *to)
+{
+    const struct planar_slip *plane = e->events.stick_slip.plane;
+    for (size_t k = 0; k <= e->order; k++) {
+        for (size_t i = 0; i < 2 * plane->count; i++) {
+            const struct planar_contact *p = &plane->contact[i / 2];
+            to[k * 2 * plane->count + i] += factor * p->limit[i % 2] * e->watch[k * e->sys->ncontact + p->at + i % 2];
+        }
+    }
+}
+
+/* c->response of all that slide, as a difference to the motion without their friction. */
+static int find_response(struct event *e, size_t slides)
+{
+    struct creep *c = &e->creep;
+    const size_t row = 2 * e->events.stick_slip.plane->count, bytes = (e->order + 1) * sizeof(double);
+    for (size_t s = 0; s < slides; s++) {
+        memset(e->planar.line[c->slides[s]].un, 0, bytes);
+        memset(e->planar.line[c->slides[s]].ut, 0, bytes);
+    }
+    int status = tribo_event_series(e);
+    memset(c->response, 0, row * c->terms * row * sizeof *c->response);
+    for (size_t s = 0; !status && s < 2 * slides; s++) {
+        add_series(e, -1.0, c->response + s * c->terms * row);
+    }
+    for (size_t s = 0; !status && s < 2 * slides; s++) {
+        struct planar_line *l = &e->planar.line[c->slides[s / 2]];
+        l->un[0] = l->n[s % 2];
+        l->ut[0] = l->t[s % 2];
+        status = tribo_event_series(e);
+        l->un[0] = l->ut[0] = 0.0;
+        add_series(e, 1.0, c->response + s * c->terms * row);
+    }
+    return status;
+}
+
+/* The same, unless it is known. */
+static int learn_response(struct event *e, size_t slides)
+{
+    struct creep *c = &e->creep;
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t revision = tribo_system_revision(e->sys), contacts = e->sys->ncontact;
+    if (c->known && c->revision == revision && memcmp(c->slip, m->slip, contacts) == 0 &&
+        memcmp(c->holds, m->holds, contacts) == 0) {
+        return TRIBO_OK;
+    }
+    const int status = find_response(e, slides);
+    c->known = !status;
+    c->revision = revision;
+    memcpy(c->slip, m->slip, contacts);
+    memcpy(c->holds, m->holds, contacts);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- Newton */
+
+/* u turned by a quarter, along axes, at a node of the s-th one that slides. */
+static void across(const struct event *e, size_t s, size_t i, double *w)
+{
+    const size_t k = e->creep.slides[s];
+    const struct planar_line *l = &e->planar.line[k];
+    const double cosine = cos(e->creep.angle[k * NODES + i]), sine = sin(e->creep.angle[k * NODES + i]);
+    for (size_t d = 0; d < 2; d++) {
+        w[d] = cosine * l->t[d] - sine * l->n[d];
+    }
+}
+
+/* to [NODES][NODES] += factor times what a force along axis `from` of those that slide does to x of one along `axis`, [2 contacts] */
+static void add_response(const struct event *e, size_t from, size_t axis, double h, double (*to)[NODES])
+{
+    const struct creep *c = &e->creep;
+    const size_t row = 2 * e->events.stick_slip.plane->count;
+    double power = 1.0;
+    memset(to, 0, NODES * sizeof *to);
+    for (size_t m = 0; m <= e->order; m++) {
+        const double r = power * c->response[(from * c->terms + m) * row + axis];
+        for (size_t j = 0; r != 0.0 && j < NODES * NODES; j++) {
+            to[j / NODES][j % NODES] += r * c->weight[m * NODES * NODES + j];
+        }
+        power *= h;
+    }
+}
+
+/* Derivatives of what x of contact a has across u by the angles of contact b, a and b among those that slide. */
+static void set_block(struct event *e, size_t a, size_t b, double h, size_t unknowns)
+{
+    double from[NODES][2], to[NODES][2], part[NODES][NODES];
+    for (size_t i = 0; i < NODES; i++) {
+        across(e, b, i, from[i]);
+        across(e, a, i, to[i]);
+        memset(e->creep.matrix + (a * NODES + i) * unknowns + b * NODES, 0, NODES * sizeof *e->creep.matrix);
+    }
+    for (size_t d = 0; d < 4; d++) {
+        add_response(e, 2 * b + d / 2, 2 * e->creep.slides[a] + d % 2, h, part);
+        for (size_t j = 0; j < NODES; j++) {
+            double *row = e->creep.matrix + (a * NODES + j) * unknowns + b * NODES;
+            for (size_t i = 0; i < NODES; i++) {
+                row[i] += to[j][d % 2] * part[j][i] * from[i][d / 2];
+            }
+        }
+    }
+}
+
+/* c->rest = what x has across u; and by what of it along u the matrix is less. */
+static void set_rest(struct event *e, size_t s, double h, size_t unknowns)
+{
+    struct creep *c = &e->creep;
+    const struct planar_line *l = &e->planar.line[c->slides[s]];
+    for (size_t j = 0; j < NODES; j++) {
+        const size_t at = s * NODES + j;
+        const double angle = c->angle[c->slides[s] * NODES + j];
+        const double xn = tribo_planar_series_value(l->xn, e->order, node[j] * h);
+        const double xt = tribo_planar_series_value(l->xt, e->order, node[j] * h);
+        c->rest[at] = xt * cos(angle) - xn * sin(angle);
+        c->matrix[at * unknowns + at] -= xn * cos(angle) + xt * sin(angle);
+    }
+}
+
+/* One step of Newton's method; returns its size, HUGE_VAL if there is none. */
+static double improve(struct event *e, size_t slides, double h)
+{
+    struct creep *c = &e->creep;
+    const size_t unknowns = slides * NODES;
+    for (size_t s = 0; s < slides * slides; s++) {
+        set_block(e, s / slides, s % slides, h, unknowns);
+    }
+    for (size_t s = 0; s < slides; s++) {
+        set_rest(e, s, h, unknowns);
+    }
+    if (!(tribo_lu_create(c->matrix, unknowns, c->pivot) > 0.0)) {
+        return HUGE_VAL;
+    }
+    tribo_lu_solve(c->matrix, unknowns, c->pivot, c->rest, 1);
+    for (size_t s = 0; s < unknowns; s++) {
+        c->angle[c->slides[s / NODES] * NODES + s % NODES] -= c->rest[s];
+    }
+    return tribo_largest(c->rest, unknowns);
+}
+
+/* By how much directions may be off over a step: as little as keeps forces from making more than this error of velocities. */
+static double allowed(const struct event *e, size_t k, double h, double error)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const struct planar_contact *p = &m->plane->contact[k];
+    const double r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
+    return lesser(MOST_OFF, error * (double)(NODES + 1) / (r * h));
+}
+
+/* By how much they are: what the last power has between nodes. */
+static double find_off(const struct event *e, size_t k, double h)
+{
+    const struct planar_line *l = &e->planar.line[k];
+    return 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]);
+}
+
+/* The direction that the velocity has at tau is another one. That is gone at once, and the velocity with it; in parts of what the
+ * velocity may be off. */
+static double find_stray(const struct event *e, size_t k, double tau, double error)
+{
+    const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
+    const struct planar_line *l = &e->planar.line[k];
+    const double xn = tribo_planar_series_value(l->xn, e->order, tau), xt = tribo_planar_series_value(l->xt, e->order, tau);
+    const double un = tribo_planar_series_value(l->un, NODES - 1, tau), ut = tribo_planar_series_value(l->ut, NODES - 1, tau);
+    const double size = hypot(xn, xt), speed = size / lesser(p->limit[0], p->limit[1]);
+    return hypot(un - xn / size, ut - xt / size) / lesser(MOST_OFF, error / speed);
+}
+
+/* By how much a step is not as it should be, 1 being what it may; looked at between nodes, and at these for a wrong sign. */
+static double find_defect(const struct event *e, size_t k, double h, double error)
+{
+    double most = greater(find_off(e, k, h) / allowed(e, k, h, error), find_stray(e, k, 0.0, error));
+    for (size_t i = 0; i < NODES; i++) {
+        most = greater(most, find_stray(e, k, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
+        most = greater(most, find_stray(e, k, h * node[i], error));
+    }
+    return most;
+}
+
+static int find_angles(struct event *e, size_t slides, double h, double error, int *found)
+{
+    struct creep *c = &e->creep;
+    double most = MOST_OFF;
+    for (size_t s = 0; s < slides; s++) {
+        most = lesser(most, allowed(e, c->slides[s], h, error));
+    }
+    for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+        for (size_t s = 0; s < slides; s++) {
+            fit(e, c->slides[s], h);
+        }
+        const int status = tribo_event_series(e);
+        if (status) {
+            return status;
+        }
+        const double step = improve(e, slides, h);
+        *found = step <= ENOUGH * most;
+        if (*found || !(step < TOO_FAR)) {
+            return TRIBO_OK;
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, double *defect)
+{
+    struct creep *c = &e->creep;
+    int status = reserve(e), found = 0;
+    if (status) {
+        return status;
+    }
+    const size_t slides = find_sliding(e);
+    for (size_t s = 0; s < slides; s++) {
+        guess(e, c->slides[s], h);
+    }
+    e->planar.given = 1;
+    status = tribo_event_start(e, t, y);
+    status = status ? status : learn_response(e, slides);
+    status = status ? status : find_angles(e, slides, h, error, &found);
+    e->planar.given = 0;
+    *defect = found ? 0.0 : HUGE_VAL;
+    for (size_t s = 0; !status && found && s < slides; s++) {
+        *defect = greater(*defect, find_defect(e, c->slides[s], h, error));
+    }
+    return status;
+}
