@@ -15,9 +15,14 @@
 
 #define MOST_ITERATIONS 10
 
-/* Newton's method ends with steps of this part of what directions may be off; and fails at steps of this angle. */
+/* Newton's method ends with steps of this part of what directions may be off; and fails at steps of this angle, or if one is not
+ * less than this part of the one before. */
 #define ENOUGH 1e-2
 #define TOO_FAR 1.5
+#define HEADWAY 0.5
+
+/* Structure and loads may turn directions by so many times their highest frequency; what turns faster relaxes. */
+#define TURNS 2.0
 
 /* Directions may be off by so much, however little it moves. */
 #define MOST_OFF 1e-4
@@ -145,19 +150,39 @@ static void fit(struct event *e, size_t k, double h)
     }
 }
 
-/* As the direction turns where the last step ended it may go on. */
-static void guess(struct event *e, size_t k, double h)
+/* How fast the direction of contact k turns where the last step ends. */
+static double turn_of(const struct event *e, size_t k)
 {
     const struct planar_line *l = &e->planar.line[k];
-    double turn = 0.0, power = 1.0, un = l->un[0], ut = l->ut[0], dn = 0.0, dt = 0.0;
-    for (size_t p = 1; p <= e->order; p++) {
-        dn += (double)p * power * l->un[p];
-        dt += (double)p * power * l->ut[p];
-        power *= e->length;
-        un += power * l->un[p];
-        ut += power * l->ut[p];
+    double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0;
+    for (size_t p = e->order + 1; p-- > 0;) {
+        dn = dn * e->length + un;
+        dt = dt * e->length + ut;
+        un = un * e->length + l->un[p];
+        ut = ut * e->length + l->ut[p];
     }
-    turn = un * dt - ut * dn;
+    return un * dt - ut * dn;
+}
+
+int tribo_creep_settled(const struct event *e, const double *y, double error)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const double v = hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
+        const double stop = v / lesser(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
+        const double turn = m->slip[p->at] == TRIBO_IN_PLANE ? fabs(turn_of(e, k)) : 0.0;
+        if (!(turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_OFF, error / v))) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* As directions turn they may go on. */
+static void guess(struct event *e, size_t k, double h)
+{
+    const double turn = turn_of(e, k);
     for (size_t i = 0; i < NODES; i++) {
         e->creep.angle[k * NODES + i] = fabs(turn * h) < 1.0 ? turn * h * node[i] : 0.0;
     }
@@ -321,6 +346,9 @@ static double find_off(const struct event *e, size_t k, double h)
     return 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]);
 }
 
+/* A step may go on beyond a stop, with x against u, and ends where x has become this part of what it was at the latest. */
+#define LEFT 1e-2
+
 /* The direction that the velocity has at tau is another one. That is gone at once, and the velocity with it; in parts of what the
  * velocity may be off. */
 static double find_stray(const struct event *e, size_t k, double tau, double error)
@@ -329,17 +357,16 @@ static double find_stray(const struct event *e, size_t k, double tau, double err
     const struct planar_line *l = &e->planar.line[k];
     const double xn = tribo_planar_series_value(l->xn, e->order, tau), xt = tribo_planar_series_value(l->xt, e->order, tau);
     const double un = tribo_planar_series_value(l->un, NODES - 1, tau), ut = tribo_planar_series_value(l->ut, NODES - 1, tau);
-    const double size = hypot(xn, xt), speed = size / lesser(p->limit[0], p->limit[1]);
-    return hypot(un - xn / size, ut - xt / size) / lesser(MOST_OFF, error / speed);
+    const double size = greater(hypot(xn, xt), LEFT * l->xn[0]), speed = size / lesser(p->limit[0], p->limit[1]);
+    return fabs(un * xt - ut * xn) / size / lesser(MOST_OFF, error / speed);
 }
 
-/* By how much a step is not as it should be, 1 being what it may; looked at between nodes, and at these for a wrong sign. */
+/* By how much a step is not as it should be, 1 being what it may; looked at between nodes. */
 static double find_defect(const struct event *e, size_t k, double h, double error)
 {
     double most = greater(find_off(e, k, h) / allowed(e, k, h, error), find_stray(e, k, 0.0, error));
     for (size_t i = 0; i < NODES; i++) {
         most = greater(most, find_stray(e, k, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
-        most = greater(most, find_stray(e, k, h * node[i], error));
     }
     return most;
 }
@@ -347,7 +374,7 @@ static double find_defect(const struct event *e, size_t k, double h, double erro
 static int find_angles(struct event *e, size_t slides, double h, double error, int *found)
 {
     struct creep *c = &e->creep;
-    double most = MOST_OFF;
+    double most = MOST_OFF, before = TOO_FAR;
     for (size_t s = 0; s < slides; s++) {
         most = lesser(most, allowed(e, c->slides[s], h, error));
     }
@@ -361,9 +388,10 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
         }
         const double step = improve(e, slides, h);
         *found = step <= ENOUGH * most;
-        if (*found || !(step < TOO_FAR)) {
+        if (*found || !(step < before)) {
             return TRIBO_OK;
         }
+        before = HEADWAY * step;
     }
     return TRIBO_OK;
 }

@@ -36,9 +36,11 @@ struct creep {
 
 void tribo_creep_free(struct creep *c);
 
-/* The longest time of contacts' own, in which friction would stop them, beside which a step of this length may be worthwhile; 0
- * where no such step can be. */
+/* 1 if a step of this length is worthwhile: friction would stop a contact long before. 0 also where no such step can be. */
 int tribo_creep_may(const struct event *e, const double *y, double length);
+
+/* 1 if by the last step, which ended with y, directions follow what is asked of them, to what keeps velocities to `error`. */
+int tribo_creep_settled(const struct event *e, const double *y, double error);
 
 /* Sets the series of the motion from (t, y) on for a step of length h. *defect is by how much directions are off between nodes, in
  * parts of what keeps velocities to `error`; HUGE_VAL if there is no answer. Returns a status. */

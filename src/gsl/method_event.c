@@ -366,13 +366,13 @@ static double planar_length(struct event *e, double most)
     return h;
 }
 
-/* Contacts have to creep for so many steps by series before longer ones are tried; and at most for so many after a trial that
- * failed. Such steps change by these factors, and a trial ends at steps that are so many times shorter than its first one. */
+/* Contacts have to creep for so many steps by series before longer ones are tried; and at most for so many after trials that
+ * failed, of which there are at most so many at once. Lengths change by these factors. */
 #define PATIENCE 8
 #define MOST_PATIENCE 128
 #define GROWS 4.0
 #define SHRINKS 0.2
-#define GIVES_UP 0.05
+#define MOST_TRIALS 3
 
 /* A first step, in parts of the longest one. */
 #define FIRST 0.25
@@ -384,11 +384,10 @@ static double change(double defect)
 }
 
 /* Tries steps with directions by collocation, the first one of length h. *length is that of the one that is good enough, or 0. */
-static int try_creep(struct event *e, double t, const double *y, double h, double *length)
+static int try_creep(struct event *e, double t, const double *y, double h, double error, double *length)
 {
-    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL), least = GIVES_UP * h;
     struct stick_slip *m = &e->events.stick_slip;
-    for (*length = 0.0; *length == 0.0 && h > least;) {
+    for (int trial = 0; *length == 0.0 && trial < MOST_TRIALS; trial++) {
         double defect = HUGE_VAL;
         const int status = tribo_creep_expand(e, t, y, h, error, &defect);
         if (status) {
@@ -418,10 +417,11 @@ static int creep(struct event *e, double t, const double *y, double most, double
         c->waited = 0;
         return TRIBO_OK;
     }
-    if (c->length == 0.0 && c->waited++ < c->wait) {
+    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    if (c->length == 0.0 && (c->waited++ < c->wait || !tribo_creep_settled(e, y, error))) {
         return TRIBO_OK;
     }
-    const int status = try_creep(e, t, y, c->length > 0.0 ? lesser(c->length, most) : FIRST * most, length);
+    const int status = try_creep(e, t, y, c->length > 0.0 ? lesser(c->length, most) : FIRST * most, error, length);
     c->wait = *length > 0.0 ? PATIENCE : c->wait < MOST_PATIENCE ? 2 * c->wait : MOST_PATIENCE;
     c->waited = 0;
     return status;
