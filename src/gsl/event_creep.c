@@ -14,6 +14,7 @@
 #define PAYS 40.0
 
 #define MOST_ITERATIONS 10
+#define BISECTIONS 60
 
 /* Newton's method ends with steps of this part of what directions may be off; and fails at steps of this angle, or if one is not
  * less than this part of the one before. */
@@ -26,6 +27,13 @@
 
 /* Directions may be off by so much, however little it moves. */
 #define MOST_OFF 1e-4
+
+/* Over a step speeds grow so many times at most: what is small where it begins is not to be lost beside what comes. */
+#define FASTER 100.0
+
+/* Lengths of steps change by these factors. */
+#define GROWS 4.0
+#define SHRINKS 0.2
 
 /* Zeros of P_8 - P_7, Legendre's polynomials, on [0, 1]. */
 static const double node[NODES] = {0.022479386438712498, 0.11467905316090423, 0.26578982278458947, 0.45284637366944461,
@@ -346,19 +354,70 @@ static double find_off(const struct event *e, size_t k, double h)
     return 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]);
 }
 
-/* A step may go on beyond a stop, with x against u, and ends where x has become this part of what it was at the latest. */
+/* A step may go on beyond a stop, where x is against u. It ends where x has become this part of what it was (method_event.c), and
+ * no smaller one has to have the direction of u. */
 #define LEFT 1e-2
+
+/* What x has along u, and across. */
+static void take_parts(const struct event *e, size_t k, double tau, double *along, double *across)
+{
+    const struct planar_line *l = &e->planar.line[k];
+    const double xn = tribo_planar_series_value(l->xn, e->order, tau), xt = tribo_planar_series_value(l->xt, e->order, tau);
+    const double un = tribo_planar_series_value(l->un, NODES - 1, tau), ut = tribo_planar_series_value(l->ut, NODES - 1, tau);
+    *along = un * xn + ut * xt;
+    *across = un * xt - ut * xn;
+}
 
 /* The direction that the velocity has at tau is another one. That is gone at once, and the velocity with it; in parts of what the
  * velocity may be off. */
 static double find_stray(const struct event *e, size_t k, double tau, double error)
 {
     const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
+    double along, across;
+    take_parts(e, k, tau, &along, &across);
+    const double size = greater(hypot(along, across), LEFT * e->planar.line[k].xn[0]);
+    return fabs(across) / size / lesser(MOST_OFF, error * lesser(p->limit[0], p->limit[1]) / size);
+}
+
+/* 1 if the contact slides along u; or stops on the way, so that the step ends before it does not. */
+static int is_with(const struct event *e, size_t k, double h)
+{
+    double along, across, from = 0.0, to = 0.0;
+    take_parts(e, k, 0.0, &along, &across);
+    if (!(along > 0.0)) {
+        return 0;
+    }
+    for (size_t i = 0; i < NODES && along > 0.0; i++) {
+        from = to;
+        to = node[i] * h;
+        take_parts(e, k, to, &along, &across);
+    }
+    for (int i = 0; i < BISECTIONS && along <= 0.0; i++) {
+        const double middle = 0.5 * (from + to);
+        take_parts(e, k, middle, &along, &across);
+        *(along > 0.0 ? &from : &to) = middle;
+        along = 0.0;
+    }
+    return along > 0.0 || fabs(across) < 0.5 * LEFT * e->planar.line[k].xn[0];
+}
+
+static double size_at(const struct event *e, size_t k, double tau)
+{
     const struct planar_line *l = &e->planar.line[k];
-    const double xn = tribo_planar_series_value(l->xn, e->order, tau), xt = tribo_planar_series_value(l->xt, e->order, tau);
-    const double un = tribo_planar_series_value(l->un, NODES - 1, tau), ut = tribo_planar_series_value(l->ut, NODES - 1, tau);
-    const double size = greater(hypot(xn, xt), LEFT * l->xn[0]), speed = size / lesser(p->limit[0], p->limit[1]);
-    return fabs(un * xt - ut * xn) / size / lesser(MOST_OFF, error / speed);
+    return hypot(tribo_planar_series_value(l->xn, e->order, tau), tribo_planar_series_value(l->xt, e->order, tau));
+}
+
+/* How much of a step of length h has no more speed than so many times that which it begins with: h, or h halved some times. */
+static double find_slow_part(const struct event *e, size_t k, double h)
+{
+    const double most = FASTER * e->planar.line[k].xn[0];
+    double part = h;
+    for (size_t i = 0; i < NODES; i++) {
+        while (size_at(e, k, node[i] * part) > most) {
+            part *= 0.5;
+        }
+    }
+    return part;
 }
 
 /* By how much a step is not as it should be, 1 being what it may; looked at between nodes. */
@@ -368,7 +427,13 @@ static double find_defect(const struct event *e, size_t k, double h, double erro
     for (size_t i = 0; i < NODES; i++) {
         most = greater(most, find_stray(e, k, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
     }
-    return most;
+    return is_with(e, k, h) ? most : HUGE_VAL;
+}
+
+/* How many times as long a step may be as one that has this defect, with some reserve. */
+static double change(double defect)
+{
+    return lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
 }
 
 static int find_angles(struct event *e, size_t slides, double h, double error, int *found)
@@ -396,7 +461,19 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
     return TRIBO_OK;
 }
 
-int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, double *defect)
+/* Whether the step is good, and how long the next one may be. */
+static void judge(const struct event *e, size_t slides, double h, double error, struct creep_step *step)
+{
+    double defect = 0.0, slow = h;
+    for (size_t s = 0; s < slides; s++) {
+        defect = greater(defect, find_defect(e, e->creep.slides[s], h, error));
+        slow = lesser(slow, find_slow_part(e, e->creep.slides[s], h));
+    }
+    step->good = defect <= 1.0 && slow == h;
+    step->next = slow < h ? slow : h * change(defect);
+}
+
+int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step)
 {
     struct creep *c = &e->creep;
     int status = reserve(e), found = 0;
@@ -412,9 +489,9 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     status = status ? status : learn_response(e, slides);
     status = status ? status : find_angles(e, slides, h, error, &found);
     e->planar.given = 0;
-    *defect = found ? 0.0 : HUGE_VAL;
-    for (size_t s = 0; !status && found && s < slides; s++) {
-        *defect = greater(*defect, find_defect(e, c->slides[s], h, error));
+    *step = (struct creep_step){0, SHRINKS * h};
+    if (!status && found) {
+        judge(e, slides, h, error, step);
     }
     return status;
 }

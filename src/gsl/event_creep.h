@@ -42,8 +42,12 @@ int tribo_creep_may(const struct event *e, const double *y, double length);
 /* 1 if by the last step, which ended with y, directions follow what is asked of them, to what keeps velocities to `error`. */
 int tribo_creep_settled(const struct event *e, const double *y, double error);
 
-/* Sets the series of the motion from (t, y) on for a step of length h. *defect is by how much directions are off between nodes, in
- * parts of what keeps velocities to `error`; HUGE_VAL if there is no answer. Returns a status. */
-int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, double *defect);
+/* Sets the series of the motion from (t, y) on for a step of length h, which is good if velocities are right to `error`. Returns a
+ * status. */
+struct creep_step {
+    int good;
+    double next; /* how long another one may be, after this one or in its place */
+};
+int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step);
 
 #endif

@@ -367,38 +367,31 @@ static double planar_length(struct event *e, double most)
 }
 
 /* Contacts have to creep for so many steps by series before longer ones are tried; and at most for so many after trials that
- * failed, of which there are at most so many at once. Lengths change by these factors. */
+ * failed, of which there are at most so many at once. */
 #define PATIENCE 8
 #define MOST_PATIENCE 128
-#define GROWS 4.0
-#define SHRINKS 0.2
 #define MOST_TRIALS 3
 
 /* A first step, in parts of the longest one. */
 #define FIRST 0.25
 
-/* How many times as long a step may be as one that has this defect, with some reserve. */
-static double change(double defect)
-{
-    return lesser(greater(0.8 * pow(defect, -1.0 / TRIBO_CREEP_NODES), SHRINKS), GROWS);
-}
-
 /* Tries steps with directions by collocation, the first one of length h. *length is that of the one that is good enough, or 0. */
 static int try_creep(struct event *e, double t, const double *y, double h, double error, double *length)
 {
     struct stick_slip *m = &e->events.stick_slip;
+    struct creep_step step = {0, h};
     for (int trial = 0; *length == 0.0 && trial < MOST_TRIALS; trial++) {
-        double defect = HUGE_VAL;
-        const int status = tribo_creep_expand(e, t, y, h, error, &defect);
+        h = step.next;
+        const int status = tribo_creep_expand(e, t, y, h, error, &step);
         if (status) {
             return status;
         }
         tribo_planar_series_errors(&e->planar, m, m->plane->error);
-        const double part = step_length(e) / h;
-        *length = defect <= 1.0 && part >= 1.0 ? h : 0.0;
-        h *= defect <= 1.0 && part < 1.0 ? greater(0.9 * part, SHRINKS) : change(defect);
+        const double most = step_length(e);
+        *length = step.good && most >= h ? h : 0.0;
+        step.next = step.good && most < h ? 0.9 * most : step.next;
     }
-    e->creep.length = *length > 0.0 ? h : 0.0;
+    e->creep.length = *length > 0.0 ? step.next : 0.0;
     return TRIBO_OK;
 }
 
