@@ -123,7 +123,7 @@ static size_t find_sliding(struct event *e)
     return count;
 }
 
-int tribo_creep_may(const struct event *e, const double *y, double length)
+double tribo_creep_least(const struct event *e, const double *y)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     size_t slides = 0;
@@ -132,11 +132,11 @@ int tribo_creep_may(const struct event *e, const double *y, double length)
         const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
         slides += (size_t)moves;
         if (moves && p->begins != SLIDES_ON) {
-            return 0;
+            return HUGE_VAL;
         }
     }
-    return slides > 0 && slides <= MOST_CONTACTS && !m->breakaway.falls && length < HUGE_VAL &&
-           length > PAYS * tribo_planar_series_stop(m, e->sys, y);
+    const int can = slides > 0 && slides <= MOST_CONTACTS && !m->breakaway.falls;
+    return can ? PAYS * tribo_planar_series_stop(m, e->sys, y) : HUGE_VAL;
 }
 
 /* --------------------------------------------------------------------------------------------------------- directions */
@@ -423,7 +423,7 @@ static double find_slow_part(const struct event *e, size_t k, double h)
 /* By how much a step is not as it should be, 1 being what it may; looked at between nodes. */
 static double find_defect(const struct event *e, size_t k, double h, double error)
 {
-    double most = greater(find_off(e, k, h) / allowed(e, k, h, error), find_stray(e, k, 0.0, error));
+    double most = find_off(e, k, h) / allowed(e, k, h, error);
     for (size_t i = 0; i < NODES; i++) {
         most = greater(most, find_stray(e, k, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
     }
@@ -461,16 +461,17 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
     return TRIBO_OK;
 }
 
-/* Whether the step is good, and how long the next one may be. */
+/* Whether the step is good, and how long the next one may be; what is off where it begins is so in shorter ones, too. */
 static void judge(const struct event *e, size_t slides, double h, double error, struct creep_step *step)
 {
-    double defect = 0.0, slow = h;
+    double defect = 0.0, slow = h, stray = 0.0;
     for (size_t s = 0; s < slides; s++) {
+        stray = greater(stray, find_stray(e, e->creep.slides[s], 0.0, error));
         defect = greater(defect, find_defect(e, e->creep.slides[s], h, error));
         slow = lesser(slow, find_slow_part(e, e->creep.slides[s], h));
     }
-    step->good = defect <= 1.0 && slow == h;
-    step->next = slow < h ? slow : h * change(defect);
+    step->good = stray <= 1.0 && defect <= 1.0 && slow == h;
+    step->next = stray > 1.0 ? 0.0 : slow < h ? slow : h * change(defect);
 }
 
 int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step)

@@ -36,8 +36,8 @@ struct creep {
 
 void tribo_creep_free(struct creep *c);
 
-/* 1 if a step of this length is worthwhile: friction would stop a contact long before. 0 also where no such step can be. */
-int tribo_creep_may(const struct event *e, const double *y, double length);
+/* Steps longer than this are worthwhile, since friction would stop a contact long before; HUGE_VAL where none can be. */
+double tribo_creep_least(const struct event *e, const double *y);
 
 /* 1 if by the last step, which ended with y, directions follow what is asked of them, to what keeps velocities to `error`. */
 int tribo_creep_settled(const struct event *e, const double *y, double error);
@@ -46,7 +46,7 @@ int tribo_creep_settled(const struct event *e, const double *y, double error);
  * status. */
 struct creep_step {
     int good;
-    double next; /* how long another one may be, after this one or in its place */
+    double next; /* how long another one may be, after this one or in its place; 0: none can be good */
 };
 int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step);
 

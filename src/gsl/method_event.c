@@ -375,12 +375,14 @@ static double planar_length(struct event *e, double most)
 /* A first step, in parts of the longest one. */
 #define FIRST 0.25
 
-/* Tries steps with directions by collocation, the first one of length h. *length is that of the one that is good enough, or 0. */
-static int try_creep(struct event *e, double t, const double *y, double h, double error, double *length)
+/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one that is
+ * good enough, or 0. */
+static int try_creep(struct event *e, double t, const double *y, double h, double least, double *length)
 {
+    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
     struct stick_slip *m = &e->events.stick_slip;
     struct creep_step step = {0, h};
-    for (int trial = 0; *length == 0.0 && trial < MOST_TRIALS; trial++) {
+    for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
         h = step.next;
         const int status = tribo_creep_expand(e, t, y, h, error, &step);
         if (status) {
@@ -395,26 +397,28 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
     return TRIBO_OK;
 }
 
+static void forget_creep(struct creep *c)
+{
+    c->length = 0.0;
+    c->wait = PATIENCE;
+    c->waited = 0;
+}
+
 /* The same if contacts creep, and have done so for a while; most is the longest step. */
 static int creep(struct event *e, double t, const double *y, double most, double *length)
 {
     struct creep *c = &e->creep;
-    if (e->events.anew) {
-        e->events.anew = 0;
-        c->length = 0.0;
-        c->wait = PATIENCE;
-        c->waited = 0;
+    const double least = tribo_creep_least(e, y), last = c->length;
+    if (e->events.anew || !(least < most)) {
+        forget_creep(c);
     }
+    e->events.anew = 0;
     *length = 0.0;
-    if (!tribo_creep_may(e, y, most)) {
-        c->waited = 0;
+    if (!(least < most) || (c->length == 0.0 && (c->waited++ < c->wait || !tribo_creep_settled(e, y, wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL))))) {
         return TRIBO_OK;
     }
-    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
-    if (c->length == 0.0 && (c->waited++ < c->wait || !tribo_creep_settled(e, y, error))) {
-        return TRIBO_OK;
-    }
-    const int status = try_creep(e, t, y, c->length > 0.0 ? lesser(c->length, most) : FIRST * most, error, length);
+    const int status = try_creep(e, t, y, c->length > 0.0 ? lesser(c->length, most) : FIRST * most, least, length);
+    c->length = *length == most ? greater(c->length, last) : c->length;
     c->wait = *length > 0.0 ? PATIENCE : c->wait < MOST_PATIENCE ? 2 * c->wait : MOST_PATIENCE;
     c->waited = 0;
     return status;
