@@ -11,7 +11,7 @@
 #define MOST_CONTACTS 32
 
 /* A step pays that is longer than so many times in which friction would stop a contact. */
-#define PAYS 40.0
+#define PAYS 100.0
 
 #define MOST_ITERATIONS 10
 #define BISECTIONS 60

@@ -366,10 +366,10 @@ static double planar_length(struct event *e, double most)
     return h;
 }
 
-/* Contacts have to creep for so many steps by series before longer ones are tried; and at most for so many after trials that
- * failed, of which there are at most so many at once. */
+/* Contacts have to creep for so many steps by series before longer ones are tried, a few times; and for so many as take this many
+ * times the work of trials that failed. */
 #define PATIENCE 8
-#define MOST_PATIENCE 128
+#define DEAR 8
 #define MOST_TRIALS 3
 
 /* A first step, in parts of the longest one. */
@@ -397,29 +397,26 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
     return TRIBO_OK;
 }
 
-static void forget_creep(struct creep *c)
-{
-    c->length = 0.0;
-    c->wait = PATIENCE;
-    c->waited = 0;
-}
-
 /* The same if contacts creep, and have done so for a while; most is the longest step. */
 static int creep(struct event *e, double t, const double *y, double most, double *length)
 {
     struct creep *c = &e->creep;
-    const double least = tribo_creep_least(e, y), last = c->length;
+    const double least = tribo_creep_least(e, y), error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    const size_t before = e->sys->evaluations;
+    c->wait = e->events.anew ? PATIENCE : c->wait;
     if (e->events.anew || !(least < most)) {
-        forget_creep(c);
+        c->length = 0.0;
+        c->waited = 0;
     }
     e->events.anew = 0;
     *length = 0.0;
-    if (!(least < most) || (c->length == 0.0 && (c->waited++ < c->wait || !tribo_creep_settled(e, y, wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL))))) {
+    const double last = c->length;
+    if (!(least < most) || (last == 0.0 && (c->waited++ < c->wait || !tribo_creep_settled(e, y, error)))) {
         return TRIBO_OK;
     }
-    const int status = try_creep(e, t, y, c->length > 0.0 ? lesser(c->length, most) : FIRST * most, least, length);
+    const int status = try_creep(e, t, y, last > 0.0 ? lesser(last, most) : FIRST * most, least, length);
     c->length = *length == most ? greater(c->length, last) : c->length;
-    c->wait = *length > 0.0 ? PATIENCE : c->wait < MOST_PATIENCE ? 2 * c->wait : MOST_PATIENCE;
+    c->wait = *length > 0.0 ? PATIENCE : DEAR * (e->sys->evaluations - before) / (e->most_order + 1);
     c->waited = 0;
     return status;
 }
