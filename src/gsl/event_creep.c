@@ -16,17 +16,19 @@
 #define MOST_ITERATIONS 10
 #define BISECTIONS 60
 
-/* Newton's method ends with steps of this part of what directions may be off; and fails at steps of this angle, or if one is not
- * less than this part of the one before. */
+/* Newton's method ends with steps of this part of what directions may be off, and velocities that at nodes are off by that part; and
+ * fails at steps of this angle, or if one is not less than this part of the one before. */
 #define ENOUGH 1e-2
+#define STRAY_ENOUGH 0.1
 #define TOO_FAR 1.5
 #define HEADWAY 0.5
 
 /* Structure and loads may turn directions by so many times their highest frequency; what turns faster relaxes. */
 #define TURNS 2.0
 
-/* Directions may be off by so much, however little it moves. */
+/* Directions of forces may be off by so much, and those of velocities, however small they are. */
 #define MOST_OFF 1e-4
+#define MOST_STRAY 1e-3
 
 /* Over a step speeds grow so many times at most: what is small where it begins is not to be lost beside what comes. */
 #define FASTER 100.0
@@ -180,7 +182,7 @@ int tribo_creep_settled(const struct event *e, const double *y, double error)
         const double v = hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
         const double stop = v / lesser(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
         const double turn = m->slip[p->at] == TRIBO_IN_PLANE ? fabs(turn_of(e, k)) : 0.0;
-        if (!(turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_OFF, error / v))) {
+        if (!(turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v))) {
             return 0;
         }
     }
@@ -376,7 +378,7 @@ static double find_stray(const struct event *e, size_t k, double tau, double err
     double along, across;
     take_parts(e, k, tau, &along, &across);
     const double size = greater(hypot(along, across), LEFT * e->planar.line[k].xn[0]);
-    return fabs(across) / size / lesser(MOST_OFF, error * lesser(p->limit[0], p->limit[1]) / size);
+    return fabs(across) / size / lesser(MOST_STRAY, error * lesser(p->limit[0], p->limit[1]) / size);
 }
 
 /* 1 if the contact slides along u; or stops on the way, so that the step ends before it does not. */
@@ -436,6 +438,16 @@ static double change(double defect)
     return lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
 }
 
+/* Newton's method leaves something there. */
+static double stray_at_nodes(const struct event *e, size_t slides, double h, double error)
+{
+    double most = 0.0;
+    for (size_t j = 0; j < slides * NODES; j++) {
+        most = greater(most, find_stray(e, e->creep.slides[j / NODES], node[j % NODES] * h, error));
+    }
+    return most;
+}
+
 static int find_angles(struct event *e, size_t slides, double h, double error, int *found)
 {
     struct creep *c = &e->creep;
@@ -452,7 +464,7 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
             return status;
         }
         const double step = improve(e, slides, h);
-        *found = step <= ENOUGH * most;
+        *found = step <= ENOUGH * most && stray_at_nodes(e, slides, h, error) <= STRAY_ENOUGH;
         if (*found || !(step < before)) {
             return TRIBO_OK;
         }

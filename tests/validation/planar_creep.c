@@ -200,7 +200,7 @@ TEST(ellipse)
     run_ellipse("event", 0.1, 1e-13, fine);
     assert_all_close(rough, fine, 5, 1e-7);
     run_ellipse("moreau/fixed", 1e-2, 0.0, coarse);
-    run_ellipse("moreau/fixed", 5e-4, 0.0, steps);
+    run_ellipse("moreau/fixed", 1e-4, 0.0, steps);
     assert_all_close(steps, fine, 5, 1e-6);
     require(fabs(steps[4] - fine[4]) < 0.1 * fabs(coarse[4] - fine[4]), "%g after %g", steps[4] - fine[4], coarse[4] - fine[4]);
     require(fine[4] > 1e-4, "nothing slides");
