@@ -7,7 +7,7 @@
 
 #define NODES TRIBO_CREEP_NODES
 
-/* More contacts than these follow their series: Newton's matrices are dense. */
+/* Of more planar contacts all follow their series: Newton's matrices are dense. */
 #define MOST_CONTACTS 32
 
 /* A step pays that is longer than so many times in which friction would stop a contact. */
@@ -16,8 +16,8 @@
 #define MOST_ITERATIONS 10
 #define BISECTIONS 60
 
-/* Newton's method ends with steps of this part of what directions may be off, and velocities that at nodes are off by that part; and
- * fails at steps of this angle, or if one is not less than this part of the one before. */
+/* Newton's method ends with steps of this part of what directions may be off, and velocities off at nodes by that part; and fails
+ * at steps of this angle, or if one is not less than this part of the one before. */
 #define ENOUGH 1e-2
 #define STRAY_ENOUGH 0.1
 #define TOO_FAR 1.5
@@ -137,7 +137,7 @@ double tribo_creep_least(const struct event *e, const double *y)
             return HUGE_VAL;
         }
     }
-    const int can = slides > 0 && slides <= MOST_CONTACTS && !m->breakaway.falls;
+    const int can = slides > 0 && m->plane->count <= MOST_CONTACTS && !m->breakaway.falls;
     return can ? PAYS * tribo_planar_series_stop(m, e->sys, y) : HUGE_VAL;
 }
 
@@ -179,7 +179,8 @@ int tribo_creep_settled(const struct event *e, const double *y, double error)
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        const double v = hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
+        const double v =
+            hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
         const double stop = v / lesser(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
         const double turn = m->slip[p->at] == TRIBO_IN_PLANE ? fabs(turn_of(e, k)) : 0.0;
         if (!(turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v))) {
@@ -268,7 +269,7 @@ static void across(const struct event *e, size_t s, size_t i, double *w)
     }
 }
 
-/* to [NODES][NODES] += factor times what a force along axis `from` of those that slide does to x of one along `axis`, [2 contacts] */
+/* to [NODES][NODES] = what a force along axis `from` of those that slide does to x along `axis` of all. */
 static void add_response(const struct event *e, size_t from, size_t axis, double h, double (*to)[NODES])
 {
     const struct creep *c = &e->creep;
@@ -356,8 +357,8 @@ static double find_off(const struct event *e, size_t k, double h)
     return 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]);
 }
 
-/* A step may go on beyond a stop, where x is against u. It ends where x has become this part of what it was (method_event.c), and
- * no smaller one has to have the direction of u. */
+/* A step may go on beyond a stop, where x is against u. It ends where x has become this part of what it was (method_event.c),
+ * and no smaller one has to have the direction of u. */
 #define LEFT 1e-2
 
 /* What x has along u, and across. */

@@ -18,20 +18,20 @@ struct event;
 #define TRIBO_CREEP_NODES 8
 
 struct creep {
-    double length;       /* what the next such step may have; 0: none is known */
-    size_t waited, wait; /* steps since contacts creep, and how many these have to be */
-    size_t contacts, terms;                               /* there is room for */
-    double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES];   /* [node][power] coefficients of what is 1 there and 0 at the others */
-    double *weight;                                       /* [terms][node][node]: a force that is basis[second] and acts by
+    double length;                                      /* what the next such step may have; 0: none is known */
+    size_t waited, wait;                                /* steps since contacts creep, and how many these have to be */
+    size_t contacts, terms;                             /* there is room for */
+    double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] coefficients of what is 1 there and 0 at the others */
+    double *weight;                                     /* [terms][node][node]: a force that is basis[second] and acts by
                                                              time^term acts so much at the first node, both in steps */
-    double *angle;                                        /* [contacts][node] of u, from the first direction of its line */
-    double *response;                                     /* [2 contacts][terms][2 contacts]: series of x, by u = a unit vector; */
-    signed char *slip;                                    /* [ncontact] for contacts that slid so */
-    unsigned char *holds;                                 /* [ncontact] or held, */
-    size_t revision;                                      /* and this system; */
+    double *angle;                                      /* [contacts][node] of u, from the first direction of its line */
+    double *response;                                   /* [2 contacts][terms][2 contacts]: series of x, by u = a unit vector; */
+    signed char *slip;                                  /* [ncontact] for contacts that slid so */
+    unsigned char *holds;                               /* [ncontact] or held, */
+    size_t revision;                                    /* and this system; */
     int known;
-    size_t *slides, *pivot;                               /* [contacts] those that slide; [contacts NODES] */
-    double *matrix, *rest;                                /* [contacts NODES][contacts NODES], [contacts NODES] */
+    size_t *slides, *pivot; /* [contacts] those that slide; [contacts NODES] */
+    double *matrix, *rest;  /* [contacts NODES][contacts NODES], [contacts NODES] */
 };
 
 void tribo_creep_free(struct creep *c);
@@ -42,8 +42,8 @@ double tribo_creep_least(const struct event *e, const double *y);
 /* 1 if by the last step, which ended with y, directions follow what is asked of them, to what keeps velocities to `error`. */
 int tribo_creep_settled(const struct event *e, const double *y, double error);
 
-/* Sets the series of the motion from (t, y) on for a step of length h, which is good if velocities are right to `error`. Returns a
- * status. */
+/* Sets the series of the motion from (t, y) on for a step of length h, which is good if velocities are right to `error`. Returns
+ * a status. */
 struct creep_step {
     int good;
     double next; /* how long another one may be, after this one or in its place; 0: none can be good */

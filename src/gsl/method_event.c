@@ -369,14 +369,14 @@ static double planar_length(struct event *e, double most)
 /* Contacts have to creep for so many steps by series before longer ones are tried, a few times; and for so many as take this many
  * times the work of trials that failed. */
 #define PATIENCE 16
-#define DEAR 8
+#define DEAR 16
 #define MOST_TRIALS 3
 
 /* A first step, in parts of the longest one. */
 #define FIRST 0.25
 
-/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one that is
- * good enough, or 0. */
+/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one that
+ * is good enough, or 0. */
 static int try_creep(struct event *e, double t, const double *y, double h, double least, double *length)
 {
     const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);

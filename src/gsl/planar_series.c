@@ -363,8 +363,10 @@ double tribo_planar_series_defect(const struct planar_series *s, const struct st
         const struct planar_line *l = &s->line[c];
         const size_t last = s->order - (size_t)p->begins;
         if (slides(m, p)) {
-            const double xn = tribo_planar_series_value(l->xn, last, h), xt = tribo_planar_series_value(l->xt, last, h), size = hypot(xn, xt);
-            const double off = hypot(tribo_planar_series_value(l->un, s->order, h) - xn / size, tribo_planar_series_value(l->ut, s->order, h) - xt / size);
+            const double xn = tribo_planar_series_value(l->xn, last, h), xt = tribo_planar_series_value(l->xt, last, h),
+                         size = hypot(xn, xt);
+            const double off = hypot(tribo_planar_series_value(l->un, s->order, h) - xn / size,
+                                     tribo_planar_series_value(l->ut, s->order, h) - xt / size);
             const double most_r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
             const double defect = off * most_r * h / (double)(s->order + 1);
             most = greater(most, defect / lesser(error, m->plane->error[p->at]));
