@@ -2,8 +2,8 @@
  * what the rest of the motion asks for within the time m|v|/limit, and a Taylor series ends after a few of these.
  *
  * There the directions u = x/|x|, x = limit v, are taken as polynomials instead, which is collocation: of degree NODES - 1, and
- * right at the nodes of Radau's formula, the last of which is the end of the step. In the limit |v| -> 0 this damps at once what is
- * off (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). With such u given the motion is that of a linear
+ * right at the nodes of Radau's formula, the last of which is the end of the step. In the limit |v| -> 0 this damps at once what
+ * is off (Hairer and Wanner, Solving Ordinary Differential Equations II, IV.5). With such u given the motion is that of a linear
  * structure under a load, its series has all terms that it takes, and everything else goes on as ever.
  *
  * The unknowns are the angles of u at the nodes, and they solve, by Newton's method, that x has no part across u. This stays

@@ -369,7 +369,7 @@ static double planar_length(struct event *e, double most)
 /* Contacts have to creep for so many steps by series before longer ones are tried, a few times; and for so many as take this many
  * times the work of trials that failed. */
 #define PATIENCE 16
-#define DEAR 16
+#define DEAR 8
 #define MOST_TRIALS 3
 
 /* A first step, in parts of the longest one. */

@@ -179,8 +179,8 @@ TEST(coupled)
     tribo_system_destroy(s);
 }
 
-/* Limits that differ by direction, a load that turns and swings, and a kick across to begin with: tolerances are kept, and methods
- * with steps come to the same. */
+/* Limits that differ by direction, a load that turns and swings, and a kick across to begin with: tolerances are kept, and
+ * methods with steps come to the same. */
 static void run_ellipse(const char *method, double dt, double tolerance, double *y)
 {
     tribo_system *s = block(1.0, 1.4);
