@@ -192,20 +192,26 @@ static void expand_energy(struct event *e)
     }
 }
 
-int tribo_event_expand(struct event *e, double t, const double *y)
+int tribo_event_start(struct event *e, double t, const double *y)
 {
     tribo_system *sys = e->sys;
     const size_t n = sys->ndof;
+    struct stick_slip *m = &e->events.stick_slip;
     memcpy(e->q, y, n * sizeof *y);
     memcpy(e->u, y + n, n * sizeof *y);
     e->d[0] = y[2 * n];
-    struct stick_slip *m = &e->events.stick_slip;
-    int status = m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->a, e->given) : TRIBO_OK;
+    const int status = m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->a, e->given) : TRIBO_OK;
     e->order = m->plane ? e->planar.order : e->most_order;
     expand_harmonics(e, t);
     expand_limits(e);
-    for (size_t k = 0; !status && k <= e->order; k++) {
-        status = expand_forces(e, k);
+    return status;
+}
+
+int tribo_event_series(struct event *e)
+{
+    const size_t n = e->sys->ndof;
+    for (size_t k = 0; k <= e->order; k++) {
+        const int status = expand_forces(e, k);
         if (status) {
             return status;
         }
@@ -215,12 +221,15 @@ int tribo_event_expand(struct event *e, double t, const double *y)
             e->u[(k + 1) * n + i] = part * e->acceleration[i];
         }
     }
-    if (status) {
-        return status;
-    }
-    sys->evaluations += e->order + 1;
+    e->sys->evaluations += e->order + 1;
     expand_energy(e);
     return TRIBO_OK;
+}
+
+int tribo_event_expand(struct event *e, double t, const double *y)
+{
+    const int status = tribo_event_start(e, t, y);
+    return status ? status : tribo_event_series(e);
 }
 
 /* N falls from the limit at high speed by (ratio - 1) limit exp(-|v|/velocity), and so does the slope, over velocity. */

@@ -3,6 +3,7 @@
 #ifndef TRIBO_EVENT_SERIES_H
 #define TRIBO_EVENT_SERIES_H
 
+#include "event_creep.h"
 #include "events.h"
 #include "planar_series.h"
 #include "series_transition.h"
@@ -30,11 +31,15 @@ struct event {
     double *cosine, *sine;           /* [order + 2][harmonics] coefficients of cos(omega t) and sin(omega t) */
     double *acceleration, *base, *a, *given, *held;
     struct planar_series planar;
+    struct creep creep;
     double *work, *spring; /* [ndof], [ncontact] workspace for elastic contacts */
     struct series_transition perturbed;
 };
 
-/* Coefficients of the motion from (t, y) on. Returns a status. */
+/* Coefficients of the motion from (t, y) on. Returns a status. Done in two parts: what is known of it at the start, and then the
+ * series, again and again as directions of sliding forces are given. */
+int tribo_event_start(struct event *e, double t, const double *y);
+int tribo_event_series(struct event *e);
 int tribo_event_expand(struct event *e, double t, const double *y);
 
 /* e->slope, of limits that fall, after that. */

@@ -23,7 +23,7 @@ static double most_credit(const struct events *e)
 #define MOST_STUCK 1e6
 
 /* So many steps without events mean that there is no headway, if together they take less than such a time. Planar contacts that
- * creep take some ten thousand. */
+ * creep, and are too many for the longer steps of event_creep.h, take some ten thousand. */
 #define MOST_IDLE 100000
 
 /* Slips from -1 to 3. */
@@ -176,8 +176,10 @@ static int count_step(struct events *e, tribo_driver *drv, double t, double tau,
         e->rested = t;
         e->idle = 0;
     }
-    return ++e->idle <= MOST_IDLE ? TRIBO_OK
-                                  : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", t, tau);
+    return ++e->idle <= MOST_IDLE
+               ? TRIBO_OK
+               : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g, and %d such steps lead nowhere%s",
+                                   t, tau, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
 }
 
 /* Phases that begin alike in one period after the other last alike. */
@@ -195,6 +197,7 @@ static void forget(struct events *e, int continues)
 {
     e->begun = NULL;
     e->search.expected = 0.0;
+    e->anew = !continues;
     if (!continues) {
         memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
     }

@@ -38,6 +38,7 @@ struct events {
 
     struct company *company; /* NULL: nobody */
     const struct guard *met; /* what ended the phase that ends; NULL: no event did */
+    int anew;                /* this run does not continue another one; the method takes note, and clears it */
     int sharp;               /* the motion is followed to rounding, whatever tolerances say */
 
     double *lasted; /* [ncontact][5] how long the last phase did that began as contact i turned to this slip; 0: none yet */

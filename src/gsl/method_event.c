@@ -245,6 +245,7 @@ static void destroy(tribo_driver *drv)
         free(e->q);
         free(e->cosine);
         tribo_planar_series_free(&e->planar);
+        tribo_creep_free(&e->creep);
         tribo_series_transition_free(&e->perturbed);
         free(e);
     }
@@ -349,26 +350,102 @@ static void state(void *motion, double tau, const double *from, double *to)
  * velocities and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
 #define LONGEST 3.0
 
+static double longest(const struct event *e, double most)
+{
+    return fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most;
+}
+
 static double planar_length(struct event *e, double most)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const double error = wanted(e, e->u, e->sys->ndof, HUGE_VAL);
     tribo_planar_series_errors(&e->planar, m, m->plane->error);
-    double h = lesser(step_length(e), fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most);
+    double h = lesser(step_length(e), longest(e, most));
     while (!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) && h > 0.0) {
         h *= 0.8;
     }
     return h;
 }
 
+/* Contacts have to creep for so many steps by series before longer ones are tried, a few times; and for so many as take this many
+ * times the work of trials that failed. */
+#define PATIENCE 16
+#define DEAR 8
+#define MOST_TRIALS 3
+
+/* A first step, in parts of the longest one. */
+#define FIRST 0.25
+
+/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one that
+ * is good enough, or 0. */
+static int try_creep(struct event *e, double t, const double *y, double h, double least, double *length)
+{
+    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    struct stick_slip *m = &e->events.stick_slip;
+    struct creep_step step = {0, h};
+    for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
+        h = step.next;
+        const int status = tribo_creep_expand(e, t, y, h, error, &step);
+        if (status) {
+            return status;
+        }
+        tribo_planar_series_errors(&e->planar, m, m->plane->error);
+        const double most = step_length(e);
+        *length = step.good && most >= h ? h : 0.0;
+        step.next = step.good && most < h ? 0.9 * most : step.next;
+    }
+    e->creep.length = *length > 0.0 ? step.next : 0.0;
+    return TRIBO_OK;
+}
+
+/* The same if contacts creep, and have done so for a while; most is the longest step. */
+static int creep(struct event *e, double t, const double *y, double most, double *length)
+{
+    struct creep *c = &e->creep;
+    const double least = tribo_creep_least(e, y), error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    const size_t before = e->sys->evaluations;
+    c->wait = e->events.anew ? PATIENCE : c->wait;
+    if (e->events.anew || !(least < most)) {
+        c->length = 0.0;
+        c->waited = 0;
+    }
+    e->events.anew = 0;
+    *length = 0.0;
+    const double last = c->length;
+    if (!(least < most) || (last == 0.0 && (c->waited++ < c->wait || !tribo_creep_settled(e, y, error)))) {
+        return TRIBO_OK;
+    }
+    const int status = try_creep(e, t, y, last > 0.0 ? lesser(last, most) : FIRST * most, least, length);
+    c->length = *length == most ? greater(c->length, last) : c->length;
+    c->wait = *length > 0.0 ? PATIENCE : DEAR * (e->sys->evaluations - before) / (e->most_order + 1);
+    c->waited = 0;
+    return status;
+}
+
+/* The series from (t, y) on, and how far it may serve. */
+static int expand(struct event *e, double t, const double *y, double most, double *length)
+{
+    if (!e->events.stick_slip.plane) {
+        const int status = tribo_event_expand(e, t, y);
+        *length = status ? 0.0 : step_length(e);
+        return status;
+    }
+    int status = creep(e, t, y, longest(e, most), length);
+    if (!status && *length == 0.0) {
+        status = tribo_event_expand(e, t, y);
+        *length = status ? 0.0 : planar_length(e, most);
+    }
+    return status;
+}
+
 static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
-    const int status = tribo_event_expand(e, t, y);
+    double length;
+    const int status = expand(e, t, y, *reach, &length);
     if (status) {
         return status;
     }
-    const double length = e->events.stick_slip.plane ? planar_length(e, *reach) : step_length(e);
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;

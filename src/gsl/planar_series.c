@@ -105,22 +105,25 @@ static int answer(struct planar_series *s, size_t q, struct stick_slip *m, const
     return TRIBO_OK;
 }
 
+double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    double least = HUGE_VAL;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        double time[2];
+        for (size_t d = 0; d < 2; d++) {
+            time[d] = fabs(tribo_stick_slip_velocity(m, sys, p->at + d, y)) / (p->limit[d] * m->diagonal[p->at + d]);
+        }
+        least = slides(m, p) && p->begins == SLIDES_ON ? lesser(least, greater(time[0], time[1])) : least;
+    }
+    return least;
+}
+
 /* As many terms as numbers have room for, order at most: time counts in parts of that in which friction would stop a contact. */
 static size_t find_order(size_t order, const struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    double least = (double)order;
-    for (size_t k = 0; k < m->plane->count; k++) {
-        const struct planar_contact *p = &m->plane->contact[k];
-        double size[2];
-        for (size_t d = 0; d < 2; d++) {
-            const double v = tribo_stick_slip_velocity(m, sys, p->at + d, y), slow = p->limit[d] * m->diagonal[p->at + d];
-            size[d] = fabs(v) / slow;
-        }
-        if (slides(m, p) && p->begins == SLIDES_ON) {
-            least = lesser(least, MOST_DIGITS / greater(-log10(greater(size[0], size[1])), 1.0));
-        }
-    }
-    return (size_t)greater(least, LEAST_ORDER);
+    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_stop(m, sys, y)), 1.0);
+    return (size_t)greater(lesser((double)order, most), LEAST_ORDER);
 }
 
 int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys,
@@ -135,7 +138,7 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", plane->count,
                                  plural(plane->count));
     }
-    s->order = find_order(order, m, sys, y);
+    s->order = s->given ? order : find_order(order, m, sys, y);
     s->begins = 0;
     for (size_t k = 0; k < plane->count; k++) {
         const struct planar_contact *p = &plane->contact[k];
@@ -211,8 +214,10 @@ int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip 
                                      "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
                                      sys->time, p->at);
         }
-        find_direction(l, k, p->begins);
-        if (k >= shift) {
+        if (!s->given) {
+            find_direction(l, k, p->begins);
+        }
+        if (!s->given && k >= shift) {
             const size_t j = k - shift;
             l->speed[j] = l->xn[j] - product_of(l->speed, l->un, j, 0, j);
         }
@@ -328,10 +333,10 @@ void tribo_planar_series_squares(struct planar_series *s, const struct stick_sli
     }
 }
 
-static double value(const double *x, size_t last, double h)
+double tribo_planar_series_value(const double *x, size_t powers, double h)
 {
     double sum = 0.0;
-    for (size_t k = last + 1; k-- > 0;) {
+    for (size_t k = powers + 1; k-- > 0;) {
         sum = sum * h + x[k];
     }
     return sum;
@@ -358,8 +363,10 @@ double tribo_planar_series_defect(const struct planar_series *s, const struct st
         const struct planar_line *l = &s->line[c];
         const size_t last = s->order - (size_t)p->begins;
         if (slides(m, p)) {
-            const double xn = value(l->xn, last, h), xt = value(l->xt, last, h), size = hypot(xn, xt);
-            const double off = hypot(value(l->un, s->order, h) - xn / size, value(l->ut, s->order, h) - xt / size);
+            const double xn = tribo_planar_series_value(l->xn, last, h), xt = tribo_planar_series_value(l->xt, last, h),
+                         size = hypot(xn, xt);
+            const double off = hypot(tribo_planar_series_value(l->un, s->order, h) - xn / size,
+                                     tribo_planar_series_value(l->ut, s->order, h) - xt / size);
             const double most_r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
             const double defect = off * most_r * h / (double)(s->order + 1);
             most = greater(most, defect / lesser(error, m->plane->error[p->at]));

@@ -8,7 +8,9 @@
  * Where the contact begins to slide x follows from the acceleration, and so from the force itself: then t-parts, tau_k, solve
  *     (S + D_k) tau_k = acceleration along limit t without them - what those before ask for
  * with S what t-parts do to such accelerations while contacts at rest are held; D_k = (k + 1)|x_0| for s = 1, and 0 for s = 2.
- * For s = 1 the series converges; for s = 2 it is asymptotic: as good as its last terms, which are what a step is chosen by. */
+ * For s = 1 the series converges; for s = 2 it is asymptotic: as good as its last terms, which are what a step is chosen by.
+ *
+ * Or u is given, a polynomial, and only what follows from it is found (event_creep.h). */
 #ifndef TRIBO_PLANAR_SERIES_H
 #define TRIBO_PLANAR_SERIES_H
 
@@ -22,6 +24,7 @@ struct planar_line {
 
 struct planar_series {
     size_t order, room;       /* so many contacts there is room for, */
+    int given;                /* un and ut of those that slide, who all do so already, are given */
     struct planar_line *line; /* [room] */
     double *work;
     double *square;            /* [2 order + 1][room] coefficients */
@@ -32,6 +35,12 @@ struct planar_series {
 };
 
 void tribo_planar_series_free(struct planar_series *s);
+
+/* The least time in which friction would stop a planar contact that slides already; HUGE_VAL if there is none. */
+double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const double *y);
+
+/* The value at h of a series with so many powers. */
+double tribo_planar_series_value(const double *x, size_t powers, double h);
 
 /* Sets the order for a phase that begins with y, order at most; makes room, and S for contacts that begin to slide. a, f
  * [ncontact] workspace. Returns a status, its message on the system's context, and so below. */
