@@ -251,7 +251,7 @@ static int begin(void *motion, double t, const double *y, double *reach)
         return status;
     }
     if (!tribo_modal_motion_reserve(&x->motion, h->terms)) {
-        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu exponents and harmonics", h->terms);
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
     }
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
     set_guards(x, y);
