@@ -31,7 +31,10 @@ void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
     /* times are asked for in their order, if at all */
     const size_t k = is_foreseen(sys, h) ? place_from(sys, h->next, t) : FORESIGHT;
     h->time = t;
-    if (k < FORESIGHT) {
+    if (h->omega == 0.0) {
+        h->cos_t = 1.0;
+        h->sin_t = 0.0;
+    } else if (k < FORESIGHT) {
         h->next = k;
         h->cos_t = h->cos_ahead[k];
         h->sin_t = h->sin_ahead[k];
