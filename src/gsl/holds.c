@@ -79,17 +79,19 @@ static void note_holds(struct stick_slip *m)
     m->hold_differs |= differs;
 }
 
-int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+static int find_anew(struct stick_slip *m, const tribo_system *sys)
 {
-    const int others = !m->independent && take_ties(m);
-    if (!m->fresh && !others) {
-        return TRIBO_OK;
-    }
     m->fresh = 0;
     hold_all(m->contacts, m->slip, m->can_hold, m->holds);
     const int status = m->independent ? TRIBO_OK : choose_holds(m, sys);
     note_holds(m);
     return status;
+}
+
+int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+{
+    const int others = !m->independent && take_ties(m);
+    return m->fresh || others ? find_anew(m, sys) : TRIBO_OK;
 }
 
 /* 1 if J x - base is more than the rounding of x for a contact that holds. */

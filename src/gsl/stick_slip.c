@@ -15,14 +15,37 @@
  * nearly linear in time. */
 #define LOOK_AHEAD 1e-4
 
+/* Contexts that know directions only, with who is coupled by R; where nobody is, none of them is asked. */
+static int create_contexts(struct stick_slip *m, tribo_system *sys)
+{
+    size_t islands;
+    int status = tribo_clone(sys->contacts, &m->box);
+    if (status) {
+        return status;
+    }
+    tribo_set_planar(m->box, 0, NULL);
+    tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
+    m->uncoupled = islands == sys->ncontact;
+    if (m->uncoupled) {
+        return TRIBO_OK;
+    }
+    status = tribo_clone(m->box, &m->hold);
+    /* a contact that has reached its limit stays there while others take over */
+    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
+    tribo_set_static(m->box, NULL, NULL);
+    tribo_set_static(m->hold, NULL, NULL);
+    tribo_set_law(m->hold, TRIBO_COULOMB);
+    tribo_set_coupling(m->hold, TRIBO_PARTITION);
+    return status;
+}
+
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1, n = sys->ndof;
     memset(m, 0, sizeof *m);
     m->contacts = sys->ncontact;
     m->doubt = 1.0;
-    int status = tribo_clone(sys->contacts, &m->box);
-    status = status ? status : tribo_clone(sys->contacts, &m->hold);
+    const int status = create_contexts(m, sys);
     double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
                                    &m->seen,      &m->parting,        &m->v,     &m->a,         &m->lo,    &m->hi,
                                    &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
@@ -58,9 +81,6 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     m->elastic = (unsigned char *)m->slip + 9 * c;
     m->asked = m->all = m->at + c;
     m->some = m->at + 2 * c;
-    /* these two know directions only */
-    tribo_set_planar(m->box, 0, NULL);
-    tribo_set_planar(m->hold, 0, NULL);
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
@@ -69,21 +89,12 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
         m->all[i] = i;
         m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
-    size_t islands;
-    tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
-    m->uncoupled = islands == sys->ncontact;
     const size_t rank = m->uncoupled ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
     if (rank > sys->ncontact) {
         tribo_stick_slip_free(m);
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
     }
     m->independent = rank == sys->ncontact;
-    /* a contact that has reached its limit stays there while others take over */
-    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
-    tribo_set_static(m->box, NULL, NULL);
-    tribo_set_static(m->hold, NULL, NULL);
-    tribo_set_law(m->hold, TRIBO_COULOMB);
-    tribo_set_coupling(m->hold, TRIBO_PARTITION);
     return TRIBO_OK;
 }
 

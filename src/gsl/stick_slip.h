@@ -17,7 +17,8 @@
 
 struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
-    tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0 */
+    tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0; NULL
+                            where R couples nobody */
     size_t contacts;
     int uncoupled;   /* R is diagonal */
     int independent; /* the contacts at rest hold, whoever they are: none depends on others */
