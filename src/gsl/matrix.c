@@ -11,9 +11,6 @@
 
 void tribo_matrix_free(struct matrix *a)
 {
-    if (!a->first) {
-        return;
-    }
     free(a->first);
     free(a->col);
     free(a->val);
