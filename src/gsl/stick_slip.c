@@ -15,7 +15,7 @@
  * nearly linear in time. */
 #define LOOK_AHEAD 1e-4
 
-/* Contexts that know directions only, with who is coupled by R; where nobody is, none of them is asked. */
+/* Contexts that know directions only. Where R couples nobody they are not asked for forces, and the second one is not needed. */
 static int create_contexts(struct stick_slip *m, tribo_system *sys)
 {
     size_t islands;
