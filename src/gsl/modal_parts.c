@@ -56,6 +56,14 @@ void tribo_modal_give_back(void *list)
     }
 }
 
+void tribo_modal_free(struct modal *h)
+{
+    if (h) {
+        tribo_modal_give_back(h->memory);
+        free(h);
+    }
+}
+
 void tribo_modal_empty(void **list)
 {
     union block *block = *list;
