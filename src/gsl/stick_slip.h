@@ -118,17 +118,28 @@ static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i
 
 /* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
  * without them are a; the forces, with contacts at rest as they are marked; both return a status. v [ncontact] = a + R f, the
- * accelerations that forces f leave; v may be a. A contact that cannot hold slides; but if it held by a static limit, it is decided
- * about once more by the other one. */
+ * accelerations that forces f leave; v may be a. */
 int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
-void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction);
 
-/* stick_slip_relieve.c: whether contact i would lose a static limit, and the forces at rest are not unique. Then, and where
- * accelerations are nothing but rounding, the forces tell that it takes to hold all that are at rest: these are the forces, or
- * contacts let go; a status. */
-int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i);
+/* Contact i, which cannot hold, slides; but if it held by a static limit, it is decided about once more by the other one. */
+static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
+{
+    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
+    tribo_stick_slip_set(m, i, again ? 0 : direction);
+    m->tied[i] = 0;
+    m->again |= again;
+}
+
+/* Whether contact i would lose a static limit, and the forces at rest are not unique. */
+static inline int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i)
+{
+    return m->dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
+}
+
+/* stick_slip_relieve.c: where a contact must be sure, or accelerations are nothing but rounding, the forces tell that it takes to
+ * hold all that are at rest: these are the forces, or contacts are let go; a status. */
 int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes);
 
 /* stick_slip_elastic.c: elastic contacts, whose forces the state knows. The first finds these, and what of them may be rounding:

@@ -1,4 +1,4 @@
-/* The forces of contacts at an instant, within their bounds, the accelerations that these leave, and contacts let go. */
+/* The forces of contacts at an instant, within their bounds, and the accelerations that these leave. */
 #include "stick_slip.h"
 #include "../common/real.h"
 
@@ -63,16 +63,18 @@ static int solve_coupled(struct stick_slip *m, const tribo_system *sys, const do
     return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
 }
 
-int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+static inline int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
-    if (!m->uncoupled) {
-        return solve_coupled(m, sys, a, f);
-    }
-    for (size_t k = 0; k < m->asks; k++) {
+    for (size_t k = 0; m->uncoupled && k < m->asks; k++) {
         const size_t i = m->asked[k];
         f[i] = force_alone(m, i, a[i]);
     }
-    return TRIBO_OK;
+    return m->uncoupled ? TRIBO_OK : solve_coupled(m, sys, a, f);
+}
+
+int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+{
+    return solve(m, sys, a, f);
 }
 
 /* The force that contact i has whatever the others do. */
@@ -97,13 +99,5 @@ int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
     for (size_t k = 0; k < m->asks; k++) {
         set_bounds(m, m->asked[k]);
     }
-    return tribo_stick_slip_solve(m, sys, m->a, m->force);
-}
-
-void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
-{
-    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
-    tribo_stick_slip_set(m, i, again ? 0 : direction);
-    m->tied[i] = 0;
-    m->again |= again;
+    return solve(m, sys, m->a, m->force);
 }
