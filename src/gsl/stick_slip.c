@@ -16,52 +16,71 @@
  * nearly linear in time. */
 #define LOOK_AHEAD 1e-4
 
-int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
+/* All arrays of numbers are one block. */
+static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
 {
-    const size_t c = sys->ncontact + 1, n = sys->ndof;
-    memset(m, 0, sizeof *m);
-    m->contacts = sys->ncontact;
-    m->doubt = 1.0;
-    int status = tribo_clone(sys->contacts, &m->box);
-    status = status ? status : tribo_clone(sys->contacts, &m->hold);
     double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
                                    &m->seen,      &m->parting,        &m->v,     &m->a,         &m->lo,    &m->hi,
                                    &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
                                    &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
-    double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(10, c);
-    m->at = malloc(3 * c * sizeof *m->at);
-    m->last = malloc(c);
-    m->limit = work;
-    const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
-    if (status || !work || !m->slip || !m->at || !m->last || !statics) {
-        tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
+    double *work = calloc(contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
+    for (size_t k = 0; work && k < contact_arrays; k++) {
+        *by_contact[k] = work + k * contacts;
     }
-    for (size_t k = 0; k < contact_arrays; k++) {
-        *by_contact[k] = work + k * c;
-    }
-    for (size_t k = 0; k < dof_arrays; k++) {
-        *by_dof[k] = work + contact_arrays * c + k * n;
+    for (size_t k = 0; work && k < dof_arrays; k++) {
+        *by_dof[k] = work + contact_arrays * contacts + k * dofs;
     }
     m->found = m->gain; /* three arrays of contacts, the last ones, and one of degrees of freedom, the first one */
-    m->founds = 3 * c + n;
-    m->tied = m->slip + c;
-    m->before = m->slip + 2 * c;
-    m->loose = m->slip + 3 * c;
-    m->holds = (unsigned char *)m->slip + 4 * c;
-    m->rested = (unsigned char *)m->slip + 5 * c;
-    m->slid = m->slip + 6 * c;
-    m->pulled = m->slip + 7 * c;
-    m->can_hold = (unsigned char *)m->slip + 8 * c;
-    m->elastic = (unsigned char *)m->slip + 9 * c;
-    m->asked = m->all = m->at + c;
-    m->some = m->at + 2 * c;
-    /* these two know directions only */
+    m->founds = 3 * contacts + dofs;
+    return work != NULL;
+}
+
+static int create_marks(struct stick_slip *m, size_t contacts)
+{
+    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled};
+    unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
+    const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
+    signed char *work = calloc(signs + marks, contacts);
+    for (size_t k = 0; work && k < signs; k++) {
+        *sign[k] = work + k * contacts;
+    }
+    for (size_t k = 0; work && k < marks; k++) {
+        *mark[k] = (unsigned char *)work + (signs + k) * contacts;
+    }
+    return work != NULL;
+}
+
+static int create_lists(struct stick_slip *m, size_t contacts)
+{
+    m->at = malloc(3 * contacts * sizeof *m->at);
+    if (m->at) {
+        m->asked = m->all = m->at + contacts;
+        m->some = m->at + 2 * contacts;
+    }
+    return m->at != NULL;
+}
+
+/* The contexts know directions only. A contact that has reached its limit stays there while others take over. */
+static int create_contexts(struct stick_slip *m, const tribo_context *contacts)
+{
+    if (tribo_clone(contacts, &m->box) || tribo_clone(contacts, &m->hold)) {
+        return 0;
+    }
     tribo_set_planar(m->box, 0, NULL);
     tribo_set_planar(m->hold, 0, NULL);
+    tribo_set_static(m->box, NULL, NULL);
+    tribo_set_static(m->hold, NULL, NULL);
+    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
+    tribo_set_law(m->hold, TRIBO_COULOMB);
+    tribo_set_coupling(m->hold, TRIBO_PARTITION);
+    return 1;
+}
+
+/* What contacts are, whatever they do. */
+static void find_kinds(struct stick_slip *m, const tribo_system *sys)
+{
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
@@ -70,22 +89,32 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
         m->all[i] = i;
         m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
+}
+
+/* Whether contacts depend on each other, by forces or by holding. 0 if out of memory. */
+static int find_dependence(struct stick_slip *m, const tribo_system *sys)
+{
     size_t islands;
     tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
     m->uncoupled = islands == sys->ncontact;
     const size_t rank = m->uncoupled ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
-    if (rank > sys->ncontact) {
-        tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
-    }
     m->independent = rank == sys->ncontact;
-    /* a contact that has reached its limit stays there while others take over */
-    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
-    tribo_set_static(m->box, NULL, NULL);
-    tribo_set_static(m->hold, NULL, NULL);
-    tribo_set_law(m->hold, TRIBO_COULOMB);
-    tribo_set_coupling(m->hold, TRIBO_PARTITION);
-    return TRIBO_OK;
+    return rank <= sys->ncontact;
+}
+
+int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
+{
+    const size_t c = sys->ncontact + 1;
+    *m = (struct stick_slip){.contacts = sys->ncontact, .doubt = 1.0};
+    if (create_contexts(m, sys->contacts) && create_numbers(m, c, sys->ndof) && create_marks(m, c) && create_lists(m, c) &&
+        tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
+        find_kinds(m, sys);
+        if (find_dependence(m, sys)) {
+            return TRIBO_OK;
+        }
+    }
+    tribo_stick_slip_free(m);
+    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
 }
 
 void tribo_stick_slip_free(struct stick_slip *m)
@@ -96,7 +125,6 @@ void tribo_stick_slip_free(struct stick_slip *m)
     free(m->limit);
     free(m->slip);
     free(m->at);
-    free(m->last);
     memset(m, 0, sizeof *m);
 }
 
