@@ -289,8 +289,8 @@ static const struct guard *narrow(struct first_zero *s, double *a, double *b, do
     return NULL;
 }
 
-/* Looks in the middle of an interval [a, *b] in doubt. Returns what is known of it then, or of its first half, up to which *b comes
- * back. */
+/* Looks in the middle of an interval [a, *b] in doubt. Returns what is known of it then, or of its first half, up to which *b
+ * comes back. */
 static int divide(struct first_zero *s, double a, double *b)
 {
     const double half = 0.5 * (*b - a);

@@ -1,9 +1,9 @@
 /* Method "rk4/fixed": the classical Runge-Kutta method in steps of a fixed size. GSL's doubles each step for an estimate of its
  * error, which nobody asks for here, and takes twelve evaluations instead of four.
  *
- * From one evaluation follows the state of the next, or of the end, place by place. Where contacts share no body all is done block
- * by block, and an evaluation follows the one before as closely as can be, as soon as this has left behind what pulls at a block:
- * what is written is read again while it is near. */
+ * From one evaluation follows the state of the next, or of the end, place by place. Where contacts share no body all is done
+ * block by block, and an evaluation follows the one before as closely as can be, as soon as this has left behind what pulls at a
+ * block: what is written is read again while it is near. */
 #include <math.h>
 #include <stdlib.h>
 
