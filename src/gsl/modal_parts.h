@@ -12,7 +12,7 @@ struct modal_build {
     struct modal_whole *whole;
     tribo_system part;                        /* as much of it as is looked at, */
     size_t *dof, *contact;                    /* [part.ndof], [part.ncontact] and where that is in the whole; */
-    size_t owns;                              /* so many degrees of freedom are its own */
+    size_t owns;                              /* how many degrees of freedom are its own */
     const struct matrix *stiffness, *damping; /* K and C of the part, or NULL */
     struct matrix own_stiffness, own_damping; /* if it is not the whole */
     const tribo_system *sys;                  /* the part */

@@ -99,8 +99,8 @@ static void resist(const struct modal_build *b, const double *y, double by, doub
 }
 
 /* Forcing of eta by a base: -K y/(i Omega) - C y, where held contacts move the structure with velocities y; 1/i turns the real
- * part into minus the imaginary one. Velocities of belts of constant speed go to y0. 0 if out of memory, or with the status of another
- * failure in b. */
+ * part into minus the imaginary one. Velocities of belts of constant speed go to y0. 0 if out of memory, or with the status
+ * of another failure in b. */
 static int force_by_base(struct modal_build *b, size_t w, double *x, double *pull, double *drag)
 {
     struct modal *h = b->h;

@@ -25,7 +25,7 @@
 /* By rounding alone, which is far less. */
 #define NEAR 1e-3
 
-/* Of redundant contacts the solver may leave so many times the noise of accelerations. */
+/* Of redundant contacts the solver may leave this many times the noise of accelerations. */
 #define CERTAIN 1e3
 
 /* A contact that is close to its limit, but not at it, does not reach it in a moment: its bounds are wider by this part. */

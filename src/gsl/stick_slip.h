@@ -82,8 +82,8 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     m->slip[i] = slip;
 }
 
-/* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest: contacts whose velocity is zero to
- * rounding. A decision must follow. */
+/* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest:
+ * contacts whose velocity is zero to rounding. A decision must follow. */
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
 /* scalar_slip.c: decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out
@@ -99,7 +99,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 /* How large b, its rate, and accelerations by loads ever are, and how far decisions look ahead. */
 void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys);
 
-/* What accelerations of contacts may be rounding, and how far forces may go, is forgotten, and found anew of one contact, or all. */
+/* What accelerations of contacts may be rounding, and how far forces may go: forgotten, and found anew of one contact, or all. */
 void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
