@@ -10,7 +10,7 @@
 /* Of more planar contacts all follow their series: Newton's matrices are dense. */
 #define MOST_CONTACTS 32
 
-/* A step pays that is longer than so many times in which friction would stop a contact. */
+/* A step pays that is longer than this many times the time in which friction would stop a contact. */
 #define PAYS 100.0
 
 #define MOST_ITERATIONS 10
@@ -23,14 +23,14 @@
 #define TOO_FAR 1.5
 #define HEADWAY 0.5
 
-/* Structure and loads may turn directions by so many times their highest frequency; what turns faster relaxes. */
+/* Structure and loads may turn directions as fast as this many times their highest frequency; what turns faster relaxes. */
 #define TURNS 2.0
 
-/* Directions of forces may be off by so much, and those of velocities, however small they are. */
+/* By how much directions of forces may be off, and those of velocities, however small these are. */
 #define MOST_OFF 1e-4
 #define MOST_STRAY 1e-3
 
-/* Over a step speeds grow so many times at most: what is small where it begins is not to be lost beside what comes. */
+/* Over a step speeds grow by this factor at most: what is small where it begins is not to be lost beside what comes. */
 #define FASTER 100.0
 
 /* Lengths of steps change by these factors. */
@@ -410,7 +410,7 @@ static double size_at(const struct event *e, size_t k, double tau)
     return hypot(tribo_planar_series_value(l->xn, e->order, tau), tribo_planar_series_value(l->xt, e->order, tau));
 }
 
-/* How much of a step of length h has no more speed than so many times that which it begins with: h, or h halved some times. */
+/* How much of a step of length h has no more speed than FASTER times that which it begins with: h, or h halved some times. */
 static double find_slow_part(const struct event *e, size_t k, double h)
 {
     const double most = FASTER * e->planar.line[k].xn[0];

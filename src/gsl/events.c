@@ -257,6 +257,41 @@ static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
     return status;
 }
 
+/* Says why the search for an event from (t, y) until reach later was given up: the state there overflows, or is too far away. */
+static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, const double *y)
+{
+    e->state(e->motion, reach, y, e->next);
+    const int status = tribo_driver_check(drv, e->next);
+    return status ? status
+                  : tribo_driver_fail(drv, TRIBO_ERR_STEP,
+                                      "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s", t,
+                                      e->search.looks, plural(e->search.looks));
+}
+
+/* Tells the decision that follows what the event was: a contact that stops, or one that may have reached its limit. */
+static void mark_event(struct stick_slip *m, const struct guard *event)
+{
+    if (event->slides == SLIDES) {
+        tribo_stick_slip_set(m, event->contact, 0);
+    } else {
+        m->reached = event->contact;
+    }
+}
+
+/* Counts a planar contact that the decision at t has stopped, and shows the observer the state after it, if that is seen. */
+static int show_decided(struct events *e, tribo_driver *drv, const struct guard *event, double t, double t1, const double *y,
+                        double fastest)
+{
+    const struct planar_slip *plane = e->stick_slip.plane;
+    const int stops = plane && plane->stopped < e->stick_slip.contacts;
+    const int status = stops ? count_event(e, drv, plane->stopped, t, fastest) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
+    const int seen = event || (t >= t1 && drv->sys->low == 0.0) || !e->shows_between;
+    return seen ? tribo_driver_accept(drv, t, y, event || stops) : tribo_driver_keep(drv, t, y);
+}
+
 /* One phase, from (t, y) to its end and the decision there. */
 static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
                  double fastest)
@@ -276,12 +311,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, reach);
     }
     if (!tribo_first_zero(&e->search, reach, &event, &when)) {
-        e->state(e->motion, reach, y, e->next);
-        status = tribo_driver_check(drv, e->next);
-        return status ? status
-                      : tribo_driver_fail(drv, TRIBO_ERR_STEP,
-                                          "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s",
-                                          *t, e->search.looks, plural(e->search.looks));
+        return cannot_follow(e, drv, *t, reach, y);
     }
     when = event ? lesser(when, reach) : reach;
     status = show_between(e, drv, begin, shown, *t, when, y);
@@ -306,11 +336,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     sys->evaluations += e->shows_between ? e->search.looks : 0;
     if (event) {
         status = count_event(e, drv, event->contact, *t, fastest);
-        if (event->slides == SLIDES) {
-            tribo_stick_slip_set(&e->stick_slip, event->contact, 0);
-        } else {
-            e->stick_slip.reached = event->contact;
-        }
+        mark_event(&e->stick_slip, event);
     } else if (*t < end) {
         status = count_step(e, drv, *t, when, fastest);
     }
@@ -319,16 +345,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (!status && event && e->company) {
         e->company->decided(e->company);
     }
-    const struct planar_slip *plane = e->stick_slip.plane;
-    const int stops = plane && plane->stopped < e->stick_slip.contacts;
-    if (!status && stops) {
-        status = count_event(e, drv, plane->stopped, *t, fastest);
-    }
-    if (!status) {
-        const int shown_now = event || (*t >= t1 && sys->low == 0.0) || !e->shows_between;
-        status = shown_now ? tribo_driver_accept(drv, *t, y, event || stops) : tribo_driver_keep(drv, *t, y);
-    }
-    return status;
+    return status ? status : show_decided(e, drv, event, *t, t1, y, fastest);
 }
 
 int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double t1, double *y, int continues)

@@ -11,7 +11,7 @@
 
 #include "system.h"
 
-/* So many degrees of freedom are few, and so many contacts. */
+/* The most degrees of freedom, and the most contacts, that are few. */
 enum { FEW = 4 };
 
 /* What the displacement x of degree of freedom `to` is while the contact rests: (base - rest x)/turn, which leaves no rounding in

@@ -31,7 +31,7 @@
 /* After an interval of which not all is known, this part of it is tried. */
 #define SHRINK 0.7
 
-/* An interval may be so many times longer if it ends where a zero is expected. */
+/* An interval may be longer by this factor if it ends where a zero is expected. */
 #define STRETCH 1.5
 
 /* A guard that begins at zero may stray from there by this part of its size. */
@@ -115,7 +115,7 @@ static int all_positive_until(struct first_zero *s, double until, double h)
     return 1;
 }
 
-/* From now on looks at those only of which left and right samples, h apart, do not tell that they are positive between. */
+/* Leaves under watch those only of which left and right samples, h apart, do not tell that they are positive between. */
 static void watch_doubtful(struct first_zero *s, double h)
 {
     size_t left = 0;
@@ -289,8 +289,8 @@ static const struct guard *narrow(struct first_zero *s, double *a, double *b, do
     return NULL;
 }
 
-/* Looks in the middle of an interval [a, *b] in doubt. Returns what is known of it then, or of its first half, up to which *b comes
- * back. */
+/* Looks in the middle of an interval [a, *b] in doubt. Returns what is known of it then, or of its first half, up to which *b
+ * comes back. */
 static int divide(struct first_zero *s, double a, double *b)
 {
     const double half = 0.5 * (*b - a);

@@ -29,7 +29,7 @@ struct first_zero {
     size_t guards;
     struct guard *guard;
     struct guard **watched; /* [guards] workspace: those that may be below zero before the next one is known to be, */
-    size_t watching;        /* so many */
+    size_t watching;        /* their number */
     /* Sets middle of guards to what they are at tau. */
     void (*look)(void *motion, double tau, size_t guards, struct guard *const *guard);
     /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */

@@ -367,8 +367,8 @@ static double planar_length(struct event *e, double most)
     return h;
 }
 
-/* Contacts have to creep for so many steps by series before longer ones are tried, a few times; and for so many as take this many
- * times the work of trials that failed. */
+/* Contacts have to creep for this many steps by series before longer ones are tried, a few times; and later for as many as take
+ * this many times the work of the trials that failed. */
 #define PATIENCE 16
 #define DEAR 8
 #define MOST_TRIALS 3

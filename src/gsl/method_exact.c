@@ -82,7 +82,7 @@ static int find_held(struct exact *x, const struct modal **found)
             return TRIBO_OK;
         }
     }
-    if (x->bytes + x->whole.bytes > CACHE_BYTES) {
+    if (x->bytes + x->whole.known.bytes > CACHE_BYTES) {
         drop_helds(x);
     }
     if (x->helds == x->room) {

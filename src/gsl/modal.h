@@ -10,7 +10,7 @@
 
 #include "modal_whole.h"
 
-/* So many terms side by side: their number is a multiple of this. */
+/* How many terms are done side by side: the number of terms is a multiple of this. */
 enum { TRIBO_TERMS = 4 };
 
 /* What a contact's velocity (sliding) or force (held) is made of: Re(sum c_p z_p) + constant + ramp t. The terms z_p are of the

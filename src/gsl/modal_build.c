@@ -15,14 +15,6 @@
 /* Damping that is not more than so many times the rounding of its terms is none. */
 #define ROUNDING 8.0
 
-void tribo_modal_free(struct modal *h)
-{
-    if (h) {
-        tribo_modal_give_back(h->memory);
-        free(h);
-    }
-}
-
 /* ------------------------------------------------------------------------------------------------- the contacts that hold */
 
 static int list_rest(struct modal_build *b, const unsigned char *holds)
@@ -238,18 +230,7 @@ static int compress(struct modal_build *b)
     return 1;
 }
 
-/* What a set is known by. */
-static int find_key(struct modal_build *b, const signed char *slip, const unsigned char *holds)
-{
-    const size_t all = b->whole->sys->ncontact;
-    signed char *key = b->h->key = (signed char *)tribo_modal_keep_bytes(b, all);
-    for (size_t i = 0; key && i < all; i++) {
-        key[i] = (signed char)((slip[i] == 0) + holds[i]);
-    }
-    return key != NULL;
-}
-
-/* The same of the contacts of the part. */
+/* What the contacts of the part do: as the set is known, or, if it has no key, whether they hold. */
 static int find_part_key(struct modal_build *b, const unsigned char *holds)
 {
     b->key = (signed char *)tribo_modal_scratch_bytes(b, b->part.ncontact);
@@ -313,63 +294,11 @@ static int find_all(struct modal_build *b, const unsigned char *holds)
     return TRIBO_OK;
 }
 
-int tribo_modal_build(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+int tribo_modal_build(struct modal_build *b, const unsigned char *holds)
 {
-    b->h = calloc(1, sizeof *b->h);
-    int status = b->h && (!slip || find_key(b, slip, holds)) && tribo_modal_extract(b) ? find_all(b, holds) : TRIBO_ERR_MEMORY;
+    const int status = tribo_modal_extract(b) ? find_all(b, holds) : TRIBO_ERR_MEMORY;
     tribo_constraints_free(&b->ties);
     tribo_matrix_free(&b->slack);
     tribo_cholesky_free(&b->slack_stiffness);
-    if (status) {
-        tribo_modal_free(b->h);
-        b->h = NULL;
-    }
     return status;
-}
-
-static int from_pieces(struct modal_build *b, const signed char *slip, const unsigned char *holds)
-{
-    b->part = *b->whole->sys;
-    b->sys = &b->part;
-    b->h = calloc(1, sizeof *b->h);
-    const int status = b->h && find_key(b, slip, holds) ? tribo_modal_from_pieces(b, holds) : TRIBO_ERR_MEMORY;
-    if (status || !b->whole->divides) {
-        tribo_modal_free(b->h);
-        b->h = NULL;
-    }
-    return status;
-}
-
-static int from_whole(struct modal_build *b, const signed char *slip, const unsigned char *holds)
-{
-    tribo_modal_take_all(b->whole, holds);
-    const int status = tribo_modal_list(b, 0, holds) ? tribo_modal_build(b, slip, holds) : TRIBO_ERR_MEMORY;
-    tribo_modal_unlist(b);
-    tribo_modal_empty(&b->whole->scratch);
-    return status;
-}
-
-int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds)
-{
-    struct modal_build b = {.whole = whole}, all = {.whole = whole};
-    if (whole->divides) {
-        tribo_modal_divide(whole, holds);
-    }
-    const int divided = whole->divides && (whole->parts != 1 || whole->first_own[1] < whole->sys->ndof);
-    int status = divided ? from_pieces(&b, slip, holds) : TRIBO_OK;
-    if (!status && !b.h) {
-        status = from_whole(&all, slip, holds);
-        b.h = all.h;
-    }
-    if (status) {
-        return status == TRIBO_ERR_MEMORY
-                   ? tribo_system_fail(whole->sys, status, "out of memory for the modes of a held structure")
-                   : status;
-    }
-    struct modal *h = *modal = b.h;
-    h->quickest = h->fastest;
-    for (size_t s = 0; s < h->harmonics; s++) {
-        h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
-    }
-    return TRIBO_OK;
 }

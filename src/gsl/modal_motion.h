@@ -42,7 +42,7 @@ struct modal_motion {
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts);
 void tribo_modal_motion_free(struct modal_motion *x);
 
-/* Room for so many terms; 1, or 0 if out of memory. */
+/* Makes room for this many terms; 1, or 0 if out of memory. */
 int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms);
 
 /* Starts at (t, y) with h held, for a time of longest. Returns for how long its bounds can hold. */

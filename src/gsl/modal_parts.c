@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Arrays are many and short: blocks hold several, the first one so many bytes, the next ones twice as many as those before. An
+/* Arrays are many and short: blocks hold several, the first one this many bytes, the next ones twice as many as those before. An
  * emptied list keeps no block of more than LASTING. */
 #define BLOCK 2048
 #define LASTING ((size_t)1 << 20)
@@ -53,6 +53,14 @@ void tribo_modal_give_back(void *list)
         union block *next = block->has.next;
         free(block);
         block = next;
+    }
+}
+
+void tribo_modal_free(struct modal *h)
+{
+    if (h) {
+        tribo_modal_give_back(h->memory);
+        free(h);
     }
 }
 

@@ -1,4 +1,4 @@
-/* What is needed only while a modal structure is built (modal_build.c), and what the parts of that share. */
+/* What is needed only while a modal structure is built (modal_create.c), and what the parts of that share. */
 #ifndef TRIBO_MODAL_PARTS_H
 #define TRIBO_MODAL_PARTS_H
 
@@ -12,7 +12,7 @@ struct modal_build {
     struct modal_whole *whole;
     tribo_system part;                        /* as much of it as is looked at, */
     size_t *dof, *contact;                    /* [part.ndof], [part.ncontact] and where that is in the whole; */
-    size_t owns;                              /* so many degrees of freedom are its own */
+    size_t owns;                              /* how many degrees of freedom are its own */
     const struct matrix *stiffness, *damping; /* K and C of the part, or NULL */
     struct matrix own_stiffness, own_damping; /* if it is not the whole */
     const tribo_system *sys;                  /* the part */
@@ -35,14 +35,12 @@ int tribo_modal_list(struct modal_build *b, size_t part, const unsigned char *ho
 void tribo_modal_unlist(struct modal_build *b);
 int tribo_modal_extract(struct modal_build *b);
 
-/* b->h = the part that is listed; its key is that of the whole, by slip, or, if that is NULL, it has none. Returns a status, and
- * leaves b->h NULL on failure. */
-int tribo_modal_build(struct modal_build *b, const signed char *slip, const unsigned char *holds);
+/* modal_build.c: fills b->h, which is zero but for its key, and may have none, from the part that is listed. Returns a status. */
+int tribo_modal_build(struct modal_build *b, const unsigned char *holds);
 
 /* modal_pieces.c: fills b->h, of which the key is known, from parts of the whole, which is divided. Nothing is done, and the
  * whole divides no more, if damping turns out to couple modes. Returns a status. */
 int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds);
-void tribo_modal_forget_pieces(struct modal_whole *w);
 
 /* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
 double *tribo_modal_keep(struct modal_build *b, size_t count);

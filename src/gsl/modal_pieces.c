@@ -6,27 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A part that is known, by its own degrees of freedom and its contacts: they decide all there is to know. */
-struct modal_piece {
-    struct modal_piece *next; /* with the same first degree of freedom */
-    struct modal *modal;
-    size_t count, key[]; /* [count] */
-};
-
-void tribo_modal_forget_pieces(struct modal_whole *w)
-{
-    for (size_t d = 0; w->piece && d < w->sys->ndof; d++) {
-        for (struct modal_piece *p = w->piece[d]; p;) {
-            struct modal_piece *next = p->next;
-            tribo_modal_free(p->modal);
-            free(p);
-            p = next;
-        }
-        w->piece[d] = NULL;
-    }
-    w->bytes = 0;
-}
-
 /* ------------------------------------------------------------------------------------------------------ parts that are known */
 
 /* key = the part that is listed in b. Returns its length. */
@@ -42,31 +21,16 @@ static size_t write_key(const struct modal_build *b, size_t part, const unsigned
     return 1 + owns + b->part.ncontact;
 }
 
-static struct modal *find(const struct modal_whole *w, size_t count, const size_t *key)
+/* b->h = the part that is listed, which has no key. Returns a status, and leaves b->h NULL on failure. */
+static int build(struct modal_build *b, const unsigned char *holds)
 {
-    const struct modal_piece *p = w->piece[key[1]];
-    while (p && (p->count != count || memcmp(p->key, key, count * sizeof *key) != 0)) {
-        p = p->next;
+    b->h = calloc(1, sizeof *b->h);
+    const int status = b->h ? tribo_modal_build(b, holds) : TRIBO_ERR_MEMORY;
+    if (status) {
+        tribo_modal_free(b->h);
+        b->h = NULL;
     }
-    return p ? p->modal : NULL;
-}
-
-/* Keeps what has been found of a part, and owns it also on failure. */
-static int keep(struct modal_whole *w, size_t count, const size_t *key, struct modal *modal)
-{
-    const size_t bytes = sizeof(struct modal_piece) + count * sizeof *key;
-    struct modal_piece *p = malloc(bytes);
-    if (!p) {
-        tribo_modal_free(modal);
-        return TRIBO_ERR_MEMORY;
-    }
-    p->modal = modal;
-    p->count = count;
-    memcpy(p->key, key, count * sizeof *key);
-    p->next = w->piece[key[1]];
-    w->piece[key[1]] = p;
-    w->bytes += bytes + sizeof *modal + modal->bytes;
-    return TRIBO_OK;
+    return status;
 }
 
 /* *modal = what is known of a part. Returns a status. */
@@ -76,10 +40,10 @@ static int look_up(struct modal_whole *w, size_t part, const unsigned char *hold
     size_t *key = tribo_modal_scratch_indices(&b, 1 + w->sys->ndof + w->sys->ncontact);
     int status = key && tribo_modal_list(&b, part, holds) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     const size_t count = status ? 0 : write_key(&b, part, holds, key);
-    *modal = status ? NULL : find(w, count, key);
+    *modal = status ? NULL : tribo_modal_recall(&w->known, count, key);
     if (!status && !*modal) {
-        status = tribo_modal_build(&b, NULL, holds);
-        status = status ? status : keep(w, count, key, b.h);
+        status = build(&b, holds);
+        status = status ? status : tribo_modal_remember(&w->known, count, key, b.h);
         *modal = b.h;
     }
     tribo_modal_unlist(&b);
@@ -262,7 +226,12 @@ int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds)
         w->divides &= status || !w->found[k]->coupling;
     }
     if (!w->divides) {
-        tribo_modal_forget_pieces(w);
+        tribo_modal_forget(&w->known);
     }
-    return status || !w->divides || put_together(b, w->found) ? status : TRIBO_ERR_MEMORY;
+    if (status || !w->divides) {
+        return status;
+    }
+    b->part = *w->sys;
+    b->sys = &b->part;
+    return put_together(b, w->found) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }

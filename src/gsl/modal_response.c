@@ -72,79 +72,114 @@ static void force_by_limit(struct modal_build *b, size_t w)
     }
 }
 
-/* Forcing of eta by each harmonic, and what the held contacts are moved by. */
-int tribo_modal_forcing(struct modal_build *b)
+/* Forcing of eta by a load. */
+static void force_by_load(struct modal_build *b, size_t w)
 {
     struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, count = b->sys->harmonics;
-    if (!tribo_modal_list_forcing(b)) {
-        return 0;
+    const size_t m = h->modes;
+    const struct harmonic *load = &b->sys->harmonic[w];
+    for (size_t k = 0; k < m; k++) {
+        const double *psi = b->psi + k * b->n;
+        for (size_t i = 0; i < load->count; i++) {
+            h->gr[w * m + k] += load->cosine[i] * psi[load->index[i]];
+            h->gi[w * m + k] += -load->sine[i] * psi[load->index[i]];
+        }
     }
+}
+
+/* pull = -K y by, drag = -C y: the forces of stiffness and of damping where degrees of freedom move as y [ndof] says. */
+static void resist(const struct modal_build *b, const double *y, double by, double *pull, double *drag)
+{
+    memset(pull, 0, b->n * sizeof *pull);
+    memset(drag, 0, b->n * sizeof *drag);
+    tribo_matrix_multiply_add(b->stiffness, -by, y, pull);
+    if (b->damping) {
+        tribo_matrix_multiply_add(b->damping, -1.0, y, drag);
+    }
+}
+
+/* Forcing of eta by a base: -K y/(i Omega) - C y, where held contacts move the structure with velocities y; 1/i turns the real
+ * part into minus the imaginary one. Velocities of belts of constant speed go to y0. 0 if out of memory, or with the status
+ * of another failure in b. */
+static int force_by_base(struct modal_build *b, size_t w, double *x, double *pull, double *drag)
+{
+    struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes;
+    const struct harmonic *wave = &b->sys->harmonic[w];
+    double *const g[] = {h->gr + w * m, h->gi + w * m}, *const y[] = {b->yr + w * n, b->yi + w * n};
+    for (int part = 0; part < 2; part++) {
+        base_part(b, wave, part, x);
+        if (!belt_velocities(b, x, y[part])) {
+            return 0;
+        }
+    }
+    if (wave->omega == 0.0) {
+        tribo_add(b->y0, 1.0, y[0], n);
+        memset(y[0], 0, n * sizeof **y);
+        memset(y[1], 0, n * sizeof **y);
+        return 1;
+    }
+    for (int part = 0; part < 2; part++) {
+        resist(b, y[part], (part ? 1.0 : -1.0) / wave->omega, pull, drag);
+        for (size_t k = 0; k < m; k++) {
+            g[1 - part][k] += tribo_dot(b->phi + k * n, pull, n);
+            g[part][k] += tribo_dot(b->phi + k * n, drag, n);
+        }
+    }
+    return 1;
+}
+
+/* What constant loads force, and belts of constant speed. */
+static void force_by_constants(struct modal_build *b, double *pull, double *drag)
+{
+    struct modal *h = b->h;
+    resist(b, b->y0, 1.0, pull, drag);
+    for (size_t k = 0; k < h->modes; k++) {
+        h->ramp[k] = tribo_dot(b->phi + k * b->n, pull, b->n);
+        h->constant[k] = tribo_dot(b->phi + k * b->n, drag, b->n);
+        for (size_t w = 0; w < b->sys->harmonics; w++) {
+            h->constant[k] += h->forcing[w].omega == 0.0 ? h->gr[w * h->modes + k] : 0.0;
+        }
+    }
+}
+
+static int create_forcing(struct modal_build *b)
+{
+    struct modal *h = b->h;
+    const size_t m = h->modes, velocities = b->sys->harmonics * b->n;
     h->gr = tribo_modal_keep(b, h->harmonics * m);
     h->gi = tribo_modal_keep(b, h->harmonics * m);
     h->ramp = tribo_modal_keep(b, m);
     h->constant = tribo_modal_keep(b, m);
-    b->yr = tribo_modal_scratch(b, count * n);
-    b->yi = tribo_modal_scratch(b, count * n);
-    b->y0 = tribo_modal_scratch(b, n);
-    double *x = tribo_modal_scratch(b, b->rests), *pull = tribo_modal_scratch(b, n), *drag = tribo_modal_scratch(b, n);
-    if (!h->gr || !h->gi || !h->ramp || !h->constant || !b->yr || !b->yi || !b->y0 || !x || !pull || !drag) {
+    b->yr = tribo_modal_scratch(b, velocities);
+    b->yi = tribo_modal_scratch(b, velocities);
+    b->y0 = tribo_modal_scratch(b, b->n);
+    return h->gr && h->gi && h->ramp && h->constant && b->yr && b->yi && b->y0;
+}
+
+/* Forcing of eta by each harmonic, and what the held contacts are moved by. */
+int tribo_modal_forcing(struct modal_build *b)
+{
+    if (!tribo_modal_list_forcing(b) || !create_forcing(b)) {
         return 0;
     }
-    for (size_t w = 0; w < count; w++) {
-        const struct harmonic *wave = &b->sys->harmonic[w];
-        double *g[] = {h->gr + w * m, h->gi + w * m}, *y[] = {b->yr + w * n, b->yi + w * n};
-        for (int part = 0; wave->drives == DRIVES_LOAD && part < 2; part++) {
-            for (size_t k = 0; k < m; k++) {
-                for (size_t i = 0; i < wave->count; i++) {
-                    g[part][k] += (part ? -wave->sine[i] : wave->cosine[i]) * b->psi[k * n + wave->index[i]];
-                }
-            }
-        }
-        for (int part = 0; wave->drives == DRIVES_BASE && part < 2; part++) {
-            base_part(b, wave, part, x);
-            if (!belt_velocities(b, x, y[part])) {
-                return 0;
-            }
-        }
-        for (int part = 0; wave->drives == DRIVES_BASE && part < 2; part++) {
-            if (wave->omega == 0.0) {
-                if (part == 0) {
-                    tribo_add(b->y0, 1.0, y[0], n);
-                }
-                memset(y[part], 0, n * sizeof **y);
-                continue;
-            }
-            /* -K y/(i Omega) - C y; 1/i turns the real part into minus the imaginary one */
-            memset(pull, 0, n * sizeof *pull);
-            memset(drag, 0, n * sizeof *drag);
-            tribo_matrix_multiply_add(b->stiffness, (part ? -1.0 : 1.0) / wave->omega, y[part], pull);
-            if (b->damping) {
-                tribo_matrix_multiply_add(b->damping, -1.0, y[part], drag);
-            }
-            for (size_t k = 0; k < m; k++) {
-                g[1 - part][k] += tribo_dot(b->phi + k * n, pull, n);
-                g[part][k] += tribo_dot(b->phi + k * n, drag, n);
-            }
+    double *x = tribo_modal_scratch(b, b->rests), *pull = tribo_modal_scratch(b, b->n), *drag = tribo_modal_scratch(b, b->n);
+    int done = x && pull && drag;
+    for (size_t w = 0; done && w < b->sys->harmonics; w++) {
+        const enum drives drives = b->sys->harmonic[w].drives;
+        if (drives == DRIVES_LOAD) {
+            force_by_load(b, w);
+        } else if (drives == DRIVES_BASE) {
+            done = force_by_base(b, w, x, pull, drag);
         }
     }
-    for (size_t w = count; w < h->harmonics; w++) {
+    for (size_t w = b->sys->harmonics; done && w < b->h->harmonics; w++) {
         force_by_limit(b, w);
     }
-    memset(pull, 0, n * sizeof *pull);
-    memset(drag, 0, n * sizeof *drag);
-    tribo_matrix_multiply_add(b->stiffness, -1.0, b->y0, pull);
-    if (b->damping) {
-        tribo_matrix_multiply_add(b->damping, -1.0, b->y0, drag);
+    if (done) {
+        force_by_constants(b, pull, drag);
     }
-    for (size_t k = 0; k < m; k++) {
-        h->ramp[k] = tribo_dot(b->phi + k * n, pull, n);
-        h->constant[k] = tribo_dot(b->phi + k * n, drag, n);
-        for (size_t w = 0; w < count; w++) {
-            h->constant[k] += h->forcing[w].omega == 0.0 ? h->gr[w * m + k] : 0.0;
-        }
-    }
-    return 1;
+    return done;
 }
 
 /* Response of modes of which each has damping of its own. */

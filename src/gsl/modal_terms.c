@@ -69,7 +69,7 @@ static void grow(const struct modal *h, double tau, double *re, double *im)
     }
 }
 
-/* The terms from begin to end of which these are real and imaginary parts, or others. */
+/* Sets the terms from begin to end, of which re and im are the parts, or those of a derivative, to a real number. */
 static inline void fill(size_t begin, size_t end, double real, double *restrict re, double *restrict im)
 {
     for (size_t p = begin; p < end; p += T) {

@@ -7,7 +7,7 @@ void tribo_modal_whole_free(struct modal_whole *w)
 {
     tribo_matrix_free(&w->own_stiffness);
     tribo_matrix_free(&w->own_damping);
-    tribo_modal_forget_pieces(w);
+    tribo_modal_forget(&w->known);
     tribo_modal_give_back(w->scratch);
     tribo_modal_give_back(w->memory);
     memset(w, 0, sizeof *w);
@@ -219,11 +219,12 @@ static int create_workspace(struct modal_whole *w)
     }
     w->how = take(w, n, 1);
     w->ours = take(w, n, 1);
-    w->piece = take(w, n, sizeof(struct modal_piece *));
+    w->known.piece = take(w, n, sizeof *w->known.piece);
+    w->known.lists = n;
     w->found = take(w, n + 1, sizeof(struct modal *));
     memset(w->dof_place, 0xff, n * sizeof *w->dof_place);
     memset(w->contact_place, 0xff, c * sizeof *w->contact_place);
-    return w->how && w->ours && w->piece && w->found;
+    return w->how && w->ours && w->known.piece && w->found;
 }
 
 int tribo_modal_whole_create(struct modal_whole *w, tribo_system *sys)

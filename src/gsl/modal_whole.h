@@ -8,14 +8,12 @@
 #ifndef TRIBO_MODAL_WHOLE_H
 #define TRIBO_MODAL_WHOLE_H
 
+#include "modal_known.h"
 #include "system.h"
 
 /* How degrees of freedom move: freely, as the base of the one contact that holds them, or as contacts make them that tie them
  * together, or are too many. */
 enum { MOVES_FREELY, MOVES_HELD, MOVES_TIED };
-
-struct modal;
-struct modal_piece; /* modal_pieces.c */
 
 struct modal_whole {
     tribo_system *sys;
@@ -33,10 +31,9 @@ struct modal_whole {
     size_t *dof_place, *contact_place; /* [ndof], [ncontact] places in the part that is looked at; others NOWHERE */
     unsigned char *ours;               /* [ndof] 1: is of that part, and not only beside it */
 
-    struct modal_piece **piece; /* [ndof] parts that are known, by their first degree of freedom */
-    struct modal **found;       /* [ndof + 1] those of the set that is looked at */
-    size_t bytes;               /* of parts that are known */
-    void *memory, *scratch;     /* of all arrays; for the next decomposition */
+    struct modal_known known; /* parts that have been looked at */
+    struct modal **found;     /* [ndof + 1] those of the set that is looked at */
+    void *memory, *scratch;   /* of all arrays; for the next decomposition */
 };
 
 #define NOWHERE ((size_t)-1)

@@ -39,7 +39,7 @@ void tribo_planar_series_free(struct planar_series *s);
 /* The least time in which friction would stop a planar contact that slides already; HUGE_VAL if there is none. */
 double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const double *y);
 
-/* The value at h of a series with so many powers. */
+/* The value at h of a series x [powers + 1]. */
 double tribo_planar_series_value(const double *x, size_t powers, double h);
 
 /* Sets the order for a phase that begins with y, order at most; makes room, and S for contacts that begin to slide. a, f

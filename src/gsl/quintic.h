@@ -7,8 +7,8 @@ struct sample {
     double g, d, e;
 };
 
-/* A lower bound of a function with these samples at the ends of an interval of length h, whose sixth derivative is at most bend in
- * size, from the beginning of that for a time of until, at most h. No sharper than it takes to be at least `enough`. */
+/* A lower bound of a function with these samples at the ends of an interval of length h, whose sixth derivative is at most bend
+ * in size, from the beginning of that for a time of until, at most h. No sharper than it takes to be at least `enough`. */
 double tribo_quintic_least(const struct sample *a, const struct sample *b, double h, double bend, double until, double enough);
 
 /* The first place in (0, h) where the quintic through both samples falls to zero; a.g > 0 >= b.g. */

@@ -1,9 +1,9 @@
 /* Method "rk4/fixed": the classical Runge-Kutta method in steps of a fixed size. GSL's doubles each step for an estimate of its
  * error, which nobody asks for here, and takes twelve evaluations instead of four.
  *
- * From one evaluation follows the state of the next, or of the end, place by place. Where contacts share no body all is done block
- * by block, and an evaluation follows the one before as closely as can be, as soon as this has left behind what pulls at a block:
- * what is written is read again while it is near. */
+ * From one evaluation follows the state of the next, or of the end, place by place. Where contacts share no body all is done
+ * block by block, and an evaluation follows the one before as closely as can be, as soon as this has left behind what pulls at a
+ * block: what is written is read again while it is near. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -118,8 +118,8 @@ static int evaluate_block(struct rk4 *r, const tribo_system *sys, const struct e
     return e->number < STAGES - 1 || (tribo_dense_finite(e->to + i, n) && tribo_dense_finite(e->to + ndof + i, n));
 }
 
-/* All evaluations, each so many blocks behind the last one that nothing pulls at its block that is not there yet. Whatever is not
- * finite on the way comes to the end: returns whether nothing is. */
+/* All evaluations. Each goes `lag` blocks behind the one before, which by then has written all that pulls at the block.
+ * What is not finite on the way is not so at the end: returns whether all is finite there. */
 static int evaluate_blocks(struct rk4 *r, tribo_system *sys, const struct evaluation *all)
 {
     const size_t blocks = r->alone.blocks, lag = r->alone.reach;
@@ -205,7 +205,7 @@ static int step(tribo_driver *drv, double t, double next, const double *from, do
     return status;
 }
 
-/* For so many steps new settings are taken. */
+/* An advance of more than this many steps is worth taking new settings. */
 enum { MANY = 20 };
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)

@@ -1,4 +1,5 @@
-/* What decisions about contacts are made of; they are made in scalar_slip.c and planar_slip.c. */
+/* What is known of contacts between decisions: velocities and accelerations, and how much of them may be rounding. Decisions are
+ * made in scalar_slip.c and planar_slip.c. */
 #include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"
@@ -15,72 +16,79 @@
  * nearly linear in time. */
 #define LOOK_AHEAD 1e-4
 
-/* Contexts that know directions only. Where R couples nobody they are not asked for forces, and the second one is not needed. */
-static int create_contexts(struct stick_slip *m, tribo_system *sys)
+/* All arrays of numbers are one block. */
+static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
 {
-    size_t islands;
-    int status = tribo_clone(sys->contacts, &m->box);
-    if (status) {
-        return status;
-    }
-    tribo_set_planar(m->box, 0, NULL);
-    tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
-    m->uncoupled = islands == sys->ncontact;
-    if (m->uncoupled) {
-        return TRIBO_OK;
-    }
-    status = tribo_clone(m->box, &m->hold);
-    /* a contact that has reached its limit stays there while others take over */
-    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
-    tribo_set_static(m->box, NULL, NULL);
-    tribo_set_static(m->hold, NULL, NULL);
-    tribo_set_law(m->hold, TRIBO_COULOMB);
-    tribo_set_coupling(m->hold, TRIBO_PARTITION);
-    return status;
-}
-
-int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
-{
-    const size_t c = sys->ncontact + 1, n = sys->ndof;
-    memset(m, 0, sizeof *m);
-    m->contacts = sys->ncontact;
-    m->doubt = 1.0;
-    const int status = create_contexts(m, sys);
     double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
                                    &m->seen,      &m->parting,        &m->v,     &m->a,         &m->lo,    &m->hi,
                                    &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
                                    &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
-    double *work = calloc(contact_arrays * c + dof_arrays * n, sizeof *work);
-    m->slip = calloc(10, c);
-    m->at = malloc(3 * c * sizeof *m->at);
-    m->last = malloc(c);
-    m->limit = work;
-    const int statics = tribo_breakaway_create(&m->breakaway, sys->ncontact);
-    if (status || !work || !m->slip || !m->at || !m->last || !statics) {
-        tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
+    double *work = calloc(contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
+    for (size_t k = 0; work && k < contact_arrays; k++) {
+        *by_contact[k] = work + k * contacts;
     }
-    for (size_t k = 0; k < contact_arrays; k++) {
-        *by_contact[k] = work + k * c;
-    }
-    for (size_t k = 0; k < dof_arrays; k++) {
-        *by_dof[k] = work + contact_arrays * c + k * n;
+    for (size_t k = 0; work && k < dof_arrays; k++) {
+        *by_dof[k] = work + contact_arrays * contacts + k * dofs;
     }
     m->found = m->gain; /* three arrays of contacts, the last ones, and one of degrees of freedom, the first one */
-    m->founds = 3 * c + n;
-    m->tied = m->slip + c;
-    m->before = m->slip + 2 * c;
-    m->loose = m->slip + 3 * c;
-    m->holds = (unsigned char *)m->slip + 4 * c;
-    m->rested = (unsigned char *)m->slip + 5 * c;
-    m->slid = m->slip + 6 * c;
-    m->pulled = m->slip + 7 * c;
-    m->can_hold = (unsigned char *)m->slip + 8 * c;
-    m->elastic = (unsigned char *)m->slip + 9 * c;
-    m->asked = m->all = m->at + c;
-    m->some = m->at + 2 * c;
+    m->founds = 3 * contacts + dofs;
+    return work != NULL;
+}
+
+static int create_marks(struct stick_slip *m, size_t contacts)
+{
+    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled};
+    unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
+    const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
+    signed char *work = calloc(signs + marks, contacts);
+    for (size_t k = 0; work && k < signs; k++) {
+        *sign[k] = work + k * contacts;
+    }
+    for (size_t k = 0; work && k < marks; k++) {
+        *mark[k] = (unsigned char *)work + (signs + k) * contacts;
+    }
+    return work != NULL;
+}
+
+static int create_lists(struct stick_slip *m, size_t contacts)
+{
+    m->at = malloc(3 * contacts * sizeof *m->at);
+    if (m->at) {
+        m->asked = m->all = m->at + contacts;
+        m->some = m->at + 2 * contacts;
+    }
+    return m->at != NULL;
+}
+
+/* Contexts that know directions only. Where R couples nobody they are not asked for forces, and the second one is not needed. */
+static int create_contexts(struct stick_slip *m, const tribo_context *contacts)
+{
+    size_t islands;
+    if (tribo_clone(contacts, &m->box)) {
+        return 0;
+    }
+    tribo_set_planar(m->box, 0, NULL);
+    tribo_get_count(m->box, TRIBO_COUNT_ISLANDS, &islands);
+    m->uncoupled = islands == m->contacts;
+    if (m->uncoupled) {
+        return 1;
+    }
+    tribo_set_static(m->box, NULL, NULL);
+    if (tribo_clone(m->box, &m->hold)) {
+        return 0;
+    }
+    /* a contact that has reached its limit stays there while others take over */
+    tribo_set_sharing(m->box, TRIBO_SHARE_PREVIOUS);
+    tribo_set_law(m->hold, TRIBO_COULOMB);
+    tribo_set_coupling(m->hold, TRIBO_PARTITION);
+    return 1;
+}
+
+/* What contacts are, whatever they do. */
+static void find_kinds(struct stick_slip *m, const tribo_system *sys)
+{
     m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
@@ -89,13 +97,29 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
         m->all[i] = i;
         m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
+}
+
+/* Whether any contact can hold without the others. 0 if out of memory. */
+static int find_dependence(struct stick_slip *m, const tribo_system *sys)
+{
     const size_t rank = m->uncoupled ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
-    if (rank > sys->ncontact) {
-        tribo_stick_slip_free(m);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
-    }
     m->independent = rank == sys->ncontact;
-    return TRIBO_OK;
+    return rank <= sys->ncontact;
+}
+
+int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
+{
+    const size_t c = sys->ncontact + 1;
+    *m = (struct stick_slip){.contacts = sys->ncontact, .doubt = 1.0};
+    if (create_contexts(m, sys->contacts) && create_numbers(m, c, sys->ndof) && create_marks(m, c) && create_lists(m, c) &&
+        tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
+        find_kinds(m, sys);
+        if (find_dependence(m, sys)) {
+            return TRIBO_OK;
+        }
+    }
+    tribo_stick_slip_free(m);
+    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", sys->ncontact, plural(sys->ncontact));
 }
 
 void tribo_stick_slip_free(struct stick_slip *m)
@@ -106,7 +130,6 @@ void tribo_stick_slip_free(struct stick_slip *m)
     free(m->limit);
     free(m->slip);
     free(m->at);
-    free(m->last);
     memset(m, 0, sizeof *m);
 }
 
@@ -124,9 +147,10 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
     }
 }
 
-/* The sizes of all that comes from outside, whenever: of b, of its rate, and of the accelerations by loads. */
-static void find_outer_sizes(struct stick_slip *m, const tribo_system *sys)
+void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
 {
+    const double fastest = tribo_system_fastest(sys) + m->breakaway.steepest;
+    m->horizon = LOOK_AHEAD / (fastest > 0.0 ? fastest : 1.0);
     memset(m->base_size, 0, sys->ncontact * sizeof *m->base_size);
     memset(m->base_rate_size, 0, sys->ncontact * sizeof *m->base_rate_size);
     memset(m->load_size, 0, sys->ndof * sizeof *m->load_size);
@@ -192,7 +216,7 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
     }
 }
 
-/* ------------------------------------------------------------------------------------------------------ who is at rest */
+/* -------------------------------------------------------------------------------------------------- one contact, as decided */
 
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
 {
@@ -218,104 +242,8 @@ double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system 
     return v;
 }
 
-/* Whether contact i slides in a state, and which way. */
-static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
-{
-    const double v = tribo_stick_slip_find_velocity(m, sys, i, y);
-    return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? 0 : v > 0.0 ? 1 : -1);
-}
-
-static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i)
-{
-    return m->swing[i] > 0.0 ? tribo_system_presses(sys, i, m->doubt) : m->limit[i] != 0.0 || m->limit_rate[i] != 0.0;
-}
-
-void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    if (m->steady) {
-        return;
-    }
-    const int varies = tribo_system_limits_vary(sys) || m->breakaway.some;
-    if (varies) {
-        tribo_system_limits(sys, m->limit, m->limit_rate);
-    }
-    m->steady = !varies;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (!presses(m, sys, i)) {
-            m->limit[i] = m->limit_rate[i] = 0.0;
-            tribo_stick_slip_set(m, i, 2);
-        } else if (m->slip[i] == 2) {
-            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
-        }
-        m->limit[i] = greater(m->limit[i], 0.0);
-    }
-    if (m->breakaway.some) {
-        tribo_breakaway_take(&m->breakaway, sys->ncontact, m->limit, m->limit_rate);
-    }
-}
-
-/* A static limit that is lost does not come back: it must not go with who of those that tie each other is held. */
-static int not_unique(const tribo_system *sys, size_t i)
-{
-    return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                             "contact %zu has a static limit and is tied to others that stop beside it: which of them rest is "
-                             "not unique; take central/fixed or moreau/fixed",
-                             i);
-}
-
-/* Those that have no velocity in the direction of their slip any more rest; returns how many. */
-static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    size_t found = 0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const signed char slip = m->slip[i];
-        if ((slip == 1 || slip == -1) && slip != slip_of(m, sys, i, y)) {
-            tribo_stick_slip_set(m, i, 0);
-            found++;
-        }
-    }
-    return found;
-}
-
-/* Where bases part, a contact that rests by itself goes with them. */
-static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    int status = TRIBO_OK;
-    for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        if (m->slip[i] == 0 && !m->holds[i]) {
-            tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
-            status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
-        }
-    }
-    return status;
-}
-
-static void note_rest(size_t n, const signed char *restrict slip, unsigned char *restrict rested)
-{
-    for (size_t i = 0; i < n; i++) {
-        rested[i] = slip[i] == 0;
-    }
-}
-
-/* Those that another contact holds from here on are at rest, too. */
-int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
-{
-    int status = TRIBO_OK;
-    for (size_t found = 1; !status && found;) {
-        status = tribo_stick_slip_find_holds(m, sys);
-        status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
-        found = status ? 0 : stop(m, sys, y);
-    }
-    if (!status && m->dependents && m->base_moves) {
-        status = part(m, sys, y);
-    }
-    note_rest(m->contacts, m->slip, m->rested);
-    return status;
-}
-
 /* ------------------------------------------------------------------------------------------------------------ motion */
 
-/* to = J acceleration - order-th derivative of b. */
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {
     tribo_matrix_multiply(&sys->direction, acceleration, to);
@@ -331,7 +259,6 @@ const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tri
     return m->acceleration;
 }
 
-/* rate = the rate of q'' while the forces of contacts at rest are what they are. */
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     memset(m->rate, 0, sys->ndof * sizeof *m->rate);
@@ -340,87 +267,4 @@ void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, c
     if (sys->damping.rows) {
         tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->rate);
     }
-}
-
-/* lo = the limits by which contacts slide at the time set with velocities v: others than those that were last decided with, if
- * they swing, or fall with the speed. */
-static void find_sliding_limits(struct stick_slip *m, const tribo_system *sys, const double *v)
-{
-    tribo_system_limits(sys, m->lo, m->hi);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->lo[i] = greater(m->lo[i], 0.0);
-    }
-    if (m->breakaway.some) {
-        tribo_breakaway_take(&m->breakaway, sys->ncontact, m->lo, m->hi);
-        tribo_breakaway_limits(&m->breakaway, sys->ncontact, m->slip, v, m->lo, m->hi);
-    }
-}
-
-int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
-{
-    tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
-    if (sys->massless.count) {
-        tribo_elastic_find(m, sys, y);
-    }
-    find_sliding_limits(m, sys, m->v);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const double rests = tribo_massless_touches(&sys->massless, i) ? m->spring[i] : m->force[i];
-        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? rests : -m->slip[i] * m->lo[i];
-    }
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
-    tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->v);
-    const int status = tribo_stick_slip_balance(m, m->v, m->f);
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
-    return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
-}
-
-/* ------------------------------------------------------------------------------------------------------------ decision */
-
-/* b(t), which is zero throughout where no base moves. */
-static void find_base(struct stick_slip *m, const tribo_system *sys)
-{
-    if (sys->base_harmonics) {
-        memset(m->base, 0, sys->ncontact * sizeof *m->base);
-        tribo_system_loads(sys, DRIVES_BASE, 0, 1.0, m->base);
-    }
-}
-
-void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y)
-{
-    tribo_system_set_time(sys, t);
-    find_base(m, sys);
-    memset(m->tied, 0, sys->ncontact);
-    tribo_elastic_release(sys, y);
-}
-
-void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
-{
-    tribo_system_set_time(sys, t);
-    tribo_system_limits(sys, m->limit, m->limit_rate);
-    tribo_breakaway_start(&m->breakaway, sys, m->rate, m->v);
-    m->stick = m->breakaway.some ? m->breakaway.stick : m->limit;
-    m->stick_rate = m->breakaway.some ? m->breakaway.stick_rate : m->limit_rate;
-    find_base(m, sys);
-    find_outer_sizes(m, sys);
-    memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
-    for (size_t i = 0; !continues && i < sys->ncontact; i++) {
-        tribo_stick_slip_set(m, i, (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, sys, i, y)));
-        m->rested[i] = 0;
-    }
-    if (!continues) {
-        tribo_elastic_start(m, sys, y);
-    }
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->swing[i] = tribo_system_swing(sys, i);
-    }
-    m->fresh = m->hold_differs = 1;
-    m->steady = 0;
-    m->doubt = 1.0;
-    m->reached = m->contacts;
-    m->base_moves = 0;
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        m->base_moves |= sys->harmonic[k].drives == DRIVES_BASE && sys->harmonic[k].count > 0;
-    }
-    const double most = tribo_system_fastest(sys) + m->breakaway.steepest;
-    m->horizon = LOOK_AHEAD / (most > 0.0 ? most : 1.0);
 }

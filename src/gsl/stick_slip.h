@@ -83,25 +83,30 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     m->slip[i] = slip;
 }
 
-/* Takes limits from the system, and, unless it continues, from the state who is at rest: contacts whose velocity is zero to
- * rounding. A decision must follow. */
+/* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest:
+ * contacts whose velocity is zero to rounding. A decision must follow. */
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues);
 
 /* scalar_slip.c: decides about the contacts at rest, one of which may have reached its limit (see above), and takes rounding out
  * of their velocities in y. Sets slip, holds, force and allowance. */
 int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y);
 
-/* What a decision is made of. It begins at time t, with the base there. Limits, and with them which contacts are open, are
- * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status.
- * What accelerations of contacts may be rounding, and how far forces may go, is forgotten, and found anew of one contact, or all;
- * q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
- * to [ncontact] = J acceleration - order-th derivative of b. */
+/* stick_slip_instant.c: a decision begins at time t, with the base there. Limits, and with them which contacts are open, are
+ * brought up to that time. Then whoever has no velocity, or none in the direction of its slip any more, is at rest; a status. */
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y);
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
+
+/* How large b, its rate, and accelerations by loads ever are, and how far decisions look ahead. */
+void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys);
+
+/* What accelerations of contacts may be rounding, and how far forces may go: forgotten, and found anew of one contact, or all. */
 void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
+
+/* q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
+ * to [ncontact] = J acceleration - order-th derivative of b. */
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
 void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y);
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to);
@@ -112,17 +117,30 @@ static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i
     return m->slip[i] == 0 && !m->elastic[i];
 }
 
-/* scalar_slip.c, of the contacts that are asked about: forces, with contacts at rest as they are marked; a status. v [ncontact]
- * = a + R f, the accelerations that forces f leave; v may be a. A contact that cannot hold slides; but if it held by a static
- * limit, it is decided about once more by the other one. */
+/* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
+ * without them are a; the forces, with contacts at rest as they are marked; both return a status. v [ncontact] = a + R f, the
+ * accelerations that forces f leave; v may be a. */
+int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
-void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction);
 
-/* stick_slip_relieve.c: whether contact i would lose a static limit, and the forces at rest are not unique. Then, and where
- * accelerations are nothing but rounding, the forces tell that it takes to hold all that are at rest: these are the forces, or
- * contacts let go; a status. */
-int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i);
+/* Contact i, which cannot hold, slides; but if it held by a static limit, it is decided about once more by the other one. */
+static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
+{
+    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
+    tribo_stick_slip_set(m, i, again ? 0 : direction);
+    m->tied[i] = 0;
+    m->again |= again;
+}
+
+/* Whether contact i would lose a static limit, and the forces at rest are not unique. */
+static inline int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i)
+{
+    return m->dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
+}
+
+/* stick_slip_relieve.c: where a contact must be sure, or accelerations are nothing but rounding, the forces tell that it takes to
+ * hold all that are at rest: these are the forces, or contacts are let go; a status. */
 int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *changes);
 
 /* stick_slip_elastic.c: elastic contacts, whose forces the state knows. The first finds these, and what of them may be rounding:
@@ -136,10 +154,10 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
 void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y);
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
-/* Finds out which of the contacts at rest hold, as they are marked; a status. */
+/* holds.c: finds out which of the contacts at rest hold, as they are marked; a status. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 
-/* q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
+/* stick_slip_instant.c: q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
 
 /* The force by which contact i, coupled with no other one, holds; 0 if it does not. */
@@ -148,10 +166,10 @@ static inline double tribo_stick_slip_balance_alone(const struct stick_slip *m, 
     return m->loose[i] ? 0.0 : -a / m->diagonal[i];
 }
 
-/* f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
+/* holds.c: f of the contacts that hold, R_II f_I = -a_I; zero for the others. */
 int tribo_stick_slip_balance(struct stick_slip *m, const double *a, double *f);
 
-/* Makes J x = base for the contacts that hold by impulses of theirs. Returns a status. */
+/* holds.c: makes J x = base for the contacts that hold by impulses of theirs. Returns a status. */
 int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
 
 /* The same where J x - base is rounding: takes that out of x [ndof]. Returns a status. */

@@ -34,11 +34,6 @@ static int find_holding_forces(struct stick_slip *m, const tribo_system *sys)
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
 
-int tribo_stick_slip_must_be_sure(const struct stick_slip *m, size_t i)
-{
-    return m->dependents && tribo_breakaway_is_sudden(&m->breakaway, i);
-}
-
 /* Which contact f takes most beyond its limit; ncontact if none. */
 static size_t most_overloaded(const struct stick_slip *m)
 {

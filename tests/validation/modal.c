@@ -232,16 +232,16 @@ TEST(parts)
         assert_ok(tribo_modal_create(&g, &undivided, slip, holds));
         assert_ok(tribo_modal_create(&h, &divided, slip, holds));
         compare(g, h);
-        const size_t bytes = divided.bytes;
+        const size_t bytes = divided.known.bytes;
         assert_ok(tribo_modal_create(&again, &divided, slip, holds));
-        ck_assert_uint_eq(divided.bytes, bytes);
+        ck_assert_uint_eq(divided.known.bytes, bytes);
         tribo_modal_free(g);
         tribo_modal_free(h);
         tribo_modal_free(again);
     }
     ck_assert(divided.divides);
-    ck_assert_uint_gt(divided.bytes, 0);
-    ck_assert_uint_eq(undivided.bytes, 0);
+    ck_assert_uint_gt(divided.known.bytes, 0);
+    ck_assert_uint_eq(undivided.known.bytes, 0);
     tribo_modal_whole_free(&divided);
     tribo_modal_whole_free(&undivided);
     tribo_system_destroy(sys);

@@ -288,8 +288,8 @@ static int box_solve_afresh(struct box_qp *p)
     return box_primal_dual(p);
 }
 
-/* Of large forces of earlier calls that come to nothing there is left what was rounding of them, and that may be too much: then all
- * begins without them. Where that does not do either, contacts share as they did before. */
+/* Of large forces of earlier calls that come to nothing there is left what was rounding of them, and that may be too much: then
+ * all begins without them. Where that does not do either, contacts share as they did before. */
 void tribo_box_share(struct box_qp *p)
 {
     double *before = p->spare[0], *after = p->spare[1];
