@@ -239,6 +239,18 @@ static int together(const struct variation *x, const size_t *contact, size_t cou
     return 1;
 }
 
+/* Whether contact i, of those that stop, goes on, and so changes when another one stops with which it shares bodies. */
+static void find_torn(struct variation *x, size_t i, size_t count)
+{
+    for (size_t k = 0; x->events->stick_slip.slip[i] != 0 && k < count; k++) {
+        const size_t j = x->stopped[k];
+        if (j != i && fabs(tribo_system_delassus(x->sys, i, j)) > TOGETHER * tribo_system_delassus(x->sys, i, i)) {
+            x->torn = i;
+            x->other = j;
+        }
+    }
+}
+
 /* Contacts that stop by coincidence do so by what moved them before, each at its own time. */
 static void stop_earlier(struct variation *x)
 {
@@ -248,6 +260,7 @@ static void stop_earlier(struct variation *x)
     } else {
         for (size_t k = 0; k < count; k++) {
             reverse(x, x->stopped[k], x->rows + k * x->columns);
+            find_torn(x, x->stopped[k], count);
         }
     }
 }

@@ -3,7 +3,8 @@
  * In a phase they move as the structure does without loads and without what slides, contacts at rest being held: a perturbed
  * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for
  * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once
- * by coincidence, each makes the jump that its force does. Where one breaks away accelerations are continuous, since the problem
+ * by coincidence, each makes the jump that its force does; but if one that goes on shares bodies with another one, the order in
+ * which they stop changes when, and there is no derivative. Where one breaks away accelerations are continuous, since the problem
  * that decides about them has one solution: S = I. But not by a static limit that drops at once: there they jump when the force
  * that holds contact i meets it, S = I + (q''+ - q''-) df_i/(limit' - f_i') for a force that rises. Where several forces meet
  * theirs at once by coincidence, each contact makes its own jump, if letting one go leaves the force of the other what it is;
