@@ -84,6 +84,7 @@ static int allocate(struct step_band *b, size_t n, size_t count)
     b->mass = calloc(3 * n + 3 * count + 1, sizeof *b->mass);
     b->at = calloc(count + n + 1, 1);
     if (!b->body || !b->mass || !b->at) {
+        tribo_step_band_free(b);
         return 0;
     }
     b->contact = b->body + count;

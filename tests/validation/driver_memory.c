@@ -53,6 +53,7 @@ static void advance_within_bounds(const char *method, int planar)
     tribo_system *twin = start(&m, planar, want);
     run(twin, method, 0.01, 1e-6, 0.5, want);
     int status = TRIBO_ERR_MEMORY;
+    const long none = memory_live();
     for (size_t bytes = 0; status; bytes = memory_missed()) {
         double t = 0.0, y[DIMENSION], before[DIMENSION];
         tribo_system *sys = start(&m, planar, y);
@@ -73,6 +74,7 @@ static void advance_within_bounds(const char *method, int planar)
         require(!fixed || memory_calls() == calls, "%s: %zu allocations", method, memory_calls() - calls);
         tribo_driver_destroy(drv);
         tribo_system_destroy(sys);
+        require(memory_live() == none, "%s leaves %ld blocks with %zu bytes", method, memory_live() - none, bytes);
     }
     tribo_system_destroy(twin);
 }
