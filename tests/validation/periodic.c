@@ -316,7 +316,7 @@ TEST(no_multipliers)
     double y[5] = {0}, re[4] = {7.0}, im[4], share[2];
     find(&s, 0.0, y);
     assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(s.drv), _i < 2 ? "contacts 0 and 1 " : "contacts 1 and 0 ");
+    assert_says(tribo_driver_message(s.drv), _i < 2 ? "contact 0 and contact 1 " : "contact 1 and contact 0 ");
     assert_exact(re[0], 7.0);
     assert_ok(tribo_driver_period_stick(s.drv, share));
     require(_i < 2 ? share[0] > 0.0 : share[0] == 0.0, "%g of the period at rest", share[0]);
