@@ -289,7 +289,8 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * part. Motions next to it, in which contacts that rest do so too, come closer by these factors a period. Contacts at rest
  * forget: multipliers of 0.
  * re, im  [2 ndof] out
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed). */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed), TRIBO_ERR_UNSUPPORTED (contacts that
+ * bear upon each other stop, or reach their static limits, at one instant: what motions next to it do is not linear). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
 /* What the last periodic motion found holds, in closed form from event to event: nothing is sampled. Each call follows the motion

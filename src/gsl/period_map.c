@@ -132,7 +132,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     enter(m);
     memcpy(p->y, m->y, n * sizeof *p->y);
     tribo_energy_norm_of(&m->norm, 1, m->y, p->x);
-    memcpy(m->variation.v, m->unit, n * n * sizeof *m->unit);
+    tribo_variation_begin(&m->variation, m->unit);
     m->size = greater(m->least, length(p->x, n));
     status = status ? status : integrate(m, m->t, m->t + m->span, &m->company);
     if (status) {
@@ -146,6 +146,8 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     set_image(m, n * n, p->derivative);
     p->residual = distance(p->image, p->x, n);
     p->size = m->size;
+    p->torn = m->variation.torn;
+    p->other = m->variation.other;
     return TRIBO_OK;
 }
 

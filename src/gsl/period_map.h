@@ -13,6 +13,7 @@ struct point {
     double *derivative;  /* [n][n] of image by x */
     double residual;     /* |image - x| */
     double size;         /* the largest state on the way */
+    size_t torn, other;  /* two contacts for which there is no such derivative; ncontact: there is one */
 };
 
 struct period_map {

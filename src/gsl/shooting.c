@@ -96,6 +96,8 @@ static void copy_point(const struct shooting *s, struct point *to, const struct 
     memcpy(to->y, from->y, (4 * n + n * n) * sizeof *to->y); /* all arrays of a point are in one piece */
     to->residual = from->residual;
     to->size = from->size;
+    to->torn = from->torn;
+    to->other = from->other;
 }
 
 /* Goes there, and begins anew from there. */

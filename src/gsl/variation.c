@@ -39,14 +39,14 @@ static void add_change(const tribo_system *sys, const double *q, const double *u
 }
 
 /* x->rise, while the forces of contacts that do not hold follow their limits. */
-static int find_rise(struct variation *x, const double *y, double side)
+static int find_rise(struct variation *x, const double *y)
 {
     tribo_system *sys = x->sys;
     const struct stick_slip *m = &x->events->stick_slip;
     double *rate = x->column;
     tribo_system_limits(sys, x->a, x->f);
-    const double limit_rate = x->f[x->pulled] * tribo_breakaway_ratio(&m->breakaway, x->pulled);
     for (size_t i = 0; i < sys->ncontact; i++) {
+        x->rise[i] = -x->f[i] * tribo_breakaway_ratio(&m->breakaway, i);
         x->f[i] *= tribo_stick_slip_follows(m, i);
     }
     memset(rate, 0, sys->ndof * sizeof *rate);
@@ -54,12 +54,14 @@ static int find_rise(struct variation *x, const double *y, double side)
     add_change(sys, y + sys->ndof, x->acceleration, rate);
     tribo_matrix_multiply_add(&sys->response, 1.0, x->f, rate);
     const int status = change_of_holds(x, rate, 2);
-    x->rise = side * x->f[x->pulled] - limit_rate;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        x->rise[i] += x->side[i] * x->f[i];
+    }
     return status;
 }
 
-/* x->pull, of side times the force. */
-static int find_pull(struct variation *x, double side)
+/* x->pull, of side times the forces. */
+static int find_pull(struct variation *x)
 {
     const size_t n = x->sys->ndof;
     double *state = x->column, *change = state + 2 * n;
@@ -71,24 +73,81 @@ static int find_pull(struct variation *x, double side)
         memset(change, 0, n * sizeof *change);
         add_change(x->sys, state, state + n, change);
         status = change_of_holds(x, change, 0);
-        x->pull[j] = side * x->f[x->pulled];
+        for (size_t k = 0; k < x->count; k++) {
+            x->pull[k * x->columns + j] = x->side[x->met[k]] * x->f[x->met[k]];
+        }
     }
     return status;
 }
 
-/* Whether a static limit is what ends the phase, and then how its force depends on the state. Guards are what is left of the
- * limit with side times the force. */
-static int find_pulled(struct variation *x, const double *y)
+/* Whether a static limit is what ends the phase. */
+static int breaks_away(const struct variation *x)
 {
     const struct guard *g = x->events->met;
     const struct stick_slip *m = &x->events->stick_slip;
-    x->pulled = x->sys->ncontact;
-    if (!g || g->slides || m->breakaway.falls || !m->holds[g->contact] || !tribo_breakaway_is_sudden(&m->breakaway, g->contact)) {
-        return TRIBO_OK;
+    return g && g->slides == HOLDS && !m->breakaway.falls && m->holds[g->contact] &&
+           tribo_breakaway_is_sudden(&m->breakaway, g->contact);
+}
+
+/* The contacts whose forces, just found to be m->f, meet their static limits. */
+static void find_met(struct variation *x)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    x->count = 0;
+    memset(x->side, 0, x->sys->ncontact);
+    if (!breaks_away(x)) {
+        return;
     }
-    x->pulled = g->contact;
-    const int status = find_rise(x, y, -g->side);
-    return status ? status : find_pull(x, -g->side);
+    tribo_system_limits(x->sys, x->a, x->f);
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const double met = (1.0 - TOGETHER) * tribo_breakaway_ratio(&m->breakaway, i) * x->a[i];
+        const int may = m->holds[i] && tribo_breakaway_is_sudden(&m->breakaway, i);
+        if (may && (i == x->events->met->contact || fabs(m->f[i]) >= met)) {
+            x->side[i] = (signed char)(m->f[i] > 0.0 ? 1 : -1);
+            x->met[x->count++] = i;
+        }
+    }
+}
+
+/* Those of them that go beyond: the others only touch their limits. */
+static void keep_rising(struct variation *x)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < x->count; k++) {
+        const size_t i = x->met[k];
+        if (x->rise[i] > 0.0) {
+            x->met[count++] = i;
+        } else {
+            x->side[i] = 0;
+        }
+    }
+    x->count = count;
+}
+
+/* Whether letting one of them go changes the force of another one: x->bond, or ncontact. */
+static int find_bond(struct variation *x)
+{
+    int status = TRIBO_OK;
+    x->bond = x->sys->ncontact;
+    for (size_t k = 0; !status && x->count > 1 && k < x->count; k++) {
+        const size_t i = x->met[k];
+        memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+        x->a[i] = 1.0;
+        status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
+        for (size_t l = 0; l < k; l++) {
+            x->bond = fabs(x->f[x->met[l]]) > TOGETHER * fabs(x->f[i]) ? i : x->bond;
+        }
+    }
+    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.hold)) : TRIBO_OK;
+}
+
+/* All that the decision leaves unknown of forces that meet static limits. */
+static int look_at_met(struct variation *x, const double *y)
+{
+    int status = find_rise(x, y);
+    keep_rising(x);
+    status = status ? status : find_pull(x);
+    return status ? status : find_bond(x);
 }
 
 static int phase_ends(struct company *company, double tau, double t, const double *y)
@@ -100,11 +159,12 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
         tribo_elastic_perturb(sys, x->before, x->columns, x->v, x->work);
     }
     int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration);
+    find_met(x);
     memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
     tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
     tribo_matrix_multiply_add(&sys->direction, 1.0, x->acceleration, x->slope);
     status = status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
-    return status ? status : find_pulled(x, y);
+    return status || !x->count ? status : look_at_met(x, y);
 }
 
 /* 1 if contact i, which slid, comes to rest for an instant only, since the force of that pulls another one loose: accelerations
@@ -163,13 +223,14 @@ static size_t find_stopped(struct variation *x)
     return count;
 }
 
-/* 1 if perturbed motions, too, have these contacts stop at one time: others that hold tie them together. */
-static int together(const struct variation *x, size_t count)
+/* 1 if perturbed motions, too, have these contacts stop, or break away, at one time: others that hold tie them together. What has
+ * to be zero then has slopes by contact, and changes by rows. */
+static int together(const struct variation *x, const size_t *contact, size_t count, const double *slope, const double *rows)
 {
-    const double slope = x->slope[x->stopped[0]], size = tribo_largest(x->rows, x->columns) / fabs(slope);
+    const double first = slope[contact[0]], size = tribo_largest(rows, x->columns) / fabs(first);
     for (size_t k = 1; k < count; k++) {
         for (size_t j = 0; j < x->columns; j++) {
-            const double dt = x->rows[k * x->columns + j] / x->slope[x->stopped[k]] - x->rows[j] / slope;
+            const double dt = rows[k * x->columns + j] / slope[contact[k]] - rows[j] / first;
             if (fabs(dt) > TOGETHER * size) {
                 return 0;
             }
@@ -178,29 +239,97 @@ static int together(const struct variation *x, size_t count)
     return 1;
 }
 
-/* Contacts that stop by coincidence do so by what moved them before, each at its own time. */
-static void event_decided(struct company *company)
+/* Whether contact i, of those that stop, goes on, and so changes when another one stops with which it shares bodies. */
+static void find_torn(struct variation *x, size_t i, size_t count)
 {
-    struct variation *x = (struct variation *)company;
+    for (size_t k = 0; x->events->stick_slip.slip[i] != 0 && k < count; k++) {
+        const size_t j = x->stopped[k];
+        if (j != i && fabs(tribo_system_delassus(x->sys, i, j)) > TOGETHER * tribo_system_delassus(x->sys, i, i)) {
+            x->torn = i;
+            x->other = j;
+        }
+    }
+}
+
+/* Contacts that stop by coincidence do so by what moved them before, each at its own time. */
+static void stop_earlier(struct variation *x)
+{
     const size_t count = find_stopped(x);
-    if (count && together(x, count)) {
+    if (count && together(x, x->stopped, count, x->slope, x->rows)) {
         jump_earlier(x, x->slope[x->stopped[0]], x->rows);
     } else {
         for (size_t k = 0; k < count; k++) {
             reverse(x, x->stopped[k], x->rows + k * x->columns);
+            find_torn(x, x->stopped[k], count);
         }
     }
-    if (x->pulled < x->sys->ncontact && x->events->stick_slip.slip[x->pulled] != 0 && x->rise > 0.0) {
-        jump_earlier(x, x->rise, x->pull);
+}
+
+/* Of several contacts that lose their static limits at once, i slides; what others hold is taken from that, too. */
+static void let_go(struct variation *x, size_t i, const double *row)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i),
+                 jump = -(m->slip[i] + x->side[i] * ratio) * m->limit[i] / x->rise[i];
+    for (size_t d = 0; d < x->sys->ndof; d++) {
+        tribo_add(x->v + (x->sys->ndof + d) * x->columns, jump * tribo_matrix_get(&x->sys->response, d, i), row, x->columns);
     }
+}
+
+/* A contact that bears upon those whose limits are met by coincidence, or is pulled loose by them; ncontact: none. */
+static size_t find_bound(const struct variation *x)
+{
+    size_t bound = x->bond;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const signed char now = x->events->stick_slip.slip[i];
+        bound = x->before[i] == 0 && (now == 1 || now == -1) && !x->side[i] ? i : bound;
+    }
+    return bound;
+}
+
+/* Contacts that lose their static limits by coincidence do so each at its own time, too. */
+static void break_away_earlier(struct variation *x)
+{
+    const signed char *now = x->events->stick_slip.slip;
+    size_t gone = 0;
+    for (size_t k = 0; k < x->count; k++) {
+        gone += now[x->met[k]] != 0;
+    }
+    if (gone && together(x, x->met, x->count, x->rise, x->pull)) {
+        jump_earlier(x, x->rise[x->met[0]], x->pull);
+    } else if (gone) {
+        const size_t bound = find_bound(x);
+        for (size_t k = 0; k < x->count; k++) {
+            if (now[x->met[k]] != 0) {
+                let_go(x, x->met[k], x->pull + k * x->columns);
+            }
+        }
+        if (bound < x->sys->ncontact) {
+            x->torn = x->met[0];
+            x->other = bound;
+        }
+    }
+}
+
+static void event_decided(struct company *company)
+{
+    struct variation *x = (struct variation *)company;
+    stop_earlier(x);
+    break_away_earlier(x);
+}
+
+void tribo_variation_begin(struct variation *x, const double *v)
+{
+    memcpy(x->v, v, 2 * x->sys->ndof * x->columns * sizeof *v);
+    x->torn = x->other = x->sys->ncontact;
 }
 
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
     *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
-    x->v = malloc(((2 * sys->ndof + sys->ncontact + 1) * columns + 4 * sys->ncontact + 6 * sys->ndof + 1) * sizeof *x->v);
-    x->before = malloc(sys->ncontact + 1);
-    x->stopped = malloc((sys->ncontact + 1) * sizeof *x->stopped);
+    x->v = malloc((2 * (sys->ndof + sys->ncontact) * columns + 5 * sys->ncontact + 6 * sys->ndof + 1) * sizeof *x->v);
+    x->before = malloc(2 * sys->ncontact + 1);
+    x->stopped = malloc((2 * sys->ncontact + 1) * sizeof *x->stopped);
     if (!x->v || !x->before || !x->stopped) {
         return 0;
     }
@@ -211,7 +340,10 @@ int tribo_variation_create(struct variation *x, struct events *e, tribo_system *
     x->acceleration = x->f + sys->ncontact;
     x->column = x->acceleration + sys->ndof;
     x->pull = x->column + 3 * sys->ndof;
-    x->work = x->pull + columns;
+    x->work = x->pull + sys->ncontact * columns;
+    x->rise = x->work + 2 * sys->ndof + sys->ncontact;
+    x->side = x->before + sys->ncontact;
+    x->met = x->stopped + sys->ncontact;
     return 1;
 }
 

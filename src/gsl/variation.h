@@ -3,10 +3,13 @@
  * In a phase they move as the structure does without loads and without what slides, contacts at rest being held: a perturbed
  * velocity that would move those is taken away. Where a contact that slides comes to rest or reverses, accelerations jump, for
  * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once
- * by coincidence, each makes the jump that its force does. Where one breaks away accelerations are continuous, since the problem
+ * by coincidence, each makes the jump that its force does; but if one that goes on shares bodies with another one, the order in
+ * which they stop changes when, and there is no derivative. Where one breaks away accelerations are continuous, since the problem
  * that decides about them has one solution: S = I. But not by a static limit that drops at once: there they jump when the force
- * that holds contact i meets it, S = I + (q''+ - q''-) df_i/(limit' - f_i') for a force that rises. Forces of elastic contacts
- * are continuous, too; but once one slides, its force stays, and what has no mass moves by the rest. */
+ * that holds contact i meets it, S = I + (q''+ - q''-) df_i/(limit' - f_i') for a force that rises. Where several forces meet
+ * theirs at once by coincidence, each contact makes its own jump, if letting one go leaves the force of the other what it is;
+ * else who goes first decides, and there is no derivative. Forces of elastic contacts are continuous, too; but once one slides,
+ * its force stays, and what has no mass moves by the rest. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
@@ -17,16 +20,20 @@ struct variation {
     struct events *events;
     tribo_system *sys;
     size_t columns;
-    double *v;            /* [2 ndof][columns] perturbations; the caller sets them before the motion begins */
+    double *v;            /* [2 ndof][columns] perturbations; set before the motion begins */
     double *rows;         /* [ncontact][columns] workspace */
     double *slope;        /* [ncontact] v' where the phase ends, */
     double *acceleration; /* [ndof] and q'' */
     double *work;         /* [2 ndof + ncontact] */
     signed char *before;  /* [ncontact] slip in the phase that ends */
     size_t *stopped;      /* [ncontact] the contacts that stop there */
-    size_t pulled;        /* the contact whose static limit its force meets there; ncontact: none */
-    double *pull;         /* [columns] change of that force, */
-    double rise;          /* and how fast it outgrows the limit */
+    size_t *met;          /* [ncontact] the contacts whose static limits their forces meet there, */
+    size_t count;         /* how many they are, */
+    signed char *side;    /* [ncontact] the signs of these forces, */
+    double *pull;         /* [ncontact][columns] their changes, in the order of met, */
+    double *rise;         /* [ncontact] and how fast they outgrow the limits */
+    size_t bond;          /* one of them whose force changes if another one is let go; ncontact: there is none */
+    size_t torn, other;   /* two contacts that leave the motion without a derivative; ncontact: there are none */
     double *column;       /* [3 ndof] workspace; */
     double *a, *f;        /* [ncontact] and this */
 };
@@ -34,6 +41,9 @@ struct variation {
 /* 1, or 0 if out of memory; tribo_variation_free takes what failed too. */
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns);
 void tribo_variation_free(struct variation *x);
+
+/* Sets perturbations v [2 ndof][columns], before the motion begins. */
+void tribo_variation_begin(struct variation *x, const double *v);
 
 /* row [columns] = J_i times rows of v, those of displacements (ndof rows) or of velocities. */
 void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row);

@@ -275,6 +275,54 @@ TEST(multipliers_of_swinging_limits)
     search_free(&s);
 }
 
+/* Two blocks that move alike, each held by its own static limit; with_mass: inertia couples them. */
+static struct search twins(const char *method, double with_mass, double limit)
+{
+    const double mass[] = {1.0, with_mass, with_mass, 1.0}, damping[] = {0.1, 0.0, 0.0, 0.1},
+                 stiffness[] = {1.8, -0.3, -0.3, 1.8};
+    const double direction[] = {1.0, 0.0, 0.0, 1.0}, force[] = {1.75, 1.75}, ratio[] = {1.3, 1.3};
+    struct search s = search_create(method, 2, 2, mass, damping, stiffness, direction, 0.63, force);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), limit));
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), ratio, NULL));
+    return s;
+}
+
+/* Both lose their static limits at one instant; motions next to it have each do so at its own time. */
+TEST(multipliers_of_twins)
+{
+    struct search s = twins(methods[_i], 0.0, 0.6);
+    double y[5] = {0}, re[4], im[4], trace = 0.0;
+    const double apart = 1e-5;
+    find(&s, 0.0, y);
+    require(fabs(y[2]) > 0.1, "at rest");
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    for (size_t k = 0; k < 4; k++) {
+        for (int side = -1; side <= 1; side += 2) {
+            double t = 0.0, z[5];
+            memcpy(z, y, sizeof z);
+            z[k] += side * apart;
+            driver_advance(s.drv, &t, s.period, z);
+            trace += side * z[k] / (2.0 * apart);
+        }
+    }
+    assert_close(re[0] + re[1] + re[2] + re[3], trace, 1e-6);
+    search_free(&s);
+}
+
+/* If inertia couples them, who breaks away first, or, where limits are low, reverses first, changes the other one's time. */
+TEST(no_multipliers)
+{
+    struct search s = twins(methods[_i % 2], 0.2, _i < 2 ? 0.6 : 0.02);
+    double y[5] = {0}, re[4] = {7.0}, im[4], share[2];
+    find(&s, 0.0, y);
+    assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), _i < 2 ? "contact 0 and contact 1 " : "contact 1 and contact 0 ");
+    assert_exact(re[0], 7.0);
+    assert_ok(tribo_driver_period_stick(s.drv, share));
+    require(_i < 2 ? share[0] > 0.0 : share[0] == 0.0, "%g of the period at rest", share[0]);
+    search_free(&s);
+}
+
 /* A free body between two bounds of friction: x'' = cos(t) + f. */
 TEST(rigid_body)
 {
@@ -404,5 +452,5 @@ TEST(resonance)
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
           {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
-          {multipliers_of_swinging_limits, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2},
-          {no_contacts, 2}, {resonance, 2})
+          {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {no_multipliers, 4}, {belt, 2}, {rigid_body, 2},
+          {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
