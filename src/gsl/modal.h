@@ -8,6 +8,8 @@
 #ifndef TRIBO_MODAL_H
 #define TRIBO_MODAL_H
 
+#include <math.h>
+
 #include "modal_whole.h"
 
 /* How many terms are done side by side: the number of terms is a multiple of this. */
@@ -65,6 +67,13 @@ struct modal {
     void *memory;           /* all arrays */
     size_t bytes;
 };
+
+/* |re + i im|: hypot, which takes ten times as long. */
+static inline double tribo_modal_magnitude(double re, double im)
+{
+    const double square = re * re + im * im;
+    return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
+}
 
 /* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h); the others at rest depend on those.
  * Returns a status; its message is on the system's context. */

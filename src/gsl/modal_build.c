@@ -257,23 +257,6 @@ static void number_as_whole(struct modal_build *b)
     }
 }
 
-/* Exponents, and what is to be known of them. Returns a status. */
-static int find_exponents(struct modal_build *b)
-{
-    struct modal *h = b->h;
-    const int status = tribo_modal_exponents(b);
-    if (status) {
-        return status;
-    }
-    h->size = tribo_modal_keep(b, h->exponents);
-    for (size_t p = 0; h->size && p < h->exponents; p++) {
-        h->size[p] = hypot(h->lr[p], h->li[p]);
-        h->fastest = greater(h->fastest, h->size[p]);
-        h->decay = greater(h->decay, -h->lr[p]);
-    }
-    return h->size ? TRIBO_OK : TRIBO_ERR_MEMORY;
-}
-
 /* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
 static int find_all(struct modal_build *b, const unsigned char *holds)
 {
@@ -283,7 +266,7 @@ static int find_all(struct modal_build *b, const unsigned char *holds)
         !find_drifts(b)) {
         return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
-    const int status = find_exponents(b);
+    const int status = tribo_modal_exponents(b);
     if (status) {
         return status;
     }

@@ -1,9 +1,7 @@
 /* A structure with contacts held: put together from its parts, or, where it has only one or they depend on each other, as a
  * whole. */
 #include "modal_parts.h"
-#include "../common/real.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 /* What a set is known by. */
@@ -47,14 +45,6 @@ static int build(struct modal_build *b, const unsigned char *holds)
     return build_whole(b, holds);
 }
 
-static void find_quickest(struct modal *h)
-{
-    h->quickest = h->fastest;
-    for (size_t s = 0; s < h->harmonics; s++) {
-        h->quickest = greater(h->quickest, fabs(h->forcing[s].omega));
-    }
-}
-
 int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds)
 {
     struct modal_build b = {.whole = whole, .h = calloc(1, sizeof *b.h)};
@@ -65,7 +55,6 @@ int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const si
                    ? tribo_system_fail(whole->sys, status, "out of memory for the modes of a held structure")
                    : status;
     }
-    find_quickest(b.h);
     *modal = b.h;
     return TRIBO_OK;
 }

@@ -439,19 +439,12 @@ static double longest_phase(const struct modal *h, double longest)
     return h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
 }
 
-/* hypot, which takes ten times as long. */
-static double magnitude(double re, double im)
-{
-    const double square = re * re + im * im;
-    return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
-}
-
 void tribo_modal_motion_bound(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
         const double time = h->lr[p] > 0.0 ? x->longest : tau;
-        x->growth[p] = magnitude(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
+        x->growth[p] = tribo_modal_magnitude(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
         x->growth6[p] = h->sixth[p] * x->growth[p];
         for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
             const size_t at = s * h->modes + h->owner[p];

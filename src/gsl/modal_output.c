@@ -42,16 +42,10 @@ int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t co
     return 1;
 }
 
-/* |re + i im|, of which one is often zero. */
-static double absolute(double re, double im)
-{
-    return re == 0.0 ? fabs(im) : im == 0.0 ? fabs(re) : hypot(re, im);
-}
-
 void tribo_modal_finish_output(const struct modal *h, struct output *w)
 {
     for (size_t p = 0; p < h->terms; p++) {
-        w->size[p] = absolute(w->cr[p], w->ci[p]);
+        w->size[p] = tribo_modal_magnitude(w->cr[p], w->ci[p]);
     }
 }
 
@@ -298,8 +292,11 @@ int tribo_modal_find_terms(struct modal_build *b)
     h->swings = 1;
     for (size_t k = 0; k < h->terms; k++) {
         h->swings &= h->lr[k] == 0.0;
-        h->size[k] = absolute(h->lr[k], h->li[k]);
+        h->size[k] = tribo_modal_magnitude(h->lr[k], h->li[k]);
         h->sixth[k] = sixth_power(h->size[k]);
+        h->fastest = greater(h->fastest, k < p ? h->size[k] : 0.0);
+        h->quickest = greater(h->quickest, h->size[k]);
+        h->decay = greater(h->decay, -h->lr[k]);
     }
     return 1;
 }

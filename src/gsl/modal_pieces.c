@@ -1,8 +1,6 @@
 /* A structure with contacts held, put together from parts of it that are known. */
 #include "modal_parts.h"
-#include "../common/real.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -117,8 +115,6 @@ static void put_exponents(struct modal *h, const struct modal *part, const struc
         h->owner[at->exponent + p] = at->mode + part->owner[p];
     }
     h->any_resonant |= part->any_resonant;
-    h->fastest = greater(h->fastest, part->fastest);
-    h->decay = greater(h->decay, part->decay);
 }
 
 /* Adds what a part does to a contact. */
