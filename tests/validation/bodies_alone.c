@@ -228,7 +228,7 @@ static double *motion_by(int law, const struct row *r)
 {
     tribo_system *sys = row_create(r);
     tribo_context *c = tribo_system_context(sys);
-    double *y = calloc(2 * r->n + 1, sizeof *y), *x = malloc(4 * (tribo_system_ncontact(sys) + r->n) * sizeof *x), t = 0.0;
+    double *y = calloc(2 * r->n + 1, sizeof *y), *x = malloc(4 * (tribo_system_ncontact(sys) + r->n) * sizeof *x);
     act(sys, r, PLAIN, x);
     assert_ok(tribo_set_law(c, law));
     assert_ok(tribo_set_epsilon_all(c, 0.3));
@@ -236,9 +236,7 @@ static double *motion_by(int law, const struct row *r)
         y[i] = 0.01 * (double)((i * 37) % 11) * (double)(has_contact(r, i));
     }
     y[r->n + r->n / 4] = 0.8;
-    tribo_driver *drv = driver_create(sys, "rk4/fixed", 0.02, 0.0);
-    driver_advance(drv, &t, 2.0, y);
-    tribo_driver_destroy(drv);
+    run(sys, "rk4/fixed", 0.02, 0.0, 2.0, y);
     tribo_system_destroy(sys);
     free(x);
     return y;
@@ -300,7 +298,7 @@ TEST(left_out_or_not)
 static double *plain_motion(const struct row *r, double limit, double load, size_t body, double speed, int how)
 {
     tribo_system *sys = row_create(r);
-    double *y = calloc(2 * r->n + 1, sizeof *y), *x = calloc(r->n, sizeof *x), t = 0.0;
+    double *y = calloc(2 * r->n + 1, sizeof *y), *x = calloc(r->n, sizeof *x);
     x[0] = load;
     assert_ok(tribo_system_add_load(sys, 0.0, x, NULL));
     for (size_t i = 0; i < r->n; i++) {
@@ -311,9 +309,7 @@ static double *plain_motion(const struct row *r, double limit, double load, size
         keep_awake(sys);
     }
     y[r->n + body] = speed;
-    tribo_driver *drv = driver_create(sys, "central/fixed", 0.1, 0.0);
-    driver_advance(drv, &t, 30.0, y);
-    tribo_driver_destroy(drv);
+    run(sys, "central/fixed", 0.1, 0.0, 30.0, y);
     tribo_system_destroy(sys);
     free(x);
     return y;
