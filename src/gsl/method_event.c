@@ -376,11 +376,10 @@ static double planar_length(struct event *e, double most)
 /* A first step, in parts of the longest one. */
 #define FIRST 0.25
 
-/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one that
- * is good enough, or 0. */
-static int try_creep(struct event *e, double t, const double *y, double h, double least, double *length)
+/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one in
+ * which velocities are right to `error`, or 0. */
+static int try_creep(struct event *e, double t, const double *y, double h, double least, double error, double *length)
 {
-    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
     struct stick_slip *m = &e->events.stick_slip;
     struct creep_step step = {0, h};
     for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
@@ -402,7 +401,7 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
 static int creep(struct event *e, double t, const double *y, double most, double *length)
 {
     struct creep *c = &e->creep;
-    const double least = tribo_creep_least(e, y), error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    const double least = tribo_creep_least(e, y);
     const size_t before = e->sys->evaluations;
     c->wait = e->events.anew ? PATIENCE : c->wait;
     if (e->events.anew || !(least < most)) {
@@ -412,10 +411,14 @@ static int creep(struct event *e, double t, const double *y, double most, double
     e->events.anew = 0;
     *length = 0.0;
     const double last = c->length;
-    if (!(least < most) || (last == 0.0 && (c->waited++ < c->wait || !tribo_creep_settled(e, y, error)))) {
+    if (!(least < most) || (last == 0.0 && c->waited++ < c->wait)) {
         return TRIBO_OK;
     }
-    const int status = try_creep(e, t, y, last > 0.0 ? lesser(last, most) : FIRST * most, least, length);
+    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    if (last == 0.0 && !tribo_creep_settled(e, y, error)) {
+        return TRIBO_OK;
+    }
+    const int status = try_creep(e, t, y, last > 0.0 ? lesser(last, most) : FIRST * most, least, error, length);
     c->length = *length == most ? greater(c->length, last) : c->length;
     c->wait = *length > 0.0 ? PATIENCE : DEAR * (e->sys->evaluations - before) / (e->most_order + 1);
     c->waited = 0;
