@@ -84,7 +84,7 @@ static void spring_forces(struct event *e, size_t k)
     const tribo_system *sys = e->sys;
     tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->slip[i] == 0 && tribo_massless_touches(&sys->massless, i)) {
+        if (m->slip[i] == 0 && m->elastic[i]) {
             e->given[i] = k == 0 ? m->force[i] : e->spring[i];
         }
     }

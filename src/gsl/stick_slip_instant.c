@@ -123,7 +123,7 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
     }
     find_sliding_limits(m, sys, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double rests = tribo_massless_touches(&sys->massless, i) ? m->spring[i] : m->force[i];
+        const double rests = m->elastic[i] ? m->spring[i] : m->force[i];
         m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? rests : -m->slip[i] * m->lo[i];
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);

@@ -185,7 +185,7 @@ static int pulls_loose(const struct variation *x, size_t i)
 static int stops(const struct variation *x, size_t i)
 {
     const signed char before = x->before[i], now = x->events->stick_slip.slip[i];
-    const int slid = (before == 1 || before == -1) && !tribo_massless_touches(&x->sys->massless, i);
+    const int slid = (before == 1 || before == -1) && !x->events->stick_slip.elastic[i];
     return slid && now != 2 && before * x->slope[i] < 0.0 && (now != before || pulls_loose(x, i));
 }
 
