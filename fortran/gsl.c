@@ -14,6 +14,11 @@ size_t tribo_fortran_ncontact(const struct tribo_held *held)
     return held ? tribo_system_ncontact(held->sys) : 0;
 }
 
+size_t tribo_fortran_given(const struct tribo_held *held)
+{
+    return held ? (size_t)held->given : 0;
+}
+
 /* Borrows the arrays: nothing in here changes them. */
 static gsl_spmatrix borrow(const struct tribo_rows *a)
 {

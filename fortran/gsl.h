@@ -15,13 +15,14 @@ struct tribo_rows {
     const double *val;
 };
 
-/* A system as Fortran holds it, and its sizes; 0 for NULL. */
+/* A system as Fortran holds it, and its sizes; 0 for NULL. given: degrees of freedom of the matrices that it was made of. */
 struct tribo_held {
     tribo_system *sys;
     int64_t context, given, users;
 };
 TRIBO_API TRIBO_PURE size_t tribo_fortran_ndof(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_ncontact(const struct tribo_held *held);
+TRIBO_API TRIBO_PURE size_t tribo_fortran_given(const struct tribo_held *held);
 
 /* tribo_system_linear_sparse; damping may be NULL. */
 TRIBO_API int tribo_fortran_linear(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *damping,

@@ -3,9 +3,11 @@
 !>
 !> TRBLIN makes a structure M q'' + C q' + K q = p(t) + J' f, and a handle IH of its contacts: all of trb.f90 works with it
 !> (limits by TRBLIM, messages by TRBMSG, the end by TRBDEL), but the operator is the structure's. TRBDRV gives it an integrator.
+!> TRBLSP does the same from sparse matrices, TRBRED reduces a large structure to its lowest modes, and TRBCLN copies a structure.
 !> A handle of TRBNEW or TRBCPY has contacts only, and is refused here with TRIBO_ERR_STATE.
 !>
-!> NDOF   degrees of freedom; must be that of TRBLIN
+!> NDOF   degrees of freedom; must be that of TRBLIN or TRBLSP, and of a reduced structure what TRBNDF says
+!> NFULL  degrees of freedom of the matrices; differs from NDOF in a reduced structure
 !> Y      2*NDOF + 1 values: displacements, velocities, energy that friction has taken
 !> CV     2*NDOF values: a combination of displacements and velocities
 !>
@@ -13,12 +15,47 @@
 !>          TEXT, IERR)                              RK(LDM,NDOF) mass, damping,       TEXT on error what is wrong, else as it was
 !>                                                   stiffness; RJ(LDJ,NDOF): row I
 !>                                                   makes the velocity of contact I
-!>   TRBLOD(IH, NDOF, OMEGA, PC, PS, IERR)           adds PC(NDOF)*COS(OMEGA*t) + PS(NDOF)*SIN(OMEGA*t) to the load
+!>   TRBLSP(NDOF, N, IRM, ICM, RM, IRC, ICC, C,      the same from sparse matrices     IH, TEXT as of TRBLIN
+!>          IRK, ICK, RK, IRJ, ICJ, RJ,              NDOF x NDOF, and N x NDOF: rows
+!>          IH, TEXT, IERR)                          as in TRBOPS. Both triangles.
+!>                                                   IRC(NDOF+1) = 1: no damping
+!>   TRBRED(NFULL, N, IRM, ICM, RM, IRK, ICK, RK,    such matrices, reduced to NMODE   IH, TEXT as of TRBLIN
+!>          IRJ, ICJ, RJ, NMODE, ISTAT,              lowest modes and, unless ISTAT
+!>          IH, TEXT, IERR)                          is 0, to what steady forces at
+!>                                                   the contacts do beside them, at
+!>                                                   most a motion more a contact
+!>   TRBCLN(IH, IHNEW, IERR)                         IH                                IHNEW a copy that shares nothing, with
+!>                                                                                     loads and tables, without integrator
+!>   TRBNDF(IH, NDOF, IERR)                          IH                                NDOF
+!>   TRBLOD(IH, NFULL, OMEGA, PC, PS, IERR)          adds PC(NFULL)*COS(OMEGA*t) + PS(NFULL)*SIN(OMEGA*t) to the load
+!>   TRBLTB(IH, NFULL, KNOTS, TIME, VAL, PAT, IERR)  adds PAT(NFULL)*value(t), value linear between VAL(KNOTS) at TIME(KNOTS)
 !>   TRBCLL(IH, IERR)                                takes all loads away
 !>   TRBBAS(IH, N, OMEGA, BC, BS, IERR)              adds BC(N)*COS(OMEGA*t) + BS(N)*SIN(OMEGA*t) to the velocities of the bases
 !>   TRBHLM(IH, N, OMEGA, FC, FS, IERR)              adds FC(N)*COS(OMEGA*t) + FS(N)*SIN(OMEGA*t) to the limits
+!>   TRBLMT(IH, N, KNOTS, TIME, FMUN, IERR)          limits linear between FMUN(N,KNOTS) at TIME(KNOTS); KNOTS 0: ends tables and
+!>                                                   harmonics of the limits
+!>   TRBCON(IH, NDOF, N, T, Y, V, FEQ, F, IERR)      T, Y                              V(N), FEQ(N), F(N) of the contacts there
+!> Reduced structures
+!>   TRBZET(IH, ZETA, IERR)                          ZETA >= 0: damping ratio of every mode
+!>   TRBFRQ(IH, NDOF, W, IERR)                                                         W(NDOF): natural frequencies, rad/time
+!>   TRBEXP(IH, NDOF, NFULL, Q, U, IERR)             Q(NDOF) of Y                      U(NFULL): displacements that belong to it
+!>   TRBTRC(IH, OMEGA, ERR, IERR)                    OMEGA the highest that matters    ERR: bound on what contacts miss
+!> Integrators of your own
+!>   TRBDER(IH, NDOF, T, Y, DYDT, IERR)              T, Y                              DYDT(2*NDOF+1)
+!>   TRBJAC(IH, NDOF, T, Y, DFDY, LDJ, DFDT, IERR)   T, Y; LDJ >= 2*NDOF+1             DFDY(LDJ,2*NDOF+1): (I,J) is that of DYDT(I)
+!>                                                                                     by Y(J); DFDT(2*NDOF+1) by T
+!>   TRBSAC(IH, NDOF, T, Y, IERR)                    T, Y: the step was accepted
+!> Integrators of the library
 !>   TRBDRV(IH, NAME, DT, ATOL, RTOL, IERR)          NAME of a method, e.g. 'exact', DT step, tolerances: an integrator in the
 !>                                                   place of the one before
+!>   TRBMTH(IH, TEXT, IERR)                                                            TEXT its name; of 'auto', the one at work
+!>   TRBNMT(NMETH, IERR)                                                               NMETH methods: 0 to NMETH - 1
+!>   TRBMNM(METH, TEXT, IERR)                        METH                              TEXT its name
+!>   TRBHMX(IH, H, IERR)                             H > 0: the largest step of an adaptive method
+!>   TRBOBS(IH, SEEN, RPAR, IPAR, IERR)              CALL SEEN(T, NY, Y, IEVENT, RPAR, IPAR, ISTOP) after each step (IEVENT 0) and
+!>                                                   at events (1), NY being 2*NDOF+1: SEEN, which is EXTERNAL in your program,
+!>                                                   ends the run by an ISTOP, 0 before, that is not 0. RPAR(*) and IPAR(*) are
+!>                                                   SEEN's alone. Until the next TRBOBS or TRBDRV
 !>   TRBADV(IH, NDOF, T, T1, Y, IERR)                T, Y, T1 >= T                     T, Y there; on error the last good step
 !>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a motion that comes back after it
 !> Of the periodic motion found last
@@ -28,34 +65,66 @@
 !>   TRBHAR(IH, NDOF, CV, K, XC, XS, IERR)           CV(2*NDOF), K >= 0                XC*COS(K*w*t) + XS*SIN(K*w*t) of CV'Y
 !>   TRBDIS(IH, N, E, IERR)                                                            E(N): what each contact dissipates in it
 !>   TRBSHS(IH, N, SHARE, IERR)                                                        SHARE(N) of the period for which each rests
-!> Counts
+!> Counts and real quantities
 !>   TRBDCT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of a       IVAL
 !>                                                   driver, see tribo_gsl.h
+!>   TRBDVL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_... of a driver VAL
 
 !> What they share: the owner of a handle of TRBLIN is a structure with its driver, as module tribo_gsl has them.
 module tribo_fixed_gsl
-  use tribo_fixed, only: c_handle_add_part, c_handle_drop, c_handle_owner, c_set_message, find, refuse_value => refuse
+  use tribo_fixed, only: c_handle_add_part, c_handle_drop, c_handle_owner, c_set_message, find, hand_out, refuse_value => refuse
   use tribo_c
   use tribo
   use tribo_gsl
+  use tribo_gsl_c, only: c_fortran_given
   use tribo_support, only: object_of
   use, intrinsic :: iso_c_binding, only: c_associated, c_char, c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_char, c_ptr
   implicit none
   public
 
+  abstract interface
+    !> SEEN of TRBOBS.
+    subroutine sees(t, ny, y, ievent, rpar, ipar, istop)
+      import :: dp
+      real(dp), intent(in) :: t, y(*)
+      integer, intent(in) :: ny, ievent
+      real(dp), intent(inout) :: rpar(*)
+      integer, intent(inout) :: ipar(*), istop
+    end subroutine sees
+  end interface
+
+  !> rpar and ipar begin where the caller's do; how long these are only the caller knows.
+  type, extends(tribo_observer) :: external_observer
+    procedure(sees), pointer, nopass :: see => null()
+    real(dp), pointer, contiguous :: rpar(:) => null()
+    integer, pointer, contiguous :: ipar(:) => null()
+  contains
+    procedure :: seen => call_see
+  end type external_observer
+
   type :: structure
     type(tribo_system) :: system
     type(tribo_driver) :: driver
+    type(external_observer) :: observer
   end type structure
 
 contains
 
-  !> The structure of a handle, which must have ndof degrees of freedom.
-  subroutine find_structure(ih, s, ierr, ndof)
+  integer function call_see(this, t, y, event) result(istop)
+    class(external_observer), intent(inout) :: this
+    real(dp), intent(in) :: t, y(:)
+    integer, intent(in) :: event
+    istop = 0
+    call this%see(t, size(y), y, event, this%rpar, this%ipar, istop)
+  end function call_see
+
+  !> The structure of a handle, which must have ndof degrees of freedom, and nfull of its matrices, as far as these are given.
+  subroutine find_structure(ih, s, ierr, ndof, nfull)
     integer, intent(in) :: ih
     type(structure), pointer, intent(out) :: s
     integer, intent(out) :: ierr
-    integer, intent(in), optional :: ndof
+    integer, intent(in), optional :: ndof, nfull
+    integer :: given
     type(c_ptr) :: ctx, owner
 
     nullify (s)
@@ -67,8 +136,13 @@ contains
       return
     end if
     call c_f_pointer(owner, s)
-    if (.not. present(ndof)) return
-    if (ndof /= s%system%ndof()) call refuse_value(ctx, ierr, 'NDOF', ndof, ', but the degrees of freedom are ', s%system%ndof())
+    if (present(ndof)) then
+      if (ndof /= s%system%ndof()) call refuse_value(ctx, ierr, 'NDOF', ndof, ', but the degrees of freedom are ', s%system%ndof())
+    end if
+    if (present(nfull)) then
+      given = int(c_fortran_given(object_of(s%system)))
+      if (nfull /= given) call refuse_value(ctx, ierr, 'NFULL', nfull, ', but the degrees of freedom of the matrices are ', given)
+    end if
   end subroutine find_structure
 
   !> The same, which must have a driver.
@@ -98,14 +172,29 @@ contains
     if (ierr == TRIBO_OK) call find_structure(ih, s, ierr)
   end subroutine find_contacts
 
-  !> Gives a handle of its contacts to a structure, which it frees where there is none to be had.
+  !> For a handle that has been found: value, the argument called name, must be least at least.
+  subroutine require_least(ih, name, value, least, ierr)
+    integer, intent(in) :: ih, value, least
+    character(len=*), intent(in) :: name
+    integer, intent(inout) :: ierr
+    type(c_ptr) :: ctx
+
+    if (ierr /= TRIBO_OK .or. value >= least) return
+    call find(ih, ctx, ierr)
+    call refuse_value(ctx, ierr, name, value, ' is less than ', least)
+  end subroutine require_least
+
+  !> Gives a handle of its contacts to a structure. Frees it where there is none to be had, or an error already.
   subroutine give_structure(s, ih, ierr)
     type(structure), pointer, intent(in) :: s
-    integer, intent(inout) :: ih
-    integer, intent(out) :: ierr
+    integer, intent(inout) :: ih, ierr
     type(tribo_context) :: contacts
     integer(c_int64_t) :: number
 
+    if (ierr /= TRIBO_OK) then
+      call release_structure(c_loc(s))
+      return
+    end if
     call s%system%context(contacts, ierr)
     number = c_handle_add_part(object_of(contacts), c_loc(s), c_funloc(release_structure))
     if (number /= 0) then
@@ -139,6 +228,23 @@ contains
     write (found, '(2a,i0,a,i0)') name, ' = ', value, ' is less than ', least
     text = found
   end subroutine expect_least
+
+  !> For TRBLSP and TRBRED: a matrix from its rows, whose name goes before what is wrong with them.
+  subroutine read_rows(name, rows, columns, irow, icol, val, x, text, ierr)
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: rows, columns, irow(*), icol(*)
+    real(dp), intent(in) :: val(*)
+    type(tribo_sparse), intent(inout) :: x
+    character(len=*), intent(inout) :: text
+    integer, intent(inout) :: ierr
+    character(len=240) :: found
+    integer :: entries
+
+    if (ierr /= TRIBO_OK) return
+    entries = max(irow(rows + 1) - 1, 0)
+    call x%set_csr(columns, irow(:rows + 1), icol(:entries), val(:entries), ierr, found)
+    if (ierr /= TRIBO_OK) text = name // ': ' // found
+  end subroutine read_rows
 end module tribo_fixed_gsl
 
 ! --------------------------------------------------------------------------------------------------------------------- structure
@@ -165,24 +271,112 @@ subroutine trblin(ndof, n, rm, c, rk, ldm, rj, ldj, ih, text, ierr)
   else
     call s%system%linear(rm(:ndof, :ndof), rk(:ndof, :ndof), rj(:n, :ndof), c(:ndof, :ndof), stat=ierr, errmsg=text)
   end if
-  if (ierr == TRIBO_OK) then
-    call give_structure(s, ih, ierr)
-  else
-    deallocate (s)
-  end if
+  call give_structure(s, ih, ierr)
 end subroutine trblin
 
-subroutine trblod(ih, ndof, omega, pc, ps, ierr)
+subroutine trblsp(ndof, n, irm, icm, rm, irc, icc, c, irk, ick, rk, irj, icj, rj, ih, text, ierr)
   use tribo_fixed_gsl
   implicit none
-  integer, intent(in) :: ih, ndof
+  integer, intent(in) :: ndof, n, irm(*), icm(*), irc(*), icc(*), irk(*), ick(*), irj(*), icj(*)
+  real(dp), intent(in) :: rm(*), c(*), rk(*), rj(*)
+  integer, intent(inout) :: ih
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+  type(tribo_sparse) :: mass, damping, stiffness, direction
+
+  ierr = TRIBO_OK
+  call expect_least('NDOF', ndof, 0, text, ierr)
+  call expect_least('N', n, 0, text, ierr)
+  call read_rows('mass', ndof, ndof, irm, icm, rm, mass, text, ierr)
+  call read_rows('damping', ndof, ndof, irc, icc, c, damping, text, ierr)
+  call read_rows('stiffness', ndof, ndof, irk, ick, rk, stiffness, text, ierr)
+  call read_rows('direction', n, ndof, irj, icj, rj, direction, text, ierr)
+  if (ierr /= TRIBO_OK) return
+  allocate (s)
+  if (irc(ndof + 1) == 1) then
+    call s%system%linear(mass, stiffness, direction, stat=ierr, errmsg=text)
+  else
+    call s%system%linear(mass, stiffness, direction, damping, stat=ierr, errmsg=text)
+  end if
+  call give_structure(s, ih, ierr)
+end subroutine trblsp
+
+subroutine trbred(nfull, n, irm, icm, rm, irk, ick, rk, irj, icj, rj, nmode, istat, ih, text, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: nfull, n, irm(*), icm(*), irk(*), ick(*), irj(*), icj(*), nmode, istat
+  real(dp), intent(in) :: rm(*), rk(*), rj(*)
+  integer, intent(inout) :: ih
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+  type(tribo_sparse) :: mass, stiffness, direction
+
+  ierr = TRIBO_OK
+  call expect_least('NFULL', nfull, 0, text, ierr)
+  call expect_least('N', n, 0, text, ierr)
+  call expect_least('NMODE', nmode, 1, text, ierr)
+  call read_rows('mass', nfull, nfull, irm, icm, rm, mass, text, ierr)
+  call read_rows('stiffness', nfull, nfull, irk, ick, rk, stiffness, text, ierr)
+  call read_rows('direction', n, nfull, irj, icj, rj, direction, text, ierr)
+  if (ierr /= TRIBO_OK) return
+  allocate (s)
+  call s%system%reduced(mass, stiffness, direction, nmode, istat /= 0, ierr, text)
+  call give_structure(s, ih, ierr)
+end subroutine trbred
+
+subroutine trbcln(ih, ihnew, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: ihnew
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s, copy
+
+  call find_structure(ih, s, ierr)
+  if (ierr /= TRIBO_OK) return
+  allocate (copy)
+  call s%system%clone(copy%system, ierr)
+  call give_structure(copy, ihnew, ierr)
+end subroutine trbcln
+
+subroutine trbndf(ih, ndof, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: ndof
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr)
+  if (ierr == TRIBO_OK) ndof = s%system%ndof()
+end subroutine trbndf
+
+subroutine trblod(ih, nfull, omega, pc, ps, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, nfull
   real(dp), intent(in) :: omega, pc(*), ps(*)
   integer, intent(out) :: ierr
   type(structure), pointer :: s
 
-  call find_structure(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%system%add_load(omega, pc(:ndof), ps(:ndof), ierr)
+  call find_structure(ih, s, ierr, nfull=nfull)
+  if (ierr == TRIBO_OK) call s%system%add_load(omega, pc(:nfull), ps(:nfull), ierr)
 end subroutine trblod
+
+subroutine trbltb(ih, nfull, knots, time, val, pat, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, nfull, knots
+  real(dp), intent(in) :: time(*), val(*), pat(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr, nfull=nfull)
+  call require_least(ih, 'KNOTS', knots, 1, ierr)
+  if (ierr == TRIBO_OK) call s%system%add_load_table(time(:knots), val(:knots), pat(:nfull), ierr)
+end subroutine trbltb
 
 subroutine trbcll(ih, ierr)
   use tribo_fixed_gsl
@@ -219,7 +413,148 @@ subroutine trbhlm(ih, n, omega, fc, fs, ierr)
   if (ierr == TRIBO_OK) call s%system%add_limit(omega, fc(:n), fs(:n), ierr)
 end subroutine trbhlm
 
-! -------------------------------------------------------------------------------------------------------------------- integrator
+subroutine trblmt(ih, n, knots, time, fmun, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, n, knots
+  real(dp), intent(in) :: time(*), fmun(n, *)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  call require_least(ih, 'KNOTS', knots, 0, ierr)
+  if (ierr == TRIBO_OK) call s%system%set_limit_table(time(:knots), fmun(:, :knots), ierr)
+end subroutine trblmt
+
+subroutine trbcon(ih, ndof, n, t, y, v, feq, f, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, ndof, n
+  real(dp), intent(in) :: t, y(*)
+  real(dp), intent(inout) :: v(*), feq(*), f(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  if (ierr == TRIBO_OK) call find_structure(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%system%contacts(t, y(:2*ndof + 1), v(:n), feq(:n), f(:n), ierr)
+end subroutine trbcon
+
+! ------------------------------------------------------------------------------------------------------------ reduced structures
+
+subroutine trbzet(ih, zeta, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: zeta
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%system%set_damping_ratio(zeta, ierr)
+end subroutine trbzet
+
+subroutine trbfrq(ih, ndof, w, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, ndof
+  real(dp), intent(inout) :: w(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%system%get_frequencies(w(:ndof), ierr)
+end subroutine trbfrq
+
+subroutine trbexp(ih, ndof, nfull, q, u, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, ndof, nfull
+  real(dp), intent(in) :: q(*)
+  real(dp), intent(inout) :: u(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr, ndof, nfull)
+  if (ierr == TRIBO_OK) call s%system%expand(q(:ndof), u(:nfull), ierr)
+end subroutine trbexp
+
+subroutine trbtrc(ih, omega, err, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: omega
+  real(dp), intent(inout) :: err
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%system%get_truncation(omega, err, ierr)
+end subroutine trbtrc
+
+! ---------------------------------------------------------------------------------------------------- integrators of the caller's
+
+subroutine trbder(ih, ndof, t, y, dydt, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, ndof
+  real(dp), intent(in) :: t, y(*)
+  real(dp), intent(inout) :: dydt(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%system%derivative(t, y(:2*ndof + 1), dydt(:2*ndof + 1), ierr)
+end subroutine trbder
+
+subroutine trbjac(ih, ndof, t, y, dfdy, ldj, dfdt, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, ndof, ldj
+  real(dp), intent(in) :: t, y(*)
+  real(dp), intent(inout) :: dfdy(ldj, *), dfdt(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+  integer :: m
+
+  m = 2*ndof + 1
+  call find_structure(ih, s, ierr, ndof)
+  call require_least(ih, 'LDJ', ldj, m, ierr)
+  if (ierr == TRIBO_OK) call s%system%jacobian(t, y(:m), dfdy(:m, :m), dfdt(:m), ierr)
+end subroutine trbjac
+
+subroutine trbsac(ih, ndof, t, y, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, ndof
+  real(dp), intent(in) :: t, y(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr, ndof)
+  if (ierr == TRIBO_OK) call s%system%accept(t, y(:2*ndof + 1), ierr)
+end subroutine trbsac
+
+! ------------------------------------------------------------------------------------------------------ integrators of the library
+
+subroutine trbnmt(nmeth, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(out) :: nmeth, ierr
+  nmeth = tribo_method_count()
+  ierr = TRIBO_OK
+end subroutine trbnmt
+
+subroutine trbmnm(meth, text, ierr)
+  use tribo_fixed_gsl
+  use tribo_gsl_c, only: c_method_name
+  use tribo_support, only: to_int
+  implicit none
+  integer, intent(in) :: meth
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  call hand_out(c_method_name(to_int(meth)), text, ierr)
+end subroutine trbmnm
 
 subroutine trbdrv(ih, name, dt, atol, rtol, ierr)
   use tribo_fixed_gsl
@@ -233,6 +568,48 @@ subroutine trbdrv(ih, name, dt, atol, rtol, ierr)
   call find_structure(ih, s, ierr)
   if (ierr == TRIBO_OK) call s%driver%create(s%system, name, dt, atol, rtol, ierr)
 end subroutine trbdrv
+
+subroutine trbmth(ih, text, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  character(len=*), intent(inout) :: text
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) text = s%driver%method()
+end subroutine trbmth
+
+subroutine trbhmx(ih, h, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: h
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%driver%set_max_step(h, ierr)
+end subroutine trbhmx
+
+subroutine trbobs(ih, seen, rpar, ipar, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  procedure(sees) :: seen
+  real(dp), intent(inout), target :: rpar(*)
+  integer, intent(inout), target :: ipar(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr /= TRIBO_OK) return
+  s%observer%see => seen
+  s%observer%rpar => rpar(:1)
+  s%observer%ipar => ipar(:1)
+  call s%driver%set_observer(s%observer, ierr)
+end subroutine trbobs
 
 subroutine trbadv(ih, ndof, t, t1, y, ierr)
   use tribo_fixed_gsl
@@ -271,6 +648,18 @@ subroutine trbdct(ih, iwhich, ival, ierr)
   call find_driven(ih, s, ierr)
   if (ierr == TRIBO_OK) call s%driver%count(iwhich, ival, ierr)
 end subroutine trbdct
+
+subroutine trbdvl(ih, iwhich, val, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, iwhich
+  real(dp), intent(inout) :: val
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%driver%real(iwhich, val, ierr)
+end subroutine trbdvl
 
 ! --------------------------------------------------------------------------------------------------------------- periodic motion
 

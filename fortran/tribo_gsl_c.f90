@@ -408,6 +408,12 @@ module tribo_gsl_c
       integer(c_size_t) :: answer
     end function c_fortran_ncontact
 
+    pure function c_fortran_given(held) result(answer) bind(c,name='tribo_fortran_given')
+      import
+      type(c_ptr), intent(in), value :: held
+      integer(c_size_t) :: answer
+    end function c_fortran_given
+
     function c_fortran_linear(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
       bind(c,name='tribo_fortran_linear')
       import

@@ -2,6 +2,7 @@
 #include "../common/real.h"
 #include "../common/simd.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -165,13 +166,13 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     }
     for (size_t i = 0; i < c->n; i++) {
         const double d = diagonal ? tribo_matrix_get(a, i, i) : c->factor[i * c->n + i];
-        c->root[i] = sqrt(d);
-        if (!(d > 0.0) || !isfinite(1.0 / d)) {
+        if (!(d > 1.0 / DBL_MAX)) { /* looked at first, since neither roots nor quotients may raise exceptions */
             *where = c->order[i];
             *pivot = d;
             tribo_cholesky_free(c);
             return TRIBO_ERR_INDEFINITE;
         }
+        c->root[i] = sqrt(d);
     }
     return TRIBO_OK;
 }

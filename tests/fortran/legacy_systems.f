@@ -193,7 +193,7 @@ C     and copies, which have contacts alone.
      1            'NDOF = 3, but the degrees of freedom are 2')
       CALL TRBLOD(IH, 1, 1D0, Y, Y, IERR)
       CALL WANTED('TRBLOD', IH, IERR, 6,
-     1            'NDOF = 1, but the degrees of freedom are 2')
+     1  'NFULL = 1, but the degrees of freedom of the matrices are 2')
       CALL TRBDIS(IH, 1, Y, IERR)
       CALL WANTED('TRBDIS', IH, IERR, 6,
      1            'N = 1, but the number of contacts is 2')

@@ -11,9 +11,28 @@ program system_traps
   do i = 0, tribo_method_count() - 1
     call all_systems(tribo_method_name(i))
   end do
+  call refused([real(dp) :: -1, 0, 0, 2], 'pivot -1 at degree of freedom 1')
+  call refused([real(dp) :: 1, 2, 2, 1], 'pivot -3 at degree of freedom 2')
   call report()
 
 contains
+
+  !> A mass matrix that is not positive definite is refused with a message, as a whole and where modes are wanted.
+  subroutine refused(mass, text)
+    real(dp), intent(in) :: mass(4)
+    character(len=*), intent(in) :: text
+    real(dp), parameter :: stiffness(2, 2) = reshape([real(dp) :: 2, -1, -1, 1], [2, 2]), &
+      direction(1, 2) = reshape([real(dp) :: 1, 1], [1, 2])
+    type(tribo_system) :: sys
+    integer :: nmode, stat
+    character(len=240) :: message
+
+    do nmode = 0, 1
+      message = ''
+      call sys%linear(reshape(mass, [2, 2]), stiffness, direction, nmode=nmode, stat=stat, errmsg=message)
+      call require(stat /= TRIBO_OK .and. index(message, text) > 0, text // ': ' // trim(message))
+    end do
+  end subroutine refused
 
   subroutine all_systems(method)
     character(len=*), intent(in) :: method

@@ -1,0 +1,373 @@
+C     Sparse, reduced and copied structures from fixed form, and what
+C     serves their integration: every result compared to that of the C
+C     call (legacy_structures.c), then the errors.
+      PROGRAM LEGSTR
+      INTEGER NALIVE
+      EXTERNAL NALIVE
+      CALL STPLAY
+      CALL METHOD
+      CALL REDUCE
+      CALL SPARSE(.FALSE.)
+      CALL SPARSE(.TRUE.)
+      CALL SCEND
+      CALL CREATE
+      CALL NODRIV
+      CALL WRONG
+      CALL EXPECT('all deleted', NALIVE() .EQ. 0)
+      CALL REPORT_ALL
+      END
+C
+C     Six masses in a row between two walls, contacts on the second and
+C     the fifth.
+      SUBROUTINE ROWS(IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ)
+      INTEGER IRM(7), ICM(6), IRK(7), ICK(16), IRJ(3), ICJ(2), I, J, K
+      DOUBLE PRECISION RM(6), RK(16), RJ(2)
+      K = 1
+      DO 20 I = 1, 6
+         IRM(I) = I
+         ICM(I) = I
+         RM(I) = 1D0 + 0.1D0*I
+         IRK(I) = K
+         DO 10 J = MAX(I - 1, 1), MIN(I + 1, 6)
+            ICK(K) = J
+            RK(K) = -1D0
+            IF (I .EQ. J) RK(K) = 2D0
+            K = K + 1
+   10    CONTINUE
+   20 CONTINUE
+      IRM(7) = 7
+      IRK(7) = K
+      DO 30 I = 1, 2
+         IRJ(I) = I
+         ICJ(I) = 3*I - 1
+         RJ(I) = 1D0
+   30 CONTINUE
+      IRJ(3) = 3
+      END
+C
+      SUBROUTINE MKRED(NMODE, ISTAT, IH, TEXT, IERR)
+      INTEGER NMODE, ISTAT, IH, IERR
+      CHARACTER*(*) TEXT
+      INTEGER IRM(7), ICM(6), IRK(7), ICK(16), IRJ(3), ICJ(2)
+      DOUBLE PRECISION RM(6), RK(16), RJ(2)
+      CALL ROWS(IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ)
+      CALL TRBRED(6, 2, IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ,
+     1            NMODE, ISTAT, IH, TEXT, IERR)
+      END
+C
+C     Damping is a tenth of the stiffness, or none.
+      SUBROUTINE MKSPRS(DAMPED, IH, TEXT, IERR)
+      LOGICAL DAMPED
+      INTEGER IH, IERR, K
+      CHARACTER*(*) TEXT
+      INTEGER IRM(7), ICM(6), IRC(7), IRK(7), ICK(16), IRJ(3), ICJ(2)
+      DOUBLE PRECISION RM(6), C(16), RK(16), RJ(2)
+      CALL ROWS(IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ)
+      DO 10 K = 1, 7
+         IRC(K) = 1
+         IF (DAMPED) IRC(K) = IRK(K)
+   10 CONTINUE
+      DO 20 K = 1, 16
+         C(K) = 0.1D0*RK(K)
+   20 CONTINUE
+      CALL TRBLSP(6, 2, IRM, ICM, RM, IRC, ICK, C, IRK, ICK, RK,
+     1            IRJ, ICJ, RJ, IH, TEXT, IERR)
+      END
+C
+      SUBROUTINE METHOD
+      INTEGER N, K, IERR
+      CHARACTER*20 TEXT
+      CALL TRBNMT(N, IERR)
+      CALL CMPI('TRBNMT', N)
+      DO 10 K = 0, N - 1
+         CALL TRBMNM(K, TEXT, IERR)
+         CALL CMPT('TRBMNM', TEXT)
+   10 CONTINUE
+      TEXT = 'as it was'
+      CALL TRBMNM(N, TEXT, IERR)
+      CALL EXPECT('TRBMNM', IERR .NE. 0 .AND. TEXT .EQ. 'as it was')
+      END
+C
+C     A reduced structure, and its copy in its place.
+      SUBROUTINE REDUCE
+      INTEGER IH, IH2, IERR, NDOF
+      DOUBLE PRECISION PC(6), PS(6), W(4), U(6), ERR(1), Y(9), T(1)
+      CHARACTER*80 TEXT
+      DATA PC /1D0, 0D0, 0D0, 0D0, 0D0, 0D0/, PS /6*0D0/, Y /9*0D0/
+      TEXT = 'as it was'
+      CALL MKRED(2, 1, IH, TEXT, IERR)
+      CALL EXPECT('TRBRED', IERR .EQ. 0 .AND. TEXT .EQ. 'as it was')
+      CALL TRBNDF(IH, NDOF, IERR)
+      CALL CMPI('TRBNDF', NDOF)
+      CALL TRBFRQ(IH, NDOF, W, IERR)
+      CALL CMPR('TRBFRQ', 4, W)
+      CALL TRBEXP(IH, NDOF, 6, W, U, IERR)
+      CALL CMPR('TRBEXP', 6, U)
+      CALL TRBTRC(IH, 0.5D0, ERR(1), IERR)
+      CALL CMPR('TRBTRC', 1, ERR)
+      CALL TRBZET(IH, 0.05D0, IERR)
+      CALL CMPI('TRBZET', IERR)
+      CALL TRBLOD(IH, 6, 0.5D0, PC, PS, IERR)
+      CALL CMPI('TRBLOD', IERR)
+      CALL TRBLM1(IH, 0.2D0, IERR)
+      CALL TRBCLN(IH, IH2, IERR)
+      CALL EXPECT('TRBCLN', IERR .EQ. 0 .AND. IH2 .NE. IH)
+      CALL TRBDEL(IH, IERR)
+      CALL TRBDRV(IH2, 'auto', 0.1D0, 1D-9, 1D-9, IERR)
+      T(1) = 0D0
+      CALL TRBADV(IH2, NDOF, T(1), 20D0, Y, IERR)
+      CALL CMPI('TRBADV', IERR)
+      CALL CMPR('TRBADV', 9, Y)
+      CALL TRBMTH(IH2, TEXT, IERR)
+      CALL CMPT('TRBMTH', TEXT)
+      CALL TRBDVL(IH2, 101, ERR(1), IERR)
+      CALL CMPR('TRBDVL', 1, ERR)
+      CALL TRBDEL(IH2, IERR)
+C     Modes alone
+      CALL MKRED(2, 0, IH, TEXT, IERR)
+      CALL TRBNDF(IH, NDOF, IERR)
+      CALL CMPI('TRBNDF', NDOF)
+      CALL TRBDEL(IH, IERR)
+      END
+C
+C     The whole structure under a table of loads, its limits in another.
+      SUBROUTINE SPARSE(DAMPED)
+      LOGICAL DAMPED
+      INTEGER IH, IERR, ISEEN(2)
+      DOUBLE PRECISION TIME(3), VAL(3), PAT(6), FMUN(2,2), Y(13), T(1)
+      DOUBLE PRECISION SUM(1)
+      CHARACTER*80 TEXT
+      EXTERNAL WATCH
+      DATA TIME /0D0, 1D0, 3D0/, VAL /0D0, 2D0, -1D0/
+      DATA PAT /1D0, 0D0, 0D0, -0.5D0, 0D0, 0D0/
+      DATA FMUN /0.1D0, 0.2D0, 0.3D0, 0.1D0/
+      TEXT = 'as it was'
+      CALL MKSPRS(DAMPED, IH, TEXT, IERR)
+      CALL EXPECT('TRBLSP', IERR .EQ. 0 .AND. TEXT .EQ. 'as it was')
+      CALL TRBLTB(IH, 6, 3, TIME, VAL, PAT, IERR)
+      CALL CMPI('TRBLTB', IERR)
+      CALL TRBLMT(IH, 2, 2, TIME, FMUN, IERR)
+      CALL CMPI('TRBLMT', IERR)
+      CALL START(Y)
+      CALL LOOK(IH, Y)
+      CALL TRBDRV(IH, 'rkf45', 0.1D0, 1D-6, 1D-6, IERR)
+      CALL TRBHMX(IH, 0.05D0, IERR)
+      CALL CMPI('TRBHMX', IERR)
+      ISEEN(1) = 0
+      ISEEN(2) = 40
+      SUM(1) = 0D0
+      CALL TRBOBS(IH, WATCH, SUM, ISEEN, IERR)
+      CALL CMPI('TRBOBS', IERR)
+      T(1) = 0D0
+      CALL TRBADV(IH, 6, T(1), 5D0, Y, IERR)
+      CALL CMPI('TRBADV', IERR)
+      CALL CMPR('TRBADV', 1, T)
+      CALL CMPR('TRBADV', 13, Y)
+      CALL CMPI('SEEN', ISEEN(1))
+      CALL CMPR('SEEN', 1, SUM)
+      CALL TRBLMT(IH, 2, 0, TIME, FMUN, IERR)
+      CALL TRBGLM(IH, 2, FMUN(1,1), IERR)
+      CALL CMPR('TRBGLM', 2, FMUN(1,1))
+      FMUN(1,1) = 0.1D0
+      FMUN(2,1) = 0.2D0
+      CALL TRBDEL(IH, IERR)
+      END
+C
+      SUBROUTINE START(Y)
+      INTEGER I
+      DOUBLE PRECISION Y(13)
+      DO 10 I = 1, 6
+         Y(I) = 0.1D0*I
+         Y(I+6) = 0.3D0 - 0.1D0*I
+   10 CONTINUE
+      Y(13) = 0D0
+      END
+C
+C     What the contacts do in a state, and what integrators ask for.
+      SUBROUTINE LOOK(IH, Y)
+      INTEGER IH, IERR, J
+      DOUBLE PRECISION Y(13), V(2), FEQ(2), F(2)
+      DOUBLE PRECISION DYDT(13), DFDY(15,13), DFDT(13)
+      CALL TRBCON(IH, 6, 2, 0.5D0, Y, V, FEQ, F, IERR)
+      CALL CMPI('TRBCON', IERR)
+      CALL CMPR('TRBCON', 2, V)
+      CALL CMPR('TRBCON', 2, FEQ)
+      CALL CMPR('TRBCON', 2, F)
+      CALL TRBDER(IH, 6, 0.5D0, Y, DYDT, IERR)
+      CALL CMPI('TRBDER', IERR)
+      CALL CMPR('TRBDER', 13, DYDT)
+      CALL TRBJAC(IH, 6, 0.5D0, Y, DFDY, 15, DFDT, IERR)
+      CALL CMPI('TRBJAC', IERR)
+      DO 10 J = 1, 13
+         CALL CMPR('TRBJAC', 13, DFDY(1,J))
+   10 CONTINUE
+      CALL CMPR('TRBJAC', 13, DFDT)
+      CALL TRBSAC(IH, 6, 0.5D0, Y, IERR)
+      CALL CMPI('TRBSAC', IERR)
+      END
+C
+C     Counts the steps, sums their times, and ends the run at the last.
+      SUBROUTINE WATCH(T, NY, Y, IEVENT, RPAR, IPAR, ISTOP)
+      INTEGER NY, IEVENT, IPAR(*), ISTOP
+      DOUBLE PRECISION T, Y(*), RPAR(*)
+      IPAR(1) = IPAR(1) + 1 + IEVENT
+      RPAR(1) = RPAR(1) + T*Y(NY)
+      IF (IPAR(1) .EQ. IPAR(2)) ISTOP = 1
+      END
+C
+C     Nothing is made of what is wrong, and the handle stays as it was.
+      SUBROUTINE CREATE
+      INTEGER IH, IERR, IRM(7), ICM(6), IRK(7), ICK(16), IRJ(3), ICJ(2)
+      DOUBLE PRECISION RM(6), RK(16), RJ(2)
+      CHARACTER*80 TEXT
+      CALL ROWS(IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ)
+      IH = -777
+      CALL TRBRED(-1, 2, IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ, 2, 1,
+     1            IH, TEXT, IERR)
+      CALL SAYS('NFULL', IERR, 6, TEXT, 'NFULL = -1 is less than 0')
+      CALL TRBRED(6, -1, IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ, 2, 1,
+     1            IH, TEXT, IERR)
+      CALL SAYS('N', IERR, 6, TEXT, 'N = -1 is less than 0')
+      CALL MKRED(0, 1, IH, TEXT, IERR)
+      CALL SAYS('NMODE', IERR, 6, TEXT, 'NMODE = 0 is less than 1')
+      CALL MKRED(7, 1, IH, TEXT, IERR)
+      CALL SAYS('NMODE', IERR, 6, TEXT,
+     1          'nmode = 7 is more than the 6 degrees of freedom')
+      CALL TRBLSP(-1, 2, IRM, ICM, RM, IRK, ICK, RK, IRK, ICK, RK, IRJ,
+     1            ICJ, RJ, IH, TEXT, IERR)
+      CALL SAYS('NDOF', IERR, 6, TEXT, 'NDOF = -1 is less than 0')
+      CALL TRBLSP(6, -1, IRM, ICM, RM, IRK, ICK, RK, IRK, ICK, RK, IRJ,
+     1            ICJ, RJ, IH, TEXT, IERR)
+      CALL SAYS('N', IERR, 6, TEXT, 'N = -1 is less than 0')
+      ICK(3) = 7
+      CALL TRBLSP(6, 2, IRM, ICM, RM, IRM, ICM, RM, IRK, ICK, RK, IRJ,
+     1            ICJ, RJ, IH, TEXT, IERR)
+      CALL SAYS('ICK', IERR, 5, TEXT,
+     1          'stiffness: col(3) = 7 is out of range')
+      ICK(3) = 1
+      IRJ(1) = 2
+      CALL TRBRED(6, 2, IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ, 2, 1,
+     1            IH, TEXT, IERR)
+      CALL SAYS('IRJ', IERR, 6, TEXT,
+     1          'direction: rowptr(1) = 2 is not 1')
+      IRJ(1) = 1
+      RM(2) = -1D0
+      CALL TRBRED(6, 2, IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ, 2, 1,
+     1            IH, TEXT, IERR)
+      CALL EXPECT('mass', IERR .NE. 0 .AND. TEXT(1:4) .EQ. 'mass')
+      CALL EXPECT('no handle', IH .EQ. -777)
+      END
+C
+      SUBROUTINE SAYS(LABEL, IERR, ICODE, TEXT, WANTS)
+      CHARACTER*(*) LABEL, TEXT, WANTS
+      INTEGER IERR, ICODE
+      CALL EXPECT(LABEL, IERR .EQ. ICODE .AND. TEXT .EQ. WANTS)
+      IF (IERR .NE. ICODE .OR. TEXT .NE. WANTS) WRITE (*,*) IERR, TEXT
+      END
+C
+C     Every routine with what is no handle, with one of contacts alone,
+C     and, if it works on a driver, without one.
+      SUBROUTINE NODRIV
+      INTEGER IHS(3), ICODE(3), IH, K, IERR, I, IDLE(1)
+      DOUBLE PRECISION X(13)
+      CHARACTER*80 TEXT(3), NAME
+      EXTERNAL WATCH
+      IHS(1) = 12345
+      CALL TRBNEW(2, IHS(2), IERR)
+      CALL MKSPRS(.TRUE., IHS(3), NAME, IERR)
+      ICODE(1) = 1
+      ICODE(2) = 8
+      ICODE(3) = 8
+      TEXT(1) = 'IH = 12345 is no handle: it was never given, or has '//
+     1          'been deleted'
+      TEXT(2) = 'IH has contacts only: TRBLIN makes a structure'
+      TEXT(3) = 'IH has no integrator: call TRBDRV first'
+      DO 10 I = 1, 13
+         X(I) = -777D0
+   10 CONTINUE
+      I = -777
+      NAME = 'as it was'
+      DO 20 K = 1, 3
+         IH = IHS(K)
+         IF (K .LT. 3) THEN
+            CALL TRBCLN(IH, I, IERR)
+            CALL WANTED('TRBCLN', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBNDF(IH, I, IERR)
+            CALL WANTED('TRBNDF', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBLTB(IH, 6, 1, X, X, X, IERR)
+            CALL WANTED('TRBLTB', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBLMT(IH, 2, 1, X, X, IERR)
+            CALL WANTED('TRBLMT', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBCON(IH, 6, 2, 0D0, X, X, X, X, IERR)
+            CALL WANTED('TRBCON', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBZET(IH, 0.1D0, IERR)
+            CALL WANTED('TRBZET', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBFRQ(IH, 6, X, IERR)
+            CALL WANTED('TRBFRQ', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBEXP(IH, 6, 6, X, X, IERR)
+            CALL WANTED('TRBEXP', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBTRC(IH, 1D0, X(1), IERR)
+            CALL WANTED('TRBTRC', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBDER(IH, 6, 0D0, X, X, IERR)
+            CALL WANTED('TRBDER', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBJAC(IH, 6, 0D0, X, X, 13, X, IERR)
+            CALL WANTED('TRBJAC', IH, IERR, ICODE(K), TEXT(K))
+            CALL TRBSAC(IH, 6, 0D0, X, IERR)
+            CALL WANTED('TRBSAC', IH, IERR, ICODE(K), TEXT(K))
+         END IF
+         CALL TRBMTH(IH, NAME, IERR)
+         CALL WANTED('TRBMTH', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBHMX(IH, 1D0, IERR)
+         CALL WANTED('TRBHMX', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBOBS(IH, WATCH, X, IDLE, IERR)
+         CALL WANTED('TRBOBS', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBDVL(IH, 100, X(1), IERR)
+         CALL WANTED('TRBDVL', IH, IERR, ICODE(K), TEXT(K))
+   20 CONTINUE
+      DO 30 K = 1, 13
+         CALL EXPECT('untouched', X(K) .EQ. -777D0 .AND. I .EQ. -777)
+   30 CONTINUE
+      CALL EXPECT('untouched', NAME .EQ. 'as it was')
+      CALL TRBDEL(IHS(2), IERR)
+      CALL TRBDEL(IHS(3), IERR)
+      END
+C
+C     Sizes that are not those of the structure, and what the library
+C     finds, counted from 1.
+      SUBROUTINE WRONG
+      INTEGER IH, IERR
+      DOUBLE PRECISION X(13)
+      CHARACTER*80 TEXT, SIX
+      DATA X /13*0D0/
+      CALL MKRED(2, 0, IH, TEXT, IERR)
+      SIX = 'NFULL = 2, but the degrees of freedom of the '//
+     1      'matrices are 6'
+      CALL TRBLOD(IH, 2, 1D0, X, X, IERR)
+      CALL WANTED('TRBLOD', IH, IERR, 6, SIX)
+      CALL TRBLTB(IH, 2, 1, X, X, X, IERR)
+      CALL WANTED('TRBLTB', IH, IERR, 6, SIX)
+      CALL TRBEXP(IH, 2, 2, X, X, IERR)
+      CALL WANTED('TRBEXP', IH, IERR, 6, SIX)
+      CALL TRBEXP(IH, 6, 6, X, X, IERR)
+      CALL WANTED('TRBEXP', IH, IERR, 6,
+     1            'NDOF = 6, but the degrees of freedom are 2')
+      CALL TRBLTB(IH, 6, 0, X, X, X, IERR)
+      CALL WANTED('TRBLTB', IH, IERR, 6, 'KNOTS = 0 is less than 1')
+      CALL TRBLMT(IH, 2, -1, X, X, IERR)
+      CALL WANTED('TRBLMT', IH, IERR, 6, 'KNOTS = -1 is less than 0')
+      CALL TRBLMT(IH, 1, 1, X, X, IERR)
+      CALL WANTED('TRBLMT', IH, IERR, 6,
+     1            'N = 1, but the number of contacts is 2')
+      CALL TRBJAC(IH, 2, 0D0, X, X, 4, X, IERR)
+      CALL WANTED('TRBJAC', IH, IERR, 6, 'LDJ = 4 is less than 5')
+      CALL TRBZET(IH, -1D0, IERR)
+      CALL WANTED('TRBZET', IH, IERR, 3, 'zeta = -1 is negative')
+      X(2) = -1D0
+      CALL TRBLMT(IH, 2, 1, X, X, IERR)
+      CALL WANTED('TRBLMT', IH, IERR, 3,
+     1            'limit(1) = -1 of contact 2 is negative')
+      CALL TRBDRV(IH, 'exact', 0.1D0, 0D0, 0D0, IERR)
+      CALL TRBHMX(IH, 1D0, IERR)
+      CALL EXPECT('TRBHMX of exact', IERR .EQ. 9)
+      CALL TRBDEL(IH, IERR)
+      END
