@@ -51,7 +51,9 @@ static const char *const part[] = {
     "  --out FOLDER         where the tables go, which must exist; \".\"\n"
     "  --name WORD          how the names of the tables begin; \"damper\"\n"
     "  --read FILE          options from a file, one a line, without the hyphens; names of files in it are relative to its\n"
-    "                       folder. Lines that begin with # say nothing\n",
+    "                       folder. Lines that begin with # say nothing\n"
+    "  --help, -h           prints this\n"
+    "  --version            prints the name of the tool and the version of the library\n",
     "\n"
     "Any consistent units will do: N, m, kg, s; or N, mm, tonne, s. Frequencies are in Hz if time is in s, else in cycles a\n"
     "unit of time; powers in force times length over time (N mm/s = mW).\n"

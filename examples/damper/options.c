@@ -257,6 +257,20 @@ static void complete(struct options *o)
     }
 }
 
+/* What some options print instead of a study; ends the program where name is one of these. */
+static void answer(const char *name)
+{
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
+        print_help();
+    } else if (strcmp(name, "--version") == 0) {
+        printf("%s %s\n", program, tribo_version_string());
+    } else {
+        return;
+    }
+    close_file(stdout, "standard output");
+    exit(EXIT_SUCCESS);
+}
+
 struct options read_options(int argc, char **argv)
 {
     struct options o = standard;
@@ -265,11 +279,7 @@ struct options read_options(int argc, char **argv)
         const char *name = argv[i], *value = argv[i + 1];
         const struct option *option = strncmp(name, "--", 2) == 0 ? find_option(name + 2, strlen(name + 2)) : NULL;
         const int read = strcmp(name, "--read") == 0;
-        if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
-            print_help();
-            close_file(stdout, "standard output");
-            exit(EXIT_SUCCESS);
-        }
+        answer(name);
         if (!option && !read) {
             die("there is no option \"%s\"; see --help", name);
         }

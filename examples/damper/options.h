@@ -25,7 +25,7 @@ struct options {
     size_t threads; /* 0: one a core */
 };
 
-/* Reads the command line; prints the help or ends the program with a message where that is due. */
+/* Reads the command line; prints help or version, or ends the program with a message, where that is due. */
 struct options read_options(int argc, char **argv);
 
 /* Whether a contact's limit follows the option --limits. */

@@ -162,6 +162,8 @@ tool) # The tool runs where it was installed to, and finds the libraries and its
     rm -rf "$out"
     mkdir -p "$out"
     "$tool" --help | grep -q -e '--contacts FILE'
+    "$tool" --version | grep -q '^tribo-damper [0-9]'
+    grep -q 'contacts FILE' "$WORK/elsewhere/share/man/man1/tribo-damper.1"
     "$tool" --read "$WORK/elsewhere/share/tribo/beam/beam.txt" --limits 0.02 --out "$out"
     grep -q '^damper.free 11\.456' "$out/values-damper.txt"
     ;;
