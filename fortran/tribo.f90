@@ -203,6 +203,10 @@ contains
       if (present(df_dfeq)) df_dfeq = x(3)
       if (present(df_dlimit)) df_dlimit = x(4)
     end if
+    call blame(w, 'limit', limit)
+    call blame(w, 'epsilon', epsilon)
+    call blame(w, 'v', v)
+    call blame(w, 'feq', feq)
     call finish(w, stat, errmsg)
   end subroutine tribo_law_eval
 
@@ -223,6 +227,10 @@ contains
     call expect_size(w, 'limit', limit, w%n)
     if (present(df_dz)) call expect_size(w, 'df_dz', df_dz, w%n)
     if (w%status == TRIBO_OK) w%status = c_elastic_force(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
+    call blame(w, 'stiffness', stiffness)
+    call blame(w, 'limit', limit)
+    call blame(w, 'dz', dz)
+    call blame(w, 'f', f)
     call finish(w, stat, errmsg)
   end subroutine elastic_force_line
 
@@ -243,6 +251,8 @@ contains
     call expect_size(w, 'limit', limit, w%n)
     if (present(df_dz)) call expect_shape(w, 'df_dz', shape(df_dz), [2, 2, w%n])
     if (w%status == TRIBO_OK) w%status = c_elastic_force_planar(int(w%n, c_size_t), dz, stiffness, limit, f, df_dz)
+    call blame(w, 'stiffness', stiffness)
+    call blame(w, 'limit', limit)
     call finish(w, stat, errmsg)
   end subroutine elastic_force_plane
 

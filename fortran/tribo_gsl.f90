@@ -221,6 +221,9 @@ contains
     type(c_ptr) :: sys
 
     w%status = c_system_oscillator(sys, limit, alpha, omega)
+    call blame(w, 'limit', limit)
+    call blame(w, 'alpha', alpha)
+    call blame(w, 'omega', omega)
     call adopt_system(this, w, sys)
     call finish(w, stat, errmsg)
   end subroutine oscillator
@@ -256,7 +259,11 @@ contains
 
     w%status = TRIBO_OK
     call expect_count(w, 'n', n)
+    if (n == 0 .or. n == 1) call fail(w, TRIBO_ERR_SIZE, 'n = ' // merge('0', '1', n == 0) // ' is less than 2')
     if (w%status == TRIBO_OK) w%status = c_system_chain(sys, int(n, c_size_t), limit, alpha, omega)
+    call blame(w, 'limit', limit)
+    call blame(w, 'alpha', alpha)
+    call blame(w, 'omega', omega)
     call adopt_system(this, w, sys)
     call finish(w, stat, errmsg)
   end subroutine chain
@@ -272,6 +279,11 @@ contains
     type(c_ptr) :: sys
 
     w%status = c_system_belt(sys, kappa, limit1, limit2, speed, omega)
+    call blame(w, 'limit1', limit1)
+    call blame(w, 'limit2', limit2)
+    call blame(w, 'kappa', kappa)
+    call blame(w, 'speed', speed)
+    call blame(w, 'omega', omega)
     call adopt_system(this, w, sys)
     call finish(w, stat, errmsg)
   end subroutine belt

@@ -11,7 +11,7 @@ module tribo_support
   integer, parameter, public :: dp = c_double
 
   public :: object_of, adopt, lend
-  public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, check_rows
+  public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, check_rows, blame
   public :: from_zero, to_int, transpose_in_place
   public :: to_text, message_of
 
@@ -35,6 +35,10 @@ module tribo_support
     character(len=8) :: kind = 'context'
     character(len=:), allocatable :: text
   end type work
+
+  interface blame
+    procedure :: blame_one, blame_each
+  end interface blame
 
   interface expect_size
     procedure :: expect_vector, expect_matrix
@@ -187,6 +191,60 @@ contains
     write (text, '(2a,i0,a)') name, ' = ', n, ' is negative'
     call fail(w, TRIBO_ERR_NEGATIVE, trim(text))
   end subroutine expect_count
+
+  !> For calls that have no context, and so no message of the library's: names the value that was refused, which is the first that
+  !> the status speaks of. What may be negative is asked about after what may not.
+  subroutine blame_one(w, name, x)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x
+    character(len=80) :: text
+
+    if (w%status == TRIBO_OK .or. allocated(w%text)) return
+    if (.not. is_meant(w%status, x)) return
+    write (text, '(2a,g0.7)') name, ' = ', x
+    select case (w%status)
+    case (TRIBO_ERR_NOT_FINITE)
+      w%text = trim(text) // ' is not finite'
+    case (TRIBO_ERR_NEGATIVE)
+      w%text = trim(text) // ' is negative'
+    case default
+      w%text = trim(text) // ' is not positive'
+    end select
+  end subroutine blame_one
+
+  subroutine blame_each(w, name, x)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    real(dp), intent(in) :: x(:)
+    character(len=80) :: text
+    integer :: i
+
+    do i = 1, merge(0, size(x), w%status == TRIBO_OK)
+      write (text, '(2a,i0,a)') name, '[', i - 1, ']'
+      call blame_one(w, trim(text), x(i))
+    end do
+  end subroutine blame_each
+
+  !> Whether a status may speak of x. Numbers that are not finite are in no comparison that could raise an exception.
+  elemental logical function is_meant(status, x)
+    use, intrinsic :: ieee_arithmetic, only: ieee_is_finite
+    integer(c_int), intent(in) :: status
+    real(dp), intent(in) :: x
+    real(dp) :: finite
+
+    finite = merge(x, 1.0_dp, ieee_is_finite(x))
+    select case (status)
+    case (TRIBO_ERR_NOT_FINITE)
+      is_meant = .not. ieee_is_finite(x)
+    case (TRIBO_ERR_NEGATIVE)
+      is_meant = finite < 0
+    case (TRIBO_ERR_NOT_POSITIVE)
+      is_meant = finite <= 0
+    case default
+      is_meant = .false.
+    end select
+  end function is_meant
 
   !> Compressed rows as far as sizes and indices go. As in the library's messages indices count from 0 here, see from_one.
   subroutine check_rows(w, rowptr, col, val, rows, columns)

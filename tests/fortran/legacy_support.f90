@@ -80,6 +80,17 @@ subroutine expect(label, holds)
   call require(holds, label)
 end subroutine expect
 
+!> A call answered ierr and text, and should have answered icode and wants.
+subroutine says(label, ierr, icode, text, wants)
+  use check, only: require
+  implicit none
+  character(len=*), intent(in) :: label, text, wants
+  integer, intent(in) :: ierr, icode
+  character(len=400) :: full
+  write (full, '(2a,i0,3a)') label, ': status ', ierr, ' "', trim(text), '"'
+  call require(ierr == icode .and. text == wants, trim(full))
+end subroutine says
+
 !> The last call on ih answered ierr, and should have answered icode; what it has to say begins with text.
 subroutine wanted(label, ih, ierr, icode, text)
   use check, only: require

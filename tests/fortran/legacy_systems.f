@@ -113,13 +113,6 @@ C     Nothing is made of what is wrong, and the handle stays as it was.
       CALL EXPECT('no handle', IH .EQ. -777)
       END
 C
-      SUBROUTINE SAYS(LABEL, IERR, ICODE, TEXT, WANTS)
-      CHARACTER*(*) LABEL, TEXT, WANTS
-      INTEGER IERR, ICODE
-      CALL EXPECT(LABEL, IERR .EQ. ICODE .AND. TEXT .EQ. WANTS)
-      IF (IERR .NE. ICODE .OR. TEXT .NE. WANTS) WRITE (*,*) IERR, TEXT
-      END
-C
 C     Every routine with what is no handle, with one of contacts alone,
 C     and, if it works on a driver, without one.
       SUBROUTINE NODRIV
