@@ -317,6 +317,9 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
         return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
                           first[0]);
     }
+    if (!count && !ctx->planar) {
+        return TRIBO_OK;
+    }
     size_t *owner = malloc((ctx->n + 1) * sizeof *owner);
     if (!owner) {
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s in the plane", count, plural(count));
