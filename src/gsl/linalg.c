@@ -1,4 +1,5 @@
 #include "linalg.h"
+#include "../common/layout.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -117,21 +118,47 @@ void tribo_even_out(size_t n, double *a)
 
 void tribo_cholesky_free(struct cholesky *c)
 {
-    free(c->factor);
-    free(c->order);
     free(c->root);
     tribo_sparse_factor_free(c->sparse);
     memset(c, 0, sizeof *c);
 }
 
+static void lay_out(struct cholesky *c, struct layout *l, int diagonal)
+{
+    c->root = tribo_layout_array(l, c->n, sizeof *c->root);
+    c->order = tribo_layout_array(l, c->n, sizeof *c->order);
+    c->factor = diagonal ? NULL : tribo_layout_array(l, c->n * c->n, sizeof *c->factor);
+}
+
+/* 0 if out of memory: then c has none. */
+static int create(struct cholesky *c, size_t n, int diagonal)
+{
+    struct layout l = {0};
+    *c = (struct cholesky){.n = n};
+    lay_out(c, &l, diagonal);
+    if (!tribo_layout_create(&l)) {
+        *c = (struct cholesky){0};
+        return 0;
+    }
+    lay_out(c, &l, diagonal);
+    return 1;
+}
+
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
 {
-    int done = 1;
-    c->n = from->n;
-    c->factor = tribo_copy_of(from->factor, from->n * from->n, sizeof *c->factor, &done);
-    c->order = tribo_copy_of(from->order, from->n, sizeof *c->order, &done);
-    c->root = tribo_copy_of(from->root, from->n, sizeof *c->root, &done);
-    return done & tribo_sparse_factor_copy(&c->sparse, from->sparse);
+    if (!from->root) {
+        *c = (struct cholesky){.n = from->n};
+        return tribo_sparse_factor_copy(&c->sparse, from->sparse);
+    }
+    if (!create(c, from->n, !from->factor)) {
+        return 0;
+    }
+    memcpy(c->root, from->root, from->n * sizeof *c->root);
+    memcpy(c->order, from->order, from->n * sizeof *c->order);
+    if (from->factor) {
+        memcpy(c->factor, from->factor, from->n * from->n * sizeof *c->factor);
+    }
+    return 1;
 }
 
 /* As tribo_cholesky_create; spent as tribo_sparse_factor_create has it. */
@@ -147,11 +174,7 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     if (!diagonal && c->n > DENSE_MOST) {
         return TRIBO_ERR_SIZE;
     }
-    c->root = malloc(c->n * sizeof *c->root);
-    c->order = malloc(c->n * sizeof *c->order);
-    c->factor = diagonal ? NULL : tribo_matrix_to_dense(a);
-    if (!c->root || !c->order || (!diagonal && !c->factor)) {
-        tribo_cholesky_free(c);
+    if (!create(c, a->rows, diagonal)) {
         return TRIBO_ERR_MEMORY;
     }
     if (diagonal) {
@@ -159,6 +182,7 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
             c->order[i] = i;
         }
     } else {
+        tribo_matrix_spread(a, c->factor);
         gsl_matrix_view m = gsl_matrix_view_array(c->factor, c->n, c->n);
         gsl_permutation p = {c->n, c->order};
         gsl_linalg_pcholesky_decomp(&m.matrix, &p);
