@@ -330,9 +330,32 @@ void tribo_lu_solve(const double *lu, size_t n, const size_t *pivot, double *x, 
     }
 }
 
+/* By the rotation that leaves nothing off the diagonal (Golub and Van Loan, Matrix Computations, 8.5.2), which knows a small
+ * eigenvalue of a graded matrix to rounding of itself. */
+static void rotate_two(const double *a, double *values, double *vectors)
+{
+    const double tau = a[1] != 0.0 ? (0.5 * a[3] - 0.5 * a[0]) / a[1] : 0.0;
+    const double t = a[1] != 0.0 ? copysign(1.0, tau) / (fabs(tau) + hypot(1.0, tau)) : 0.0, c = 1.0 / hypot(1.0, t);
+    const double first = a[0] - t * a[1], second = a[3] + t * a[1];
+    const size_t low = first <= second ? 0 : 1, high = 1 - low;
+    values[low] = first;
+    values[high] = second;
+    vectors[low] = vectors[2 + high] = c;
+    vectors[high] = t * c;
+    vectors[2 + low] = -t * c;
+}
+
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
 {
-    if (n == 0) {
+    if (n == 2) {
+        rotate_two(a, values, vectors);
+        return 1;
+    }
+    if (n == 1) {
+        values[0] = a[0];
+        vectors[0] = 1.0;
+    }
+    if (n <= 1) {
         return 1;
     }
     /* gsl_eigen_symmv_alloc would abort if there were no memory */

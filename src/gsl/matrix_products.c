@@ -309,8 +309,9 @@ static void add_row(const struct matrix *a, const struct matrix *z, size_t i, do
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to)
 {
     const size_t n = z->rows ? z->rows : a->rows, m = z->rows ? z->cols : n;
-    double *row = malloc((m + 1) * sizeof *row);
-    if (!row) {
+    enum { SHORT = 16 };
+    double few[SHORT], *more = m > SHORT ? malloc(m * sizeof *more) : NULL, *row = more ? more : few;
+    if (m > SHORT && !more) {
         return 0;
     }
     memset(to, 0, m * m * sizeof *to);
@@ -330,6 +331,6 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
             to[i * m + j] = to[j * m + i] = 0.5 * (to[i * m + j] + to[j * m + i]);
         }
     }
-    free(row);
+    free(more);
     return 1;
 }

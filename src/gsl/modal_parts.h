@@ -25,7 +25,8 @@ struct modal_build {
     struct cholesky slack_stiffness;   /* by this */
     double *phi, *psi, *k_phi, *c_phi; /* and M phi, K phi, C phi */
     double *yr, *yi;                   /* [given][ndof] */
-    double *y0;                        /* [ndof] velocities from belts of constant speed */
+    double *y0;                        /* [ndof] velocities from belts of constant speed, */
+    int steady;                        /* if there are any */
     int status;                        /* of a failure other than of memory */
 };
 
