@@ -273,17 +273,24 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
 
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
 {
-    size_t *row = malloc((from->first[from->rows] + 1) * sizeof *row);
-    for (size_t i = 0; row && i < from->rows; i++) {
+    const size_t entries = from->first[from->rows];
+    if (!create(a, from->cols, from->rows, entries)) {
+        return 0;
+    }
+    size_t *next = a->first + 1; /* where the next entry of a row goes: at last, where the next row begins */
+    for (size_t k = 0; k < entries; k++) {
+        next[from->col[k] + 1]++;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        next[i + 1] += next[i];
+    }
+    for (size_t i = 0; i < from->rows; i++) {
         for (size_t k = from->first[i]; k < from->first[i + 1]; k++) {
-            row[k] = i;
+            a->col[next[from->col[k]]] = i;
+            a->val[next[from->col[k]]++] = from->val[k];
         }
     }
-    memset(a, 0, sizeof *a);
-    const int done =
-        row && tribo_matrix_from_triplets(a, from->cols, from->rows, from->first[from->rows], from->col, row, from->val);
-    free(row);
-    return done;
+    return finish(a);
 }
 
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)

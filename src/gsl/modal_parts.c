@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Arrays are many and short: blocks hold several, the first one this many bytes, the next ones twice as many as those before. An
- * emptied list keeps no block of more than LASTING. */
-#define BLOCK 2048
+/* Arrays are many and short: blocks hold several, the first one this many bytes, for which allocators need not search, the next
+ * ones twice as many as those before. An emptied list keeps no block of more than LASTING. */
+#define BLOCK 992
 #define LASTING ((size_t)1 << 20)
 
 struct block {
@@ -62,11 +62,22 @@ void tribo_modal_give_back(void *list)
     }
 }
 
+struct modal *tribo_modal_alloc(void)
+{
+    void *list = NULL;
+    size_t bytes = 0;
+    struct modal *h = tribo_modal_take(&list, &bytes, 1, sizeof *h);
+    if (h) {
+        h->memory = list;
+        h->bytes = bytes;
+    }
+    return h;
+}
+
 void tribo_modal_free(struct modal *h)
 {
     if (h) {
         tribo_modal_give_back(h->memory);
-        free(h);
     }
 }
 

@@ -43,6 +43,9 @@ int tribo_modal_build(struct modal_build *b, const unsigned char *holds);
  * whole divides no more, if damping turns out to couple modes. Returns a status. */
 int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds);
 
+/* A structure of zeros, or NULL if out of memory; tribo_modal_free takes both. */
+struct modal *tribo_modal_alloc(void);
+
 /* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
 double *tribo_modal_keep(struct modal_build *b, size_t count);
 size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count);

@@ -22,7 +22,7 @@ static size_t write_key(const struct modal_build *b, size_t part, const unsigned
 /* b->h = the part that is listed, which has no key. Returns a status, and leaves b->h NULL on failure. */
 static int build(struct modal_build *b, const unsigned char *holds)
 {
-    b->h = calloc(1, sizeof *b->h);
+    b->h = tribo_modal_alloc();
     const int status = b->h ? tribo_modal_build(b, holds) : TRIBO_ERR_MEMORY;
     if (status) {
         tribo_modal_free(b->h);

@@ -41,7 +41,6 @@ void tribo_operator_release(struct delassus *op)
     for (size_t k = 0; op->group && k < op->groups; k++) {
         tribo_sparse_free(op->group[k].sparse);
     }
-    free(op->diagonal);
     free(op->group_of);
     free(op->fixed);
     free(op);
@@ -55,20 +54,28 @@ void tribo_memory_free(struct memory *m)
     *m = (struct memory){0};
 }
 
+/* If the diagonal of n contacts is given, with room for it and its inverse. */
+static struct delassus *lay_out_operator(struct layout *l, size_t n, int given)
+{
+    struct delassus *op = tribo_layout_array(l, 1, sizeof *op);
+    double *diagonal = given ? tribo_layout_array(l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
+    if (op) {
+        *op = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = given ? n : 0, .diagonal = diagonal};
+    }
+    return op;
+}
+
 int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
 {
-    struct delassus *o = calloc(1, sizeof *o);
-    *op = o;
-    if (!o) {
+    struct layout l = {0};
+    lay_out_operator(&l, n, r != NULL);
+    if (!tribo_layout_create(&l)) {
+        *op = NULL;
         return 0;
     }
-    *o = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0};
+    struct delassus *o = *op = lay_out_operator(&l, n, r != NULL);
     if (!r) {
         return 1;
-    }
-    o->diagonal = malloc((2 * n + TRIBO_LINE) * sizeof *o->diagonal);
-    if (!o->diagonal) {
-        return 0;
     }
     o->inverse = tribo_aligned(o->diagonal + n);
     for (size_t i = 0; i < n; i++) {
