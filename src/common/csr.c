@@ -10,7 +10,7 @@ void tribo_csr_free(struct csr *a)
     memset(a, 0, sizeof *a);
 }
 
-static void lay_out(struct csr *a, struct layout *b, size_t entries)
+static void lay_out_rows(struct csr *a, struct layout *b, size_t entries)
 {
     a->first = tribo_layout_array(b, a->n + 1, sizeof *a->first);
     a->col = tribo_layout_array(b, entries + 1, sizeof *a->col);
@@ -21,12 +21,12 @@ int tribo_csr_create(struct csr *a, size_t n, size_t entries)
 {
     struct layout b = {0};
     a->n = n;
-    lay_out(a, &b, entries);
+    lay_out_rows(a, &b, entries);
     if (!tribo_layout_create(&b)) {
         memset(a, 0, sizeof *a);
         return 0;
     }
-    lay_out(a, &b, entries);
+    lay_out_rows(a, &b, entries);
     memset(a->first, 0, (n + 1) * sizeof *a->first);
     return 1;
 }

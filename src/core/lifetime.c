@@ -25,7 +25,7 @@ static void lay_out_numbers(tribo_context *ctx, struct layout *b, size_t n)
 }
 
 /* Everything but the operator. One contact more than asked for, so that no array is empty. */
-static void lay_out(tribo_context *ctx, struct layout *b, size_t n)
+static void lay_out_context(tribo_context *ctx, struct layout *b, size_t n)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);
     ctx->block = tribo_layout_array(b, 0, 1);
@@ -44,9 +44,9 @@ static int allocate(tribo_context *ctx, size_t n)
 {
     struct layout b = {0};
     ctx->n = n;
-    lay_out(ctx, &b, n);
+    lay_out_context(ctx, &b, n);
     const int done = tribo_layout_zeros(&b);
-    lay_out(ctx, &b, done ? n : 0);
+    lay_out_context(ctx, &b, done ? n : 0);
     return done;
 }
 

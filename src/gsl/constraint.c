@@ -328,26 +328,28 @@ static void list_order(struct constraints *c)
 
 /* ------------------------------------------------------------------------------------------------------------- memory */
 
-static void lay_out_rows(struct source *s, struct constraints *c, struct layout *l)
+static void lay_out_constraints(struct source *s, struct constraints *c, struct layout *l)
 {
     const size_t n = s->direction->cols;
     c->memory[0] = tribo_layout_array(l, 0, 1);
     c->tie = tribo_layout_array(l, s->count, sizeof *c->tie);
-    c->order = tribo_layout_array(l, s->count, sizeof *c->order);
     c->work = tribo_layout_array(l, s->count, sizeof *c->work);
-    s->parent = tribo_layout_array(l, n, sizeof *s->parent);
-    s->place = tribo_layout_array(l, n, sizeof *s->place);
-    s->number = tribo_layout_array(l, n, sizeof *s->number);
-    s->member = tribo_layout_array(l, s->count, sizeof *s->member);
+    c->order = tribo_layout_array(l, 2 * s->count + 3 * n, sizeof *c->order);
+    if (c->order) {
+        s->member = c->order + s->count;
+        s->parent = s->member + s->count;
+        s->place = s->parent + n;
+        s->number = s->place + n;
+    }
 }
 
-static int create_rows(struct source *s, struct constraints *c)
+static int create_constraints(struct source *s, struct constraints *c)
 {
     struct layout l = {0};
-    lay_out_rows(s, c, &l);
+    lay_out_constraints(s, c, &l);
     const int done = tribo_layout_zeros(&l);
     if (done) {
-        lay_out_rows(s, c, &l);
+        lay_out_constraints(s, c, &l);
     }
     return done;
 }
@@ -365,13 +367,15 @@ static void lay_out_ties(struct constraints *c, struct elimination *e, struct la
         touched = tie->touched > touched ? tie->touched : touched;
         area = tie->rows * tie->touched > area ? tie->rows * tie->touched : area;
     }
-    e->entry = tribo_layout_array(l, area, sizeof *e->entry);
-    e->size = tribo_layout_array(l, area, sizeof *e->size);
-    e->weight = tribo_layout_array(l, touched, sizeof *e->weight);
-    e->scale = tribo_layout_array(l, rows, sizeof *e->scale);
-    e->order = tribo_layout_array(l, rows + touched, sizeof *e->order);
-    e->slot = tribo_layout_array(l, rows + touched, sizeof *e->slot);
-    e->best = tribo_layout_array(l, rows + touched, sizeof *e->best);
+    e->entry = tribo_layout_array(l, 2 * area + touched + rows, sizeof *e->entry);
+    e->order = tribo_layout_array(l, 3 * (rows + touched), sizeof *e->order);
+    if (e->entry && e->order) {
+        e->size = e->entry + area;
+        e->weight = e->size + area;
+        e->scale = e->weight + touched;
+        e->slot = e->order + rows + touched;
+        e->best = e->slot + rows + touched;
+    }
 }
 
 static int create_ties(struct constraints *c, struct elimination *e)
@@ -394,7 +398,7 @@ int tribo_constraints_create(struct constraints *c, const struct matrix *directi
     if (count == 0) {
         return 1;
     }
-    if (!create_rows(&s, c)) {
+    if (!create_constraints(&s, c)) {
         return 0;
     }
     join(&s);

@@ -123,7 +123,7 @@ void tribo_cholesky_free(struct cholesky *c)
     memset(c, 0, sizeof *c);
 }
 
-static void lay_out(struct cholesky *c, struct layout *l, int diagonal)
+static void lay_out_cholesky(struct cholesky *c, struct layout *l, int diagonal)
 {
     c->root = tribo_layout_array(l, c->n, sizeof *c->root);
     c->order = tribo_layout_array(l, c->n, sizeof *c->order);
@@ -131,16 +131,16 @@ static void lay_out(struct cholesky *c, struct layout *l, int diagonal)
 }
 
 /* 0 if out of memory: then c has none. */
-static int create(struct cholesky *c, size_t n, int diagonal)
+static int create_cholesky(struct cholesky *c, size_t n, int diagonal)
 {
     struct layout l = {0};
     *c = (struct cholesky){.n = n};
-    lay_out(c, &l, diagonal);
+    lay_out_cholesky(c, &l, diagonal);
     if (!tribo_layout_create(&l)) {
         *c = (struct cholesky){0};
         return 0;
     }
-    lay_out(c, &l, diagonal);
+    lay_out_cholesky(c, &l, diagonal);
     return 1;
 }
 
@@ -150,7 +150,7 @@ int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
         *c = (struct cholesky){.n = from->n};
         return tribo_sparse_factor_copy(&c->sparse, from->sparse);
     }
-    if (!create(c, from->n, !from->factor)) {
+    if (!create_cholesky(c, from->n, !from->factor)) {
         return 0;
     }
     memcpy(c->root, from->root, from->n * sizeof *c->root);
@@ -174,7 +174,7 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     if (!diagonal && c->n > DENSE_MOST) {
         return TRIBO_ERR_SIZE;
     }
-    if (!create(c, a->rows, diagonal)) {
+    if (!create_cholesky(c, a->rows, diagonal)) {
         return TRIBO_ERR_MEMORY;
     }
     if (diagonal) {

@@ -19,7 +19,7 @@ void tribo_matrix_free(struct matrix *a)
     memset(a, 0, sizeof *a);
 }
 
-static void lay_out(struct matrix *a, struct layout *l, size_t entries)
+static void lay_out_matrix(struct matrix *a, struct layout *l, size_t entries)
 {
     a->first = tribo_layout_array(l, a->rows + 2, sizeof *a->first);
     a->col = tribo_layout_array(l, entries + 1, sizeof *a->col);
@@ -30,12 +30,12 @@ static int create(struct matrix *a, size_t rows, size_t cols, size_t entries)
 {
     struct layout l = {0};
     *a = (struct matrix){.rows = rows, .cols = cols};
-    lay_out(a, &l, entries);
+    lay_out_matrix(a, &l, entries);
     if (!tribo_layout_create(&l)) {
         *a = (struct matrix){0};
         return 0;
     }
-    lay_out(a, &l, entries);
+    lay_out_matrix(a, &l, entries);
     memset(a->first, 0, (rows + 2) * sizeof *a->first);
     return 1;
 }
@@ -359,11 +359,11 @@ static void shrink(struct matrix *a, size_t entries)
 {
     const double *val = a->val;
     struct layout l = {(char *)a->first, 0};
-    lay_out(a, &l, entries);
+    lay_out_matrix(a, &l, entries);
     memmove(a->val, val, entries * sizeof *val);
     char *less = realloc(l.memory, l.used + 1);
     l = (struct layout){less ? less : l.memory, 0};
-    lay_out(a, &l, entries);
+    lay_out_matrix(a, &l, entries);
 }
 
 void tribo_matrix_keep_lower(struct matrix *a)

@@ -20,9 +20,9 @@ struct matrix {
     double *val;
     size_t diagonals;  /* number of full ones; 0 if `fast` has none, or all entries */
     ptrdiff_t *offset; /* of these, and all that follows: NULL if rows are few */
-    size_t *block; /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
-    double *fast;  /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */
-    int identity;  /* multiplying with it changes nothing */
+    size_t *block;     /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
+    double *fast;      /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */
+    int identity;      /* multiplying with it changes nothing */
 };
 
 /* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */

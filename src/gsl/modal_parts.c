@@ -99,6 +99,20 @@ double *tribo_modal_keep(struct modal_build *b, size_t count)
     return tribo_modal_take(&b->h->memory, &b->h->bytes, count, sizeof(double));
 }
 
+int tribo_modal_keep_all(struct modal_build *b, size_t arrays, double **const *array, const size_t *count)
+{
+    size_t all = 0;
+    for (size_t k = 0; k < arrays; k++) {
+        all += count[k];
+    }
+    double *numbers = tribo_modal_keep(b, all);
+    for (size_t k = 0; numbers && k < arrays; k++) {
+        *array[k] = numbers;
+        numbers += count[k];
+    }
+    return numbers != NULL;
+}
+
 size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count)
 {
     return tribo_modal_take(&b->h->memory, &b->h->bytes, count, sizeof(size_t));

@@ -46,8 +46,10 @@ int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds);
 /* A structure of zeros, or NULL if out of memory; tribo_modal_free takes both. */
 struct modal *tribo_modal_alloc(void);
 
-/* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
+/* Zeroed memory that the structure keeps, or that is freed when it is built; tribo_modal_keep_all for several arrays of so many
+ * numbers. NULL, or 0, if there is none left. */
 double *tribo_modal_keep(struct modal_build *b, size_t count);
+int tribo_modal_keep_all(struct modal_build *b, size_t arrays, double **const *array, const size_t *count);
 size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count);
 unsigned char *tribo_modal_keep_bytes(struct modal_build *b, size_t count);
 struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count);

@@ -69,11 +69,7 @@ static int reserve(struct modal_build *b)
                              &h->br,  &h->bi,  &h->gr,     &h->gi,      &h->xr,   &h->xi,       &h->yr, &h->yi, &h->y0};
     const size_t count[] = {m * h->moving, m * h->moving, m,        m, m, m, e, e, e, e, e, e, s * m, s * m, s * m, s * m,
                             s * h->moving, s * h->moving, h->moving};
-    int done = 1;
-    for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
-        *kept[k] = tribo_modal_keep(b, count[k]);
-        done &= *kept[k] != NULL;
-    }
+    const int done = tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count);
     h->dof = tribo_modal_keep_indices(b, h->moving);
     h->owner = tribo_modal_keep_indices(b, e);
     h->drifts = tribo_modal_keep_bytes(b, m);

@@ -158,14 +158,16 @@ static int create_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, velocities = b->sys->harmonics * b->n;
-    h->gr = tribo_modal_keep(b, h->harmonics * m);
-    h->gi = tribo_modal_keep(b, h->harmonics * m);
-    h->ramp = tribo_modal_keep(b, m);
-    h->constant = tribo_modal_keep(b, m);
-    b->yr = tribo_modal_scratch(b, velocities);
-    b->yi = tribo_modal_scratch(b, velocities);
-    b->y0 = tribo_modal_scratch(b, b->n);
-    return h->gr && h->gi && h->ramp && h->constant && b->yr && b->yi && b->y0;
+    double **const kept[] = {&h->gr, &h->gi, &h->ramp, &h->constant};
+    const size_t count[] = {h->harmonics * m, h->harmonics * m, m, m};
+    double *y = tribo_modal_scratch(b, 2 * velocities + b->n);
+    if (!y || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
+        return 0;
+    }
+    b->yr = y;
+    b->yi = y + velocities;
+    b->y0 = y + 2 * velocities;
+    return 1;
 }
 
 /* Forcing of eta by each harmonic, and what the held contacts are moved by. */
@@ -174,8 +176,8 @@ int tribo_modal_forcing(struct modal_build *b)
     if (!tribo_modal_list_forcing(b) || !create_forcing(b)) {
         return 0;
     }
-    double *x = tribo_modal_scratch(b, b->rests), *pull = tribo_modal_scratch(b, b->n), *drag = tribo_modal_scratch(b, b->n);
-    int done = x && pull && drag;
+    double *pull = tribo_modal_scratch(b, 2 * b->n + b->rests), *drag = pull ? pull + b->n : NULL, *x = pull ? drag + b->n : NULL;
+    int done = pull != NULL;
     for (size_t w = 0; done && w < b->sys->harmonics; w++) {
         const enum drives drives = b->sys->harmonic[w].drives;
         if (drives == DRIVES_LOAD) {
@@ -245,12 +247,13 @@ int tribo_modal_response(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, count = h->harmonics, size = h->coupling ? 2 * m : 0;
-    h->xr = tribo_modal_keep(b, count * m);
-    h->xi = tribo_modal_keep(b, count * m);
-    h->resonant = tribo_modal_keep_bytes(b, count * m);
-    double *a = tribo_modal_scratch(b, size * size), *x = tribo_modal_scratch(b, size);
+    double *kept = tribo_modal_keep(b, 2 * count * m), *a = tribo_modal_scratch(b, size * size + size);
     size_t *pivot = tribo_modal_scratch_indices(b, size);
-    int done = h->xr && h->xi && h->resonant && a && x && pivot;
+    h->resonant = tribo_modal_keep_bytes(b, count * m);
+    int done = kept && a && pivot && h->resonant;
+    double *x = done ? a + size * size : NULL;
+    h->xr = kept;
+    h->xi = done ? kept + count * m : NULL;
     for (size_t w = 0; done && w < count; w++) {
         if (b->h->forcing[w].omega != 0.0 && h->coupling) {
             done = respond_together(b, w, a, x, pivot);

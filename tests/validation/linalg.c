@@ -479,6 +479,6 @@ TEST(equations)
 }
 
 TEST_MAIN("linalg", {light_between, 31}, {light_follows, 1}, {piles, 20}, {clusters, 20}, {graded_rows, 45},
-          {forces_and_displacements, 20}, {nearly_dependent, 17}, {touches_nothing, 1}, {graded_stiffness, 20}, {pairs, 400}, {one_alone, 1},
-          {negative_stiffness, 1}, {overflowing_stiffness, 1}, {random_eigenvalues, 120}, {circles, 20},
+          {forces_and_displacements, 20}, {nearly_dependent, 17}, {touches_nothing, 1}, {graded_stiffness, 20}, {pairs, 400},
+          {one_alone, 1}, {negative_stiffness, 1}, {overflowing_stiffness, 1}, {random_eigenvalues, 120}, {circles, 20},
           {eigenvalues_of_what_is_none, 1}, {equations, 10})

@@ -60,7 +60,8 @@ static struct delassus *lay_out_operator(struct layout *l, size_t n, int given)
     struct delassus *op = tribo_layout_array(l, 1, sizeof *op);
     double *diagonal = given ? tribo_layout_array(l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
     if (op) {
-        *op = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = given ? n : 0, .diagonal = diagonal};
+        *op =
+            (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = given ? n : 0, .diagonal = diagonal};
     }
     return op;
 }
@@ -132,11 +133,13 @@ void tribo_memory_expect(const struct delassus *op, const struct memory *m, size
 
 static void lay_out_problem(struct box_qp *p, struct layout *b, size_t largest)
 {
-    double **const vector[] = {&p->q,    &p->lo,   &p->hi,   &p->gradient, &p->noise, &p->low,      &p->first,
-                               &p->unit, &p->step, &p->step_low, &p->row,  &p->spare[0], &p->spare[1]};
+    double **const vector[] = {&p->q,    &p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,     &p->first,
+                               &p->unit, &p->step, &p->step_low, &p->row,      &p->spare[0], &p->spare[1]};
+    enum { VECTORS = sizeof vector / sizeof *vector };
     const size_t s = largest + 1;
-    for (size_t k = 0; k < sizeof vector / sizeof *vector; k++) {
-        *vector[k] = tribo_layout_array(b, s, sizeof **vector[k]);
+    double *numbers = tribo_layout_array(b, VECTORS * s, sizeof *numbers);
+    for (size_t k = 0; numbers && k < VECTORS; k++) {
+        *vector[k] = numbers + k * s;
     }
     p->near = tribo_layout_array(b, s, sizeof *p->near);
     p->held = tribo_layout_array(b, s, sizeof *p->held);
