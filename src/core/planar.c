@@ -51,9 +51,11 @@ int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t 
 
 void tribo_plane_free(struct plane *plane)
 {
+    if (plane->near && plane->y) {
+        tribo_disc_free(&plane->problem);
+    }
     free(plane->near);
     free(plane->y);
-    tribo_disc_free(&plane->problem);
     *plane = (struct plane){0};
 }
 

@@ -12,11 +12,13 @@
 
 void tribo_matrix_free(struct matrix *a)
 {
-    free(a->first);
-    free(a->offset);
-    free(a->block);
-    free(a->fast);
-    memset(a, 0, sizeof *a);
+    if (a->first) {
+        free(a->first);
+        free(a->offset);
+        free(a->block);
+        free(a->fast);
+    }
+    *a = (struct matrix){0};
 }
 
 static void lay_out_matrix(struct matrix *a, struct layout *l, size_t entries)
