@@ -334,8 +334,9 @@ void tribo_lu_solve(const double *lu, size_t n, const size_t *pivot, double *x, 
  * eigenvalue of a graded matrix to rounding of itself. */
 static void rotate_two(const double *a, double *values, double *vectors)
 {
-    const double tau = a[1] != 0.0 ? (0.5 * a[3] - 0.5 * a[0]) / a[1] : 0.0;
-    const double t = a[1] != 0.0 ? copysign(1.0, tau) / (fabs(tau) + hypot(1.0, tau)) : 0.0, c = 1.0 / hypot(1.0, t);
+    const double gap = 0.5 * a[3] - 0.5 * a[0], shared = fabs(a[1]), cot = shared > 0.0 ? quotient(fabs(gap), shared) : 0.0;
+    const double size = shared > 0.0 ? 1.0 / (cot + hypot(1.0, cot)) : 0.0, t = (gap >= 0.0) == (a[1] >= 0.0) ? size : -size;
+    const double c = 1.0 / hypot(1.0, t);
     const double first = a[0] - t * a[1], second = a[3] + t * a[1];
     const size_t low = first <= second ? 0 : 1, high = 1 - low;
     values[low] = first;
