@@ -1,4 +1,5 @@
 #include "csr.h"
+#include "layout.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -6,22 +7,28 @@
 void tribo_csr_free(struct csr *a)
 {
     free(a->first);
-    free(a->col);
-    free(a->val);
     memset(a, 0, sizeof *a);
+}
+
+static void lay_out_rows(struct csr *a, struct layout *b, size_t entries)
+{
+    a->first = tribo_layout_array(b, a->n + 1, sizeof *a->first);
+    a->col = tribo_layout_array(b, entries + 1, sizeof *a->col);
+    a->val = tribo_layout_array(b, entries + 1, sizeof *a->val);
 }
 
 int tribo_csr_create(struct csr *a, size_t n, size_t entries)
 {
+    struct layout b = {0};
     a->n = n;
-    a->first = calloc(n + 1, sizeof *a->first);
-    a->col = malloc((entries + 1) * sizeof *a->col);
-    a->val = malloc((entries + 1) * sizeof *a->val);
-    if (a->first && a->col && a->val) {
-        return 1;
+    lay_out_rows(a, &b, entries);
+    if (!tribo_layout_create(&b)) {
+        memset(a, 0, sizeof *a);
+        return 0;
     }
-    tribo_csr_free(a);
-    return 0;
+    lay_out_rows(a, &b, entries);
+    memset(a->first, 0, (n + 1) * sizeof *a->first);
+    return 1;
 }
 
 int tribo_csr_transpose(struct csr *b, size_t n, size_t columns, const size_t *rowptr, const size_t *col, const double *val)
@@ -91,11 +98,11 @@ static size_t product_row(size_t i, const struct csr *t, const double *w, const 
 int tribo_csr_product(struct csr *a, size_t n, const struct csr *t, const double *w, const size_t *rowptr, const size_t *col,
                       const double *val)
 {
-    size_t *seen = calloc(n + 1, sizeof *seen), *column = malloc((n + 1) * sizeof *column);
-    double *sum = malloc((n + 1) * sizeof *sum);
-    struct csr unsorted = {0};
+    struct csr unsorted = {0}, work = {0}; /* columns seen; found, and sums in these */
     int done = 0;
-    if (seen && column && sum) {
+    if (tribo_csr_create(&work, n, n)) {
+        size_t *seen = work.first, *column = work.col;
+        double *sum = work.val;
         size_t entries = 0;
         for (size_t i = 0; i < n; i++) {
             entries += product_row(i, t, w, rowptr, col, val, seen, column, sum);
@@ -116,8 +123,6 @@ int tribo_csr_product(struct csr *a, size_t n, const struct csr *t, const double
             tribo_csr_free(&unsorted);
         }
     }
-    free(seen);
-    free(column);
-    free(sum);
+    tribo_csr_free(&work);
     return done;
 }

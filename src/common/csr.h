@@ -6,7 +6,7 @@
 
 struct csr {
     size_t n;
-    size_t *first, *col;
+    size_t *first, *col; /* first has the memory of all */
     double *val;
 };
 

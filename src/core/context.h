@@ -12,6 +12,7 @@
 #include "operator/operator.h"
 #include "law/law.h"
 #include "planar.h"
+#include "../common/layout.h"
 #include "../common/compiler.h"
 #include "../common/plural.h"
 #include "../common/real.h"
@@ -56,7 +57,7 @@ enum { NONE_STORED, SOME_STORED, ALL_STORED };
 
 struct deeds {
     signed char *of;       /* [n] */
-    unsigned char *stored; /* [chunks] in the same piece of memory */
+    unsigned char *stored; /* [chunks] */
     int all_stored;        /* the forces of all contacts are */
 };
 
@@ -110,7 +111,7 @@ struct counters {
 struct tribo_context {
     size_t n;
     const char *owner; /* of the operator; NULL: the caller */
-    double *numbers;   /* the memory of the arrays of numbers below, but for tangents */
+    void *block;       /* the memory of all arrays below that are of no other object, and of the message */
     struct settings set;
     struct following follow;
     struct delassus *op;   /* constant; clones have it in common */
@@ -132,7 +133,7 @@ int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
-struct message *tribo_message_create(void);
+size_t tribo_message_size(void); /* one of zeros is empty */
 
 /* Contacts of the chunk that begins with i. */
 static inline size_t tribo_chunk_size(const tribo_context *ctx, size_t i)

@@ -8,9 +8,9 @@
 
 #define DEFAULT_EPSILON 1e-6
 
-/* The arrays of n numbers, zero, in one piece of memory. Each begins a line of cache, and an odd number of lines behind the last:
- * of arrays that are a power of two apart few would stay in cache. */
-static int allocate_numbers(tribo_context *ctx, size_t n)
+/* The arrays of n numbers. Each begins a line of cache, and an odd number of lines behind the last: of arrays that are a power of
+ * two apart few would stay in cache. */
+static void lay_out_numbers(tribo_context *ctx, struct layout *b, size_t n)
 {
     double **const array[] = {&ctx->set.limit,    &ctx->set.width,         &ctx->set.rate,   &ctx->set.ratio,
                               &ctx->set.stribeck, &ctx->follow.cut_limit,  &ctx->follow.now, &ctx->follow.cut_factor,
@@ -18,30 +18,36 @@ static int allocate_numbers(tribo_context *ctx, size_t n)
                               &ctx->last.v};
     enum { ARRAYS = sizeof array / sizeof *array };
     const size_t room = TRIBO_LINE * ((n / TRIBO_LINE + 1) | 1);
-    ctx->numbers = calloc(ARRAYS * room + TRIBO_LINE, sizeof *ctx->numbers);
-    for (size_t k = 0; ctx->numbers && k < ARRAYS; k++) {
-        *array[k] = tribo_aligned(ctx->numbers) + k * room;
+    double *numbers = tribo_aligned(tribo_layout_array(b, ARRAYS * room + TRIBO_LINE, sizeof *numbers));
+    for (size_t k = 0; numbers && k < ARRAYS; k++) {
+        *array[k] = numbers + k * room;
     }
-    return ctx->numbers != NULL;
 }
 
 /* Everything but the operator. One contact more than asked for, so that no array is empty. */
+static void lay_out_context(tribo_context *ctx, struct layout *b, size_t n)
+{
+    const size_t m = n + 1, chunks = tribo_chunks(m);
+    ctx->block = tribo_layout_array(b, 0, 1);
+    lay_out_numbers(ctx, b, n);
+    ctx->message = tribo_layout_array(b, 1, tribo_message_size());
+    ctx->follow.chunk = tribo_layout_array(b, chunks, sizeof *ctx->follow.chunk);
+    ctx->last.tangent = tribo_layout_array(b, m, sizeof *ctx->last.tangent);
+    ctx->moving = tribo_layout_array(b, m, 1);
+    ctx->last.did.of = tribo_layout_array(b, m, 1);
+    ctx->last.did.stored = tribo_layout_array(b, chunks, 1);
+    ctx->spare.of = tribo_layout_array(b, m, 1);
+    ctx->spare.stored = tribo_layout_array(b, chunks, 1);
+}
+
 static int allocate(tribo_context *ctx, size_t n)
 {
-    const size_t m = n + 1;
-    const int numbers = allocate_numbers(ctx, n);
+    struct layout b = {0};
     ctx->n = n;
-    ctx->message = tribo_message_create();
-    ctx->moving = calloc(m, sizeof *ctx->moving);
-    ctx->follow.chunk = malloc(tribo_chunks(m) * sizeof *ctx->follow.chunk);
-    ctx->last.did.of = calloc(m + tribo_chunks(m), 1);
-    ctx->spare.of = calloc(m + tribo_chunks(m), 1);
-    ctx->last.tangent = malloc(m * sizeof *ctx->last.tangent);
-    if (ctx->last.did.of && ctx->spare.of) {
-        ctx->last.did.stored = (unsigned char *)(ctx->last.did.of + m);
-        ctx->spare.stored = (unsigned char *)(ctx->spare.of + m);
-    }
-    return numbers && ctx->message && ctx->moving && ctx->follow.chunk && ctx->last.did.of && ctx->spare.of && ctx->last.tangent;
+    lay_out_context(ctx, &b, n);
+    const int done = tribo_layout_zeros(&b);
+    lay_out_context(ctx, &b, done ? n : 0);
+    return done;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -127,13 +133,7 @@ void tribo_destroy(tribo_context *ctx)
     tribo_memory_free(&ctx->memory);
     tribo_planar_release(ctx->planar);
     tribo_plane_free(&ctx->plane);
-    free(ctx->message);
-    free(ctx->numbers);
-    free(ctx->moving);
-    free(ctx->follow.chunk);
-    free(ctx->last.did.of);
-    free(ctx->spare.of);
-    free(ctx->last.tangent);
+    free(ctx->block);
     free(ctx);
 }
 

@@ -3,7 +3,6 @@
  * same. */
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "context.h"
 
@@ -20,9 +19,9 @@ struct message {
 #define RELEASE(flag) ((flag) = 0)
 #endif
 
-struct message *tribo_message_create(void)
+size_t tribo_message_size(void)
 {
-    return calloc(1, sizeof(struct message));
+    return sizeof(struct message);
 }
 
 int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)

@@ -51,9 +51,11 @@ int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t 
 
 void tribo_plane_free(struct plane *plane)
 {
+    if (plane->near && plane->y) {
+        tribo_disc_free(&plane->problem);
+    }
     free(plane->near);
     free(plane->y);
-    tribo_disc_free(&plane->problem);
     *plane = (struct plane){0};
 }
 
@@ -316,6 +318,9 @@ int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first)
     if (count && ctx->set.coupling == TRIBO_PARTITION) {
         return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the partition coupling knows no planar contacts, and contact %zu is one",
                           first[0]);
+    }
+    if (!count && !ctx->planar) {
+        return TRIBO_OK;
     }
     size_t *owner = malloc((ctx->n + 1) * sizeof *owner);
     if (!owner) {

@@ -1,4 +1,5 @@
 #include "constraint.h"
+#include "../common/layout.h"
 #include "../common/real.h"
 
 #include <float.h>
@@ -39,11 +40,8 @@ struct elimination {
 
 void tribo_constraints_free(struct constraints *c)
 {
-    free(c->order);
-    free(c->tie);
     free(c->memory[0]);
     free(c->memory[1]);
-    free(c->work);
     memset(c, 0, sizeof *c);
 }
 
@@ -106,28 +104,12 @@ static void count_ties(const struct source *s, struct constraints *c)
     }
 }
 
-/* Gives the ties their memory, and lists their rows and degrees of freedom. */
-static int list_ties(const struct source *s, struct constraints *c)
+/* Lists the rows and degrees of freedom of the ties. */
+static void list_ties(const struct source *s, struct constraints *c)
 {
     const struct matrix *j = s->direction;
-    size_t indices = 1, entries = 1;
     for (size_t k = 0; k < c->ties; k++) {
-        indices += c->tie[k].rows + c->tie[k].touched;
-        entries += c->tie[k].rows * c->tie[k].touched;
-    }
-    size_t *index = c->memory[0] = malloc(indices * sizeof *index);
-    double *entry = c->memory[1] = malloc(entries * sizeof *entry);
-    if (!index || !entry) {
-        return 0;
-    }
-    for (size_t k = 0; k < c->ties; k++) {
-        struct tie *tie = &c->tie[k];
-        tie->order = index;
-        tie->dof = index + tie->rows;
-        tie->entry = entry;
-        index += tie->rows + tie->touched;
-        entry += tie->rows * tie->touched;
-        tie->rows = 0;
+        c->tie[k].rows = 0;
     }
     for (size_t p = 0; p < s->count; p++) {
         struct tie *tie = &c->tie[s->member[p]];
@@ -138,22 +120,6 @@ static int list_ties(const struct source *s, struct constraints *c)
             }
         }
     }
-    return 1;
-}
-
-static int find_ties(struct source *s, struct constraints *c)
-{
-    const size_t n = s->direction->cols;
-    s->parent = calloc(3 * n + s->count + 1, sizeof *s->parent);
-    if (!s->parent) {
-        return 0;
-    }
-    s->place = s->parent + n;
-    s->number = s->place + n;
-    s->member = s->number + n;
-    join(s);
-    count_ties(s, c);
-    return list_ties(s, c);
 }
 
 /* --------------------------------------------------------------------------------------------------------- elimination */
@@ -335,40 +301,18 @@ static void fill(struct elimination *e, const struct source *s)
     }
 }
 
-static int eliminate_ties(const struct source *s, struct constraints *c)
+static void eliminate_ties(const struct source *s, struct constraints *c, struct elimination *e)
 {
-    size_t rows = 0, touched = 0, area = 0;
     for (size_t k = 0; k < c->ties; k++) {
-        const struct tie *tie = &c->tie[k];
-        rows = tie->rows > rows ? tie->rows : rows;
-        touched = tie->touched > touched ? tie->touched : touched;
-        area = tie->rows * tie->touched > area ? tie->rows * tie->touched : area;
-    }
-    double *numbers = malloc((2 * area + touched + rows + 1) * sizeof *numbers);
-    size_t *indices = malloc((3 * (rows + touched) + 1) * sizeof *indices);
-    for (size_t k = 0; numbers && indices && k < c->ties; k++) {
         struct tie *tie = &c->tie[k];
-        const double zero = s->last ? sqrt(4.0 * (double)(tie->rows + 4) * DBL_EPSILON) : ROUNDING;
-        struct elimination e = {tie,
-                                s->last,
-                                numbers,
-                                numbers + area,
-                                numbers + 2 * area,
-                                numbers + 2 * area + touched,
-                                indices,
-                                indices + rows + touched,
-                                indices + 2 * (rows + touched),
-                                zero};
-        fill(&e, s);
-        eliminate_all(&e);
-        arrange(&e);
-        solve_rest(tie, e.weight);
+        e->tie = tie;
+        e->zero = s->last ? sqrt(4.0 * (double)(tie->rows + 4) * DBL_EPSILON) : ROUNDING;
+        fill(e, s);
+        eliminate_all(e);
+        arrange(e);
+        solve_rest(tie, e->weight);
         c->rank += tie->rank;
     }
-    const int done = numbers && indices;
-    free(numbers);
-    free(indices);
-    return done;
 }
 
 /* Lists the independent rows of all ties, and then the others. */
@@ -382,37 +326,104 @@ static void list_order(struct constraints *c)
     }
 }
 
+/* ------------------------------------------------------------------------------------------------------------- memory */
+
+static void lay_out_constraints(struct source *s, struct constraints *c, struct layout *l)
+{
+    const size_t n = s->direction->cols;
+    c->memory[0] = tribo_layout_array(l, 0, 1);
+    c->tie = tribo_layout_array(l, s->count, sizeof *c->tie);
+    c->work = tribo_layout_array(l, s->count, sizeof *c->work);
+    c->order = tribo_layout_array(l, 2 * s->count + 3 * n, sizeof *c->order);
+    if (c->order) {
+        s->member = c->order + s->count;
+        s->parent = s->member + s->count;
+        s->place = s->parent + n;
+        s->number = s->place + n;
+    }
+}
+
+static int create_constraints(struct source *s, struct constraints *c)
+{
+    struct layout l = {0};
+    lay_out_constraints(s, c, &l);
+    const int done = tribo_layout_zeros(&l);
+    if (done) {
+        lay_out_constraints(s, c, &l);
+    }
+    return done;
+}
+
+/* The ties' arrays, and workspace for the largest of them. */
+static void lay_out_ties(struct constraints *c, struct elimination *e, struct layout *l)
+{
+    size_t rows = 0, touched = 0, area = 0;
+    c->memory[1] = tribo_layout_array(l, 0, 1);
+    for (struct tie *tie = c->tie; tie < c->tie + c->ties; tie++) {
+        tie->order = tribo_layout_array(l, tie->rows, sizeof *tie->order);
+        tie->dof = tribo_layout_array(l, tie->touched, sizeof *tie->dof);
+        tie->entry = tribo_layout_array(l, tie->rows * tie->touched, sizeof *tie->entry);
+        rows = tie->rows > rows ? tie->rows : rows;
+        touched = tie->touched > touched ? tie->touched : touched;
+        area = tie->rows * tie->touched > area ? tie->rows * tie->touched : area;
+    }
+    e->entry = tribo_layout_array(l, 2 * area + touched + rows, sizeof *e->entry);
+    e->order = tribo_layout_array(l, 3 * (rows + touched), sizeof *e->order);
+    if (e->entry && e->order) {
+        e->size = e->entry + area;
+        e->weight = e->size + area;
+        e->scale = e->weight + touched;
+        e->slot = e->order + rows + touched;
+        e->best = e->slot + rows + touched;
+    }
+}
+
+static int create_ties(struct constraints *c, struct elimination *e)
+{
+    struct layout l = {0};
+    lay_out_ties(c, e, &l);
+    const int done = tribo_layout_create(&l);
+    if (done) {
+        lay_out_ties(c, e, &l);
+    }
+    return done;
+}
+
 int tribo_constraints_create(struct constraints *c, const struct matrix *direction, const struct matrix *mass, const size_t *row,
                              size_t count, const unsigned char *last)
 {
-    struct source s = {direction, mass, row, count, last, NULL, NULL, NULL, NULL};
-    memset(c, 0, sizeof *c);
-    c->count = count;
-    c->order = malloc((count + 1) * sizeof *c->order);
-    c->tie = calloc(count + 1, sizeof *c->tie);
-    c->work = malloc((count + 1) * sizeof *c->work);
-    const int done = c->order && c->tie && c->work && find_ties(&s, c) && eliminate_ties(&s, c);
-    free(s.parent);
-    if (done) {
-        list_order(c);
+    struct source s = {.direction = direction, .mass = mass, .row = row, .count = count, .last = last};
+    struct elimination e = {.last = last};
+    *c = (struct constraints){.count = count};
+    if (count == 0) {
+        return 1;
     }
-    return done;
+    if (!create_constraints(&s, c)) {
+        return 0;
+    }
+    join(&s);
+    count_ties(&s, c);
+    if (!create_ties(c, &e)) {
+        return 0;
+    }
+    list_ties(&s, c);
+    eliminate_ties(&s, c, &e);
+    list_order(c);
+    return 1;
 }
 
 size_t tribo_constraints_rank(const struct matrix *direction, const struct matrix *mass)
 {
     const size_t n = direction->rows;
     struct constraints c = {0};
-    size_t *all = malloc((n + 1) * sizeof *all);
-    unsigned char *last = calloc(n + 1, 1);
+    size_t *all = calloc(n + n / sizeof *all + 1, sizeof *all);
     for (size_t i = 0; all && i < n; i++) {
         all[i] = i;
     }
-    const int done = all && last && tribo_constraints_create(&c, direction, mass, all, n, last);
+    const int done = all && tribo_constraints_create(&c, direction, mass, all, n, (const unsigned char *)(all + n));
     const size_t rank = done ? c.rank : n + 1;
     tribo_constraints_free(&c);
     free(all);
-    free(last);
     return rank;
 }
 
@@ -464,10 +475,10 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
     for (size_t k = 0; k < c->ties; k++) {
         room += c->tie[k].rank * (c->tie[k].touched - c->tie[k].rank);
     }
-    size_t *number = malloc((ndof + 2 * room) * sizeof *number);
-    double *v = malloc(room * sizeof *v);
-    int done = number && v;
+    double *v = malloc(room * sizeof *v + (ndof + 2 * room) * sizeof(size_t));
+    int done = v != NULL;
     if (done) {
+        size_t *number = (size_t *)(v + room);
         struct list l = {0, number + ndof, number + ndof + room, v};
         const size_t masters = number_masters(c, ndof, number);
         for (size_t d = 0; d < ndof; d++) {
@@ -480,7 +491,6 @@ int tribo_constraints_basis(const struct constraints *c, size_t ndof, struct mat
         }
         done = tribo_matrix_from_triplets(z, ndof, masters, l.count, l.i, l.j, l.v);
     }
-    free(number);
     free(v);
     return done;
 }

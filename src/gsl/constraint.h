@@ -25,7 +25,7 @@ struct constraints {
     size_t ties;
     struct tie *tie;
     double *work;    /* [count] */
-    void *memory[2]; /* of the ties' arrays */
+    void *memory[2]; /* of these, and of the ties' arrays */
 };
 
 /* For the rows of direction that row [count] names. mass [cols][cols] (no rows: the identity) gives its diagonal.

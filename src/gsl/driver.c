@@ -101,8 +101,11 @@ static int check_mass(const tribo_system *sys, const struct method *m)
 {
     const int able = m == &tribo_method_exact || m == &tribo_method_event || m == &tribo_method_moreau_fixed || m == &automatic;
     char who[40];
+    if (able || !sys->massless.count) {
+        return TRIBO_OK;
+    }
     snprintf(who, sizeof who, "method %s", m->name);
-    return able ? TRIBO_OK : tribo_system_check_mass(sys, who);
+    return tribo_system_check_mass(sys, who);
 }
 
 /* Elastic contacts hold up to the limit by which they slide; and static limits may be set at any time. */

@@ -1,4 +1,5 @@
 #include "events.h"
+#include "../common/layout.h"
 #include "../common/real.h"
 #include "../common/twofold.h"
 
@@ -29,6 +30,15 @@ static double most_credit(const struct events *e)
 /* Slips from -1 to 3. */
 #define SLIPS 5
 
+static void lay_out_events(struct events *e, struct layout *l, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    e->next = tribo_layout_array(l, tribo_system_dimension(sys), sizeof *e->next);
+    e->lasted = tribo_layout_array(l, SLIPS * c, sizeof *e->lasted);
+    e->search.guard = tribo_layout_array(l, 3 * c, sizeof *e->search.guard);
+    e->search.watched = tribo_layout_array(l, 3 * c, sizeof *e->search.watched);
+}
+
 int tribo_events_create(struct events *e, tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
@@ -36,14 +46,15 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
     if (status) {
         return status;
     }
-    e->next = malloc(tribo_system_dimension(sys) * sizeof *e->next);
-    e->lasted = calloc(SLIPS * sys->ncontact + 1, sizeof *e->lasted);
-    e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
-    e->search.watched = malloc((3 * sys->ncontact + 1) * sizeof *e->search.watched);
-    if (!e->next || !e->lasted || !e->search.guard || !e->search.watched) {
+    struct layout l = {0};
+    lay_out_events(e, &l, sys);
+    const int done = tribo_layout_create(&l);
+    lay_out_events(e, &l, sys);
+    if (!done) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
                                  plural(sys->ncontact));
     }
+    memset(e->lasted, 0, SLIPS * sys->ncontact * sizeof *e->lasted);
     e->stick_slip.abstol = drv->abstol;
     e->stick_slip.reltol = drv->reltol;
     drv->excess = drv->backslip = 0.0;
@@ -55,9 +66,6 @@ void tribo_events_free(struct events *e)
     tribo_planar_slip_free(e->stick_slip.plane);
     tribo_stick_slip_free(&e->stick_slip);
     free(e->next);
-    free(e->lasted);
-    free(e->search.guard);
-    free(e->search.watched);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- guards */

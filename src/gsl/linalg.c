@@ -1,4 +1,5 @@
 #include "linalg.h"
+#include "../common/layout.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -118,21 +119,47 @@ void tribo_even_out(size_t n, double *a)
 
 void tribo_cholesky_free(struct cholesky *c)
 {
-    free(c->factor);
-    free(c->order);
     free(c->root);
     tribo_sparse_factor_free(c->sparse);
     memset(c, 0, sizeof *c);
 }
 
+static void lay_out_cholesky(struct cholesky *c, struct layout *l, int diagonal)
+{
+    c->root = tribo_layout_array(l, c->n, sizeof *c->root);
+    c->order = tribo_layout_array(l, c->n, sizeof *c->order);
+    c->factor = diagonal ? NULL : tribo_layout_array(l, c->n * c->n, sizeof *c->factor);
+}
+
+/* 0 if out of memory: then c has none. */
+static int create_cholesky(struct cholesky *c, size_t n, int diagonal)
+{
+    struct layout l = {0};
+    *c = (struct cholesky){.n = n};
+    lay_out_cholesky(c, &l, diagonal);
+    if (!tribo_layout_create(&l)) {
+        *c = (struct cholesky){0};
+        return 0;
+    }
+    lay_out_cholesky(c, &l, diagonal);
+    return 1;
+}
+
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
 {
-    int done = 1;
-    c->n = from->n;
-    c->factor = tribo_copy_of(from->factor, from->n * from->n, sizeof *c->factor, &done);
-    c->order = tribo_copy_of(from->order, from->n, sizeof *c->order, &done);
-    c->root = tribo_copy_of(from->root, from->n, sizeof *c->root, &done);
-    return done & tribo_sparse_factor_copy(&c->sparse, from->sparse);
+    if (!from->root) {
+        *c = (struct cholesky){.n = from->n};
+        return tribo_sparse_factor_copy(&c->sparse, from->sparse);
+    }
+    if (!create_cholesky(c, from->n, !from->factor)) {
+        return 0;
+    }
+    memcpy(c->root, from->root, from->n * sizeof *c->root);
+    memcpy(c->order, from->order, from->n * sizeof *c->order);
+    if (from->factor) {
+        memcpy(c->factor, from->factor, from->n * from->n * sizeof *c->factor);
+    }
+    return 1;
 }
 
 /* As tribo_cholesky_create; spent as tribo_sparse_factor_create has it. */
@@ -148,11 +175,7 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     if (!diagonal && c->n > DENSE_MOST) {
         return TRIBO_ERR_SIZE;
     }
-    c->root = malloc(c->n * sizeof *c->root);
-    c->order = malloc(c->n * sizeof *c->order);
-    c->factor = diagonal ? NULL : tribo_matrix_to_dense(a);
-    if (!c->root || !c->order || (!diagonal && !c->factor)) {
-        tribo_cholesky_free(c);
+    if (!create_cholesky(c, a->rows, diagonal)) {
         return TRIBO_ERR_MEMORY;
     }
     if (diagonal) {
@@ -160,6 +183,7 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
             c->order[i] = i;
         }
     } else {
+        tribo_matrix_spread(a, c->factor);
         gsl_matrix_view m = gsl_matrix_view_array(c->factor, c->n, c->n);
         gsl_permutation p = {c->n, c->order};
         gsl_linalg_pcholesky_decomp(&m.matrix, &p);
@@ -307,9 +331,33 @@ void tribo_lu_solve(const double *lu, size_t n, const size_t *pivot, double *x, 
     }
 }
 
+/* By the rotation that leaves nothing off the diagonal (Golub and Van Loan, Matrix Computations, 8.5.2), which knows a small
+ * eigenvalue of a graded matrix to rounding of itself. */
+static void rotate_two(const double *a, double *values, double *vectors)
+{
+    const double gap = 0.5 * a[3] - 0.5 * a[0], shared = fabs(a[1]), cot = shared > 0.0 ? quotient(fabs(gap), shared) : 0.0;
+    const double size = shared > 0.0 ? 1.0 / (cot + hypot(1.0, cot)) : 0.0, t = (gap >= 0.0) == (a[1] >= 0.0) ? size : -size;
+    const double c = 1.0 / hypot(1.0, t);
+    const double first = a[0] - t * a[1], second = a[3] + t * a[1];
+    const size_t low = first <= second ? 0 : 1, high = 1 - low;
+    values[low] = first;
+    values[high] = second;
+    vectors[low] = vectors[2 + high] = c;
+    vectors[high] = t * c;
+    vectors[2 + low] = -t * c;
+}
+
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
 {
-    if (n == 0) {
+    if (n == 2) {
+        rotate_two(a, values, vectors);
+        return 1;
+    }
+    if (n == 1) {
+        values[0] = a[0];
+        vectors[0] = 1.0;
+    }
+    if (n <= 1) {
         return 1;
     }
     /* gsl_eigen_symmv_alloc would abort if there were no memory */

@@ -43,7 +43,7 @@ struct cholesky {
     size_t n; /* 0: the identity */
     double *factor;
     size_t *order;
-    double *root; /* [n] D^1/2 */
+    double *root; /* [n] D^1/2; has the memory of all three */
     struct sparse_factor *sparse;
 };
 

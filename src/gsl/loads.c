@@ -1,5 +1,6 @@
 /* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
 #include "system.h"
+#include "../common/layout.h"
 #include "../common/real.h"
 
 #include <float.h>
@@ -10,8 +11,25 @@
 static void free_harmonic(struct harmonic *h)
 {
     free(h->index);
-    free(h->cosine);
-    free(h->sine);
+}
+
+static void lay_out_harmonic(struct harmonic *h, struct layout *l, size_t n)
+{
+    h->index = tribo_layout_array(l, n, sizeof *h->index);
+    h->cosine = tribo_layout_array(l, n, sizeof *h->cosine);
+    h->sine = tribo_layout_array(l, n, sizeof *h->sine);
+}
+
+/* Room for so many entries; 0 if out of memory: then there is none. */
+static int create_harmonic(struct harmonic *h, size_t n)
+{
+    struct layout l = {0};
+    lay_out_harmonic(h, &l, n);
+    const int done = tribo_layout_create(&l);
+    if (done) {
+        lay_out_harmonic(h, &l, n);
+    }
+    return done;
 }
 
 static void free_table(struct table *t)
@@ -48,13 +66,15 @@ static int create_table(struct table *t, size_t knots, size_t columns, const dou
 
 static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
 {
-    int done = 1;
     *to = *from;
     to->time = NAN;
-    to->index = tribo_copy_of(from->index, from->count, sizeof *to->index, &done);
-    to->cosine = tribo_copy_of(from->cosine, from->count, sizeof *to->cosine, &done);
-    to->sine = tribo_copy_of(from->sine, from->count, sizeof *to->sine, &done);
-    return done;
+    if (!create_harmonic(to, from->count)) {
+        return 0;
+    }
+    memcpy(to->index, from->index, from->count * sizeof *to->index);
+    memcpy(to->cosine, from->cosine, from->count * sizeof *to->cosine);
+    memcpy(to->sine, from->sine, from->count * sizeof *to->sine);
+    return 1;
 }
 
 /* A copy with its columns, and its pattern [ndof], if there is one. */
@@ -303,10 +323,7 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 /* Keeps only entries in which cosine or sine is not zero, but all those of limits, which are looked up contact by contact. */
 static int compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
 {
-    h->index = malloc((n + 1) * sizeof *h->index);
-    h->cosine = malloc((n + 1) * sizeof *h->cosine);
-    h->sine = malloc((n + 1) * sizeof *h->sine);
-    if (!h->index || !h->cosine || !h->sine) {
+    if (!create_harmonic(h, n)) {
         return 0;
     }
     for (size_t i = 0; i < n; i++) {

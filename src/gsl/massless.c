@@ -55,13 +55,19 @@ static int row_is_empty(const struct matrix *a, size_t i)
     return 1;
 }
 
+/* Who has no mass, if there is anybody. */
 static int find_massless(const struct model *m, struct massless *w)
 {
-    w->is = calloc(m->ndof, 1);
+    for (size_t d = 0; d < m->ndof; d++) {
+        w->count += (size_t)row_is_empty(&m->mass, d);
+    }
+    if (w->count == 0) {
+        return 1;
+    }
+    w->is = malloc(m->ndof);
     w->compliance = calloc(m->ncontact + 1, sizeof *w->compliance);
     for (size_t d = 0; w->is && d < m->ndof; d++) {
         w->is[d] = (unsigned char)row_is_empty(&m->mass, d);
-        w->count += w->is[d];
     }
     return w->is && w->compliance;
 }

@@ -1,4 +1,5 @@
 #include "matrix.h"
+#include "../common/layout.h"
 #include "../common/real.h"
 #include "../common/simd.h"
 
@@ -11,28 +12,34 @@
 
 void tribo_matrix_free(struct matrix *a)
 {
-    free(a->first);
-    free(a->col);
-    free(a->val);
-    free(a->offset);
-    free(a->block);
-    free(a->fast);
-    memset(a, 0, sizeof *a);
+    if (a->first) {
+        free(a->first);
+        free(a->offset);
+        free(a->block);
+        free(a->fast);
+    }
+    *a = (struct matrix){0};
+}
+
+static void lay_out_matrix(struct matrix *a, struct layout *l, size_t entries)
+{
+    a->first = tribo_layout_array(l, a->rows + 2, sizeof *a->first);
+    a->col = tribo_layout_array(l, entries + 1, sizeof *a->col);
+    a->val = tribo_layout_array(l, entries + 1, sizeof *a->val);
 }
 
 static int create(struct matrix *a, size_t rows, size_t cols, size_t entries)
 {
-    memset(a, 0, sizeof *a);
-    a->rows = rows;
-    a->cols = cols;
-    a->first = calloc(rows + 2, sizeof *a->first);
-    a->col = malloc((entries + 1) * sizeof *a->col);
-    a->val = malloc((entries + 1) * sizeof *a->val);
-    if (a->first && a->col && a->val) {
-        return 1;
+    struct layout l = {0};
+    *a = (struct matrix){.rows = rows, .cols = cols};
+    lay_out_matrix(a, &l, entries);
+    if (!tribo_layout_create(&l)) {
+        *a = (struct matrix){0};
+        return 0;
     }
-    tribo_matrix_free(a);
-    return 0;
+    lay_out_matrix(a, &l, entries);
+    memset(a->first, 0, (rows + 2) * sizeof *a->first);
+    return 1;
 }
 
 /* Where the diagonal (j - i) of entry (i, j) is counted. */
@@ -79,6 +86,9 @@ static void take_diagonals(struct matrix *a)
 static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *place)
 {
     a->diagonals = diagonals;
+    if (a->rows <= MATRIX_FEW) {
+        return 1;
+    }
     a->offset = malloc(diagonals * sizeof *a->offset);
     if (!a->offset) {
         return 0;
@@ -87,9 +97,6 @@ static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *pl
         if (place[d]) {
             a->offset[place[d] - 1] = (ptrdiff_t)d - (ptrdiff_t)a->rows;
         }
-    }
-    if (a->rows <= MATRIX_FEW) {
-        return 1;
     }
     a->block = malloc(blocks_of(a) * sizeof *a->block);
     a->fast = malloc((blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
@@ -103,9 +110,10 @@ static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *pl
 /* Fills `fast` if that pays: with diagonals if half of their entries are not zero, with all entries if a third of them is not. */
 static int speed_up(struct matrix *a)
 {
-    const size_t entries = a->first[a->rows];
-    size_t *place = calloc(a->rows + a->cols + 1, sizeof *place);
-    if (!place) {
+    enum { SHORT = 5 * MATRIX_FEW + 1 };
+    const size_t entries = a->first[a->rows], count = a->rows + a->cols + 1;
+    size_t few[SHORT] = {0}, *more = count > SHORT ? calloc(count, sizeof *more) : NULL, *place = more ? more : few;
+    if (count > SHORT && !more) {
         tribo_matrix_free(a);
         return 0;
     }
@@ -115,17 +123,17 @@ static int speed_up(struct matrix *a)
         }
     }
     size_t diagonals = 0;
-    for (size_t d = 0; d < a->rows + a->cols + 1; d++) {
+    for (size_t d = 0; d < count; d++) {
         place[d] = place[d] ? ++diagonals : 0;
     }
     int done = 1;
     if (entries && diagonals * a->rows <= 2 * entries && diagonals <= 16) {
         done = create_diagonals(a, diagonals, place);
-    } else if (entries >= a->rows * a->cols / 3) {
+    } else if (!tribo_matrix_is_small(a) && entries >= a->rows * a->cols / 3) {
         a->fast = tribo_matrix_to_dense(a);
         done = a->fast != NULL;
     }
-    free(place);
+    free(more);
     if (!done) {
         tribo_matrix_free(a);
     }
@@ -138,9 +146,9 @@ static int finish(struct matrix *a)
     if (!speed_up(a)) {
         return 0;
     }
-    a->identity = a->rows == a->cols && a->diagonals == 1 && a->offset[0] == 0;
+    a->identity = a->rows == a->cols && a->diagonals == 1;
     for (size_t i = 0; a->identity && i < a->rows; i++) {
-        a->identity = a->first[i + 1] == i + 1 && a->val[i] == 1.0;
+        a->identity = a->first[i + 1] == i + 1 && a->col[i] == i && a->val[i] == 1.0;
     }
     return 1;
 }
@@ -244,10 +252,10 @@ static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t
 int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
                                const double *v)
 {
-    size_t *by_col = malloc((n + 1) * sizeof *by_col), *by_row = malloc((n + 1) * sizeof *by_row);
-    size_t *start = malloc(((rows > cols ? rows : cols) + 1) * sizeof *start);
-    const int done = by_col && by_row && start && create(a, rows, cols, n);
+    size_t *by_col = malloc((2 * n + (rows > cols ? rows : cols) + 1) * sizeof *by_col);
+    const int done = by_col && create(a, rows, cols, n);
     if (done) {
+        size_t *by_row = by_col + n, *start = by_row + n;
         counting_sort(cols, n, j, NULL, by_col, start);
         counting_sort(rows, n, i, by_col, by_row, start);
         for (size_t k = 0; k < n; k++) {
@@ -262,24 +270,29 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
         memset(a, 0, sizeof *a);
     }
     free(by_col);
-    free(by_row);
-    free(start);
     return done && finish(a);
 }
 
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
 {
-    size_t *row = malloc((from->first[from->rows] + 1) * sizeof *row);
-    for (size_t i = 0; row && i < from->rows; i++) {
+    const size_t entries = from->first[from->rows];
+    if (!create(a, from->cols, from->rows, entries)) {
+        return 0;
+    }
+    size_t *next = a->first + 1; /* where the next entry of a row goes: at last, where the next row begins */
+    for (size_t k = 0; k < entries; k++) {
+        next[from->col[k] + 1]++;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        next[i + 1] += next[i];
+    }
+    for (size_t i = 0; i < from->rows; i++) {
         for (size_t k = from->first[i]; k < from->first[i + 1]; k++) {
-            row[k] = i;
+            a->col[next[from->col[k]]] = i;
+            a->val[next[from->col[k]]++] = from->val[k];
         }
     }
-    memset(a, 0, sizeof *a);
-    const int done =
-        row && tribo_matrix_from_triplets(a, from->cols, from->rows, from->first[from->rows], from->col, row, from->val);
-    free(row);
-    return done;
+    return finish(a);
 }
 
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
@@ -313,13 +326,21 @@ int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
     return done;
 }
 
-double *tribo_matrix_to_dense(const struct matrix *a)
+void tribo_matrix_spread(const struct matrix *a, double *dense)
 {
-    double *dense = calloc(a->rows * a->cols + 1, sizeof *dense);
-    for (size_t i = 0; dense && i < a->rows; i++) {
+    memset(dense, 0, a->rows * a->cols * sizeof *dense);
+    for (size_t i = 0; i < a->rows; i++) {
         for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
             dense[i * a->cols + a->col[k]] = a->val[k];
         }
+    }
+}
+
+double *tribo_matrix_to_dense(const struct matrix *a)
+{
+    double *dense = malloc((a->rows * a->cols + 1) * sizeof *dense);
+    if (dense) {
+        tribo_matrix_spread(a, dense);
     }
     return dense;
 }
@@ -335,11 +356,16 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
     return dense;
 }
 
-/* An array of count entries in no more memory than these take, if that is to be had. */
-static void *shrink(void *x, size_t count, size_t size)
+/* Gives back the memory of all but the first so many entries, if it can be had in a smaller piece. */
+static void shrink(struct matrix *a, size_t entries)
 {
-    void *less = realloc(x, (count + 1) * size);
-    return less ? less : x;
+    const double *val = a->val;
+    struct layout l = {(char *)a->first, 0};
+    lay_out_matrix(a, &l, entries);
+    memmove(a->val, val, entries * sizeof *val);
+    char *less = realloc(l.memory, l.used + 1);
+    l = (struct layout){less ? less : l.memory, 0};
+    lay_out_matrix(a, &l, entries);
 }
 
 void tribo_matrix_keep_lower(struct matrix *a)
@@ -354,8 +380,7 @@ void tribo_matrix_keep_lower(struct matrix *a)
         }
         a->first[i + 1] = count;
     }
-    a->col = shrink(a->col, count, sizeof *a->col);
-    a->val = shrink(a->val, count, sizeof *a->val);
+    shrink(a, count);
     free(a->offset);
     free(a->block);
     free(a->fast);

@@ -16,13 +16,13 @@ enum { MATRIX_FEW = 4 };
 
 struct matrix {
     size_t rows, cols;
-    size_t *first, *col; /* row i: entries first[i] to first[i+1] - 1, columns ascending */
+    size_t *first, *col; /* row i: entries first[i] to first[i+1] - 1, columns ascending; first has the memory of all three */
     double *val;
-    size_t diagonals; /* number of full ones, which `fast` has if rows are not few; 0 if it has none, or all entries */
-    ptrdiff_t *offset;
-    size_t *block; /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
-    double *fast;  /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */
-    int identity;  /* multiplying with it changes nothing */
+    size_t diagonals;  /* number of full ones; 0 if `fast` has none, or all entries */
+    ptrdiff_t *offset; /* of these, and all that follows: NULL if rows are few */
+    size_t *block;     /* of diagonals: where in `fast` each block of rows stands; such as are equal stand in one place */
+    double *fast;      /* [blocks that differ][diagonals][MATRIX_BLOCK] or [rows][cols] or NULL */
+    int identity;      /* multiplying with it changes nothing */
 };
 
 /* All return 1, or 0 if out of memory. The results are zeroed on failure; tribo_matrix_free takes those too. */
@@ -94,7 +94,14 @@ double tribo_matrix_noise(const struct matrix *a, const double *root, const doub
  * memory. */
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to);
 
-/* The entries [rows][cols], or NULL if out of memory; the caller frees them. */
+/* Whether products go entry by entry. */
+static inline int tribo_matrix_is_small(const struct matrix *a)
+{
+    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
+}
+
+/* dense [rows][cols] = the entries; the same in memory that the caller frees, or NULL if there is none. */
+void tribo_matrix_spread(const struct matrix *a, double *dense);
 double *tribo_matrix_to_dense(const struct matrix *a);
 
 /* The same of the transpose: [cols][rows]. */

@@ -158,11 +158,6 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
     }
 }
 
-static int is_small(const struct matrix *a)
-{
-    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
-}
-
 /* y += factor A x of a small matrix. */
 static void add_few_rows(const struct matrix *a, double factor, const double *x, double *y)
 {
@@ -177,7 +172,7 @@ static void add_few_rows(const struct matrix *a, double factor, const double *x,
 
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
-    if (is_small(a)) {
+    if (tribo_matrix_is_small(a)) {
         add_few_rows(a, factor, x, y);
         return;
     }
@@ -189,7 +184,7 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
 {
-    const int small = is_small(a);
+    const int small = tribo_matrix_is_small(a);
     for (size_t i = 0; a->identity && i < a->rows; i++) {
         y[i] = x[i];
     }
@@ -314,8 +309,9 @@ static void add_row(const struct matrix *a, const struct matrix *z, size_t i, do
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to)
 {
     const size_t n = z->rows ? z->rows : a->rows, m = z->rows ? z->cols : n;
-    double *row = malloc((m + 1) * sizeof *row);
-    if (!row) {
+    enum { SHORT = 16 };
+    double few[SHORT], *more = m > SHORT ? malloc(m * sizeof *more) : NULL, *row = more ? more : few;
+    if (m > SHORT && !more) {
         return 0;
     }
     memset(to, 0, m * m * sizeof *to);
@@ -335,6 +331,6 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
             to[i * m + j] = to[j * m + i] = 0.5 * (to[i * m + j] + to[j * m + i]);
         }
     }
-    free(row);
+    free(more);
     return 1;
 }

@@ -64,7 +64,7 @@ struct modal {
     int swings;             /* no exponent decays or grows */
     double fastest;         /* largest |lambda| */
     double quickest, decay; /* the largest of these and the frequencies of harmonics; the largest decay rate */
-    void *memory;           /* all arrays */
+    void *memory;           /* of itself and all arrays */
     size_t bytes;
 };
 

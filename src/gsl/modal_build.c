@@ -108,12 +108,12 @@ static int find_modes(struct modal_build *b)
 static int multiply_modes(struct modal_build *b)
 {
     const size_t n = b->n, m = b->h->modes;
-    b->psi = tribo_modal_scratch(b, m * n);
-    b->k_phi = tribo_modal_scratch(b, m * n);
-    b->c_phi = b->damping ? tribo_modal_scratch(b, m * n) : NULL;
-    if (!b->psi || !b->k_phi || (b->damping && !b->c_phi)) {
+    b->psi = tribo_modal_scratch(b, (b->damping ? 3 : 2) * m * n);
+    if (!b->psi) {
         return 0;
     }
+    b->k_phi = b->psi + m * n;
+    b->c_phi = b->damping ? b->k_phi + m * n : NULL;
     for (size_t k = 0; k < m; k++) {
         const double *phi = b->phi + k * n;
         tribo_system_add_mass(b->sys, 1.0, phi, b->psi + k * n);
@@ -148,12 +148,9 @@ static int find_damping(struct modal_build *b)
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes;
     h->damping = tribo_modal_keep(b, m);
-    double *c = b->damping ? tribo_modal_scratch(b, m * m) : NULL, *root = tribo_modal_scratch(b, n);
-    if (!h->damping || !root || (b->damping && !c)) {
-        return 0;
-    }
-    if (!b->damping) {
-        return 1;
+    double *c = b->damping ? tribo_modal_scratch(b, m * m + n) : NULL, *root = c ? c + m * m : NULL;
+    if (!h->damping || !c) {
+        return h->damping && !b->damping;
     }
     tribo_matrix_roots(b->damping, root);
     double most = 0.0;
@@ -207,12 +204,9 @@ static int compress(struct modal_build *b)
             h->dof[h->moving++] = d;
         }
     }
-    h->phi = tribo_modal_keep(b, m * h->moving);
-    h->psi = tribo_modal_keep(b, m * h->moving);
-    h->yr = tribo_modal_keep(b, s * h->moving);
-    h->yi = tribo_modal_keep(b, s * h->moving);
-    h->y0 = tribo_modal_keep(b, h->moving);
-    if (!h->dof || !h->phi || !h->psi || !h->yr || !h->yi || !h->y0) {
+    double **const kept[] = {&h->phi, &h->psi, &h->yr, &h->yi, &h->y0};
+    const size_t count[] = {m * h->moving, m * h->moving, s * h->moving, s * h->moving, h->moving};
+    if (!h->dof || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
         return 0;
     }
     for (size_t i = 0; i < h->moving; i++) {

@@ -47,7 +47,7 @@ static int build(struct modal_build *b, const unsigned char *holds)
 
 int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds)
 {
-    struct modal_build b = {.whole = whole, .h = calloc(1, sizeof *b.h)};
+    struct modal_build b = {.whole = whole, .h = tribo_modal_alloc()};
     const int status = b.h && find_key(&b, slip, holds) ? build(&b, holds) : TRIBO_ERR_MEMORY;
     if (status) {
         tribo_modal_free(b.h);

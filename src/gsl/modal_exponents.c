@@ -23,14 +23,10 @@ static int exponents_decoupled(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes;
-    h->lr = tribo_modal_keep(b, 2 * m);
-    h->li = tribo_modal_keep(b, 2 * m);
-    h->ar = tribo_modal_keep(b, 2 * m);
-    h->ai = tribo_modal_keep(b, 2 * m);
-    h->br = tribo_modal_keep(b, 2 * m);
-    h->bi = tribo_modal_keep(b, 2 * m);
+    double **const kept[] = {&h->lr, &h->li, &h->ar, &h->ai, &h->br, &h->bi};
+    const size_t count[] = {2 * m, 2 * m, 2 * m, 2 * m, 2 * m, 2 * m};
     h->owner = tribo_modal_keep_indices(b, 2 * m);
-    if (!h->lr || !h->li || !h->ar || !h->ai || !h->br || !h->bi || !h->owner) {
+    if (!tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count) || !h->owner) {
         return TRIBO_ERR_MEMORY;
     }
     size_t p = 0;
@@ -117,14 +113,9 @@ static int keep_exponents(struct modal_build *b, const double *s, const double *
         h->exponents += !(im[i] < 0.0);
     }
     const size_t e = h->exponents;
-    double **const by_exponent[] = {&h->lr, &h->li}, **const by_both[] = {&h->ar, &h->ai, &h->br, &h->bi, &h->rr, &h->ri};
-    int done = 1;
-    for (size_t k = 0; k < 2; k++) {
-        done &= (*by_exponent[k] = tribo_modal_keep(b, e)) != NULL;
-    }
-    for (size_t k = 0; k < 6; k++) {
-        done &= (*by_both[k] = tribo_modal_keep(b, e * m)) != NULL;
-    }
+    double **const kept[] = {&h->lr, &h->li, &h->ar, &h->ai, &h->br, &h->bi, &h->rr, &h->ri};
+    const size_t count[] = {e, e, e * m, e * m, e * m, e * m, e * m, e * m};
+    const int done = tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count);
     for (size_t i = 0, p = 0; done && i < size; i++) {
         if (im[i] < 0.0) {
             continue;

@@ -32,7 +32,7 @@ int tribo_modal_remember(struct modal_known *known, size_t count, const size_t *
     memcpy(p->key, key, count * sizeof *key);
     p->next = known->piece[key[1]];
     known->piece[key[1]] = p;
-    known->bytes += bytes + sizeof *modal + modal->bytes;
+    known->bytes += bytes + modal->bytes;
     return TRIBO_OK;
 }
 

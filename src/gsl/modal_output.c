@@ -44,7 +44,7 @@ int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t co
 
 void tribo_modal_finish_output(const struct modal *h, struct output *w)
 {
-    for (size_t p = 0; p < h->terms; p++) {
+    for (size_t p = 0; p < h->exponents + h->harmonics; p++) {
         w->size[p] = tribo_modal_magnitude(w->cr[p], w->ci[p]);
     }
 }
@@ -201,11 +201,13 @@ static int find_holding(struct modal_build *b, struct holding *f)
     const size_t n = b->n, m = h->modes, s = b->rests;
     double **const all[] = {&f->by_q, &f->by_u, &f->wave_r, &f->wave_i, &f->ramp, &f->force[0], &f->force[1], &f->load};
     const size_t count[] = {m * s, m * s, h->harmonics * s, h->harmonics * s, s, n, n, n};
+    double *work = tribo_modal_scratch(b, (2 * (m + h->harmonics) + 1) * s + 3 * n);
+    if (!work) {
+        return 0;
+    }
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
-        *all[k] = tribo_modal_scratch(b, count[k]);
-        if (!*all[k]) {
-            return 0;
-        }
+        *all[k] = work;
+        work += count[k];
     }
     for (size_t k = 0; k < m; k++) {
         hold_mode(b, f, k);
@@ -215,9 +217,11 @@ static int find_holding(struct modal_build *b, struct holding *f)
             hold_harmonic(b, f, w);
         }
     }
-    memset(f->load, 0, n * sizeof *f->load);
-    tribo_matrix_multiply_add(b->stiffness, 1.0, b->y0, f->load);
-    tribo_modal_react(b, f->load, f->ramp);
+    if (b->steady) {
+        memset(f->load, 0, n * sizeof *f->load);
+        tribo_matrix_multiply_add(b->stiffness, 1.0, b->y0, f->load);
+        tribo_modal_react(b, f->load, f->ramp);
+    }
     return 1;
 }
 
@@ -240,7 +244,7 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
 {
     struct modal *h = b->h;
     struct holding f;
-    if (!find_holding(b, &f)) {
+    if (b->rests > 0 && !find_holding(b, &f)) {
         return 0;
     }
     for (size_t p = 0; p < b->rests; p++) {

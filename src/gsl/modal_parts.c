@@ -1,85 +1,116 @@
 #include "modal_parts.h"
+#include "../common/layout.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-/* Arrays are many and short: blocks hold several, the first one this many bytes, the next ones twice as many as those before. An
- * emptied list keeps no block of more than LASTING. */
-#define BLOCK 2048
+/* Arrays are many and short: blocks hold several, the first one this many bytes, for which allocators need not search, the next
+ * ones twice as many as those before. An emptied list keeps no block of more than LASTING. */
+#define BLOCK 992
 #define LASTING ((size_t)1 << 20)
 
-/* With room for arrays behind it, as it is aligned for. */
-union block {
-    struct {
-        union block *next;
-        size_t used, room;
-    } has;
-    double number;
+struct block {
+    struct block *next;
+    size_t used, room; /* units */
+    union layout_unit unit[];
 };
 
-static union block *add_block(void **list, size_t *bytes, size_t units)
+static struct block *add_block(void **list, size_t *bytes, size_t units)
 {
-    const union block *last = *list;
-    const size_t least = last ? 2 * last->has.room : BLOCK / sizeof(union block), room = units > least ? units : least;
-    union block *block = malloc((room + 1) * sizeof *block);
+    struct block *last = *list;
+    const size_t least = last ? 2 * last->room : BLOCK / sizeof *last->unit, room = units > least ? units : least;
+    const size_t size = sizeof *last + room * sizeof *last->unit;
+    struct block *block = malloc(size);
     if (block) {
-        block->has.next = *list;
-        block->has.used = 0;
-        block->has.room = room;
+        block->next = last;
+        block->used = 0;
+        block->room = room;
         *list = block;
-        *bytes += (room + 1) * sizeof *block;
+        *bytes += size;
     }
     return block;
 }
 
 void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size)
 {
-    const size_t units = (count * size + sizeof(union block)) / sizeof(union block);
-    union block *block = *list;
-    if (!block || block->has.room - block->has.used < units) {
+    enum { FEW = 4 };
+    struct block *block = *list;
+    const size_t units = (count * size + sizeof *block->unit - 1) / sizeof *block->unit;
+    if (!block || block->room - block->used < units) {
         block = add_block(list, bytes, units);
         if (!block) {
             return NULL;
         }
     }
-    void *array = block + 1 + block->has.used;
-    block->has.used += units;
-    return memset(array, 0, count * size);
+    union layout_unit *array = block->unit + block->used;
+    block->used += units;
+    if (units > FEW) {
+        return memset(array, 0, units * sizeof *array);
+    }
+    for (size_t k = 0; k < units; k++) {
+        array[k] = (union layout_unit){0};
+    }
+    return array;
 }
 
 void tribo_modal_give_back(void *list)
 {
-    for (union block *block = list; block;) {
-        union block *next = block->has.next;
+    for (struct block *block = list; block;) {
+        struct block *next = block->next;
         free(block);
         block = next;
     }
+}
+
+struct modal *tribo_modal_alloc(void)
+{
+    void *list = NULL;
+    size_t bytes = 0;
+    struct modal *h = tribo_modal_take(&list, &bytes, 1, sizeof *h);
+    if (h) {
+        h->memory = list;
+        h->bytes = bytes;
+    }
+    return h;
 }
 
 void tribo_modal_free(struct modal *h)
 {
     if (h) {
         tribo_modal_give_back(h->memory);
-        free(h);
     }
 }
 
 void tribo_modal_empty(void **list)
 {
-    union block *block = *list;
-    if (block && block->has.room > LASTING / sizeof *block) {
+    struct block *block = *list;
+    if (block && block->room > LASTING / sizeof *block->unit) {
         tribo_modal_give_back(block);
         *list = NULL;
     } else if (block) {
-        tribo_modal_give_back(block->has.next);
-        block->has.next = NULL;
-        block->has.used = 0;
+        tribo_modal_give_back(block->next);
+        block->next = NULL;
+        block->used = 0;
     }
 }
 
 double *tribo_modal_keep(struct modal_build *b, size_t count)
 {
     return tribo_modal_take(&b->h->memory, &b->h->bytes, count, sizeof(double));
+}
+
+int tribo_modal_keep_all(struct modal_build *b, size_t arrays, double **const *array, const size_t *count)
+{
+    size_t all = 0;
+    for (size_t k = 0; k < arrays; k++) {
+        all += count[k];
+    }
+    double *numbers = tribo_modal_keep(b, all);
+    for (size_t k = 0; numbers && k < arrays; k++) {
+        *array[k] = numbers;
+        numbers += count[k];
+    }
+    return numbers != NULL;
 }
 
 size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count)

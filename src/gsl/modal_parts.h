@@ -25,7 +25,8 @@ struct modal_build {
     struct cholesky slack_stiffness;   /* by this */
     double *phi, *psi, *k_phi, *c_phi; /* and M phi, K phi, C phi */
     double *yr, *yi;                   /* [given][ndof] */
-    double *y0;                        /* [ndof] velocities from belts of constant speed */
+    double *y0;                        /* [ndof] velocities from belts of constant speed, */
+    int steady;                        /* if there are any */
     int status;                        /* of a failure other than of memory */
 };
 
@@ -42,8 +43,13 @@ int tribo_modal_build(struct modal_build *b, const unsigned char *holds);
  * whole divides no more, if damping turns out to couple modes. Returns a status. */
 int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds);
 
-/* Zeroed memory that the structure keeps, or that is freed when it is built. NULL if there is none left. */
+/* A structure of zeros, or NULL if out of memory; tribo_modal_free takes both. */
+struct modal *tribo_modal_alloc(void);
+
+/* Zeroed memory that the structure keeps, or that is freed when it is built; tribo_modal_keep_all for several arrays of so many
+ * numbers. NULL, or 0, if there is none left. */
 double *tribo_modal_keep(struct modal_build *b, size_t count);
+int tribo_modal_keep_all(struct modal_build *b, size_t arrays, double **const *array, const size_t *count);
 size_t *tribo_modal_keep_indices(struct modal_build *b, size_t count);
 unsigned char *tribo_modal_keep_bytes(struct modal_build *b, size_t count);
 struct output *tribo_modal_keep_outputs(struct modal_build *b, size_t count);

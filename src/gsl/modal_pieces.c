@@ -22,7 +22,7 @@ static size_t write_key(const struct modal_build *b, size_t part, const unsigned
 /* b->h = the part that is listed, which has no key. Returns a status, and leaves b->h NULL on failure. */
 static int build(struct modal_build *b, const unsigned char *holds)
 {
-    b->h = calloc(1, sizeof *b->h);
+    b->h = tribo_modal_alloc();
     const int status = b->h ? tribo_modal_build(b, holds) : TRIBO_ERR_MEMORY;
     if (status) {
         tribo_modal_free(b->h);
@@ -69,11 +69,7 @@ static int reserve(struct modal_build *b)
                              &h->br,  &h->bi,  &h->gr,     &h->gi,      &h->xr,   &h->xi,       &h->yr, &h->yi, &h->y0};
     const size_t count[] = {m * h->moving, m * h->moving, m,        m, m, m, e, e, e, e, e, e, s * m, s * m, s * m, s * m,
                             s * h->moving, s * h->moving, h->moving};
-    int done = 1;
-    for (size_t k = 0; k < sizeof kept / sizeof *kept; k++) {
-        *kept[k] = tribo_modal_keep(b, count[k]);
-        done &= *kept[k] != NULL;
-    }
+    const int done = tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count);
     h->dof = tribo_modal_keep_indices(b, h->moving);
     h->owner = tribo_modal_keep_indices(b, e);
     h->drifts = tribo_modal_keep_bytes(b, m);

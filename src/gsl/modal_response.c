@@ -24,17 +24,21 @@ static int belt_velocities(struct modal_build *b, const double *x, double *y)
     return 1;
 }
 
-/* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. */
-static void base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
+/* One part (0 cosine, 1 minus sine: harmonics are Re((c - i s) e^{i Omega t})) of a harmonic of b_I. Returns whether it moves
+ * anything. */
+static int base_part(const struct modal_build *b, const struct harmonic *w, int part, double *x)
 {
+    int moves = 0;
     for (size_t p = 0; p < b->rests; p++) {
         x[p] = 0.0;
         for (size_t i = 0; i < w->count; i++) {
             if (w->index[i] == b->rest[p]) {
                 x[p] = part ? -w->sine[i] : w->cosine[i];
+                moves |= x[p] != 0.0;
             }
         }
     }
+    return moves;
 }
 
 int tribo_modal_list_forcing(struct modal_build *b)
@@ -107,19 +111,24 @@ static int force_by_base(struct modal_build *b, size_t w, double *x, double *pul
     const size_t n = b->n, m = h->modes;
     const struct harmonic *wave = &b->sys->harmonic[w];
     double *const g[] = {h->gr + w * m, h->gi + w * m}, *const y[] = {b->yr + w * n, b->yi + w * n};
+    int moves[2];
     for (int part = 0; part < 2; part++) {
-        base_part(b, wave, part, x);
-        if (!belt_velocities(b, x, y[part])) {
+        moves[part] = base_part(b, wave, part, x);
+        if (moves[part] && !belt_velocities(b, x, y[part])) {
             return 0;
         }
     }
     if (wave->omega == 0.0) {
         tribo_add(b->y0, 1.0, y[0], n);
+        b->steady |= moves[0];
         memset(y[0], 0, n * sizeof **y);
         memset(y[1], 0, n * sizeof **y);
         return 1;
     }
     for (int part = 0; part < 2; part++) {
+        if (!moves[part]) {
+            continue;
+        }
         resist(b, y[part], (part ? 1.0 : -1.0) / wave->omega, pull, drag);
         for (size_t k = 0; k < m; k++) {
             g[1 - part][k] += tribo_dot(b->phi + k * n, pull, n);
@@ -133,10 +142,12 @@ static int force_by_base(struct modal_build *b, size_t w, double *x, double *pul
 static void force_by_constants(struct modal_build *b, double *pull, double *drag)
 {
     struct modal *h = b->h;
-    resist(b, b->y0, 1.0, pull, drag);
+    if (b->steady) {
+        resist(b, b->y0, 1.0, pull, drag);
+    }
     for (size_t k = 0; k < h->modes; k++) {
-        h->ramp[k] = tribo_dot(b->phi + k * b->n, pull, b->n);
-        h->constant[k] = tribo_dot(b->phi + k * b->n, drag, b->n);
+        h->ramp[k] = b->steady ? tribo_dot(b->phi + k * b->n, pull, b->n) : 0.0;
+        h->constant[k] = b->steady ? tribo_dot(b->phi + k * b->n, drag, b->n) : 0.0;
         for (size_t w = 0; w < b->sys->harmonics; w++) {
             h->constant[k] += h->forcing[w].omega == 0.0 ? h->gr[w * h->modes + k] : 0.0;
         }
@@ -147,14 +158,16 @@ static int create_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, velocities = b->sys->harmonics * b->n;
-    h->gr = tribo_modal_keep(b, h->harmonics * m);
-    h->gi = tribo_modal_keep(b, h->harmonics * m);
-    h->ramp = tribo_modal_keep(b, m);
-    h->constant = tribo_modal_keep(b, m);
-    b->yr = tribo_modal_scratch(b, velocities);
-    b->yi = tribo_modal_scratch(b, velocities);
-    b->y0 = tribo_modal_scratch(b, b->n);
-    return h->gr && h->gi && h->ramp && h->constant && b->yr && b->yi && b->y0;
+    double **const kept[] = {&h->gr, &h->gi, &h->ramp, &h->constant};
+    const size_t count[] = {h->harmonics * m, h->harmonics * m, m, m};
+    double *y = tribo_modal_scratch(b, 2 * velocities + b->n);
+    if (!y || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
+        return 0;
+    }
+    b->yr = y;
+    b->yi = y + velocities;
+    b->y0 = y + 2 * velocities;
+    return 1;
 }
 
 /* Forcing of eta by each harmonic, and what the held contacts are moved by. */
@@ -163,8 +176,8 @@ int tribo_modal_forcing(struct modal_build *b)
     if (!tribo_modal_list_forcing(b) || !create_forcing(b)) {
         return 0;
     }
-    double *x = tribo_modal_scratch(b, b->rests), *pull = tribo_modal_scratch(b, b->n), *drag = tribo_modal_scratch(b, b->n);
-    int done = x && pull && drag;
+    double *pull = tribo_modal_scratch(b, 2 * b->n + b->rests), *drag = pull ? pull + b->n : NULL, *x = pull ? drag + b->n : NULL;
+    int done = pull != NULL;
     for (size_t w = 0; done && w < b->sys->harmonics; w++) {
         const enum drives drives = b->sys->harmonic[w].drives;
         if (drives == DRIVES_LOAD) {
@@ -234,12 +247,13 @@ int tribo_modal_response(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, count = h->harmonics, size = h->coupling ? 2 * m : 0;
-    h->xr = tribo_modal_keep(b, count * m);
-    h->xi = tribo_modal_keep(b, count * m);
-    h->resonant = tribo_modal_keep_bytes(b, count * m);
-    double *a = tribo_modal_scratch(b, size * size), *x = tribo_modal_scratch(b, size);
+    double *kept = tribo_modal_keep(b, 2 * count * m), *a = tribo_modal_scratch(b, size * size + size);
     size_t *pivot = tribo_modal_scratch_indices(b, size);
-    int done = h->xr && h->xi && h->resonant && a && x && pivot;
+    h->resonant = tribo_modal_keep_bytes(b, count * m);
+    int done = kept && a && pivot && h->resonant;
+    double *x = done ? a + size * size : NULL;
+    h->xr = kept;
+    h->xi = done ? kept + count * m : NULL;
     for (size_t w = 0; done && w < count; w++) {
         if (b->h->forcing[w].omega != 0.0 && h->coupling) {
             done = respond_together(b, w, a, x, pivot);

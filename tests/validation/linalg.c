@@ -1,4 +1,5 @@
 /* The library's own linear algebra: constraints, normal modes, general eigenvalues, at any ratio of sizes. */
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -329,6 +330,56 @@ TEST(overflowing_stiffness)
     tribo_matrix_free(&a);
 }
 
+/* ------------------------------------------------------------------------------------------------ small symmetric matrices */
+
+enum { GRADED, EQUAL, NEARLY_EQUAL, SINGULAR, ZERO, KINDS };
+
+/* a [2][2], without negative eigenvalues. */
+static void pair_of_kind(int kind, struct random *g, double *a)
+{
+    const double scale = pow(10.0, uniform(g, -12.0, 12.0)), share = uniform(g, -0.9, 0.9);
+    a[0] = kind == ZERO ? 0.0 : kind == GRADED ? pow(10.0, uniform(g, -12.0, 12.0)) : scale;
+    a[3] = kind == NEARLY_EQUAL ? a[0] * (1.0 + pow(10.0, uniform(g, -16.0, -8.0))) : kind == ZERO ? 0.0 : scale;
+    a[1] = a[2] = kind == GRADED         ? share * sqrt(a[0]) * sqrt(a[3])
+                  : kind == NEARLY_EQUAL ? a[0] * share * pow(10.0, uniform(g, -16.0, 0.0))
+                  : kind == SINGULAR     ? copysign(a[0], share)
+                                         : 0.0;
+}
+
+/* Eigenvalues of pairs are known to rounding of themselves, but for one that is zero; vectors are orthonormal to rounding. */
+TEST(pairs)
+{
+    struct random g = random_of(_i);
+    double a[4], spent[4], value[2], x[4];
+    const int kind = _i % KINDS;
+    pair_of_kind(kind, &g, a);
+    memcpy(spent, a, sizeof a);
+    require(tribo_symmetric_eigen(spent, 2, value, x), "out of memory");
+    const long double half = 0.5L * ((long double)a[0] - a[3]), middle = 0.5L * ((long double)a[0] + a[3]);
+    const double high = (double)(middle + hypotl(half, a[1]));
+    const double low = high > 0.0 ? (double)(((long double)a[0] * a[3] - (long double)a[1] * a[1]) / high) : 0.0;
+    require(value[0] <= value[1], "%g before %g", value[0], value[1]);
+    require(fabs(value[1] - high) <= 8.0 * DBL_EPSILON * high, "%.17g, not %.17g", value[1], high);
+    require(fabs(value[0] - low) <= 40.0 * DBL_EPSILON * (kind == SINGULAR ? high : low), "%.17g, not %.17g", value[0], low);
+    assert_close(x[0] * x[0] + x[2] * x[2], 1.0, 4.0 * DBL_EPSILON);
+    assert_close(x[1] * x[1] + x[3] * x[3], 1.0, 4.0 * DBL_EPSILON);
+    assert_close(x[0] * x[1] + x[2] * x[3], 0.0, 4.0 * DBL_EPSILON);
+    for (size_t k = 0; k < 2; k++) {
+        for (size_t i = 0; i < 2; i++) {
+            const double off = a[2 * i] * x[k] + a[2 * i + 1] * x[2 + k] - value[k] * x[2 * i + k];
+            require(fabs(off) <= 8.0 * DBL_EPSILON * high, "mode %zu: %g beside %g", k, off, high);
+        }
+    }
+}
+
+TEST(one_alone)
+{
+    double a = -3.5, value, x;
+    require(tribo_symmetric_eigen(&a, 1, &value, &x), "out of memory");
+    assert_exact(value, -3.5);
+    assert_exact(x, 1.0);
+}
+
 /* ------------------------------------------------------------------------------------------------- general eigenvalues */
 
 /* Largest |A x - lambda x| beside the largest entry of A. */
@@ -428,6 +479,6 @@ TEST(equations)
 }
 
 TEST_MAIN("linalg", {light_between, 31}, {light_follows, 1}, {piles, 20}, {clusters, 20}, {graded_rows, 45},
-          {forces_and_displacements, 20}, {nearly_dependent, 17}, {touches_nothing, 1}, {graded_stiffness, 20},
-          {negative_stiffness, 1}, {overflowing_stiffness, 1}, {random_eigenvalues, 120}, {circles, 20},
+          {forces_and_displacements, 20}, {nearly_dependent, 17}, {touches_nothing, 1}, {graded_stiffness, 20}, {pairs, 400},
+          {one_alone, 1}, {negative_stiffness, 1}, {overflowing_stiffness, 1}, {random_eigenvalues, 120}, {circles, 20},
           {eigenvalues_of_what_is_none, 1}, {equations, 10})

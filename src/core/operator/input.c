@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "../context.h"
 #include "../../common/csr.h"
@@ -13,7 +14,7 @@
 /* Entries this small beside the diagonal are rounding of an inverse. */
 #define NEGLIGIBLE 1e-17
 
-/* Makes a exactly symmetric, or says where it is not. diagonal [n] is workspace. */
+/* Makes a exactly symmetric, or says where it is not; and diagonal [n] its diagonal. */
 static int symmetrize(const tribo_context *ctx, const struct csr *a, double *diagonal)
 {
     for (size_t i = 0; i < a->n; i++) {
@@ -121,7 +122,7 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
     int status = diagonal ? symmetrize(ctx, a, diagonal) : out_of_memory(ctx);
     if (!status) {
-        status = tribo_operator_create(&op, &m, a, from, &flaw);
+        status = tribo_operator_create(&op, &m, a, diagonal, from, &flaw);
         if (status == TRIBO_ERR_UNSUPPORTED) {
             tribo_fail(ctx, status,
                        "inverse_mass: contact %zu touches bodies whose masses differ by %g, in a group of %zu coupled contact%s",
@@ -315,17 +316,28 @@ static int find_column(const tribo_context *ctx, const struct solver *m, size_t 
     return TRIBO_OK;
 }
 
+/* a, of which j rows are there, gets room for so many entries. */
+static int make_room(struct csr *a, size_t j, size_t room)
+{
+    struct csr more;
+    if (!tribo_csr_create(&more, a->n, room)) {
+        return 0;
+    }
+    memcpy(more.first, a->first, (j + 1) * sizeof *more.first);
+    memcpy(more.col, a->col, a->first[j] * sizeof *more.col);
+    memcpy(more.val, a->val, a->first[j] * sizeof *more.val);
+    tribo_csr_free(a);
+    *a = more;
+    return 1;
+}
+
 /* Appends the entries of column j to a, whose room grows where that is too little. */
 static int append_column(struct csr *a, size_t *room, size_t j, const double *column)
 {
     const size_t n = a->n;
     if (*room - a->first[j] < n) {
         const size_t more = 2 * *room + n;
-        size_t *col = realloc(a->col, more * sizeof *col);
-        a->col = col ? col : a->col;
-        double *val = realloc(a->val, more * sizeof *val);
-        a->val = val ? val : a->val;
-        if (!col || !val) {
+        if (!make_room(a, j, more)) {
             return 0;
         }
         *room = more;

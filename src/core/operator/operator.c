@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "operator.h"
+#include "../../common/layout.h"
 #include "../../common/csr.h"
 #include "../../common/simd.h"
 #include "../../common/twofold.h"
@@ -40,11 +41,7 @@ void tribo_operator_release(struct delassus *op)
     for (size_t k = 0; op->group && k < op->groups; k++) {
         tribo_sparse_free(op->group[k].sparse);
     }
-    free(op->diagonal);
-    free(op->group);
     free(op->group_of);
-    free(op->member);
-    free(op->row_sum);
     free(op->fixed);
     free(op);
 }
@@ -52,32 +49,34 @@ void tribo_operator_release(struct delassus *op)
 void tribo_memory_free(struct memory *m)
 {
     struct box_qp *p = &m->problem;
-    free(m->solved);
-    free(m->solved_list);
-    free(m->sets);
     free(m->store);
-    free(p->near);
-    free(p->held);
-    free(p->to);
-    free(p->q);
     free(p->basis);
     *m = (struct memory){0};
 }
 
+/* If the diagonal of n contacts is given, with room for it and its inverse. */
+static struct delassus *lay_out_operator(struct layout *l, size_t n, int given)
+{
+    struct delassus *op = tribo_layout_array(l, 1, sizeof *op);
+    double *diagonal = given ? tribo_layout_array(l, 2 * n + TRIBO_LINE, sizeof *diagonal) : NULL;
+    if (op) {
+        *op =
+            (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = given ? n : 0, .diagonal = diagonal};
+    }
+    return op;
+}
+
 int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
 {
-    struct delassus *o = calloc(1, sizeof *o);
-    *op = o;
-    if (!o) {
+    struct layout l = {0};
+    lay_out_operator(&l, n, r != NULL);
+    if (!tribo_layout_create(&l)) {
+        *op = NULL;
         return 0;
     }
-    *o = (struct delassus){.references = 1, .most = TRIBO_FAR, .growth = 1.0, .islands = r ? n : 0};
+    struct delassus *o = *op = lay_out_operator(&l, n, r != NULL);
     if (!r) {
         return 1;
-    }
-    o->diagonal = malloc((2 * n + TRIBO_LINE) * sizeof *o->diagonal);
-    if (!o->diagonal) {
-        return 0;
     }
     o->inverse = tribo_aligned(o->diagonal + n);
     for (size_t i = 0; i < n; i++) {
@@ -132,39 +131,46 @@ void tribo_memory_expect(const struct delassus *op, const struct memory *m, size
     tribo_expect(m->store + op->group[k].kept, kept < MOST ? kept : MOST, 0);
 }
 
-static int allocate_problem(struct box_qp *p, size_t largest)
+static void lay_out_problem(struct box_qp *p, struct layout *b, size_t largest)
 {
-    enum { VECTORS = 13 };
+    double **const vector[] = {&p->q,    &p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,     &p->first,
+                               &p->unit, &p->step, &p->step_low, &p->row,      &p->spare[0], &p->spare[1]};
+    enum { VECTORS = sizeof vector / sizeof *vector };
     const size_t s = largest + 1;
-    p->near = malloc(s * sizeof *p->near);
-    p->held = malloc(s * sizeof *p->held);
-    p->to = malloc(s);
-    p->q = calloc(VECTORS * s, sizeof *p->q);
-    if (!p->near || !p->held || !p->to || !p->q) {
-        return 0;
+    double *numbers = tribo_layout_array(b, VECTORS * s, sizeof *numbers);
+    for (size_t k = 0; numbers && k < VECTORS; k++) {
+        *vector[k] = numbers + k * s;
     }
-    double **const vector[] = {&p->lo,   &p->hi,   &p->gradient, &p->noise, &p->low,      &p->first,
-                               &p->unit, &p->step, &p->step_low, &p->row,   &p->spare[0], &p->spare[1]};
-    for (size_t k = 0; k < VECTORS - 1; k++) {
-        *vector[k] = p->q + (k + 1) * s;
-    }
-    return 1;
+    p->near = tribo_layout_array(b, s, sizeof *p->near);
+    p->held = tribo_layout_array(b, s, sizeof *p->held);
+    p->to = tribo_layout_array(b, s, 1);
+}
+
+static void lay_out_memory(struct memory *m, struct layout *b, const struct delassus *op)
+{
+    m->store = tribo_layout_array(b, op->kept_size + 1, sizeof *m->store);
+    m->sets = tribo_layout_array(b, op->groups, sizeof *m->sets);
+    m->solved_list = tribo_layout_array(b, op->groups, sizeof *m->solved_list);
+    m->solved = tribo_layout_array(b, op->groups, 1);
+    lay_out_problem(&m->problem, b, op->largest);
 }
 
 /* A memory of nothing yet, but for room for null vectors, which is known when ranks are. */
 static int allocate_memory(struct memory *m, const struct delassus *op)
 {
-    m->solved = calloc(op->groups, 1);
-    m->solved_list = malloc(op->groups * sizeof *m->solved_list);
-    m->sets = calloc(op->groups, sizeof *m->sets);
-    m->store = calloc(op->kept_size + 1, sizeof *m->store);
-    return m->solved && m->solved_list && m->sets && m->store && allocate_problem(&m->problem, op->largest);
+    struct layout b = {0};
+    lay_out_memory(m, &b, op);
+    const int done = tribo_layout_zeros(&b);
+    if (done) {
+        lay_out_memory(m, &b, op);
+    }
+    return done;
 }
 
 static int allocate_basis(struct memory *m, const struct delassus *op)
 {
-    m->problem.basis = malloc((op->basis + 1) * sizeof *m->problem.basis);
-    return m->problem.basis != NULL;
+    m->problem.basis = op->basis ? malloc(op->basis * sizeof *m->problem.basis) : NULL;
+    return m->problem.basis || !op->basis;
 }
 
 static void find_basis(struct delassus *op)
@@ -179,13 +185,23 @@ static void find_basis(struct delassus *op)
     }
 }
 
+static void lay_out_groups(struct delassus *op, struct layout *b, size_t n, size_t groups)
+{
+    op->group_of = tribo_layout_array(b, n, sizeof *op->group_of);
+    op->member = tribo_layout_array(b, n, sizeof *op->member);
+    op->row_sum = tribo_layout_array(b, n, sizeof *op->row_sum);
+    op->group = tribo_layout_array(b, groups, sizeof *op->group);
+}
+
 static int allocate_groups(struct delassus *op, size_t n, size_t groups)
 {
-    op->group_of = malloc(n * sizeof *op->group_of);
-    op->group = calloc(groups, sizeof *op->group);
-    op->member = malloc(n * sizeof *op->member);
-    op->row_sum = calloc(n, sizeof *op->row_sum);
-    return op->member && op->row_sum && op->group_of && op->group;
+    struct layout b = {0};
+    lay_out_groups(op, &b, n, groups);
+    const int done = tribo_layout_zeros(&b);
+    if (done) {
+        lay_out_groups(op, &b, n, groups);
+    }
+    return done;
 }
 
 int tribo_memory_copy(struct memory *to, const struct memory *from, const struct delassus *op)
@@ -299,12 +315,6 @@ static int make_sparse(struct group *g, const struct csr *a, const size_t *membe
     const int done = tribo_sparse_create(&g->sparse, &own);
     tribo_csr_free(&own);
     return done;
-}
-
-static double diagonal_of(const struct csr *a, size_t i)
-{
-    const double *entry = tribo_csr_entry(a, i, i);
-    return entry ? *entry : 0.0;
 }
 
 /* y = D^-1 |R| x, x [n] being positive. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz
@@ -503,20 +513,15 @@ static int create_groups(struct delassus *op, struct memory *m, const struct csr
     return status || allocate_basis(m, op) ? status : TRIBO_ERR_MEMORY;
 }
 
-int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const struct inertia *from,
-                          struct flaw *flaw)
+int tribo_operator_create(struct delassus **created, struct memory *m, const struct csr *a, const double *diagonal,
+                          const struct inertia *from, struct flaw *flaw)
 {
     const size_t n = a->n;
     int status = TRIBO_ERR_MEMORY;
-    size_t *label = malloc((n + 1) * sizeof *label), *count = malloc((n + 1) * sizeof *count),
-           *place = malloc((n + 1) * sizeof *place);
-    double *diagonal = malloc((n + 1) * sizeof *diagonal);
+    size_t *label = malloc((3 * n + 1) * sizeof *label), *count = label ? label + n : NULL, *place = label ? count + n : NULL;
     struct delassus *op = NULL;
     *m = (struct memory){0};
-    for (size_t i = 0; diagonal && i < n; i++) {
-        diagonal[i] = diagonal_of(a, i);
-    }
-    if (label && count && place && diagonal && tribo_operator_diagonal(&op, n, diagonal)) {
+    if (label && tribo_operator_diagonal(&op, n, diagonal)) {
         op->islands = find_islands(a, label, place);
         if (op->islands == n) {
             status = TRIBO_OK;
@@ -531,8 +536,5 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
     }
     *created = op;
     free(label);
-    free(count);
-    free(place);
-    free(diagonal);
     return status;
 }

@@ -24,8 +24,8 @@ struct delassus {
     size_t islands;               /* groups and single contacts */
     size_t groups;                /* of two contacts and more */
     double most;                  /* the smallest tribo_most of their contacts; TRIBO_FAR if there is no group */
+    size_t *group_of;             /* [n] TRIBO_ALONE if contact i is; has the memory of the next three as well */
     struct group *group;          /* [groups] */
-    size_t *group_of;             /* [n] TRIBO_ALONE if contact i is */
     size_t *member;               /* [n] the contacts of the groups, ascending, one group after the other */
     double *row_sum;              /* [n] of |R_ij|; -1 for contacts in no group */
     double largest_sum;           /* of these */
@@ -42,7 +42,7 @@ struct memory {
     size_t *solved_list;   /* [nsolved] which these are */
     size_t nsolved;
     struct sets *sets;     /* [groups] */
-    double *store;         /* [kept_size] group by group */
+    double *store;         /* [kept_size] group by group; has the memory of all but the basis */
     struct box_qp problem; /* workspace of the largest group, with views of one */
 };
 
@@ -62,10 +62,10 @@ struct inertia {
     const struct csr *t;
 };
 
-/* Makes an operator of rows that are symmetric and finite, with sorted columns, and the
- * memory that goes with it; a status. from: NULL if not known. */
-int tribo_operator_create(struct delassus **op, struct memory *m, const struct csr *a, const struct inertia *from,
-                          struct flaw *flaw);
+/* Makes an operator of rows that are symmetric and finite, with sorted columns and this diagonal [n], and the memory that goes
+ * with it; a status. from: NULL if not known. */
+int tribo_operator_create(struct delassus **op, struct memory *m, const struct csr *a, const double *diagonal,
+                          const struct inertia *from, struct flaw *flaw);
 int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r); /* r NULL: not set yet; 1, or 0 if out of memory */
 
 /* One context more, or less, has it: the last one that gives it up frees it. NULL is fine. */

@@ -1,0 +1,47 @@
+/* All arrays of an object in one piece of memory: a function lays them out twice, first to find how much they take, while all
+ * pointers are NULL, and then in the memory that has been made for them. */
+#ifndef TRIBO_LAYOUT_H
+#define TRIBO_LAYOUT_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+struct layout {
+    char *memory; /* NULL while sizes are added up */
+    size_t used;
+};
+
+/* What every array begins as it is aligned for. */
+union layout_unit {
+    double number;
+    size_t index;
+    void *pointer;
+};
+
+/* An array of so many things of this size. What is too much to be counted becomes more than there is memory. */
+static inline void *tribo_layout_array(struct layout *b, size_t count, size_t size)
+{
+    enum { UNIT = sizeof(union layout_unit) };
+    void *array = b->memory ? b->memory + b->used : NULL;
+    const size_t most = SIZE_MAX / 4, bytes = count < most / size ? (count * size + UNIT - 1) / UNIT * UNIT : most;
+    b->used = bytes < most - b->used ? b->used + bytes : most;
+    return array;
+}
+
+/* Memory for what has been measured, all of it zero, or as it comes; to be laid out from the beginning. 0 if there is none. */
+static inline int tribo_layout_zeros(struct layout *b)
+{
+    b->memory = calloc(b->used + 1, 1);
+    b->used = 0;
+    return b->memory != NULL;
+}
+
+static inline int tribo_layout_create(struct layout *b)
+{
+    b->memory = malloc(b->used + 1);
+    b->used = 0;
+    return b->memory != NULL;
+}
+
+#endif
