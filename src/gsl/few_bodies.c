@@ -165,7 +165,7 @@ static void find_times(struct few_bodies *b, size_t count, const double *restric
         to[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
     }
     for (size_t s = 0; s < count; s++) {
-        time[s] = to[s] - (t[s] - 0.5 * h[s]);
+        time[s] = 0.5 * (h[s] + h[s + 1]);
     }
 }
 

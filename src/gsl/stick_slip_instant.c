@@ -152,6 +152,14 @@ void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, do
     tribo_elastic_release(sys, y);
 }
 
+/* Forces at rest that are not unique go on from those found last: without these a run does not depend on another one. */
+static void forget_shares(struct stick_slip *m)
+{
+    if (!m->independent && !m->uncoupled) {
+        tribo_solve_box(m->box, m->still, m->still, m->still, m->f);
+    }
+}
+
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
 {
     tribo_system_set_time(sys, t);
@@ -167,6 +175,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
         m->rested[i] = 0;
     }
     if (!continues) {
+        forget_shares(m);
         tribo_elastic_start(m, sys, y);
     }
     for (size_t i = 0; i < sys->ncontact; i++) {

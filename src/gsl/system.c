@@ -189,16 +189,89 @@ size_t tribo_system_follower(const tribo_system *sys, size_t i)
     return count == 1 ? j->col[first] : count == 2 && are_alike(j, first) ? j->col[first + follows(sys, i, first)] : SIZE_MAX;
 }
 
+/* Velocities x of degrees of freedom whose contacts rest on moving bases; known [ndof] is 1 where no other contact is to change
+ * them. */
+struct snapping {
+    const tribo_system *sys;
+    const signed char *loose;
+    const double *base;
+    double *x, *known;
+};
+
+/* Contacts at rest on one degree of freedom stop it. Returns how many there are on two, of which they take the difference. */
+static size_t snap_single(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    size_t pairs = 0;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        if (!s->loose[i] && count == 1) {
+            s->x[j->col[first]] = s->base[i] / j->val[first];
+            s->known[j->col[first]] = 1.0;
+        }
+        pairs += !s->loose[i] && count == 2 && are_alike(j, first);
+    }
+    return pairs;
+}
+
+/* How many of the two degrees of freedom of contact i are known; 2 if it does not rest on two. */
+static int known_of_pair(const struct snapping *s, size_t i)
+{
+    const struct matrix *j = &s->sys->direction;
+    const size_t first = j->first[i];
+    const int is_pair = !s->loose[i] && j->first[i + 1] - first == 2 && are_alike(j, first);
+    return is_pair ? (s->known[j->col[first]] != 0.0) + (s->known[j->col[first + 1]] != 0.0) : 2;
+}
+
+/* Entry `to` of row i follows the other one. */
+static void snap_pair(struct snapping *s, size_t i, size_t to)
+{
+    const struct matrix *j = &s->sys->direction;
+    const size_t from = 2 * j->first[i] + 1 - to;
+    s->x[j->col[to]] = (s->base[i] - j->val[from] * s->x[j->col[from]]) / j->val[to];
+    s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
+}
+
+/* What is known takes the others along; returns how many pairs did. */
+static size_t snap_known(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    size_t found = 0;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        if (known_of_pair(s, i) == 1) {
+            snap_pair(s, i, j->first[i] + (s->known[j->col[j->first[i]]] != 0.0));
+            found++;
+        }
+    }
+    return found;
+}
+
+/* Where nothing is known, the pair with the heaviest body makes a beginning; returns 0 if there is none. */
+static size_t snap_heaviest(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    size_t found = s->sys->ncontact;
+    double least = HUGE_VAL;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t *dof = j->col + j->first[i];
+        const double yield = known_of_pair(s, i) ? HUGE_VAL : lesser(yield_of(s->sys, dof[0], i), yield_of(s->sys, dof[1], i));
+        found = yield < least ? i : found;
+        least = lesser(least, yield);
+    }
+    if (found == s->sys->ncontact) {
+        return 0;
+    }
+    snap_pair(s, found, j->first[found] + follows(s->sys, found, j->first[found]));
+    return 1;
+}
+
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
-    const struct matrix *j = &sys->direction;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const size_t first = j->first[i], count = j->first[i + 1] - first;
-        if (!loose[i] && count == 1) {
-            x[j->col[first]] = base[i] / j->val[first];
-        } else if (!loose[i] && count == 2 && are_alike(j, first)) {
-            const size_t to = first + follows(sys, i, first), from = 2 * first + 1 - to;
-            x[j->col[to]] = (base[i] - j->val[from] * x[j->col[from]]) / j->val[to];
-        }
+    struct snapping s = {sys, loose, base, x, sys->acceleration};
+    memset(s.known, 0, sys->ndof * sizeof *s.known);
+    size_t pairs = snap_single(&s);
+    for (size_t done = 1; pairs && done; pairs -= done) {
+        done = snap_known(&s);
+        done = done ? done : snap_heaviest(&s);
     }
 }
