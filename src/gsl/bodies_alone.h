@@ -41,10 +41,10 @@ struct bodies_alone {
     size_t revision;              /* of the system */
 };
 
-/* A step: velocities u at the time from become those at to, by the forces at t and q, and q moves on with them for a time
- * of h. */
+/* A step: velocities u at the time from become those at to, by the forces at t and q over `time`, and q moves on with them for
+ * h. These come from lengths of steps: what two times are apart is known only to their rounding. */
 struct body_step {
-    double from, t, to, h;
+    double from, t, to, time, h;
     const double *q, *u;
     double *q_to, *u_to; /* [ndof] which hold what the step before last left there, if that did go on */
 };

@@ -70,15 +70,28 @@ static int take_operator(struct few_bodies *b, const tribo_system *sys)
     return fits;
 }
 
-static struct few_snap snap_of(const struct few_bodies *b, const tribo_system *sys, size_t i)
+static struct few_snap snap_of(const struct few_bodies *b, const struct snap *from)
 {
-    struct few_snap x = {.to = tribo_system_follower(sys, i)};
-    if (x.to < b->n) {
-        memcpy(x.rest, b->direction[i], sizeof x.rest);
-        x.turn = x.rest[x.to];
-        x.rest[x.to] = 0.0;
-    }
+    struct few_snap x = {.contact = from->contact, .to = from->to};
+    memcpy(x.rest, b->direction[x.contact], sizeof x.rest);
+    x.turn = x.rest[x.to];
+    x.rest[x.to] = 0.0;
     return x;
+}
+
+static void take_snaps(struct few_bodies *b, const tribo_system *sys)
+{
+    for (unsigned set = 0; set < 1u << b->c; set++) {
+        struct snap list[FEW];
+        signed char loose[FEW];
+        for (size_t i = 0; i < b->c; i++) {
+            loose[i] = !(set >> i & 1u);
+        }
+        b->snaps[set] = tribo_system_list_snaps(sys, loose, list);
+        for (size_t k = 0; k < b->snaps[set]; k++) {
+            b->snap[set][k] = snap_of(b, &list[k]);
+        }
+    }
 }
 
 /* Whether Coulomb's law of scalar contacts with one limit, which is a plain number, is all that there is. */
@@ -91,7 +104,6 @@ static int take_contacts(struct few_bodies *b, const tribo_system *sys)
     for (size_t i = 0; i < b->c; i++) {
         fits &= ratio[i] <= 1.0 && b->limit[i] <= MOST;
         b->tally[i] = sys->tally[i];
-        b->snap[i] = snap_of(b, sys, i);
     }
     return fits;
 }
@@ -108,6 +120,7 @@ static int take_all(struct few_bodies *b, const tribo_system *sys)
     take_matrix(&sys->direction, b->direction);
     take_matrix(&sys->response, b->response);
     b->slip = (struct few_slip){.resting = (1u << b->c) - 1};
+    take_snaps(b, sys);
     return take_contacts(b, sys) && take_operator(b, sys);
 }
 
@@ -165,7 +178,7 @@ static void find_times(struct few_bodies *b, size_t count, const double *restric
         to[s] = t[s] + 0.5 * (t[s + 1] - t[s]);
     }
     for (size_t s = 0; s < count; s++) {
-        time[s] = to[s] - (t[s] - 0.5 * h[s]);
+        time[s] = 0.5 * (h[s] + h[s + 1]);
     }
 }
 

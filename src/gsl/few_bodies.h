@@ -14,10 +14,9 @@
 /* The most degrees of freedom, and the most contacts, that are few. */
 enum { FEW = 4 };
 
-/* What the displacement x of degree of freedom `to` is while the contact rests: (base - rest x)/turn, which leaves no rounding in
- * its velocity. SIZE_MAX: the contact has neither one degree of freedom nor the difference of two. */
+/* What the velocity of degree of freedom `to` is while the contact rests: (base - rest u)/turn, which leaves no rounding in it. */
 struct few_snap {
-    size_t to;
+    size_t contact, to;
     double turn, rest[FEW];
 };
 
@@ -34,7 +33,8 @@ struct few_bodies {
     double stiffness[FEW][FEW], damping[FEW][FEW], direction[FEW][FEW], response[FEW][FEW], r[FEW][FEW];
     double inverse[1 << FEW][FEW][FEW]; /* of R over sets of contacts, by bits: 0 elsewhere */
     double limit[FEW], tally[FEW];
-    struct few_snap snap[FEW];
+    struct few_snap snap[1 << FEW][FEW]; /* of sets of contacts at rest, by bits: in this order, */
+    size_t snaps[1 << FEW];              /* so many */
     struct few_slip slip; /* of the step before */
     /* by steps of a run: the times for which velocities go on, and those at which they are known then; the lengths, that of the
      * step before the run first; and what acts */

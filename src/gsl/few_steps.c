@@ -91,12 +91,14 @@ static inline int settle(const struct few_bodies *b, size_t c, struct few_slip *
 static inline void snap(const struct few_bodies *b, struct few_parts has, size_t s, const struct few_slip *slip,
                         const struct impulses *x, double *u)
 {
+    unsigned set = 0;
     for (size_t i = 0; i < has.c; i++) {
-        const struct few_snap *to = &b->snap[i];
-        const double base = has.bases ? b->base[i][s] : 0.0;
-        for (size_t d = 0; rests(slip, i) && fabs(x->p[i]) < x->most[i] && d < has.n; d++) {
-            u[d] = to->to == d ? (base - row_times(has.n, to->rest, u)) / to->turn : u[d];
-        }
+        set |= (unsigned)(rests(slip, i) && fabs(x->p[i]) < x->most[i]) << i;
+    }
+    for (size_t k = 0; k < b->snaps[set]; k++) {
+        const struct few_snap *to = &b->snap[set][k];
+        const double base = has.bases ? b->base[to->contact][s] : 0.0;
+        u[to->to] = (base - row_times(has.n, to->rest, u)) / to->turn;
     }
 }
 

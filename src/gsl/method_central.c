@@ -47,10 +47,9 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* What u, the velocity at the time from, becomes at the time to without friction: forces at t and q, over the time between. */
+/* What u, the velocity at the time from, becomes at the time to without friction: forces at t and q. */
 static void kick_freely(struct step_form *s, tribo_system *sys, const struct body_step *k)
 {
-    const double time = k->to - k->from;
     tribo_system_set_time(sys, k->t);
     memset(s->a, 0, sys->ndof * sizeof *s->a);
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
@@ -59,7 +58,7 @@ static void kick_freely(struct step_form *s, tribo_system *sys, const struct bod
         tribo_matrix_multiply_add(&sys->damping, -1.0, k->u, s->a);
     }
     for (size_t i = 0; i < sys->ndof; i++) {
-        k->u_to[i] = k->u[i] + time * s->a[i];
+        k->u_to[i] = k->u[i] + k->time * s->a[i];
     }
 }
 
@@ -69,25 +68,24 @@ static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     tribo_system *sys = drv->sys;
-    const double time = k->to - k->from;
     tribo_step_form_begin(s, sys, k->from, k->u);
     kick_freely(s, sys, k);
     sys->evaluations++;
     tribo_step_form_find_base(s, sys, k->to);
     tribo_step_form_relative(s, sys, k->u_to, s->end);
     tribo_step_form_set_limits(sys, k->t);
-    const int status = tribo_step_form_force(s, sys, sys->contacts, time);
+    const int status = tribo_step_form_force(s, sys, sys->contacts, k->time);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, k->t);
     }
     if (status) {
         return tribo_driver_fail(drv, status, "at t = %.17g: %s", k->t, tribo_message(sys->contacts));
     }
-    tribo_matrix_multiply_add(&sys->response, time, s->f, k->u_to);
+    tribo_matrix_multiply_add(&sys->response, k->time, s->f, k->u_to);
     tribo_get_slip(sys->contacts, s->mode);
     tribo_system_snap(sys, s->mode, s->base, k->u_to);
     tribo_step_form_relative(s, sys, k->u_to, s->end);
-    *energy += time * tribo_step_form_power(sys, s->f, s->v, s->end);
+    *energy += k->time * tribo_step_form_power(sys, s->f, s->v, s->end);
     return TRIBO_OK;
 }
 
@@ -97,9 +95,10 @@ static int synchronise(tribo_driver *drv, double t, double *y)
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const size_t n = drv->sys->ndof;
-    const struct body_step half = {.from = t - 0.5 * x->last, .t = t, .to = t, .q = y, .u = s->u, .u_to = y + n};
+    const double half = 0.5 * x->last;
+    const struct body_step back = {.from = t - half, .t = t, .to = t, .time = half, .q = y, .u = s->u, .u_to = y + n};
     y[2 * n] = x->energy;
-    const int status = kick(drv, &half, y + 2 * n);
+    const int status = kick(drv, &back, y + 2 * n);
     if (s->goes_on) {
         tribo_step_form_turn(s);
     }
@@ -179,7 +178,7 @@ static int step_many(tribo_driver *drv, double t, double next, const double *fro
     struct central *x = drv->own;
     struct step_form *s = &x->common;
     const double h = next - t;
-    const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, h, from, s->u, y, x->next};
+    const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
     const int status = x->few.fits || !x->alone.fits ? step_all(drv, &k, y) : step_alone(drv, &k, y);
     if (!status) {
         x->next = s->u;

@@ -355,13 +355,34 @@ static double longest(const struct event *e, double most)
     return fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most;
 }
 
+/* Over a step the terms of no speed come to more than this many times what it begins with: else the squares of a small one, and
+ * that it falls to zero, are lost in the rounding of what comes later. */
+#define FASTER 1e4
+
+/* Of each of which terms they are. */
+static int speeds_tell(const struct event *e, double h)
+{
+    const struct planar_slip *plane = e->events.stick_slip.plane;
+    int tell = 1;
+    for (size_t c = 0; c < plane->count; c++) {
+        const struct planar_line *l = &e->planar.line[c];
+        const size_t last = e->order - (size_t)plane->contact[c].begins;
+        double sum = 0.0;
+        for (size_t k = last + 1; k-- > 0;) {
+            sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
+        }
+        tell &= e->events.stick_slip.slip[plane->contact[c].at] != TRIBO_IN_PLANE || sum <= FASTER * l->xn[0];
+    }
+    return tell;
+}
+
 static double planar_length(struct event *e, double most)
 {
     const struct stick_slip *m = &e->events.stick_slip;
     const double error = wanted(e, e->u, e->sys->ndof, HUGE_VAL);
     tribo_planar_series_errors(&e->planar, m, m->plane->error);
     double h = lesser(step_length(e), longest(e, most));
-    while (!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) && h > 0.0) {
+    while ((!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) || !speeds_tell(e, h)) && h > 0.0) {
         h *= 0.8;
     }
     return h;

@@ -14,8 +14,11 @@
 /* Modes whose omega^2 are closer than this, relative, are left as they are: what mixes them is rounding of either. */
 #define CLOSE 1e-6
 
-/* A turn is a small correction. What asks for more is between modes whose omega^2 are rounding, and would only skew them. */
-#define SLIGHT 1e-3
+/* A turn is a small correction. What asks for more is between modes whose omega^2 are rounding, and would mix them at random. */
+#define SLIGHT 1e-4
+
+/* Modes that turn by less than this stay orthonormal to rounding, whatever is done about the square of it. */
+#define TINY 1e-8
 
 /* Of another mode a mode may have so much, in terms of the root of its energy. */
 #define SHARED 1e-6
@@ -103,11 +106,12 @@ static void share(struct spectrum *s, size_t low, size_t first, size_t count)
     tribo_multiply_add(low, s->n, count, 1.0, s->ky, s->turn, s->block);
 }
 
-/* Takes out of the first `low` modes what they have of the others, and what those have of them: to first order, turns by
- * (y_j'K y_k)/(omega_j^2 - omega_k^2). Leaves ky of the first. */
-static void separate(struct spectrum *s, size_t low)
+/* block [low][others] = by how much the first `low` modes and the others turn towards each other, to first order, so that they
+ * share nothing: (y_j'K y_k)/(omega_j^2 - omega_k^2). Returns the largest. */
+static double find_turns(struct spectrum *s, size_t low)
 {
     const size_t n = s->n, others = n - low;
+    double most = 0.0;
     stress(s, 0, low);
     share(s, low, low, others);
     for (size_t k = 0; k < low; k++) {
@@ -115,18 +119,39 @@ static void separate(struct spectrum *s, size_t low)
         for (size_t j = 0; j < others; j++) {
             const double gap = s->value[low + j] - value, least = CLOSE * greater(fabs(s->value[low + j]), fabs(value));
             const double shared = s->block[k * others + j];
-            s->block[k * others + j] = fabs(gap) > least && fabs(shared) <= SLIGHT * fabs(gap) ? shared / gap : 0.0;
+            const double by = fabs(gap) > least && fabs(shared) <= SLIGHT * fabs(gap) ? shared / gap : 0.0;
+            s->block[k * others + j] = by;
+            most = greater(most, fabs(by));
         }
     }
-    tribo_multiply_add(low, others, n, -1.0, s->block, s->y + low * n, s->y);
-    if (low < others) {
-        stress(s, 0, low);
-    } else {
+    return most;
+}
+
+/* Takes so much of the turns of the others out of the first `low` modes. */
+static void take_out(struct spectrum *s, size_t low, double part)
+{
+    tribo_multiply_add(low, s->n - low, s->n, -part, s->block, s->y + low * s->n, s->y);
+}
+
+/* Takes out of the first `low` modes what they have of the others, and what those have of them; half before and half after that
+ * leaves them orthonormal but for the fourth power of turns. Leaves ky of the first. */
+static void separate(struct spectrum *s, size_t low)
+{
+    const size_t n = s->n, others = n - low;
+    const int halves = find_turns(s, low) > TINY, by_others = !halves && low >= others;
+    take_out(s, low, halves ? 0.5 : 1.0);
+    if (by_others) {
         stress(s, low, others);
         tribo_multiply_add(low, others, n, -1.0, s->block, s->ky + low * n, s->ky);
     }
     tribo_transpose(low, others, s->block, s->turn);
     tribo_multiply_add(others, low, n, 1.0, s->turn, s->y, s->y + low * n);
+    if (halves) {
+        take_out(s, low, 0.5);
+    }
+    if (!by_others) {
+        stress(s, 0, low);
+    }
 }
 
 /* The first `low` modes anew, from the stiffness in the space of them alone. */

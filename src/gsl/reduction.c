@@ -1,4 +1,5 @@
 /* Structures reduced to their lowest modes. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,12 +37,23 @@ static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
     return 1;
 }
 
+/* Velocities of contacts of which rounding leaves less than two digits, in parts of what they are the sum of: as where a mode moves
+ * both sides alike. They are none: a contact can hold nothing by them. */
+#define NO_SHAPE (100.0 * DBL_EPSILON)
+
+/* How mode phi [ndof] moves contact i. */
+static double shape(const struct model *m, size_t i, const double *phi)
+{
+    const double sum = tribo_matrix_row_dot(&m->direction, i, phi);
+    return fabs(sum) > NO_SHAPE * tribo_matrix_row_size(&m->direction, i, phi) ? sum : 0.0;
+}
+
 /* shapes [ncontact][count] = J phi. */
 static void find_shapes(const struct model *m, const struct reduced *r, double *shapes)
 {
     for (size_t k = 0; k < r->count; k++) {
         for (size_t i = 0; i < m->ncontact; i++) {
-            shapes[i * r->count + k] = tribo_matrix_row_dot(&m->direction, i, r->phi + k * m->ndof);
+            shapes[i * r->count + k] = shape(m, i, r->phi + k * m->ndof);
         }
     }
 }

@@ -209,6 +209,12 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
     m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
 }
 
+int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
+{
+    tribo_stick_slip_find_gain(m, sys, y, i);
+    return fabs(tribo_stick_slip_velocity(m, sys, i, y)) <= VELOCITY_NOISE * m->gain[i] * m->horizon / LOOK_AHEAD;
+}
+
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     for (size_t i = 0; i < sys->ncontact; i++) {

@@ -105,6 +105,10 @@ void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 
+/* Whether contact i moves by less than rounding of what its accelerations make of it: several contacts that hold a body together
+ * leave so much. */
+int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
+
 /* q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
  * to [ncontact] = J acceleration - order-th derivative of b. */
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);

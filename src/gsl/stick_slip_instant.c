@@ -152,6 +152,27 @@ void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, do
     tribo_elastic_release(sys, y);
 }
 
+/* What contacts do in a state that nothing is known of. */
+static void start_anew(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    memset(m->force, 0, sys->ncontact * sizeof *m->force);
+    tribo_stick_slip_forget_gains(m);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const signed char slip = slip_of(m, sys, i, y);
+        const int rests = slip == 0 || tribo_stick_slip_is_faint(m, sys, y, i);
+        tribo_stick_slip_set(m, i, (signed char)(m->limit[i] == 0.0 ? 2 : rests ? 0 : slip));
+        m->rested[i] = 0;
+    }
+}
+
+/* Forces at rest that are not unique go on from those found last: without these a run does not depend on another one. */
+static void forget_shares(struct stick_slip *m)
+{
+    if (!m->independent && !m->uncoupled) {
+        tribo_solve_box(m->box, m->still, m->still, m->still, m->f);
+    }
+}
+
 void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, double *y, int continues)
 {
     tribo_system_set_time(sys, t);
@@ -162,19 +183,17 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     find_base(m, sys);
     tribo_stick_slip_find_scales(m, sys);
     memset(m->seen, 0, sys->ncontact * sizeof *m->seen);
-    for (size_t i = 0; !continues && i < sys->ncontact; i++) {
-        tribo_stick_slip_set(m, i, (signed char)(m->limit[i] == 0.0 ? 2 : slip_of(m, sys, i, y)));
-        m->rested[i] = 0;
-    }
-    if (!continues) {
-        tribo_elastic_start(m, sys, y);
-    }
+    m->doubt = 1.0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->swing[i] = tribo_system_swing(sys, i);
     }
+    if (!continues) {
+        start_anew(m, sys, y);
+        forget_shares(m);
+        tribo_elastic_start(m, sys, y);
+    }
     m->fresh = m->hold_differs = 1;
     m->steady = 0;
-    m->doubt = 1.0;
     m->reached = m->contacts;
     m->base_moves = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {

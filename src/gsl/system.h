@@ -178,13 +178,6 @@ double tribo_system_fastest(const tribo_system *sys);
 /* R_ij. */
 double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
 
-/* The degree of freedom that contact i at rest takes along: its only one, or one of two of which J takes the difference;
- * SIZE_MAX: neither is so. */
-size_t tribo_system_follower(const tribo_system *sys, size_t i);
-
-/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), by what follows them. */
-void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
-
 /* q'' without friction, [ndof]. */
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
 
@@ -203,6 +196,19 @@ void tribo_system_add_mass(const tribo_system *sys, double factor, const double 
 
 /* to [ndof] = M^-1 force, force [given]. */
 void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to);
+
+/* ---- snap.c */
+
+/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), and have one degree of freedom or the
+ * difference of two. Uses the workspace of accelerations. */
+void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
+
+/* What that does, in its order: contact i makes x of degree of freedom `to` what it must be. list [ncontact] out; returns how
+ * many. */
+struct snap {
+    size_t contact, to;
+};
+size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
 
 /* jacobian.c: of odeiv2. */
 int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params);

@@ -289,6 +289,56 @@ TEST(beginnings)
     assert_close(want, 2.2314, strcmp(method, "rk1imp") ? 1e-4 : 1e-3);
 }
 
+/* Advances that are as short as time resolves. */
+TEST(shortest_advances)
+{
+    const char *method = tribo_method_name(_i);
+    double t = 3.0, y[DIMENSION] = {1.0, 2.0, 0.0};
+    tribo_system *sys = oscillator(TRIBO_QUINN, 0.5, 0.7);
+    assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 1e-2));
+    tribo_driver *drv = driver_create(sys, method, 1e-3, 1e-8);
+    for (int k = 0; k < 20; k++) {
+        driver_advance(drv, &t, nextafter(t, 4.0), y);
+        assert_close(y[0], 1.0, 1e-12);
+        assert_close(y[1], 2.0, 1e-12);
+    }
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* Bodies that stand on each other come to rest, by contacts that are listed in any order, or, as in the last case, hold two degrees
+ * of freedom by sums of both. What moves then is nothing to a driver that knows no more than the state: by static limits, which
+ * are twice as much, they hold a load of 1.5 limits. */
+TEST(rest_is_seen_anew)
+{
+    static const char *const methods[] = {"exact", "event"};
+    const double direction[4][6] = {{1.0, 0.0, -1.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 1.0, -1.0, 0.0, 0.0}, {-1.0, 1.0, 0.0, 1.0, 0.0, 0.0},
+                                    {0.6, 0.3, 0.2, 0.7, 0.0, 0.0}};
+    const double mass[] = {1.0, 0.0, 0.0, 1.3}, stiffness[] = {0.2, 0.0, 0.0, 0.3}, limit[] = {1.0, 1.0}, ratio[] = {2.0, 2.0};
+    const double push[] = {0.3, 0.2}, hold[4][2] = {{1.4, 0.1}, {0.1, 1.4}, {0.1, 1.4}, {0.9, 0.4}};
+    for (size_t k = 0; k < 4; k++) {
+        double t = 0.0, y[5] = {0.1, -0.1, 0.0, 0.0, 0.0}, rest[5];
+        tribo_system *sys;
+        assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction[k], 0, NULL, 0));
+        assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+        assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
+        assert_ok(tribo_system_add_load(sys, 1.7, push, push));
+        y[2] = 1.0 + 0.1 * _i;
+        y[3] = -0.3;
+        run(sys, methods[_i % 2], 0.5, 1e-11, 10.0, y);
+        assert_all_close(y + 2, ((const double[2]){0.0}), 2, 1e-12);
+        assert_all_close(y + 2, ((const double[2]){0.0}), 2, k < 3 ? 0.0 : 1e-12);
+        memcpy(rest, y, sizeof y);
+        assert_ok(tribo_system_clear_loads(sys));
+        assert_ok(tribo_system_add_load(sys, 0.0, hold[k], NULL));
+        tribo_driver *drv = driver_create(sys, methods[_i % 2], 0.5, 1e-11);
+        driver_advance(drv, &t, 1.0, y);
+        assert_all_close(y, rest, 5, 1e-12);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
 /* --------------------------------------------------------------------------------------------------- limits and tables */
 
 /* Limits that a table had replaced come back, also if there were two tables, or a limit was set meanwhile. */
@@ -394,4 +444,5 @@ TEST(no_choice)
 }
 
 TEST_MAIN("changes", {like_a_new_driver, METHODS}, {order_after_a_change, 4}, {ground_that_starts, METHODS},
-          {beginnings, METHODS}, {limits_after_a_table, 1}, {limits_beside_a_table, 1}, {choices, 1}, {no_choice, 1})
+          {beginnings, METHODS}, {shortest_advances, METHODS},
+          {rest_is_seen_anew, 10}, {limits_after_a_table, 1}, {limits_beside_a_table, 1}, {choices, 1}, {no_choice, 1})

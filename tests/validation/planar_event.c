@@ -112,6 +112,29 @@ TEST(on_line)
     tribo_system_destroy(scalar);
 }
 
+/* A contact that slides on a line, along an axis, and just reverses there on its base: the planar one is the scalar one, also where
+ * what is left of its speed is next to nothing beside what it soon has. */
+TEST(reverses_on_line)
+{
+    const double springs[4] = {1.9, 0.0, 0.0, 0.3}, load[2][2] = {{-0.15, 0.0}, {-0.71, 0.0}};
+    const double base[3][2] = {{0.2, 0.0}, {0.26, 0.0}, {-0.04, 0.0}};
+    struct random g = random_of(_i);
+    double y[2][5] = {{uniform(&g, -0.5, 0.5), 0.0, uniform(&g, -0.5, 0.5)}}, error = 0.0;
+    memcpy(y[1], y[0], sizeof y[0]);
+    for (int scalar = 0; scalar < 2; scalar++) {
+        tribo_system *s = planar_mass(springs, 0.27, scalar ? 0.0 : 0.8);
+        assert_ok(tribo_system_add_load(s, 0.46, load[0], load[1]));
+        assert_ok(tribo_system_add_base_motion(s, 1.59, base[0], base[1]));
+        assert_ok(tribo_system_add_base_motion(s, 0.0, base[2], NULL));
+        run(s, "event", 0.5, 1e-11, 60.0, y[scalar]);
+        tribo_system_destroy(s);
+    }
+    for (int d = 0; d < 5; d++) {
+        error = fmax(error, fabs(y[0][d] - y[1][d]));
+    }
+    require(error <= 1e-8, "off by %.3g", error);
+}
+
 /* ----------------------------------------------------------------------------------------------------- coupled contacts */
 
 enum { MOST = 8 };
@@ -312,5 +335,5 @@ TEST(redundant)
     tribo_system_destroy(s);
 }
 
-TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {on_line, 9}, {tolerances, 40},
+TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {reverses_on_line, 40}, {on_line, 9}, {tolerances, 40},
           {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {redundant, 1})

@@ -1,0 +1,134 @@
+/* Velocities of bodies whose contacts rest, without a last bit of rounding. A contact on one degree of freedom stops it; one that
+ * takes the difference of two, of which one is stopped, stops the other; and so on, so that none moves again what another one has
+ * stopped. Of bodies that hold each other and nothing else, the heaviest goes on as it does. */
+#include "system.h"
+#include "../common/real.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Velocities x of the degrees of freedom; or a list of what would be done to them. */
+struct snapping {
+    const tribo_system *sys;
+    const signed char *loose;
+    const double *base;
+    double *x, *known; /* known [ndof] 1: is not to change any more */
+    struct snap *list;
+    size_t listed;
+};
+
+/* How much degree of freedom d gives way to contact i. */
+static double yield_of(const tribo_system *sys, size_t d, size_t i)
+{
+    return sys->unsolved ? 1.0 / tribo_matrix_get(&sys->mass, d, d) : fabs(tribo_matrix_get(&sys->response, d, i));
+}
+
+/* Which of its two degrees of freedom a contact at rest moves by rounding of the other: the second, but no heavy one by a light
+ * one's. */
+static size_t follows(const tribo_system *sys, size_t i, size_t first)
+{
+    const size_t *dof = sys->direction.col + first;
+    return yield_of(sys, dof[1], i) >= 1e-3 * yield_of(sys, dof[0], i);
+}
+
+/* Whether contact i rests, and takes a difference, or a sum, of two degrees of freedom. */
+static inline int is_pair(const struct snapping *s, size_t i)
+{
+    const struct matrix *j = &s->sys->direction;
+    const size_t first = j->first[i];
+    return !s->loose[i] && j->first[i + 1] - first == 2 && fabs(j->val[first]) == fabs(j->val[first + 1]);
+}
+
+/* Stops what one contact alone holds. Returns how many pairs there are. */
+static size_t snap_single(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    size_t pairs = 0;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = j->first[i], dof = j->col[first];
+        if (s->loose[i] || j->first[i + 1] - first != 1) {
+            pairs += (size_t)is_pair(s, i);
+        } else if (s->list) {
+            s->list[s->listed++] = (struct snap){i, dof};
+            s->known[dof] = 1.0;
+        } else {
+            s->x[dof] = s->base[i] / j->val[first];
+            s->known[dof] = 1.0;
+        }
+    }
+    return pairs;
+}
+
+/* Entry `to` of row i, a pair, follows the other one. */
+static void snap_pair(struct snapping *s, size_t i, size_t to)
+{
+    const struct matrix *j = &s->sys->direction;
+    const size_t from = 2 * j->first[i] + 1 - to;
+    if (s->list) {
+        s->list[s->listed++] = (struct snap){i, j->col[to]};
+    } else {
+        s->x[j->col[to]] = (s->base[i] - j->val[from] * s->x[j->col[from]]) / j->val[to];
+    }
+    s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
+}
+
+static int knows(const struct snapping *s, size_t entry)
+{
+    return s->known[s->sys->direction.col[entry]] != 0.0;
+}
+
+/* What is known takes along what is not; returns how often. */
+static size_t snap_known(struct snapping *s)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = s->sys->direction.first[i];
+        if (is_pair(s, i) && knows(s, first) != knows(s, first + 1)) {
+            snap_pair(s, i, first + (size_t)knows(s, first));
+            found++;
+        }
+    }
+    return found;
+}
+
+/* Where nothing is known, the pair with the heaviest body makes a beginning; returns 0 if there is none. */
+static size_t snap_heaviest(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    size_t found = s->sys->ncontact;
+    double least = HUGE_VAL;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = j->first[i];
+        if (is_pair(s, i) && !knows(s, first) && !knows(s, first + 1)) {
+            const double yield = lesser(yield_of(s->sys, j->col[first], i), yield_of(s->sys, j->col[first + 1], i));
+            found = yield < least ? i : found;
+            least = lesser(yield, least);
+        }
+    }
+    if (found < s->sys->ncontact) {
+        snap_pair(s, found, j->first[found] + follows(s->sys, found, j->first[found]));
+    }
+    return found < s->sys->ncontact;
+}
+
+static void snap(struct snapping *s)
+{
+    memset(s->known, 0, s->sys->ndof * sizeof *s->known);
+    size_t pairs = snap_single(s);
+    for (size_t done = 1; pairs && done; pairs -= done) {
+        done = snap_known(s);
+        done = done ? done : snap_heaviest(s);
+    }
+}
+
+void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
+{
+    snap(&(struct snapping){sys, loose, base, x, sys->acceleration, NULL, 0});
+}
+
+size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
+{
+    struct snapping s = {sys, loose, NULL, NULL, sys->acceleration, list, 0};
+    snap(&s);
+    return s.listed;
+}
