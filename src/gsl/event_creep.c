@@ -137,7 +137,7 @@ double tribo_creep_least(const struct event *e, const double *y)
             return HUGE_VAL;
         }
     }
-    const int can = slides > 0 && m->plane->count <= MOST_CONTACTS && !m->breakaway.falls;
+    const int can = slides > 0 && m->plane->count <= MOST_CONTACTS;
     return can ? PAYS * tribo_planar_series_stop(m, e->sys, y) : HUGE_VAL;
 }
 

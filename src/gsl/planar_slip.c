@@ -133,6 +133,27 @@ static void set_slip(struct stick_slip *m, const struct planar_contact *p, signe
     tribo_stick_slip_set(m, p->at + 1, slip);
 }
 
+/* The forces of contacts in a plane are followed by limits that are the same at all times and speeds, at rest and not. */
+static int check_limits(const struct stick_slip *m, const tribo_system *sys, size_t planar)
+{
+    size_t i = 0;
+    while (i < m->contacts && !(tribo_breakaway_ratio(&m->breakaway, i) > 1.0)) {
+        i++;
+    }
+    if (i < m->contacts) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = %g: take "
+                                 "moreau/fixed",
+                                 i, i, m->breakaway.ratio[i]);
+    }
+    return !tribo_system_limits_vary(sys)
+               ? TRIBO_OK
+               : tribo_system_fail(
+                     sys, TRIBO_ERR_UNSUPPORTED,
+                     "method event knows no limits that change with time beside planar contacts, of which the system has %zu",
+                     planar);
+}
+
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues)
 {
     const size_t planar = tribo_system_planar(sys);
@@ -143,12 +164,8 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     if (!planar || continues) {
         return TRIBO_OK;
     }
-    if (tribo_system_limits_vary(sys)) {
-        return tribo_system_fail(
-            sys, TRIBO_ERR_UNSUPPORTED,
-            "method event knows no limits that change with time beside planar contacts, of which the system has %zu", planar);
-    }
-    const int status = create(m, sys);
+    int status = check_limits(m, sys, planar);
+    status = status ? status : create(m, sys);
     for (size_t k = 0; !status && k < m->plane->count; k++) {
         set_slip(m, &m->plane->contact[k], TRIBO_IN_PLANE); /* whether it is at rest is seen by its speed */
     }
