@@ -39,14 +39,16 @@ void tribo_creep_free(struct creep *c);
 /* Steps longer than this are worthwhile, since friction would stop a contact long before; HUGE_VAL where none can be. */
 double tribo_creep_least(const struct event *e, const double *y);
 
-/* 1 if by the last step, which ended with y, directions follow what is asked of them, to what keeps velocities to `error`. */
-int tribo_creep_settled(const struct event *e, const double *y, double error);
+/* The longest step in which those contacts do not creep whose directions, by the last step, which ended with y, do not follow yet
+ * what is asked of them, to what keeps velocities to `error`. HUGE_VAL: all follow. */
+double tribo_creep_settled(const struct event *e, const double *y, double error);
 
 /* Sets the series of the motion from (t, y) on for a step of length h, which is good if velocities are right to `error`. Returns
  * a status. */
 struct creep_step {
     int good;
-    double next; /* how long another one may be, after this one or in its place; 0: none can be good */
+    double next;  /* how long another one may be, after this one or in its place; 0: none can be good */
+    double stray; /* of the step tried before, if any, HUGE_VAL else: how far directions were off where it began */
 };
 int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step);
 
