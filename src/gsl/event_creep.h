@@ -19,6 +19,7 @@ struct event;
 
 struct creep {
     double length;                                      /* what the next such step may have; 0: none is known */
+    double shorter;                                     /* when last tried none was good that is longer than this; 0: unknown */
     size_t waited, wait;                                /* steps since contacts creep, and how many these have to be */
     size_t contacts, terms;                             /* there is room for */
     double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] coefficients of what is 1 there and 0 at the others */
