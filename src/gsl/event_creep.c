@@ -7,11 +7,13 @@
 
 #define NODES TRIBO_CREEP_NODES
 
-/* Of more planar contacts all follow their series: Newton's matrices are dense. */
-#define MOST_CONTACTS 32
+/* Of more planar contacts that slide all follow their series: Newton's matrices are dense. */
+#define MOST_CONTACTS 128
 
-/* A step pays that is longer than this many times the time in which friction would stop a contact. */
+/* A step pays that is longer than this many times the time in which friction would stop a contact; and than more, as the cube of
+ * their number, where these matrices are most of the work. */
 #define PAYS 100.0
+#define FEW_CONTACTS 32.0
 
 #define MOST_ITERATIONS 10
 #define BISECTIONS 60
@@ -85,22 +87,21 @@ static void set_weights(struct creep *c)
     }
 }
 
-static int reserve(struct event *e)
+static int reserve(struct event *e, size_t slides)
 {
     struct creep *c = &e->creep;
-    const size_t contacts = e->events.stick_slip.plane->count, terms = e->most_order + 1, unknowns = contacts * NODES;
-    if (c->weight && c->contacts >= contacts) {
+    const size_t contacts = e->events.stick_slip.plane->count, terms = e->most_order + 1, unknowns = slides * NODES;
+    if (c->weight && c->contacts >= contacts && c->room >= slides) {
         return TRIBO_OK;
     }
     tribo_creep_free(c);
-    const size_t response = 4 * contacts * contacts * terms;
-    c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 2)) * sizeof *c->weight);
+    const size_t response = 4 * slides * contacts * terms;
+    c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 1) + contacts * NODES) * sizeof *c->weight);
     c->slip = malloc(2 * e->sys->ncontact);
     c->slides = malloc((contacts + unknowns) * sizeof *c->slides);
     if (!c->weight || !c->slip || !c->slides) {
         tribo_creep_free(c);
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", contacts,
-                                 plural(contacts));
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", slides, plural(slides));
     }
     c->response = c->weight + terms * NODES * NODES;
     c->matrix = c->response + response;
@@ -109,39 +110,55 @@ static int reserve(struct event *e)
     c->holds = (unsigned char *)c->slip + e->sys->ncontact;
     c->pivot = c->slides + contacts;
     c->contacts = contacts;
+    c->room = slides;
     c->terms = terms;
     set_basis(c);
     set_weights(c);
     return TRIBO_OK;
 }
 
-/* Those that slide, to c->slides. Returns how many. */
-static size_t find_sliding(struct event *e)
+static int is_sliding(const struct stick_slip *m, size_t k)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
+    return m->slip[m->plane->contact[k].at] == TRIBO_IN_PLANE;
+}
+
+static size_t count_sliding(const struct stick_slip *m)
+{
     size_t count = 0;
     for (size_t k = 0; k < m->plane->count; k++) {
-        if (m->slip[m->plane->contact[k].at] == TRIBO_IN_PLANE) {
+        count += (size_t)is_sliding(m, k);
+    }
+    return count;
+}
+
+/* Those that slide, to c->slides. */
+static void find_sliding(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t k = 0, count = 0; k < m->plane->count; k++) {
+        if (is_sliding(m, k)) {
             e->creep.slides[count++] = k;
         }
     }
-    return count;
+}
+
+static int one_begins(const struct stick_slip *m)
+{
+    size_t k = 0;
+    while (k < m->plane->count && !(is_sliding(m, k) && m->plane->contact[k].begins != SLIDES_ON)) {
+        k++;
+    }
+    return k < m->plane->count;
 }
 
 double tribo_creep_least(const struct event *e, const double *y)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    size_t slides = 0;
-    for (size_t k = 0; k < m->plane->count; k++) {
-        const struct planar_contact *p = &m->plane->contact[k];
-        const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
-        slides += (size_t)moves;
-        if (moves && p->begins != SLIDES_ON) {
-            return HUGE_VAL;
-        }
-    }
-    const int can = slides > 0 && m->plane->count <= MOST_CONTACTS;
-    return can ? PAYS * tribo_planar_series_first_stop(m, e->sys, y) : HUGE_VAL;
+    const size_t count = count_sliding(m);
+    const double part = (double)count / FEW_CONTACTS;
+    return count == 0 || count > MOST_CONTACTS || one_begins(m)
+               ? HUGE_VAL
+               : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(m, e->sys, y);
 }
 
 /* --------------------------------------------------------------------------------------------------------- directions */
@@ -186,7 +203,7 @@ double tribo_creep_settled(const struct event *e, const double *y, double error)
         const double v =
             hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
         const double stop = tribo_planar_series_stop(m, e->sys, p, y);
-        const double turn = m->slip[p->at] == TRIBO_IN_PLANE ? fabs(turn_of(e, k)) : 0.0;
+        const double turn = is_sliding(m, k) ? fabs(turn_of(e, k)) : 0.0;
         const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v);
         length = follows ? length : lesser(length, stop);
     }
@@ -226,7 +243,7 @@ static int find_response(struct event *e, size_t slides)
         memset(e->planar.line[c->slides[s]].ut, 0, bytes);
     }
     int status = tribo_event_series(e);
-    memset(c->response, 0, row * c->terms * row * sizeof *c->response);
+    memset(c->response, 0, 2 * slides * c->terms * row * sizeof *c->response);
     for (size_t s = 0; !status && s < 2 * slides; s++) {
         add_series(e, -1.0, c->response + s * c->terms * row);
     }
@@ -509,11 +526,12 @@ static void judge(const struct event *e, size_t slides, double h, double error, 
 int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step)
 {
     struct creep *c = &e->creep;
-    int status = reserve(e), found = 0;
+    const size_t slides = count_sliding(&e->events.stick_slip);
+    int status = reserve(e, slides), found = 0;
     if (status) {
         return status;
     }
-    const size_t slides = find_sliding(e);
+    find_sliding(e);
     for (size_t s = 0; s < slides; s++) {
         guess(e, c->slides[s], h);
     }

@@ -21,18 +21,18 @@ struct creep {
     double length;                                      /* what the next such step may have; 0: none is known */
     double shorter;                                     /* when last tried none was good that is longer than this; 0: unknown */
     size_t waited, wait;                                /* steps since contacts creep, and how many these have to be */
-    size_t contacts, terms;                             /* there is room for */
+    size_t contacts, room, terms;                       /* there is room for; room of those that slide */
     double basis[TRIBO_CREEP_NODES][TRIBO_CREEP_NODES]; /* [node][power] coefficients of what is 1 there and 0 at the others */
     double *weight;                                     /* [terms][node][node]: a force that is basis[second] and acts by
                                                              time^term acts so much at the first node, both in steps */
     double *angle;                                      /* [contacts][node] of u, from the first direction of its line */
-    double *response;                                   /* [2 contacts][terms][2 contacts]: series of x, by u = a unit vector; */
+    double *response;                                   /* [2 room][terms][2 contacts]: series of x, by u = a unit vector; */
     signed char *slip;                                  /* [ncontact] for contacts that slid so */
     unsigned char *holds;                               /* [ncontact] or held, */
     size_t revision;                                    /* and this system; */
     int known;
-    size_t *slides, *pivot; /* [contacts] those that slide; [contacts NODES] */
-    double *matrix, *rest;  /* [contacts NODES][contacts NODES], [contacts NODES] */
+    size_t *slides, *pivot; /* [contacts] those that slide; [room NODES] */
+    double *matrix, *rest;  /* [room NODES][room NODES], [room NODES] */
 };
 
 void tribo_creep_free(struct creep *c);

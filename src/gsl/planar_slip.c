@@ -142,10 +142,11 @@ static int check_limits(const struct stick_slip *m, const tribo_system *sys, siz
         i++;
     }
     if (i < m->contacts) {
-        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                 "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = %g: take "
-                                 "moreau/fixed",
-                                 i, i, m->breakaway.ratio[i]);
+        return tribo_system_fail(
+            sys, TRIBO_ERR_UNSUPPORTED,
+            "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = %g: take "
+            "moreau/fixed",
+            i, i, m->breakaway.ratio[i]);
     }
     return !tribo_system_limits_vary(sys)
                ? TRIBO_OK
