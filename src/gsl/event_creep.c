@@ -400,8 +400,8 @@ static double stop_of(const struct event *e, size_t k, double size)
     return size / greater(n, t);
 }
 
-/* The direction that the velocity has at tau in a step of length h is another one. That is gone at once, and the velocity with it,
- * or as much of it as friction takes in such a step; in parts of what the velocity may be off. */
+/* The direction that the velocity has at tau in a step of length h is another one. That is gone at once, and the velocity with
+ * it, or as much of it as friction takes in such a step; in parts of what the velocity may be off. */
 static double find_stray(const struct event *e, size_t k, double h, double tau, double error)
 {
     const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
@@ -504,8 +504,8 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
     return TRIBO_OK;
 }
 
-/* Whether the step is good, and how long the next one may be. Where it begins a contact that creeps may have another direction than
- * is asked of it, and has that in shorter steps, too. */
+/* Whether the step is good, and how long the next one may be. Where it begins a contact that creeps may have another direction
+ * than is asked of it, and has that in shorter steps, too. */
 static void judge(const struct event *e, size_t slides, double h, double error, struct creep_step *step)
 {
     double defect = 0.0, slow = h, stray = 0.0;

@@ -398,8 +398,8 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
     return TRIBO_OK;
 }
 
-/* How long the first step to try is, 0 if none is to be: such that are worthwhile are longer than least, and most is the longest one.
- * Contacts have to creep for a while; but if they just did so in steps as long as these may be, the others are about to move on. */
+/* How long the first step to try is, 0 if none is to be: such that are worthwhile are longer than least, and most is the longest
+ * one. Contacts have to creep for a while before; but not where such steps just became shorter than that. */
 static double first_trial(struct event *e, const double *y, double least, double most, double error)
 {
     struct creep *c = &e->creep;

@@ -120,8 +120,8 @@ static double length(const double *x)
     return hypot(x[0], x[1]);
 }
 
-/* A contact is at rest whose speed is nothing but rounding, or nothing beside the tolerance and not about to grow: one that begins
- * to slide beside another one that creeps may be slow for many steps. */
+/* A contact is at rest whose speed is nothing but rounding, or nothing beside the tolerance and not growing: one that begins to
+ * slide beside another one that creeps may be slow for many steps. */
 static int rests(const struct stick_slip *m, const struct planar_contact *p)
 {
     const double noise = greater(m->doubt * (m->noise[p->at] + m->noise[p->at + 1]), ROUNDING * p->most);

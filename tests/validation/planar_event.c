@@ -294,8 +294,8 @@ TEST(refused)
     tribo_system_destroy(s);
 }
 
-/* Static limits, which drop at once (0) or fall with the speed (1), nothing changed; of a planar contact, or (2, 3) of a scalar one
- * beside it. Ratios of 1 are none. */
+/* Static limits, which drop at once or fall with the speed (1, 3), nothing changed; of a planar contact, or of a scalar one
+ * beside it (2, 3). Ratios of 1 are none. */
 TEST(refused_static)
 {
     const double diagonal[9] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}, nothing[9] = {0.0}, velocity[3] = {0.3, 0.3, 0.3};
