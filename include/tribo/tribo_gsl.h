@@ -206,11 +206,11 @@ typedef struct tribo_driver tribo_driver;
  *               them, but in systems of up to 4 degrees of freedom
  *               "auto": exact where it can do the system, of up to 200 degrees of freedom, else event; see tribo_driver_method
  *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
- *               Planar contacts: event, and not exact. They must have limits that do not change, and those at rest must not be
- *               redundant (TRIBO_ERR_UNSUPPORTED, where that happens). Where one creeps, much slower than friction would stop it,
- *               event takes steps as long as loads and structure allow, in systems of up to 32 and once its direction has
- *               settled; otherwise steps of that short time, and where too many of these lead nowhere (TRIBO_ERR_STEP)
- *               moreau/fixed is the one to take
+ *               Planar contacts: event, and not exact. Limits must not change then, nor be static ones, and contacts at rest
+ *               must not be redundant (TRIBO_ERR_UNSUPPORTED, where that happens). Where a planar one creeps, much slower than
+ *               friction would stop it, event takes steps as long as loads and structure allow, while up to 128 slide and once
+ *               its direction has settled; otherwise steps of that short time, and where too many of these lead nowhere
+ *               (TRIBO_ERR_STEP) moreau/fixed is the one to take
  *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at
  *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
  *               more than rounding. Redundant contacts at rest hold as long as any forces within their limits hold all of them;

@@ -7,11 +7,13 @@
 
 #define NODES TRIBO_CREEP_NODES
 
-/* Of more planar contacts all follow their series: Newton's matrices are dense. */
-#define MOST_CONTACTS 32
+/* Of more planar contacts that slide all follow their series: Newton's matrices are dense. */
+#define MOST_CONTACTS 128
 
-/* A step pays that is longer than this many times the time in which friction would stop a contact. */
+/* A step pays that is longer than this many times the time in which friction would stop a contact; and than more, as the cube of
+ * their number, where these matrices are most of the work. */
 #define PAYS 100.0
+#define FEW_CONTACTS 32.0
 
 #define MOST_ITERATIONS 10
 #define BISECTIONS 60
@@ -29,6 +31,9 @@
 /* By how much directions of forces may be off, and those of velocities, however small these are. */
 #define MOST_OFF 1e-4
 #define MOST_STRAY 1e-3
+
+/* A step that was shorter than the one before leaves this part of what is astray where it begins, or it is not for its length. */
+#define LESS_STRAY 0.5
 
 /* Over a step speeds grow by this factor at most: what is small where it begins is not to be lost beside what comes. */
 #define FASTER 100.0
@@ -82,22 +87,21 @@ static void set_weights(struct creep *c)
     }
 }
 
-static int reserve(struct event *e)
+static int reserve(struct event *e, size_t slides)
 {
     struct creep *c = &e->creep;
-    const size_t contacts = e->events.stick_slip.plane->count, terms = e->most_order + 1, unknowns = contacts * NODES;
-    if (c->weight && c->contacts >= contacts) {
+    const size_t contacts = e->events.stick_slip.plane->count, terms = e->most_order + 1, unknowns = slides * NODES;
+    if (c->weight && c->contacts >= contacts && c->room >= slides) {
         return TRIBO_OK;
     }
     tribo_creep_free(c);
-    const size_t response = 4 * contacts * contacts * terms;
-    c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 2)) * sizeof *c->weight);
+    const size_t response = 4 * slides * contacts * terms;
+    c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 1) + contacts * NODES) * sizeof *c->weight);
     c->slip = malloc(2 * e->sys->ncontact);
     c->slides = malloc((contacts + unknowns) * sizeof *c->slides);
     if (!c->weight || !c->slip || !c->slides) {
         tribo_creep_free(c);
-        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", contacts,
-                                 plural(contacts));
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", slides, plural(slides));
     }
     c->response = c->weight + terms * NODES * NODES;
     c->matrix = c->response + response;
@@ -106,39 +110,55 @@ static int reserve(struct event *e)
     c->holds = (unsigned char *)c->slip + e->sys->ncontact;
     c->pivot = c->slides + contacts;
     c->contacts = contacts;
+    c->room = slides;
     c->terms = terms;
     set_basis(c);
     set_weights(c);
     return TRIBO_OK;
 }
 
-/* Those that slide, to c->slides. Returns how many. */
-static size_t find_sliding(struct event *e)
+static int is_sliding(const struct stick_slip *m, size_t k)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
+    return m->slip[m->plane->contact[k].at] == TRIBO_IN_PLANE;
+}
+
+static size_t count_sliding(const struct stick_slip *m)
+{
     size_t count = 0;
     for (size_t k = 0; k < m->plane->count; k++) {
-        if (m->slip[m->plane->contact[k].at] == TRIBO_IN_PLANE) {
+        count += (size_t)is_sliding(m, k);
+    }
+    return count;
+}
+
+/* Those that slide, to c->slides. */
+static void find_sliding(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t k = 0, count = 0; k < m->plane->count; k++) {
+        if (is_sliding(m, k)) {
             e->creep.slides[count++] = k;
         }
     }
-    return count;
+}
+
+static int one_begins(const struct stick_slip *m)
+{
+    size_t k = 0;
+    while (k < m->plane->count && !(is_sliding(m, k) && m->plane->contact[k].begins != SLIDES_ON)) {
+        k++;
+    }
+    return k < m->plane->count;
 }
 
 double tribo_creep_least(const struct event *e, const double *y)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    size_t slides = 0;
-    for (size_t k = 0; k < m->plane->count; k++) {
-        const struct planar_contact *p = &m->plane->contact[k];
-        const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
-        slides += (size_t)moves;
-        if (moves && p->begins != SLIDES_ON) {
-            return HUGE_VAL;
-        }
-    }
-    const int can = slides > 0 && m->plane->count <= MOST_CONTACTS && !m->breakaway.falls;
-    return can ? PAYS * tribo_planar_series_stop(m, e->sys, y) : HUGE_VAL;
+    const size_t count = count_sliding(m);
+    const double part = (double)count / FEW_CONTACTS;
+    return count == 0 || count > MOST_CONTACTS || one_begins(m)
+               ? HUGE_VAL
+               : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(m, e->sys, y);
 }
 
 /* --------------------------------------------------------------------------------------------------------- directions */
@@ -174,20 +194,20 @@ static double turn_of(const struct event *e, size_t k)
     return un * dt - ut * dn;
 }
 
-int tribo_creep_settled(const struct event *e, const double *y, double error)
+double tribo_creep_settled(const struct event *e, const double *y, double error)
 {
     const struct stick_slip *m = &e->events.stick_slip;
+    double length = HUGE_VAL;
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
         const double v =
             hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
-        const double stop = v / lesser(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
-        const double turn = m->slip[p->at] == TRIBO_IN_PLANE ? fabs(turn_of(e, k)) : 0.0;
-        if (!(turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v))) {
-            return 0;
-        }
+        const double stop = tribo_planar_series_stop(m, e->sys, p, y);
+        const double turn = is_sliding(m, k) ? fabs(turn_of(e, k)) : 0.0;
+        const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v);
+        length = follows ? length : lesser(length, stop);
     }
-    return 1;
+    return length;
 }
 
 /* As directions turn they may go on. */
@@ -223,7 +243,7 @@ static int find_response(struct event *e, size_t slides)
         memset(e->planar.line[c->slides[s]].ut, 0, bytes);
     }
     int status = tribo_event_series(e);
-    memset(c->response, 0, row * c->terms * row * sizeof *c->response);
+    memset(c->response, 0, 2 * slides * c->terms * row * sizeof *c->response);
     for (size_t s = 0; !status && s < 2 * slides; s++) {
         add_series(e, -1.0, c->response + s * c->terms * row);
     }
@@ -371,15 +391,25 @@ static void take_parts(const struct event *e, size_t k, double tau, double *alon
     *across = un * xt - ut * xn;
 }
 
-/* The direction that the velocity has at tau is another one. That is gone at once, and the velocity with it; in parts of what the
- * velocity may be off. */
-static double find_stray(const struct event *e, size_t k, double tau, double error)
+/* The time in which friction would stop contact k, |x| being size. */
+static double stop_of(const struct event *e, size_t k, double size)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const struct planar_contact *p = &m->plane->contact[k];
+    const double n = p->limit[0] * p->limit[0] * m->diagonal[p->at], t = p->limit[1] * p->limit[1] * m->diagonal[p->at + 1];
+    return size / greater(n, t);
+}
+
+/* The direction that the velocity has at tau in a step of length h is another one. That is gone at once, and the velocity with
+ * it, or as much of it as friction takes in such a step; in parts of what the velocity may be off. */
+static double find_stray(const struct event *e, size_t k, double h, double tau, double error)
 {
     const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
     double along, across;
     take_parts(e, k, tau, &along, &across);
     const double size = greater(hypot(along, across), LEFT * e->planar.line[k].xn[0]);
-    return fabs(across) / size / lesser(MOST_STRAY, error * lesser(p->limit[0], p->limit[1]) / size);
+    const double gone = fabs(across) / size * lesser(1.0, h / stop_of(e, k, size));
+    return gone / lesser(MOST_STRAY, error * lesser(p->limit[0], p->limit[1]) / size);
 }
 
 /* 1 if the contact slides along u; or stops on the way, so that the step ends before it does not. */
@@ -428,7 +458,7 @@ static double find_defect(const struct event *e, size_t k, double h, double erro
 {
     double most = find_off(e, k, h) / allowed(e, k, h, error);
     for (size_t i = 0; i < NODES; i++) {
-        most = greater(most, find_stray(e, k, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
+        most = greater(most, find_stray(e, k, h, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
     }
     return is_with(e, k, h) ? most : HUGE_VAL;
 }
@@ -444,7 +474,7 @@ static double stray_at_nodes(const struct event *e, size_t slides, double h, dou
 {
     double most = 0.0;
     for (size_t j = 0; j < slides * NODES; j++) {
-        most = greater(most, find_stray(e, e->creep.slides[j / NODES], node[j % NODES] * h, error));
+        most = greater(most, find_stray(e, e->creep.slides[j / NODES], h, node[j % NODES] * h, error));
     }
     return most;
 }
@@ -474,27 +504,34 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
     return TRIBO_OK;
 }
 
-/* Whether the step is good, and how long the next one may be; what is off where it begins is so in shorter ones, too. */
+/* Whether the step is good, and how long the next one may be. Where it begins a contact that creeps may have another direction
+ * than is asked of it, and has that in shorter steps, too. */
 static void judge(const struct event *e, size_t slides, double h, double error, struct creep_step *step)
 {
     double defect = 0.0, slow = h, stray = 0.0;
     for (size_t s = 0; s < slides; s++) {
-        stray = greater(stray, find_stray(e, e->creep.slides[s], 0.0, error));
-        defect = greater(defect, find_defect(e, e->creep.slides[s], h, error));
-        slow = lesser(slow, find_slow_part(e, e->creep.slides[s], h));
+        const size_t k = e->creep.slides[s];
+        const double begins = find_stray(e, k, h, 0.0, error);
+        const int creeps = h > PAYS * stop_of(e, k, e->planar.line[k].xn[0]);
+        stray = creeps ? greater(stray, begins) : stray;
+        defect = greater(defect, greater(begins, find_defect(e, k, h, error)));
+        slow = lesser(slow, find_slow_part(e, k, h));
     }
-    step->good = stray <= 1.0 && defect <= 1.0 && slow == h;
-    step->next = stray > 1.0 ? 0.0 : slow < h ? slow : h * change(defect);
+    const int stays = stray > 1.0 && stray > LESS_STRAY * step->stray;
+    step->good = defect <= 1.0 && slow == h;
+    step->next = stays ? 0.0 : slow < h ? slow : h * change(defect);
+    step->stray = stray;
 }
 
 int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step)
 {
     struct creep *c = &e->creep;
-    int status = reserve(e), found = 0;
+    const size_t slides = count_sliding(&e->events.stick_slip);
+    int status = reserve(e, slides), found = 0;
     if (status) {
         return status;
     }
-    const size_t slides = find_sliding(e);
+    find_sliding(e);
     for (size_t s = 0; s < slides; s++) {
         guess(e, c->slides[s], h);
     }
@@ -503,7 +540,8 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     status = status ? status : learn_response(e, slides);
     status = status ? status : find_angles(e, slides, h, error, &found);
     e->planar.given = 0;
-    *step = (struct creep_step){0, SHRINKS * h};
+    step->good = 0;
+    step->next = SHRINKS * h;
     if (!status && found) {
         judge(e, slides, h, error, step);
     }

@@ -402,7 +402,7 @@ static double planar_length(struct event *e, double most)
 static int try_creep(struct event *e, double t, const double *y, double h, double least, double error, double *length)
 {
     struct stick_slip *m = &e->events.stick_slip;
-    struct creep_step step = {0, h};
+    struct creep_step step = {0, h, HUGE_VAL};
     for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
         h = step.next;
         const int status = tribo_creep_expand(e, t, y, h, error, &step);
@@ -415,7 +415,26 @@ static int try_creep(struct event *e, double t, const double *y, double h, doubl
         step.next = step.good && most < h ? 0.9 * most : step.next;
     }
     e->creep.length = *length > 0.0 ? step.next : 0.0;
+    e->creep.shorter = *length > 0.0 ? 0.0 : step.next;
     return TRIBO_OK;
+}
+
+/* How long the first step to try is, 0 if none is to be: such that are worthwhile are longer than least, and most is the longest
+ * one. Contacts have to creep for a while before; but not where such steps just became shorter than that. */
+static double first_trial(struct event *e, const double *y, double least, double most, double error)
+{
+    struct creep *c = &e->creep;
+    if (c->length > least) {
+        return lesser(c->length, most);
+    }
+    c->wait = c->length > 0.0 ? 0 : c->wait;
+    c->length = 0.0;
+    if (c->waited++ < c->wait) {
+        return 0.0;
+    }
+    const double from = c->shorter > least ? lesser(c->shorter, most) : FIRST * most;
+    const double first = lesser(from, tribo_creep_settled(e, y, error));
+    return first > least ? first : 0.0;
 }
 
 /* The same if contacts creep, and have done so for a while; most is the longest step. */
@@ -426,20 +445,20 @@ static int creep(struct event *e, double t, const double *y, double most, double
     const size_t before = e->sys->evaluations;
     c->wait = e->events.anew ? PATIENCE : c->wait;
     if (e->events.anew || !(least < most)) {
-        c->length = 0.0;
+        c->length = c->shorter = 0.0;
         c->waited = 0;
     }
     e->events.anew = 0;
     *length = 0.0;
-    const double last = c->length;
-    if (!(least < most) || (last == 0.0 && c->waited++ < c->wait)) {
+    if (!(least < most)) {
         return TRIBO_OK;
     }
     const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
-    if (last == 0.0 && !tribo_creep_settled(e, y, error)) {
+    const double last = c->length, first = first_trial(e, y, least, most, error);
+    if (first == 0.0) {
         return TRIBO_OK;
     }
-    const int status = try_creep(e, t, y, last > 0.0 ? lesser(last, most) : FIRST * most, least, error, length);
+    const int status = try_creep(e, t, y, first, least, error, length);
     c->length = *length == most ? greater(c->length, last) : c->length;
     c->wait = *length > 0.0 ? PATIENCE : DEAR * (e->sys->evaluations - before) / (e->most_order + 1);
     c->waited = 0;

@@ -105,16 +105,22 @@ static int answer(struct planar_series *s, size_t q, struct stick_slip *m, const
     return TRIBO_OK;
 }
 
-double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const double *y)
+double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p,
+                                const double *y)
+{
+    double time[2];
+    for (size_t d = 0; d < 2; d++) {
+        time[d] = fabs(tribo_stick_slip_velocity(m, sys, p->at + d, y)) / (p->limit[d] * m->diagonal[p->at + d]);
+    }
+    return greater(time[0], time[1]);
+}
+
+double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     double least = HUGE_VAL;
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        double time[2];
-        for (size_t d = 0; d < 2; d++) {
-            time[d] = fabs(tribo_stick_slip_velocity(m, sys, p->at + d, y)) / (p->limit[d] * m->diagonal[p->at + d]);
-        }
-        least = slides(m, p) && p->begins == SLIDES_ON ? lesser(least, greater(time[0], time[1])) : least;
+        least = slides(m, p) && p->begins == SLIDES_ON ? lesser(least, tribo_planar_series_stop(m, sys, p, y)) : least;
     }
     return least;
 }
@@ -122,7 +128,7 @@ double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *
 /* As many terms as numbers have room for, order at most: time counts in parts of that in which friction would stop a contact. */
 static size_t find_order(size_t order, const struct stick_slip *m, const tribo_system *sys, const double *y)
 {
-    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_stop(m, sys, y)), 1.0);
+    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m, sys, y)), 1.0);
     return (size_t)greater(lesser((double)order, most), LEAST_ORDER);
 }
 

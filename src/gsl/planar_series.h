@@ -36,8 +36,11 @@ struct planar_series {
 
 void tribo_planar_series_free(struct planar_series *s);
 
-/* The least time in which friction would stop a planar contact that slides already; HUGE_VAL if there is none. */
-double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const double *y);
+/* The time in which friction would stop the planar contact p; and the least one of those that slide already, HUGE_VAL if there
+ * is none. */
+double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p,
+                                const double *y);
+double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_system *sys, const double *y);
 
 /* The value at h of a series x [powers + 1]. */
 double tribo_planar_series_value(const double *x, size_t powers, double h);

@@ -11,6 +11,7 @@
 #include "stick_slip.h"
 #include "../common/real.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -119,18 +120,40 @@ static double length(const double *x)
     return hypot(x[0], x[1]);
 }
 
-/* The speed below which a contact is at rest. */
-static double nothing(const struct stick_slip *m, const struct planar_contact *p)
+/* A contact is at rest whose speed is nothing but rounding, or nothing beside the tolerance and not growing: one that begins to
+ * slide beside another one that creeps may be slow for many steps. */
+static int rests(const struct stick_slip *m, const struct planar_contact *p)
 {
-    const double noise = m->doubt * (m->noise[p->at] + m->noise[p->at + 1]);
-    const double wanted = NOTHING * (m->abstol + m->reltol * p->most);
-    return greater(greater(noise, wanted), ROUNDING * p->most);
+    const double noise = greater(m->doubt * (m->noise[p->at] + m->noise[p->at + 1]), ROUNDING * p->most);
+    return p->now <= noise || (p->now <= NOTHING * (m->abstol + m->reltol * p->most) && p->now <= p->before);
 }
 
 static void set_slip(struct stick_slip *m, const struct planar_contact *p, signed char slip)
 {
     tribo_stick_slip_set(m, p->at, slip);
     tribo_stick_slip_set(m, p->at + 1, slip);
+}
+
+/* The forces of contacts in a plane are followed by limits that are the same at all times and speeds, at rest and not. */
+static int check_limits(const struct stick_slip *m, const tribo_system *sys, size_t planar)
+{
+    size_t i = 0;
+    while (i < m->contacts && !(tribo_breakaway_ratio(&m->breakaway, i) > 1.0)) {
+        i++;
+    }
+    if (i < m->contacts) {
+        return tribo_system_fail(
+            sys, TRIBO_ERR_UNSUPPORTED,
+            "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = %g: take "
+            "moreau/fixed",
+            i, i, m->breakaway.ratio[i]);
+    }
+    return !tribo_system_limits_vary(sys)
+               ? TRIBO_OK
+               : tribo_system_fail(
+                     sys, TRIBO_ERR_UNSUPPORTED,
+                     "method event knows no limits that change with time beside planar contacts, of which the system has %zu",
+                     planar);
 }
 
 int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues)
@@ -143,14 +166,11 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     if (!planar || continues) {
         return TRIBO_OK;
     }
-    if (tribo_system_limits_vary(sys)) {
-        return tribo_system_fail(
-            sys, TRIBO_ERR_UNSUPPORTED,
-            "method event knows no limits that change with time beside planar contacts, of which the system has %zu", planar);
-    }
-    const int status = create(m, sys);
+    int status = check_limits(m, sys, planar);
+    status = status ? status : create(m, sys);
     for (size_t k = 0; !status && k < m->plane->count; k++) {
-        set_slip(m, &m->plane->contact[k], TRIBO_IN_PLANE); /* whether it is at rest is seen by its speed */
+        set_slip(m, &m->plane->contact[k], TRIBO_IN_PLANE); /* whether it is at rest is seen by its speed alone */
+        m->plane->contact[k].now = HUGE_VAL;
     }
     return status;
 }
@@ -167,9 +187,10 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
         for (size_t d = 0; d < 2; d++) {
             v[d] = tribo_stick_slip_find_velocity(m, sys, p->at + d, y);
         }
-        p->most = greater(p->most, length(v));
+        p->now = length(v);
+        p->most = greater(p->most, p->now);
         p->begins = SLIDES_ON;
-        if (m->slip[p->at] == TRIBO_IN_PLANE && length(v) <= nothing(m, p)) {
+        if (m->slip[p->at] == TRIBO_IN_PLANE && rests(m, p)) {
             set_slip(m, p, 0);
             m->plane->stopped = p->at;
             found++;
@@ -297,6 +318,7 @@ static void let_go(struct stick_slip *m, struct planar_contact *p, int begins)
     const double size = length(part);
     set_slip(m, p, TRIBO_IN_PLANE);
     p->begins = begins;
+    p->now = 0.0;
     for (size_t d = 0; d < 2; d++) {
         p->direction[d] = -part[d] / size;
         m->force[p->at + d] = -p->limit[d] * p->direction[d];
@@ -393,6 +415,9 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
 
 int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
+    for (size_t k = 0; k < m->plane->count; k++) {
+        m->plane->contact[k].before = m->plane->contact[k].now;
+    }
     tribo_stick_slip_begin_decision(m, sys, t, y);
     int status = find_resting(m, sys, y);
     if (!status) {

@@ -16,7 +16,8 @@ enum { SLIDES_ON = 0, BY_ACCELERATION = 1, BY_FORCE = 2 };
 struct planar_contact {
     size_t at;           /* its first direction; the other one follows */
     double limit[2];     /* both > 0 */
-    double most;         /* the largest speed seen */
+    double most;         /* the largest speed seen, */
+    double now, before;  /* that at this decision, and at the one before; 0 where it begins to slide */
     int begins;          /* one of these */
     double direction[2]; /* while it begins: of limit v, which is against that of force/limit; length 1 */
 };

@@ -1,6 +1,7 @@
 /* Planar contacts that creep in driver "event": motions of closed form, which take no more steps the slower they are. */
 #include "run.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const double unit[4] = {1.0, 0.0, 0.0, 1.0}, none[4] = {0.0};
@@ -179,6 +180,64 @@ TEST(coupled)
     tribo_system_destroy(s);
 }
 
+/* Masses of 1 that nothing joins, each on a planar contact, under loads of frequency 1. */
+struct block {
+    double limit, place[2], speed[2], cosine[2], sine[2];
+};
+
+/* Returns how many steps they take until t1; y [4 count + 1]. */
+static size_t run_blocks(size_t count, const struct block *b, double tolerance, double t1, double *y)
+{
+    const size_t n = 2 * count;
+    double mass[16] = {0.0}, limit[4], cosine[4], sine[4], t = 0.0;
+    const double springs[16] = {0.0};
+    tribo_system *s;
+    y[2 * n] = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        mass[i * (n + 1)] = 1.0;
+        limit[i] = b[i / 2].limit;
+        cosine[i] = b[i / 2].cosine[i % 2];
+        sine[i] = b[i / 2].sine[i % 2];
+        y[i] = b[i / 2].place[i % 2];
+        y[n + i] = b[i / 2].speed[i % 2];
+    }
+    assert_ok(tribo_system_linear(&s, n, n, mass, NULL, springs, mass, 0, NULL, 0));
+    assert_ok(tribo_set_planar(tribo_system_context(s), count, (const size_t[]){0, 2}));
+    assert_ok(tribo_set_limit(tribo_system_context(s), limit));
+    assert_ok(tribo_system_add_load(s, 1.0, cosine, sine));
+    tribo_driver *d = driver_create(s, "event", 0.1, tolerance);
+    driver_advance(d, &t, t1, y);
+    const size_t steps = driver_count(d, TRIBO_COUNT_STEPS);
+    tribo_driver_destroy(d);
+    tribo_system_destroy(s);
+    return steps;
+}
+
+/* Beside one that creeps the other block turns fast; or slows down until its load has turned it, within a short time; or begins
+ * to slide so slowly that its speed is nothing beside the tolerance for long. It moves as it does alone. */
+TEST(beside)
+{
+    const double v0 = 1e-7, t1 = 4.0;
+    const struct block other[3] = {
+        {.limit = 0.6, .place = {0.5, 0.0}, .speed = {0.0, 0.5}, .cosine = {-1.5, 0.6}, .sine = {-0.6, -0.2}},
+        {.limit = 0.5, .speed = {5e-3, 0.0}, .cosine = {0.0, 0.51}, .sine = {0.0, 0.0}},
+        {.limit = 3e-5, .cosine = {0.0, 0.0}, .sine = {3.2e-5, 1e-5}},
+    };
+    const struct block both[2] = {
+        {.limit = 1.0, .place = {v0, 0.0}, .speed = {0.0, v0}, .cosine = {-v0, 1.0}, .sine = {-1.0, -v0}}, other[_i]};
+    double y[9], alone[5];
+    run_blocks(1, &other[_i], 1e-12, t1, alone);
+    const size_t steps = run_blocks(2, both, 1e-10, t1, y);
+    for (size_t k = 0; k < 2; k++) {
+        assert_close(y[2 + k], alone[k], 1e-8);
+        assert_close(y[6 + k], alone[2 + k], 1e-8);
+    }
+    const double turned[5] = {y[0], y[1], y[4], y[5], y[8] - alone[4]};
+    assert_turned(turned, v0, t1);
+    require(hypot(alone[0], alone[1]) > 1e-8, "the other block rests");
+    require(steps <= 3 * ENOUGH, "%zu steps", steps);
+}
+
 /* Limits that differ by direction, a load that turns and swings, and a kick across to begin with: tolerances are kept, and
  * methods with steps come to the same. */
 static void run_ellipse(const char *method, double dt, double tolerance, double *y)
@@ -205,28 +264,55 @@ TEST(ellipse)
     require(fine[4] > 1e-4, "nothing slides");
 }
 
-/* More contacts than that are solved for at once go on by short steps, to an error in the end. */
-enum { MANY = 33 };
-
-TEST(too_many)
+/* So many blocks that turn alike. */
+static tribo_system *many_turning(size_t many, double v0, double *y)
 {
-    static double mass[4 * MANY * MANY], springs[4 * MANY * MANY], y[4 * MANY + 1];
-    const double v0 = 1e-9;
-    double cosine[2 * MANY], sine[2 * MANY], t = 0.0;
-    size_t first[MANY];
-    for (size_t i = 0; i < 2 * MANY; i++) {
-        mass[i * (2 * MANY + 1)] = 1.0;
+    double *mass = calloc(8 * many * many + 5 * many, sizeof *mass), *springs = mass + 4 * many * many;
+    double *cosine = springs + 4 * many * many, *sine = cosine + 2 * many;
+    size_t *first = calloc(many, sizeof *first);
+    for (size_t i = 0; i < 2 * many; i++) {
+        mass[i * (2 * many + 1)] = 1.0;
         first[i / 2] = i - i % 2;
         cosine[i] = i % 2 ? 1.0 : -v0;
         sine[i] = i % 2 ? -v0 : -1.0;
         y[i] = i % 2 ? 0.0 : v0;
-        y[2 * MANY + i] = i % 2 ? v0 : 0.0;
+        y[2 * many + i] = i % 2 ? v0 : 0.0;
     }
+    y[4 * many] = 0.0;
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 2 * MANY, 2 * MANY, mass, NULL, springs, mass, 0, NULL, 0));
-    assert_ok(tribo_set_planar(tribo_system_context(s), MANY, first));
+    assert_ok(tribo_system_linear(&s, 2 * many, 2 * many, mass, NULL, springs, mass, 0, NULL, 0));
+    assert_ok(tribo_set_planar(tribo_system_context(s), many, first));
     assert_ok(tribo_set_limit_all(tribo_system_context(s), 1.0));
     assert_ok(tribo_system_add_load(s, 1.0, cosine, sine));
+    free(first);
+    free(mass);
+    return s;
+}
+
+enum { SOME = 40, MANY = 129 };
+
+TEST(many)
+{
+    double y[4 * SOME + 1], t = 0.0;
+    const double v0 = 1e-7, t1 = 2.0;
+    tribo_system *s = many_turning(SOME, v0, y);
+    tribo_driver *d = driver_create(s, "event", 0.1, 1e-10);
+    driver_advance(d, &t, t1, y);
+    for (size_t k = 0; k < SOME; k++) {
+        const double *q = y + 2 * k, *u = q + 2 * SOME, one[5] = {q[0], q[1], u[0], u[1], y[4 * SOME] / SOME};
+        assert_turned(one, v0, t1);
+    }
+    require(driver_count(d, TRIBO_COUNT_STEPS) <= ENOUGH, "%zu steps", driver_count(d, TRIBO_COUNT_STEPS));
+    tribo_driver_destroy(d);
+    tribo_system_destroy(s);
+}
+
+/* More contacts than that are solved for at once go on by short steps, to an error in the end. */
+TEST(too_many)
+{
+    double y[4 * MANY + 1], t = 0.0;
+    const double v0 = 1e-9;
+    tribo_system *s = many_turning(MANY, v0, y);
     tribo_driver *d = driver_create(s, "event", 0.1, 1e-10);
     assert_status(tribo_driver_advance(d, &t, 1.0, y), TRIBO_ERR_STEP);
     assert_says(tribo_driver_message(d), "lead nowhere: take moreau/fixed");
@@ -236,4 +322,5 @@ TEST(too_many)
     tribo_system_destroy(s);
 }
 
-TEST_MAIN("planar_creep", {turn, 8}, {parts, 1}, {comes_to_rest, 4}, {coupled, 1}, {ellipse, 1}, {too_many, 1})
+TEST_MAIN("planar_creep", {turn, 8}, {parts, 1}, {comes_to_rest, 4}, {coupled, 1}, {beside, 3}, {ellipse, 1}, {many, 1},
+          {too_many, 1})
