@@ -10,11 +10,6 @@
 
 #include "compiler.h"
 
-#if defined(TRIBO_GNU_C) && defined(__SSE2__)
-#include <emmintrin.h>
-#define TRIBO_STREAMS
-#endif
-
 #if defined(TRIBO_CLONES_512)
 #define TRIBO_SIMD __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #elif defined(TRIBO_CLONES)
@@ -36,6 +31,10 @@
 #else
 #define TRIBO_UNROLLED
 #endif
+
+/* Contacts that are looked at together: few enough that in a large scene most chunks have none near stick, and all that is read
+ * of them stays in the first-level cache. */
+#define TRIBO_CHUNK 128
 
 /* Where a line of cache begins, so that no vector of an array lies in two: at most TRIBO_LINE - 1 numbers on. */
 enum { TRIBO_LINE = 8 };
@@ -59,33 +58,6 @@ static inline void tribo_expect(const void *from, size_t bytes, int written)
     }
 #else
     (void)from, (void)bytes, (void)written;
-#endif
-}
-
-/* A copy to memory that is far away and will not be read soon, which need not come here to be written: between threads it is
- * over with tribo_stream_end. Elsewhere a plain copy. */
-static inline void tribo_stream(double *to, const double *from, size_t n)
-{
-#if defined(TRIBO_STREAMS)
-    size_t i = 0;
-    for (; i < n && (uintptr_t)(to + i) % sizeof(__m128d) > 0; i++) {
-        to[i] = from[i];
-    }
-    for (; i + 2 <= n; i += 2) {
-        _mm_stream_pd(to + i, _mm_loadu_pd(from + i));
-    }
-    for (; i < n; i++) {
-        to[i] = from[i];
-    }
-#else
-    memcpy(to, from, n * sizeof *to);
-#endif
-}
-
-static inline void tribo_stream_end(void)
-{
-#if defined(TRIBO_STREAMS)
-    _mm_sfence();
 #endif
 }
 

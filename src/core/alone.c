@@ -3,6 +3,7 @@
  * Since outputs stay as they are where a call fails, all of v and a is read and found good before anything is written. Then come
  * the contacts chunk by chunk. Arrays of a large scene come from far away, and so nothing is read that leaves no choice: 1/R_ii
  * or limits that are the same for all, a where all contacts slide. */
+#include "../common/stream.h"
 #include "check.h"
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* whose forces stay in the first-level cache */
@@ -104,15 +105,19 @@ static void find_few(tribo_context *ctx, const struct call *call, double *f)
  * hand. */
 static void find_many(tribo_context *ctx, const struct call *call, double *f)
 {
+    struct stream to;
+    tribo_stream_begin(&to, f, ctx->n >= TRIBO_MANY);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        double room[TRIBO_CHUNK], *force = f ? f + i : room;
+        double *force = tribo_stream_room(&to);
         const int slide = call->find(ctx, call, k, force);
         if (slide && ctx->follow.chunk[k].least > 0.0) {
             tribo_find_directions(tribo_chunk_size(ctx, i), call->v + i, ctx->last.did.of + i);
         } else {
             write_slips(ctx, call->holds, k, force, ctx->last.did.of + i);
         }
+        tribo_stream_put(&to, tribo_chunk_size(ctx, i));
     }
+    tribo_stream_end(&to);
     ctx->last.did.all_stored = 0;
     ctx->last.slips = SLIPS_WRITTEN;
 }
@@ -222,7 +227,7 @@ void tribo_stop_alone(const tribo_context *ctx, size_t k, double dt, const doubl
     if (!chunk->plain || dt < LEAST_STEP || !tribo_all_plain(v, n)) {
         stop_far(n, dt, v, inverse, &b, f);
     } else if (chunk->alike && !b.lower && b.upper == ctx->follow.contacts.limit + k * TRIBO_CHUNK) {
-        stop_alike(n, scale, v, inverse, *b.upper, f);
+        stop_alike(n, scale, v, inverse, chunk->largest, f);
     } else {
         stop(n, scale, v, inverse, b.lower, b.upper, f);
     }
@@ -252,7 +257,7 @@ static int step_chunk(const tribo_context *ctx, const struct call *call, size_t 
     const struct contacts c = tribo_chunk_contacts(ctx, i);
     const double *v = call->v + i, reach = reach_of(&ctx->follow.chunk[k], call->dt);
     if (fabs(*v) <= reach || tribo_any_in_band(n, v, reach)) {
-        tribo_stop_alone(ctx, k, call->dt, v, (struct bounds){NULL, c.limit}, f);
+        tribo_stop_alone(ctx, k, call->dt, v, (struct bounds){NULL, ctx->follow.contacts.limit + i}, f);
         return 0;
     }
     slide(&c, n, v, f);

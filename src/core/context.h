@@ -20,10 +20,6 @@
 
 struct message;
 
-/* Contacts that are looked at together: few enough that in a large scene most chunks have none near stick, and all that is read
- * of them stays in the first-level cache. */
-#define TRIBO_CHUNK 128
-
 /* Whether all contacts of a chunk have the same width and rate, and also those of the chunk before. */
 enum { UNEVEN, EVEN, EVEN_AS_BEFORE };
 
@@ -37,6 +33,7 @@ struct chunk {
     int plain;             /* 1/R_ii are TRIBO_PLAIN at most */
     int even;              /* UNEVEN, ... */
     int alike;             /* all have the same width, rate, and limit, above 0 */
+    size_t model;          /* from this contact on widths and rates are the same, and limits if alike: see like */
 };
 
 /* From this number of contacts on an output does not stay in any cache. */
@@ -144,9 +141,12 @@ static inline size_t tribo_chunk_size(const tribo_context *ctx, size_t i)
 /* The contacts of the chunk that begins with i, as laws see them. */
 static inline struct contacts tribo_chunk_contacts(const tribo_context *ctx, size_t i)
 {
-    struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-    c.alike = ctx->follow.chunk[i / TRIBO_CHUNK].alike;
-    return c;
+    const struct chunk *chunk = &ctx->follow.chunk[i / TRIBO_CHUNK];
+    const struct contacts *c = &ctx->follow.contacts;
+    const size_t limits = chunk->alike ? chunk->model : i;
+    return (struct contacts){
+        c->limit + limits, c->bound + limits, c->width + chunk->model, c->rate + chunk->model, c->moving + i, c->follows,
+        c->scales,         chunk->alike};
 }
 
 /* Bounds of contacts; lower NULL: -upper. */

@@ -1,6 +1,7 @@
 /* Forces of contacts whose f_eq is known. */
 #include <math.h>
 
+#include "../common/stream.h"
 #include "check.h"
 
 /* f_eq as laws read it: where it does not matter it need not be finite, nor even be set. */
@@ -89,53 +90,48 @@ static int check_force(const tribo_context *ctx, const double *v, const double *
     return status || !ctx->planar ? status : tribo_planar_check_feq(ctx, v, feq);
 }
 
-/* Each output may be NULL. streams: they do not go to memory by way of the caches, which first would read what is written. This
- * is worth it where more is written than read. */
-struct outputs {
-    double *f;
-    struct tangents d;
-    int streams;
-};
+/* Forces and derivatives, each of which may be NULL. */
+enum { FORCES, BY_V, BY_FEQ, BY_LIMIT, OUTPUTS };
 
-/* Where output x of contact i goes, if anywhere; otherwise where it does not matter. */
-static double *place_of(double *x, size_t i, double *elsewhere)
+/* What is found of the chunk that begins with i goes on its way; what is read soon is asked for in the meantime. */
+static void pass_on(const tribo_context *ctx, size_t i, const double *v, const double *feq, struct stream *out)
 {
-    return x ? x + i : elsewhere;
+    enum { AHEAD = 4 * TRIBO_CHUNK };
+    for (int k = 0; k < OUTPUTS; k++) {
+        tribo_stream_put(&out[k], tribo_chunk_size(ctx, i));
+    }
+    if (ctx->n < TRIBO_MANY || ctx->n - i < AHEAD + TRIBO_CHUNK) {
+        return;
+    }
+    const struct chunk *chunk = &ctx->follow.chunk[(i + AHEAD) / TRIBO_CHUNK];
+    const struct contacts *c = &ctx->follow.contacts;
+    const double *array[] = {v, feq, chunk->alike ? NULL : c->limit, chunk->even ? NULL : c->width, chunk->even ? NULL : c->rate};
+    for (size_t k = 0; k < sizeof array / sizeof *array; k++) {
+        if (array[k]) {
+            tribo_expect(array[k] + i + AHEAD, TRIBO_CHUNK * sizeof *v, 0);
+        }
+    }
 }
 
 static void evaluate_chunk(const tribo_context *ctx, const struct contacts *c, size_t i, const double *v, const double *feq,
-                           const struct outputs *out)
+                           struct stream *out)
 {
-    const struct tangents *d = &out->d;
     const size_t n = tribo_chunk_size(ctx, i);
-    double room[3][TRIBO_CHUNK];
-    if (out->f) {
-        ctx->set.law->force(c, n, v, feq, out->f + i);
+    double *to[OUTPUTS];
+    for (int k = 0; k < OUTPUTS; k++) {
+        to[k] = tribo_stream_room(&out[k]);
     }
-    if (d->dv || d->dfeq || d->dlimit) {
-        const struct tangents at = {place_of(d->dv, i, room[0]), place_of(d->dfeq, i, room[1]), place_of(d->dlimit, i, room[2])};
-        tribo_law_tangents(ctx, c, i, n, v, feq, &at);
-    }
-}
-
-static void stream_chunk(const tribo_context *ctx, const struct contacts *c, size_t i, const double *v, const double *feq,
-                         const struct outputs *out)
-{
-    double room[4][TRIBO_CHUNK], *const to[] = {out->f, out->d.dv, out->d.dfeq, out->d.dlimit};
-    const size_t n = tribo_chunk_size(ctx, i);
-    ctx->set.law->force(c, n, v, feq, room[0]);
-    tribo_law_tangents(ctx, c, i, n, v, feq, &(struct tangents){room[1], room[2], room[3]});
-    for (int k = 0; k < 4; k++) {
-        if (to[k]) {
-            tribo_stream(to[k] + i, room[k], n);
-        }
+    if (out[BY_V].to || out[BY_FEQ].to || out[BY_LIMIT].to) {
+        tribo_law_tangents(ctx, c, i, n, v, feq, &(struct tangents){to[FORCES], to[BY_V], to[BY_FEQ], to[BY_LIMIT]});
+    } else if (out[FORCES].to) {
+        ctx->set.law->force(c, n, v, feq, to[FORCES]);
     }
 }
 
 /* Whether all contacts of a chunk and of the one before are alike. */
 static inline int goes_on(const struct chunk *chunk)
 {
-    return chunk->alike && chunk[-1].alike && chunk->even == EVEN_AS_BEFORE && chunk->largest == chunk[-1].largest;
+    return chunk->alike && chunk[-1].alike && chunk->model == chunk[-1].model;
 }
 
 /* Forces where laws take f_eq as it is. Chunks that are alike are one loop: memory is far away where a loop begins. */
@@ -151,8 +147,12 @@ static void evaluate_plain(const tribo_context *ctx, const double *v, const doub
     }
 }
 
-static void evaluate_chunks(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
+static void evaluate_chunks(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
 {
+    struct stream to[OUTPUTS];
+    for (int k = 0; k < OUTPUTS; k++) {
+        tribo_stream_begin(&to[k], out[k], ctx->n >= TRIBO_MANY);
+    }
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double room[TRIBO_CHUNK], limit[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
@@ -162,18 +162,19 @@ static void evaluate_chunks(const tribo_context *ctx, int plain, const double *v
             tribo_find_limits(ctx, i, n, v + i, used, limit);
             c.limit = c.bound = limit;
         }
-        (out->streams ? stream_chunk : evaluate_chunk)(ctx, &c, i, v + i, used, out);
+        evaluate_chunk(ctx, &c, i, v + i, used, to);
+        pass_on(ctx, i, v, plain ? feq : NULL, to);
     }
-    if (out->streams) {
-        tribo_stream_end();
+    for (int k = 0; k < OUTPUTS; k++) {
+        tribo_stream_end(&to[k]);
     }
 }
 
-static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, const struct outputs *out)
+static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
 {
-    const int only_f = out->f && !out->d.dv && !out->d.dfeq && !out->d.dlimit;
-    if (only_f && plain && !ctx->set.breaking) {
-        evaluate_plain(ctx, v, feq, out->f);
+    const int only_f = out[FORCES] && !out[BY_V] && !out[BY_FEQ] && !out[BY_LIMIT];
+    if (only_f && plain && !ctx->set.breaking && ctx->n < TRIBO_MANY) {
+        evaluate_plain(ctx, v, feq, out[FORCES]);
     } else {
         evaluate_chunks(ctx, plain, v, feq, out);
     }
@@ -196,7 +197,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
         *f = ctx->set.law->force_of_one(&ctx->follow.contacts, *v, ctx->set.law->uses_feq ? *feq : 0.0);
         return TRIBO_OK;
     }
-    evaluate(ctx, plain, v, feq, &(struct outputs){f, {NULL, NULL, NULL}, 0});
+    evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, NULL, NULL, NULL});
     return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -216,7 +217,7 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
                           "derivatives of planar contact %zu are no diagonals: see tribo_force_tangent_planar",
                           ctx->planar->first[0]);
     }
-    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}, ctx->n >= TRIBO_MANY});
+    evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -241,7 +242,7 @@ int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const 
     if (status) {
         return status;
     }
-    evaluate(ctx, plain, v, feq, &(struct outputs){f, {df_dv, df_dfeq, df_dlimit}, ctx->n >= TRIBO_MANY});
+    evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
     spread(ctx->n, df_dv);
     spread(ctx->n, df_dfeq);
     spread(ctx->n, df_dlimit);

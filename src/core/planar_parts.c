@@ -47,8 +47,7 @@ double tribo_planar_carried(const struct law *law, double speed, double *slope)
     double f = -1.0;
     struct tangent d = {0.0, 0.0, 0.0};
     if (!law->uses_feq) {
-        law->force(&c, 1, &speed, &none, &f);
-        law->tangent(&c, 1, &speed, &none, &(struct tangents){&d.dv, &d.dfeq, &d.dlimit});
+        law->tangent(&c, 1, &speed, &none, &(struct tangents){&f, &d.dv, &d.dfeq, &d.dlimit});
     }
     *slope = d.dv;
     return f;

@@ -115,6 +115,7 @@ static void cut_far(tribo_context *ctx)
     }
     for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
         ctx->follow.chunk[k].alike = 0;
+        ctx->follow.chunk[k].model = k * TRIBO_CHUNK;
     }
     c->bound = ctx->follow.cut_limit;
     *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
@@ -127,6 +128,12 @@ static double band_of(const struct chunk *chunk, int follows)
     }
     const double widest = follows ? greater(product(chunk->widest, chunk->largest), DBL_MIN) : chunk->widest;
     return widest < TRIBO_FAR ? widest : DBL_MAX;
+}
+
+/* Whether a chunk's contacts are as those of the one before, in width and rate, and if they are alike in limit too. */
+static inline int goes_on(const struct chunk *chunk)
+{
+    return chunk->even == EVEN_AS_BEFORE && (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
 }
 
 void tribo_refresh_limits(tribo_context *ctx)
@@ -143,6 +150,7 @@ void tribo_refresh_limits(tribo_context *ctx)
         ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
         chunk->band = band_of(chunk, follows);
         chunk->alike = !ctx->set.breaking && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
+        chunk->model = !ctx->set.breaking && goes_on(chunk) ? chunk[-1].model : k * TRIBO_CHUNK;
     }
     if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         cut_far(ctx);

@@ -159,8 +159,9 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
     for (size_t k = 0; ctx->set.breaking && k < n; k++) {
         struct contacts one = tribo_contacts_from(c, k);
         struct tangent fixed;
+        double ignored;
         one.scales = 0;
-        ctx->set.law->tangent(&one, 1, v + k, feq + k, &(struct tangents){&fixed.dv, &fixed.dfeq, &fixed.dlimit});
+        ctx->set.law->tangent(&one, 1, v + k, feq + k, &(struct tangents){&ignored, &fixed.dv, &fixed.dfeq, &fixed.dlimit});
         d->dv[k] += product(fixed.dlimit, tribo_limit_rate(ctx, i + k, v[k]));
         d->dlimit[k] *= one.bound[0] > 0.0 ? quotient(one.bound[0], ctx->follow.cut_limit[i + k]) : 1.0;
     }

@@ -7,13 +7,13 @@
 static void linearize_laws(tribo_context *ctx, const double *v, const double *a)
 {
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double dv[TRIBO_CHUNK], dfeq[TRIBO_CHUNK], dlimit[TRIBO_CHUNK];
+        double f[TRIBO_CHUNK], dv[TRIBO_CHUNK], dfeq[TRIBO_CHUNK], dlimit[TRIBO_CHUNK];
         const size_t n = tribo_chunk_size(ctx, i);
         const struct contacts c = tribo_chunk_contacts(ctx, i);
         if (tribo_all_alone(ctx)) {
             tribo_find_feq(ctx, i, n, a, ctx->last.feq + i);
         }
-        tribo_law_tangents(ctx, &c, i, n, v + i, ctx->last.feq + i, &(struct tangents){dv, dfeq, dlimit});
+        tribo_law_tangents(ctx, &c, i, n, v + i, ctx->last.feq + i, &(struct tangents){f, dv, dfeq, dlimit});
         for (size_t k = 0; k < n; k++) {
             ctx->last.tangent[i + k] = (struct tangent){dv[k], dfeq[k], dlimit[k]};
         }

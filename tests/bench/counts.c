@@ -42,7 +42,7 @@ static double count_kernel(enum kernel kernel, size_t n, int alike)
 {
     struct kernel_scene s;
     const struct work w = {run_kernel, &s, n == 1 ? 10000 : 100};
-    kernel_scene_create(&s, kernel, n, alike);
+    kernel_scene_create(&s, kernel, n, alike ? ALL : NOTHING);
     for (int k = 0; k < WARM; k++) {
         kernel_call(&s);
     }

@@ -13,7 +13,7 @@ const char *const kernel_name[KERNELS] = {"tribo_force",
                                           "tribo_step_force, all stop",
                                           "tribo_set_limit"};
 
-void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, int alike)
+void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, enum likeness like)
 {
     double *width = need_memory(n, sizeof *width);
     *s = (struct kernel_scene){.kernel = kernel, .n = n};
@@ -25,8 +25,8 @@ void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, i
     }
     for (size_t i = 0; i < n; i++) {
         const double x = sin((double)i), y = sin(1.7 * (double)i);
-        s->limit[i] = alike ? 1.0 : 1.5 + x;
-        width[i] = alike ? 1e-3 : 1e-3 * (1.5 + y);
+        s->limit[i] = like == ALL ? 1.0 : 1.5 + x;
+        width[i] = like != NOTHING ? 1e-3 : 1e-3 * (1.5 + y);
         s->v[i] = kernel == STEP ? 1.0 + 0.5 * y : width[i] * (kernel == BALANCE_STUCK ? 1.0 : 2.0) * sin(3.1 * (double)i);
         s->a[i] = 2.0 * sin(0.6 * (double)i);
         s->out[1][i] = s->out[2][i] = 1.0 + 0.5 * x;

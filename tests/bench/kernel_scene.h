@@ -7,6 +7,9 @@
 enum kernel { FORCE, FORCE_TANGENT, BALANCE, BALANCE_STUCK, STEP, STEP_STUCK, SET_LIMIT, KERNELS };
 extern const char *const kernel_name[KERNELS];
 
+/* What contacts have in common. */
+enum likeness { NOTHING, ONE_EPSILON, ALL, LIKENESSES };
+
 struct kernel_scene {
     enum kernel kernel;
     size_t n;
@@ -15,9 +18,9 @@ struct kernel_scene {
     double *out[4];
 };
 
-/* alike: one limit and one epsilon for all. Velocities are within two epsilons, or of BALANCE_STUCK within one; a step stops
+/* Velocities are within two epsilons, or of BALANCE_STUCK within one; a step stops
  * none, or of STEP_STUCK all. */
-void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, int alike);
+void kernel_scene_create(struct kernel_scene *s, enum kernel kernel, size_t n, enum likeness like);
 void kernel_scene_destroy(struct kernel_scene *s);
 
 void kernel_call(struct kernel_scene *s);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "../../examples/common/output.h"
-#include "../../src/common/simd.h"
+#include "../../src/common/stream.h"
 #include "harness.h"
 #include "kernel_scene.h"
 
@@ -36,21 +36,23 @@ static void run_arrays(void *data)
 }
 
 /* The memory that a call has to pass over: what it is given is looked at as a whole before anything is written; then it is read
- * again, with what the context knows of each contact. */
+ * again, with what the context knows of each contact, while outputs go past the caches if they are long. */
 struct traffic {
-    size_t n, checked, read, written;
+    size_t n, read, written;
     const double *in[8];
     double *out[4];
-    int streams, odd;
+    int past, odd;
 };
 
-TRIBO_SIMD static int any_odd(size_t n, const double *x)
+TRIBO_SIMD static int any_odd(size_t n, const double *x, const double *y)
 {
     int64_t any = 0;
+    TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        int64_t bits;
-        memcpy(&bits, x + i, sizeof bits);
-        any |= bits;
+        int64_t bits[2];
+        memcpy(&bits[0], x + i, sizeof *bits);
+        memcpy(&bits[1], y + i, sizeof *bits);
+        any |= bits[0] | bits[1];
     }
     return (int)(any & 1);
 }
@@ -62,53 +64,44 @@ TRIBO_SIMD static void add_to(size_t n, double *restrict sum, const double *rest
     }
 }
 
-static void put(const struct traffic *t, double *to, const double *from, size_t n)
-{
-    if (t->streams) {
-        tribo_stream(to, from, n);
-    } else {
-        memcpy(to, from, n * sizeof *to);
-    }
-}
-
 static void run_traffic(void *data)
 {
-    enum { CHUNK = 128 };
     struct traffic *t = data;
-    for (size_t i = 0; i < t->n; i += CHUNK) {
-        for (size_t k = 0; k < t->checked; k++) {
-            t->odd += any_odd(t->n - i < CHUNK ? t->n - i : CHUNK, t->in[k] + i);
-        }
+    struct stream to[4];
+    for (size_t k = 0; k < t->written; k++) {
+        tribo_stream_begin(&to[k], t->out[k], t->past);
     }
-    for (size_t i = 0; i < t->n; i += CHUNK) {
-        double sum[CHUNK] = {0};
-        const size_t n = t->n - i < CHUNK ? t->n - i : CHUNK;
+    t->odd += any_odd(t->n, t->in[0], t->in[1]);
+    for (size_t i = 0; i < t->n; i += TRIBO_CHUNK) {
+        double sum[TRIBO_CHUNK] = {0};
+        const size_t n = t->n - i < TRIBO_CHUNK ? t->n - i : TRIBO_CHUNK;
         for (size_t k = 0; k < t->read; k++) {
             add_to(n, sum, t->in[k] + i);
         }
         for (size_t k = 0; k < t->written; k++) {
-            put(t, t->out[k] + i, sum, n);
+            memcpy(tribo_stream_room(&to[k]), sum, n * sizeof *sum);
+            tribo_stream_put(&to[k], n);
         }
+    }
+    for (size_t k = 0; k < t->written; k++) {
+        tribo_stream_end(&to[k]);
     }
 }
 
-/* How many arrays a call is given, how many of what the context knows of each contact it reads, and how many it writes. */
+/* How many arrays a call is given, how many of what the context knows of each contact it reads anyway, how many of limits, and of
+ * widths and rates, where these differ, and how many it writes. */
 static const struct passes {
-    size_t given, known, differing, written;
+    size_t given, known, limits, widths, written;
 } passes[KERNELS] = {
-    [FORCE] = {2, 0, 3, 1}, [FORCE_TANGENT] = {2, 0, 3, 4}, [BALANCE] = {2, 1, 3, 1},  [BALANCE_STUCK] = {2, 1, 3, 1},
-    [STEP] = {1, 0, 1, 1},  [STEP_STUCK] = {1, 1, 1, 1},    [SET_LIMIT] = {1, 0, 0, 1}};
+    [FORCE] = {2, 0, 1, 2, 1}, [FORCE_TANGENT] = {2, 0, 1, 2, 4}, [BALANCE] = {2, 1, 1, 2, 1},  [BALANCE_STUCK] = {2, 1, 1, 2, 1},
+    [STEP] = {1, 0, 1, 0, 1},  [STEP_STUCK] = {1, 1, 1, 0, 1},    [SET_LIMIT] = {1, 0, 0, 0, 1}};
 
-static struct traffic traffic_of(const struct kernel_scene *s, int alike, double *known)
+static struct traffic traffic_of(const struct kernel_scene *s, enum likeness like, double *known)
 {
     const struct passes *p = &passes[s->kernel];
-    struct traffic t = {s->n,
-                        p->given,
-                        p->given + p->known + (alike ? 0 : p->differing),
-                        p->written,
-                        {s->v, s->a},
-                        {NULL},
-                        p->written > 1 && s->n > 1000000,
+    struct traffic t = {s->n,       p->given + p->known + (like < ALL ? p->limits : 0) + (like == NOTHING ? p->widths : 0),
+                        p->written, {s->v, p->given > 1 ? s->a : s->v},
+                        {NULL},     s->n > 4000000 && s->kernel != SET_LIMIT,
                         0};
     for (size_t k = p->given; k < t.read; k++) {
         t.in[k] = known + (k - p->given) * s->n;
@@ -139,18 +132,19 @@ static double lesser_of(double x, double y)
     return x < y ? x : y;
 }
 
-static void measure(size_t n, int alike, size_t contacts, int repeats)
+static void measure(size_t n, enum likeness like, size_t contacts, int repeats)
 {
     enum { MOST_KNOWN = 4 };
     double *known = need_memory(MOST_KNOWN * n, sizeof *known);
     memset(known, 0, MOST_KNOWN * n * sizeof *known);
     printf("\n| n = %zu, %s | ns a contact | times the array loop | times its own traffic |\n|---|---|---|---|\n", n,
-           alike ? "one limit, one epsilon" : "limits and epsilons that differ");
+           (const char *[LIKENESSES]){"limits and epsilons that differ", "limits that differ, one epsilon",
+                                      "one limit, one epsilon"}[like]);
     for (int k = 0; k < KERNELS; k++) {
         struct kernel_scene s;
-        kernel_scene_create(&s, (enum kernel)k, n, alike);
+        kernel_scene_create(&s, (enum kernel)k, n, like);
         struct arrays w = {n, s.out[0], s.out[1], s.out[2], s.limit, s.v};
-        struct traffic t = traffic_of(&s, alike, known);
+        struct traffic t = traffic_of(&s, like, known);
         const size_t times = contacts / n + 1;
         double loop = 1.0, kernel = 1.0, traffic = 1.0;
         for (int j = 0; j < repeats; j++) {
@@ -177,8 +171,8 @@ int main(int count, char **argument)
     const size_t sizes[] = {1, 1000, quick ? 1000000 : 10000000};
     const int repeats = smoke ? 1 : quick ? 15 : 40;
     for (size_t k = 0; k < (smoke ? 2 : 3); k++) {
-        for (int alike = 1; alike >= 0; alike--) {
-            measure(sizes[k], alike, smoke ? 1 : 200000, repeats);
+        for (int like = ALL; like >= NOTHING; like--) {
+            measure(sizes[k], (enum likeness)like, smoke ? 1 : 200000, repeats);
         }
     }
     return EXIT_SUCCESS;

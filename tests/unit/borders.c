@@ -1,6 +1,7 @@
 /* Calls look at contacts in chunks of 128, and at vectors of them: what they say of a contact does not depend on its place, nor
  * on how many there are, nor on whether all have the same limit and epsilon. */
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "support.h"
 
@@ -127,8 +128,8 @@ struct scene {
     double r[MOST], limit[MOST], epsilon[MOST], v[MOST], a[MOST];
 };
 
-/* Chunks in which all contacts have one limit and one epsilon, chunks in which one has not, and others; and all of the first kind,
- * of which only some have those of the chunk before. */
+/* Chunks in which all contacts have one limit and one epsilon, chunks in which one has not, and others; all of the first kind,
+ * of which only some have those of the chunk before; and chunks that have one epsilon, but many limits. */
 static struct scene draw(struct random *g, int kind)
 {
     struct scene s;
@@ -136,7 +137,7 @@ static struct scene draw(struct random *g, int kind)
         const int alike = kind == 0 || (kind == 1 && i != 130 && i != MOST - 1) || (kind == 2 && i < 128);
         s.r[i] = i % 50 ? log_uniform(g, 2.0) : 0.0;
         s.limit[i] = kind == 4 ? 1.0 + (double)(i / 256 % 2) : alike ? 1.25 : below(g, 9) ? log_uniform(g, 1.0) : 0.0;
-        s.epsilon[i] = kind == 4 ? 1.5 + (double)(i / 384 % 2) : alike ? 0.75 : log_uniform(g, 1.0);
+        s.epsilon[i] = kind >= 4 ? 1.5 + (double)(i / 384 % 2) : alike ? 0.75 : log_uniform(g, 1.0);
         s.v[i] = below(g, 4) ? uniform(g, -2.0, 2.0) * s.epsilon[i] : below(g, 2) ? s.epsilon[i] : 0.0;
         s.a[i] = uniform(g, -2.0, 2.0) * s.limit[i] * (i % 7 ? 1.0 : s.r[i]);
     }
@@ -169,7 +170,7 @@ TEST(as_alone)
 {
     static struct results many, each;
     struct random g = random_of(_i);
-    const struct scene s = draw(&g, _i % 5);
+    const struct scene s = draw(&g, _i % 6);
     for (int law = 0; law < tribo_law_count(); law++) {
         for (int follows = 0; follows < 2; follows++) {
             call(law, follows, &s, 0, MOST, &many);
@@ -261,5 +262,84 @@ TEST(feq_of_any_size)
     tribo_destroy(c);
 }
 
-TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 10}, {steps_as_alone, 20},
-          {feq_of_any_size, 1})
+/* So many contacts that no output stays in a cache: a small scene again and again. */
+#define MANY (((size_t)1 << 22) + 77)
+
+struct large {
+    double *v, *a, *setting, *memory; /* [MANY] but for the memory of outputs */
+    double *out[4];                   /* as far from the beginning of a line of cache as can be, in four ways */
+    tribo_context *c;
+};
+
+static void repeat(const double *few, double *many)
+{
+    for (size_t i = 0; i < MANY; i++) {
+        many[i] = few[i % MOST];
+    }
+}
+
+static struct large enlarge(const struct scene *s)
+{
+    struct large h;
+    h.v = malloc(7 * (MANY + 16) * sizeof *h.v);
+    ck_assert_ptr_nonnull(h.v);
+    h.a = h.v + MANY;
+    h.setting = h.a + MANY;
+    h.memory = h.setting + MANY;
+    for (size_t k = 0; k < 4; k++) {
+        h.out[k] = h.memory + k * (MANY + 10) + 1;
+    }
+    assert_ok(tribo_create(&h.c, MANY));
+    repeat(s->limit, h.setting);
+    assert_ok(tribo_set_limit(h.c, h.setting));
+    repeat(s->epsilon, h.setting);
+    assert_ok(tribo_set_epsilon(h.c, h.setting));
+    repeat(s->r, h.setting);
+    assert_ok(tribo_set_operator_diagonal(h.c, h.setting));
+    repeat(s->v, h.v);
+    repeat(s->a, h.a);
+    return h;
+}
+
+/* Output k is that of the small scene, and what is around it was not written to. */
+static void assert_repeated(const struct large *h, size_t k, const double *few)
+{
+    for (size_t i = 0; i < MANY; i += MOST) {
+        assert_all_exact(h->out[k] + i, few, MANY - i < MOST ? MANY - i : MOST);
+    }
+    ck_assert(stained(h->out[k] - 1, sizeof *h->out[k]) && stained(h->out[k] + MANY, sizeof *h->out[k]));
+}
+
+TEST(as_few)
+{
+    enum { OUTPUTS = 4 };
+    static struct results few;
+    struct random g = random_of(_i);
+    const struct scene s = draw(&g, 1);
+    struct large h = enlarge(&s);
+    const size_t bytes = OUTPUTS * (MANY + 10) * sizeof *h.memory;
+    call(TRIBO_QUINN, 0, &s, 0, MOST, &few);
+    stain(h.memory, bytes);
+    assert_ok(tribo_force_tangent(h.c, h.v, h.a, h.out[0], h.out[1], h.out[2], h.out[3]));
+    const double *want[] = {few.f, few.df[0], few.df[1], few.df[2]};
+    for (size_t k = 0; k < OUTPUTS; k++) {
+        assert_repeated(&h, k, want[k]);
+    }
+    stain(h.memory, bytes);
+    assert_ok(tribo_force(h.c, h.v, h.a, h.out[0]));
+    assert_ok(tribo_balance(h.c, h.v, h.a, h.out[1], h.out[2]));
+    assert_repeated(&h, 0, few.f);
+    assert_repeated(&h, 1, few.feq);
+    assert_repeated(&h, 2, few.balanced);
+    stain(h.memory, bytes);
+    h.v[MANY - 1] = NAN;
+    assert_status(tribo_force(h.c, h.v, h.a, h.out[0]), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_force_tangent(h.c, h.v, h.a, h.out[0], h.out[1], h.out[2], h.out[3]), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_balance(h.c, h.v, h.a, h.out[1], h.out[2]), TRIBO_ERR_NOT_FINITE);
+    ck_assert(stained(h.memory, bytes));
+    tribo_destroy(h.c);
+    free(h.v);
+}
+
+TEST_MAIN("borders", {culprits, COUNT(counts)}, {feq_that_does_not_matter, COUNT(counts)}, {as_alone, 12}, {steps_as_alone, 20},
+          {feq_of_any_size, 1}, {as_few, 1})

@@ -1,17 +1,17 @@
 /* Coulomb's law itself, with f_eq at rest: Quinn (2004), Eq. 1 and 2. */
 #include "law.h"
 
-static inline double coulomb_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double coulomb_force(double v, double feq, double limit, double epsilon, double slope)
 {
-    (void)epsilon, (void)slope, (void)moving;
+    (void)epsilon, (void)slope;
     const double held = clamp(feq, -limit, limit);
     return v != 0.0 ? sliding(v, limit) : held;
 }
 
-static inline struct tangent coulomb_tangent(double v, double feq, double limit, double epsilon, double slope,
-                                             unsigned char moving, double follows)
+static inline struct tangent coulomb_tangent(double v, double feq, double limit, double epsilon, double slope, double turn,
+                                             double follows)
 {
-    (void)epsilon, (void)slope, (void)moving, (void)follows;
+    (void)epsilon, (void)slope, (void)turn, (void)follows;
     const int slides = v != 0.0, held = fabs(feq) < limit;
     const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
     return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};

@@ -1,17 +1,17 @@
 /* Karnopp's threshold velocity, below which the contact counts as at rest: Quinn (2004), reference 2 and Fig. 2. */
 #include "law.h"
 
-static inline double karnopp_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double karnopp_force(double v, double feq, double limit, double epsilon, double slope)
 {
-    (void)slope, (void)moving;
+    (void)slope;
     const double held = clamp(feq, -limit, limit);
     return fabs(v) > epsilon ? sliding(v, limit) : held;
 }
 
-static inline struct tangent karnopp_tangent(double v, double feq, double limit, double epsilon, double slope,
-                                             unsigned char moving, double follows)
+static inline struct tangent karnopp_tangent(double v, double feq, double limit, double epsilon, double slope, double turn,
+                                             double follows)
 {
-    (void)slope, (void)moving, (void)follows;
+    (void)slope, (void)turn, (void)follows;
     const int slides = fabs(v) > epsilon, held = fabs(feq) < limit;
     const double gain = held ? 1.0 : 0.0, rate = held_rate(feq, held);
     return (struct tangent){0.0, slides ? 0.0 : gain, slides ? sliding_rate(v) : rate};

@@ -71,9 +71,9 @@ struct tangent {
     double dv, dfeq, dlimit;
 };
 
-/* The same of many contacts. */
+/* The same of many contacts, and their forces. */
 struct tangents {
-    double *dv, *dfeq, *dlimit;
+    double *f, *dv, *dfeq, *dlimit;
 };
 
 struct law {
@@ -143,19 +143,20 @@ static inline double held_rate(double feq, int held)
 
 /* Defines <name>_force_all, <name>_balance_all, <name>_tangent_all and <name>_force_of_one from the law's functions of one
  * contact, <name>_force and <name>_tangent. */
-#define TRIBO_FORCE_EACH(name, limit, epsilon, slope)                                                                            \
+#define TRIBO_FORCE_EACH(name, limit, epsilon, slope, rate)                                                                      \
     for (size_t i = 0; i < n; i++) {                                                                                             \
-        f[i] = name##_force(v[i], feq[i], limit, epsilon, slope, moving[i]);                                                     \
+        f[i] = name##_force(v[i], feq[i], limit, epsilon, slope);                                                                \
     }
 
-#define TRIBO_BALANCE_EACH(name, limit, epsilon, slope)                                                                          \
+#define TRIBO_BALANCE_EACH(name, limit, epsilon, slope, rate)                                                                    \
     for (size_t i = 0; i < n; i++) {                                                                                             \
-        f[i] = name##_force(v[i], tribo_alone(a[i], inverse[i]), limit, epsilon, slope, moving[i]);                              \
+        f[i] = name##_force(v[i], tribo_alone(a[i], inverse[i]), limit, epsilon, slope);                                         \
     }
 
-#define TRIBO_TANGENT_EACH(name, limit, epsilon, slope)                                                                          \
+#define TRIBO_TANGENT_EACH(name, limit, epsilon, slope, rate)                                                                    \
     for (size_t i = 0; i < n; i++) {                                                                                             \
-        const struct tangent d = name##_tangent(v[i], feq[i], limit, epsilon, slope, moving[i], scales);                         \
+        const struct tangent d = name##_tangent(v[i], feq[i], limit, epsilon, slope, stays * (rate), scales);                    \
+        f[i] = name##_force(v[i], feq[i], limit, epsilon, slope);                                                                \
         dv[i] = d.dv;                                                                                                            \
         dfeq[i] = d.dfeq;                                                                                                        \
         dlimit[i] = d.dlimit;                                                                                                    \
@@ -164,20 +165,19 @@ static inline double held_rate(double feq, int held)
 /* What is the same for all contacts is read once, and whether epsilon follows the limit is asked once. */
 #define TRIBO_LAW_LOOP(each, name)                                                                                               \
     const double *limit = c->limit, *bound = c->bound, *width = c->width, *rate = c->rate;                                       \
-    const unsigned char *moving = c->moving;                                                                                     \
     if (c->alike) {                                                                                                              \
         const double one = *limit, epsilon = tribo_epsilon_of(c, 0), slope = tribo_slope_of(c, 0);                               \
-        each(name, one, epsilon, slope)                                                                                          \
+        each(name, one, epsilon, slope, *rate)                                                                                   \
     } else if (c->follows) {                                                                                                     \
-        each(name, limit[i], tribo_epsilon(1, width[i], bound[i]), tribo_slope(1, rate[i], bound[i]))                            \
+        each(name, limit[i], tribo_epsilon(1, width[i], bound[i]), tribo_slope(1, rate[i], bound[i]), rate[i])                   \
     } else {                                                                                                                     \
-        each(name, limit[i], tribo_epsilon(0, width[i], bound[i]), tribo_slope(0, rate[i], bound[i]))                            \
+        each(name, limit[i], tribo_epsilon(0, width[i], bound[i]), tribo_slope(0, rate[i], bound[i]), rate[i])                   \
     }
 
 #define TRIBO_LAW_LOOPS(name)                                                                                                    \
     static double name##_force_of_one(const struct contacts *c, double v, double feq)                                            \
     {                                                                                                                            \
-        return name##_force(v, feq, *c->limit, tribo_epsilon_of(c, 0), tribo_slope_of(c, 0), *c->moving);                        \
+        return name##_force(v, feq, *c->limit, tribo_epsilon_of(c, 0), tribo_slope_of(c, 0));                                    \
     }                                                                                                                            \
     TRIBO_SIMD static void name##_force_all(const struct contacts *c, size_t n, const double *restrict v,                        \
                                             const double *restrict feq, double *restrict f)                                      \
@@ -190,16 +190,16 @@ static inline double held_rate(double feq, int held)
         TRIBO_LAW_LOOP(TRIBO_BALANCE_EACH, name);                                                                                \
     }                                                                                                                            \
     TRIBO_SIMD static void name##_tangent_to(const struct contacts *c, size_t n, const double *restrict v,                       \
-                                             const double *restrict feq, double *restrict dv, double *restrict dfeq,             \
-                                             double *restrict dlimit)                                                            \
+                                             const double *restrict feq, double *restrict f, double *restrict dv,                \
+                                             double *restrict dfeq, double *restrict dlimit)                                     \
     {                                                                                                                            \
-        const double scales = c->scales;                                                                                         \
+        const double scales = c->scales, stays = 1.0 - scales;                                                                   \
         TRIBO_LAW_LOOP(TRIBO_TANGENT_EACH, name);                                                                                \
     }                                                                                                                            \
     static void name##_tangent_all(const struct contacts *c, size_t n, const double *v, const double *feq,                       \
                                    const struct tangents *d)                                                                     \
     {                                                                                                                            \
-        name##_tangent_to(c, n, v, feq, d->dv, d->dfeq, d->dlimit);                                                              \
+        name##_tangent_to(c, n, v, feq, d->f, d->dv, d->dfeq, d->dlimit);                                                        \
     }
 
 #endif

@@ -2,25 +2,22 @@
 #include "law.h"
 
 /* Outside the band the middle line would say what the last one says up to rounding, but slope v may overflow there. */
-static inline double quinn_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double quinn_force(double v, double feq, double limit, double epsilon, double slope)
 {
-    (void)moving;
     const double f = clamp(clamp(feq, -limit, limit) - slope * inside_band(v, epsilon), -limit, limit);
     return fabs(v) > epsilon ? sliding(v, limit) : f;
 }
 
-static inline struct tangent quinn_tangent(double v, double feq, double limit, double epsilon, double slope, unsigned char moving,
+static inline struct tangent quinn_tangent(double v, double feq, double limit, double epsilon, double slope, double turn,
                                            double follows)
 {
-    (void)moving;
+    (void)follows;
     const int slides = fabs(v) > epsilon, held = fabs(feq) < limit;
     const double near = inside_band(v, epsilon), x = clamp(feq, -limit, limit) - slope * near;
     const int full = fabs(x) > limit;
-    const double gain = held ? 1.0 : 0.0, rest = held_rate(feq, held) - (1.0 - follows) * 2.0 * quotient(near, epsilon);
+    const double gain = held ? 1.0 : 0.0, rest = held_rate(feq, held) - turn * near, toward = slides ? -v : x;
     return (struct tangent){slides | full ? 0.0 : -slope, slides | full ? 0.0 : gain,
-                            slides ? sliding_rate(v)
-                            : full ? copysign(1.0, x)
-                                   : rest};
+                            slides | full ? copysign(1.0, toward) : rest};
 }
 
 TRIBO_LAW_LOOPS(quinn)

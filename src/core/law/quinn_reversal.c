@@ -85,6 +85,7 @@ static void reversal_tangent_all(const struct contacts *c, size_t n, const doubl
     for (size_t i = 0; i < n; i++) {
         if (reverses(c, i, v[i], feq[i])) {
             const struct tangent one = reversal_tangent(c, i, v[i], feq[i]);
+            cross(c, i, v[i], feq[i], d->f + i);
             d->dv[i] = one.dv;
             d->dfeq[i] = one.dfeq;
             d->dlimit[i] = one.dlimit;

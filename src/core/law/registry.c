@@ -93,8 +93,7 @@ int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, 
     const unsigned char moving = 1;
     const struct contacts c = {&limit, &bound, &epsilon, &rate, &moving, 0, 0, 0};
     struct tangent d;
-    l->force(&c, 1, &v, &read, f);
-    l->tangent(&c, 1, &v, &read, &(struct tangents){&d.dv, &d.dfeq, &d.dlimit});
+    l->tangent(&c, 1, &v, &read, &(struct tangents){f, &d.dv, &d.dfeq, &d.dlimit});
     if (df_dv) {
         *df_dv = d.dv;
     }

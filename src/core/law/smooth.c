@@ -1,16 +1,16 @@
 /* The smooth companion of the velocity-limited law; creeps like it. */
 #include "law.h"
 
-static inline double smooth_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double smooth_force(double v, double feq, double limit, double epsilon, double slope)
 {
-    (void)feq, (void)slope, (void)moving;
+    (void)feq, (void)slope;
     return -limit * tanh(quotient(v, epsilon));
 }
 
-static inline struct tangent smooth_tangent(double v, double feq, double limit, double epsilon, double slope,
-                                            unsigned char moving, double follows)
+static inline struct tangent smooth_tangent(double v, double feq, double limit, double epsilon, double slope, double turn,
+                                            double follows)
 {
-    (void)feq, (void)limit, (void)moving;
+    (void)feq, (void)limit, (void)turn;
     const double x = quotient(v, epsilon), t = tanh(x), cosh_2 = (1.0 - t) * (1.0 + t);
     return (struct tangent){-0.5 * slope * cosh_2, 0.0, -t + follows * x * cosh_2};
 }

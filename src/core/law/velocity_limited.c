@@ -1,19 +1,19 @@
 /* A viscous damper near v = 0: Martins and Oden (1987); Quinn (2004), Eq. 3. Creeps under any load. */
 #include "law.h"
 
-static inline double limited_force(double v, double feq, double limit, double epsilon, double slope, unsigned char moving)
+static inline double limited_force(double v, double feq, double limit, double epsilon, double slope)
 {
-    (void)feq, (void)moving;
+    (void)feq;
     const double f = clamp(-0.5 * slope * inside_band(v, epsilon), -limit, limit);
     return fabs(v) > epsilon ? sliding(v, limit) : f;
 }
 
-static inline struct tangent limited_tangent(double v, double feq, double limit, double epsilon, double slope,
-                                             unsigned char moving, double follows)
+static inline struct tangent limited_tangent(double v, double feq, double limit, double epsilon, double slope, double turn,
+                                             double follows)
 {
-    (void)feq, (void)moving, (void)limit;
+    (void)feq, (void)limit, (void)follows;
     const int slides = fabs(v) > epsilon;
-    const double rate = -(1.0 - follows) * quotient(inside_band(v, epsilon), epsilon);
+    const double rate = -0.5 * turn * inside_band(v, epsilon);
     return (struct tangent){slides ? 0.0 : -0.5 * slope, 0.0, slides ? sliding_rate(v) : rate};
 }
 
