@@ -61,22 +61,16 @@ static void hold_all(size_t n, const signed char *restrict slip, const unsigned 
     }
 }
 
-/* What follows from who holds: who is loose, and whether that has changed; and whether some rest by themselves. */
+/* What follows from who holds: who is loose, and whether that has changed; and how many rest by themselves. */
 static void note_holds(struct stick_slip *m)
 {
-    const signed char *restrict slip = m->slip;
-    const unsigned char *restrict holds = m->holds, *restrict elastic = m->elastic;
-    signed char *restrict loose = m->loose;
-    unsigned char differs = 0, dependents = 0;
-    const size_t n = m->contacts;
-    for (size_t i = 0; i < n; i++) {
-        const unsigned char is = (holds[i] == 0) | elastic[i];
-        differs |= is != loose[i];
-        dependents |= (slip[i] == 0) & (holds[i] == 0);
-        loose[i] = (signed char)is;
+    m->dependents = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        const signed char loose = (signed char)(!m->holds[i] || m->elastic[i]);
+        m->hold_differs |= loose != m->loose[i];
+        m->dependents += tribo_stick_slip_depends(m, i);
+        m->loose[i] = loose;
     }
-    m->dependents = dependents;
-    m->hold_differs |= differs;
 }
 
 static int find_anew(struct stick_slip *m, const tribo_system *sys)

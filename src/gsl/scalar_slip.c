@@ -19,12 +19,6 @@
 #include <math.h>
 #include <string.h>
 
-/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
-#define CLOSE 0.1
-
-/* By rounding alone, which is far less. */
-#define NEAR 1e-3
-
 /* Of redundant contacts the solver may leave this many times the noise of accelerations. */
 #define CERTAIN 1e3
 
@@ -61,31 +55,12 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
     return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
-/* How many are close to their limits, or have reached them. Where contacts are not coupled, others are decided about, unless they
- * may part. */
-static size_t find_close(struct stick_slip *m)
+/* Where contacts are not coupled, those that are not close to their limits are decided about, unless they may part. */
+static void ask_close(struct stick_slip *m)
 {
-    const int all = !m->uncoupled || (m->dependents && m->base_moves);
-    const double part = 1.0 - (m->uncoupled ? NEAR : CLOSE);
-    const size_t asks = m->asks;
-    size_t found = 0, kept = 0;
-    for (size_t k = 0; k < asks; k++) {
-        const size_t i = m->asked[k];
-        const int near = fabs(m->force[i]) >= part * m->stick[i] || i == m->reached;
-        const int close = near && tribo_stick_slip_searches(m, i);
-        m->some[kept] = i;
-        kept += (size_t)(close | all);
-        found += (size_t)close;
-    }
-    m->asked = m->some;
-    m->asks = kept;
-    return found;
-}
-
-static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    for (size_t k = 0; k < m->asks; k++) {
-        tribo_stick_slip_find_gain(m, sys, y, m->asked[k]);
+    if (m->uncoupled && !(m->dependents && m->base_moves)) {
+        m->asked = m->close;
+        m->asks = m->closes;
     }
 }
 
@@ -94,16 +69,17 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
 {
     size_t changes = 0;
     *ties = 0;
-    if (find_close(m) == 0) {
+    ask_close(m);
+    if (m->closes == 0) {
         return 0;
     }
-    find_gains(m, sys, y);
-    tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
+    tribo_stick_slip_accelerate_searched(m, sys, m->a, m->force, m->v);
+    for (size_t k = 0; k < m->closes; k++) {
+        const size_t i = m->close[k];
+        tribo_stick_slip_find_gain(m, sys, y, i);
         const double room = m->stick[i] - fabs(m->force[i]);
-        const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
-        if (tribo_stick_slip_searches(m, i) && room <= within) {
+        const double within = i == m->reached ? TRIBO_CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
+        if (room <= within) {
             const signed char direction = direction_of(m, i, m->force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->tied[i] = 1;
@@ -166,7 +142,11 @@ static void set_bounds_ahead(struct stick_slip *m)
 /* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
 {
-    find_gains(m, sys, y);
+    for (size_t k = 0; k < m->asks; k++) {
+        if (tribo_stick_slip_searches(m, m->asked[k])) {
+            tribo_stick_slip_find_gain(m, sys, y, m->asked[k]);
+        }
+    }
     if (m->breakaway.falls) {
         find_falling(m, sys, y);
     }
@@ -181,7 +161,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     if (status) {
         return status;
     }
-    tribo_stick_slip_accelerate(m, sys, m->v, m->f, m->v);
+    tribo_stick_slip_accelerate_searched(m, sys, m->v, m->f, m->v);
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         m->pulled[i] = 0;

@@ -57,7 +57,7 @@ static int create_lists(struct stick_slip *m, size_t contacts)
     m->at = malloc(3 * contacts * sizeof *m->at);
     if (m->at) {
         m->asked = m->all = m->at + contacts;
-        m->some = m->at + 2 * contacts;
+        m->close = m->at + 2 * contacts;
     }
     return m->at != NULL;
 }
@@ -110,7 +110,7 @@ static int find_dependence(struct stick_slip *m, const tribo_system *sys)
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1;
-    *m = (struct stick_slip){.contacts = sys->ncontact, .doubt = 1.0};
+    *m = (struct stick_slip){.contacts = sys->ncontact, .only = sys->ncontact, .doubt = 1.0};
     if (create_contexts(m, sys->contacts) && create_numbers(m, c, sys->ndof) && create_marks(m, c) && create_lists(m, c) &&
         tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
         find_kinds(m, sys);

@@ -31,7 +31,7 @@ struct stick_slip {
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
-    int dependents;        /* some rest by themselves */
+    int dependents;        /* how many rest by themselves */
     int steady;            /* limits are those that update_limits has seen */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     double *limit, *limit_rate; /* [ncontact] by which contacts slide, and its rate */
@@ -66,7 +66,10 @@ struct stick_slip {
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */
     const size_t *asked;                  /* [asks] the contacts that a decision still asks about: all if R couples them */
-    size_t asks, *all, *some;             /* the latter are [ncontact]: all of them, and room for some */
+    size_t asks, *all;                    /* the latter is [ncontact] */
+    size_t *close, closes;                /* [closes] of those asked about: such as may be at their limits by the forces found */
+    size_t only;                          /* contact whose force alone was searched for last, R coupling it; else ncontact, */
+    double pull;                          /* and its acceleration without that force */
     unsigned char *elastic, *can_hold;    /* [ncontact] 1: an elastic contact; one that holds something, if it rests */
     size_t *at;                           /* [ncontact] workspace of find_holds, */
     unsigned char *last;                  /* [ncontact] and this */
@@ -76,11 +79,28 @@ struct stick_slip {
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 
-/* Contact i does this from here on. Nobody else writes slip: who holds follows from it. */
+/* Whether contact i is at rest, and nothing that it holds keeps it there. */
+static inline int tribo_stick_slip_depends(const struct stick_slip *m, size_t i)
+{
+    return m->slip[i] == 0 && !m->holds[i];
+}
+
+/* Contact i does this from here on. Nobody else writes slip: who holds follows from it, at once where contacts do not depend on
+ * each other. */
 static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
 {
-    m->fresh |= slip != m->slip[i];
+    if (slip == m->slip[i]) {
+        return;
+    }
+    const int depended = tribo_stick_slip_depends(m, i);
     m->slip[i] = slip;
+    m->fresh |= !m->independent;
+    if (m->independent) {
+        m->holds[i] = (unsigned char)(slip == 0 && m->can_hold[i]);
+        m->loose[i] = (signed char)(!m->holds[i] || m->elastic[i]);
+        m->dependents += tribo_stick_slip_depends(m, i) - depended;
+        m->hold_differs = 1;
+    }
 }
 
 /* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest:
@@ -117,12 +137,18 @@ static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i
     return m->slip[i] == 0 && !m->elastic[i];
 }
 
+/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
+#define TRIBO_CLOSE 0.1
+
 /* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
- * without them are a; the forces, with contacts at rest as they are marked; both return a status. v [ncontact] = a + R f, the
- * accelerations that forces f leave; v may be a. */
+ * without them are a; the forces, with contacts at rest as they are marked, and who is close to its limit by them; both return a
+ * status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. The last one finds only those of contacts
+ * whose forces were searched for, by the solution f that was found last. */
 int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
+void tribo_stick_slip_accelerate_searched(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f,
+                                          double *v);
 
 /* Contact i, which cannot hold, slides; but if it held by a static limit, it is decided about once more by the other one. */
 static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)

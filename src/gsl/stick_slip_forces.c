@@ -5,12 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-/* The force within bounds that lets contact i go on as it does, where without it the acceleration is a. One that friction cannot
- * move takes all that it can of any pull. */
-static double force_alone(const struct stick_slip *m, size_t i, double a)
+/* By rounding alone, which is far less. */
+#define NEAR 1e-3
+
+/* The force between lo and hi that lets contact i go on as it does, where without it the acceleration is a. One that friction
+ * cannot move takes all that it can of any pull. */
+static inline double force_alone(const struct stick_slip *m, size_t i, double a, double lo, double hi)
 {
     const double pull = m->diagonal[i] > 0.0 ? a / m->diagonal[i] : a != 0.0 ? copysign(HUGE_VAL, a) : 0.0;
-    return clamp(-pull, m->lo[i], m->hi[i]);
+    return clamp(-pull, lo, hi);
 }
 
 /* Rounding of R may hide a heavy body, that of its factors does not. */
@@ -26,78 +29,128 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
     }
 }
 
-/* The only contact whose bounds leave it a choice, ncontact if there is none; 0 if there are more. */
-static int find_only(const struct stick_slip *m, size_t *only)
+void tribo_stick_slip_accelerate_searched(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f,
+                                          double *v)
 {
-    *only = m->contacts;
+    if (m->only < m->contacts) {
+        v[m->only] = m->pull + m->diagonal[m->only] * f[m->only];
+    } else {
+        tribo_stick_slip_accelerate(m, sys, a, f, v);
+    }
+}
+
+/* The only contact whose force is searched for, ncontact if there is none; 0 if there are more. */
+static int find_only(struct stick_slip *m)
+{
+    m->only = m->contacts;
     for (size_t i = 0; i < m->contacts; i++) {
-        if (m->lo[i] < m->hi[i]) {
-            if (*only < m->contacts) {
+        if (tribo_stick_slip_searches(m, i)) {
+            if (m->only < m->contacts) {
+                m->only = m->contacts;
                 return 0;
             }
-            *only = i;
+            m->only = i;
         }
     }
     return 1;
 }
 
-/* The solution where the forces of all contacts but one are known. */
-static void solve_only(struct stick_slip *m, const tribo_system *sys, size_t only, const double *a, double *f)
+/* The solution where the forces of all contacts but one are known: that one is decided about alone. */
+static void solve_only(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
+    const struct matrix *j = &sys->direction;
+    const size_t only = m->only;
     memcpy(f, m->lo, m->contacts * sizeof *f);
     if (only < m->contacts) {
         f[only] = 0.0;
-        tribo_matrix_multiply(&sys->response, f, m->rate);
-        f[only] = force_alone(m, only, a[only] + tribo_matrix_row_dot(&sys->direction, only, m->rate));
+        m->pull = a[only];
+        for (size_t k = j->first[only]; k < j->first[only + 1]; k++) {
+            m->pull += j->val[k] * tribo_matrix_row_dot(&sys->response, j->col[k], f);
+        }
+        f[only] = force_alone(m, only, m->pull, m->lo[only], m->hi[only]);
     }
 }
 
 static int solve_coupled(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
-    size_t only;
-    if (m->independent && find_only(m, &only)) {
-        solve_only(m, sys, only, a, f);
+    if (m->independent && find_only(m)) {
+        solve_only(m, sys, a, f);
         return TRIBO_OK;
     }
     const int status = tribo_solve_box(m->box, a, m->lo, m->hi, f);
     return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
 }
 
-static inline int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
     for (size_t k = 0; m->uncoupled && k < m->asks; k++) {
         const size_t i = m->asked[k];
-        f[i] = force_alone(m, i, a[i]);
+        f[i] = force_alone(m, i, a[i], m->lo[i], m->hi[i]);
     }
     return m->uncoupled ? TRIBO_OK : solve_coupled(m, sys, a, f);
 }
 
-int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
-{
-    return solve(m, sys, a, f);
-}
-
 /* The force that contact i has whatever the others do. */
-static double given_force(const struct stick_slip *m, size_t i)
+static inline double given_force(const struct stick_slip *m, size_t i)
 {
     return m->elastic[i] ? m->spring[i] : m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->limit[i];
 }
 
-/* Bounds of the force of contact i, as it does what it is marked to do. */
-static void set_bounds(struct stick_slip *m, size_t i)
+/* Whether contact i, which is at rest, has this part of its limit, or has reached it. */
+static inline int has_part(const struct stick_slip *m, size_t i, double part)
 {
-    if (tribo_stick_slip_searches(m, i)) {
-        m->lo[i] = -m->stick[i];
-        m->hi[i] = m->stick[i];
-    } else {
-        m->lo[i] = m->hi[i] = given_force(m, i);
+    return fabs(m->force[i]) >= part * m->stick[i] || i == m->reached;
+}
+
+/* Forces of contacts that are not coupled, and who is near its limit. */
+static void find_alone(struct stick_slip *m)
+{
+    size_t near = 0;
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        if (!tribo_stick_slip_searches(m, i)) {
+            m->force[i] = given_force(m, i);
+            continue;
+        }
+        m->force[i] = force_alone(m, i, m->a[i], -m->stick[i], m->stick[i]);
+        m->close[near] = i;
+        near += (size_t)has_part(m, i, 1.0 - NEAR);
     }
+    m->closes = near;
+}
+
+/* Bounds of forces, as contacts do what they are marked to do. */
+static void set_bounds(struct stick_slip *m)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        const int searches = tribo_stick_slip_searches(m, i);
+        m->hi[i] = searches ? m->stick[i] : given_force(m, i);
+        m->lo[i] = searches ? -m->stick[i] : m->hi[i];
+    }
+}
+
+/* If any contact is close to its limit, all that are at rest may be at theirs. */
+static void find_close(struct stick_slip *m)
+{
+    size_t rest = 0;
+    int any = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        const int searches = tribo_stick_slip_searches(m, i);
+        m->close[rest] = i;
+        rest += (size_t)searches;
+        any |= searches && has_part(m, i, 1.0 - TRIBO_CLOSE);
+    }
+    m->closes = any ? rest : 0;
 }
 
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 {
-    for (size_t k = 0; k < m->asks; k++) {
-        set_bounds(m, m->asked[k]);
+    if (m->uncoupled) {
+        find_alone(m);
+        return TRIBO_OK;
     }
-    return solve(m, sys, m->a, m->force);
+    set_bounds(m);
+    const int status = solve_coupled(m, sys, m->a, m->force);
+    find_close(m);
+    return status;
 }

@@ -189,16 +189,25 @@ size_t tribo_system_follower(const tribo_system *sys, size_t i)
     return count == 1 ? j->col[first] : count == 2 && are_alike(j, first) ? j->col[first + follows(sys, i, first)] : SIZE_MAX;
 }
 
+/* x of the degree of freedom that entry k of row i of J takes along becomes what the others, if there are any, leave of base. */
+static inline void take_along(const struct matrix *j, size_t k, double base, double *x)
+{
+    x[j->col[k]] = base / j->val[k];
+}
+
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
     for (size_t i = 0; i < sys->ncontact; i++) {
+        if (loose[i]) {
+            continue;
+        }
         const size_t first = j->first[i], count = j->first[i + 1] - first;
-        if (!loose[i] && count == 1) {
-            x[j->col[first]] = base[i] / j->val[first];
-        } else if (!loose[i] && count == 2 && are_alike(j, first)) {
+        if (count == 1) {
+            take_along(j, first, base[i], x);
+        } else if (count == 2 && are_alike(j, first)) {
             const size_t to = first + follows(sys, i, first), from = 2 * first + 1 - to;
-            x[j->col[to]] = (base[i] - j->val[from] * x[j->col[from]]) / j->val[to];
+            take_along(j, to, base[i] - j->val[from] * x[j->col[from]], x);
         }
     }
 }
