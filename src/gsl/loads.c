@@ -153,7 +153,7 @@ void tribo_system_set_low(tribo_system *sys, double low)
     }
 }
 
-void tribo_system_set_time(tribo_system *sys, double t)
+void tribo_system_move_to(tribo_system *sys, double t)
 {
     const int moves = t != sys->time;
     if (moves) {
@@ -193,7 +193,7 @@ void tribo_system_tables(const tribo_system *sys, int order, double factor, size
 }
 
 /* The order-th derivatives of cos(omega t) and sin(omega t) at the time set. */
-static void differentiate(const struct harmonic *h, int order, double *c, double *s)
+static inline void differentiate(const struct harmonic *h, int order, double *c, double *s)
 {
     *c = h->cos_t;
     *s = h->sin_t;
@@ -204,18 +204,21 @@ static void differentiate(const struct harmonic *h, int order, double *c, double
     }
 }
 
+static inline void add_harmonic_at(const struct harmonic *h, int order, double factor, double *to)
+{
+    double c, s;
+    differentiate(h, order, &c, &s);
+    for (size_t i = 0; i < h->count; i++) {
+        to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
+    }
+}
+
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
-        if (h->drives != drives) {
-            continue;
-        }
-        double c, s;
-        tribo_system_turn(sys, k);
-        differentiate(h, order, &c, &s);
-        for (size_t i = 0; i < h->count; i++) {
-            to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
+        if (sys->harmonic[k].drives == drives) {
+            tribo_system_turn(sys, k);
+            add_harmonic_at(&sys->harmonic[k], order, factor, to);
         }
     }
     if (drives == DRIVES_LOAD && sys->tables) {

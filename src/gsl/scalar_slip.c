@@ -38,15 +38,23 @@ static void begin_again(struct stick_slip *m)
     m->again = 0;
 }
 
-/* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
- * than rounding, slides. */
-static int breaks_away(struct stick_slip *m, size_t i, signed char direction, double acceleration)
+/* Whether a contact at rest whose force is at its limit, in `direction` of the slip that it resists, accelerates that way by more
+ * than rounding. */
+static inline int breaks_away(const struct stick_slip *m, size_t i, signed char direction, double acceleration)
 {
-    if (direction * acceleration <= m->gain[i]) {
-        return 0;
-    }
+    return direction * acceleration > m->gain[i];
+}
+
+/* Contact i slides, or holds by its other limit. Returns how many have to be decided about once more: none where it was decided
+ * about alone and slides, which makes its force known and changes no other one. */
+static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
+{
     tribo_stick_slip_let_go(m, i, direction);
-    return 1;
+    if (m->slip[i] == 0 || !tribo_stick_slip_alone(m, i)) {
+        return 1;
+    }
+    m->force[i] = -direction * m->limit[i];
+    return 0;
 }
 
 /* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
@@ -64,7 +72,7 @@ static void ask_close(struct stick_slip *m)
     }
 }
 
-/* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
+/* Who slides by the forces found; and who is tied. Returns how many have to be decided about once more, with how many are tied. */
 static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
 {
     size_t changes = 0;
@@ -83,7 +91,9 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
             const signed char direction = direction_of(m, i, m->force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->tied[i] = 1;
-            changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure);
+            if (room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure)) {
+                changes += let_go(m, i, direction);
+            }
             *ties += m->tied[i] != 0;
         }
     }
@@ -169,10 +179,10 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
         if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
-            const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
-            m->pulled[i] = (signed char)(m->tied[i] && room <= 0.0 && direction * m->v[i] > m->gain[i] ? direction : 0);
-            *changes += (size_t)leaves;
-            m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
+            const int goes = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            m->pulled[i] = (signed char)(goes && !may && m->tied[i] ? direction : 0);
+            *changes += goes && may ? let_go(m, i, direction) : 0;
+            m->tied[i] = (signed char)(!m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
         }
     }
     return TRIBO_OK;
@@ -189,8 +199,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     find_static(m, sys, y);
     if (!status) {
         tribo_elastic_hold(m, sys, y);
-        tribo_system_free_acceleration(sys, t, y, m->free);
-        tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->a);
+        tribo_stick_slip_find_free(m, sys, t, y);
         tribo_stick_slip_forget_gains(m);
         m->asked = m->all;
         m->asks = m->contacts;

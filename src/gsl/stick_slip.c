@@ -20,7 +20,7 @@
 static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
 {
     double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
-                                   &m->seen,      &m->parting,        &m->v,     &m->a,         &m->lo,    &m->hi,
+                                   &m->seen,      &m->parting,        &m->v,     &m->own_a,     &m->lo,    &m->hi,
                                    &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
                                    &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
@@ -159,6 +159,12 @@ void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
     add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
 }
 
+/* What of the velocity of contact i may be rounding, where the sizes of its terms come to this. */
+static inline double velocity_noise(const struct stick_slip *m, size_t i, double size)
+{
+    return VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
+}
+
 double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
     const struct matrix *j = &sys->direction;
@@ -169,7 +175,7 @@ double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *
         v += part;
         size += fabs(part);
     }
-    m->noise[i] = VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
+    m->noise[i] = velocity_noise(m, i, size);
     return v;
 }
 
@@ -178,31 +184,34 @@ void tribo_stick_slip_forget_gains(struct stick_slip *m)
     memset(m->found, 0, m->founds * sizeof *m->found);
 }
 
-/* The size of all that q'' of degree of freedom d is the sum of, which is not known yet. */
-static void find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
+/* The size of all that q'' of degree of freedom d is the sum of. */
+static double find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
+    if (m->size[d] > 0.0) {
+        return m->size[d];
+    }
     if (sys->tables) {
         tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
     }
-    m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
-                 tribo_matrix_row_size(&sys->response, d, m->force);
-    m->size[d] += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
+    double size = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                  tribo_matrix_row_size(&sys->response, d, m->force);
+    size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
+    return m->size[d] = size;
 }
 
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
 {
     const struct matrix *j = &sys->direction;
-    double size = 0.0;
+    double size = 0.0, speed = 0.0;
     if (m->gain[i] > 0.0) {
         return;
     }
-    tribo_stick_slip_find_velocity(m, sys, i, y);
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        if (!(m->size[j->col[k]] > 0.0)) {
-            find_size(m, sys, y, j->col[k]);
-        }
-        size += fabs(j->val[k] * m->size[j->col[k]]);
+        const size_t d = j->col[k];
+        size += fabs(j->val[k] * find_size(m, sys, y, d));
+        speed += fabs(j->val[k] * y[sys->ndof + d]);
     }
+    m->noise[i] = velocity_noise(m, i, speed);
     m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
     m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
     m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
@@ -243,6 +252,16 @@ double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system 
 }
 
 /* ------------------------------------------------------------------------------------------------------------ motion */
+
+void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y)
+{
+    tribo_system_free_acceleration(sys, t, y, m->free);
+    m->a = m->free;
+    if (!sys->direction.identity || sys->base_harmonics) {
+        tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->own_a);
+        m->a = m->own_a;
+    }
+}
 
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {

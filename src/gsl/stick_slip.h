@@ -52,9 +52,10 @@ struct stick_slip {
     double *base, *noise; /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
     double *seen;         /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
     double *diagonal;     /* [ncontact] R_ii */
-    double *v, *a;        /* [ncontact] relative velocity; acceleration without friction */
+    double *v, *own_a;    /* [ncontact] relative velocity; room for the next one */
+    const double *a;      /* [ncontact] acceleration without friction */
     double *lo, *hi, *f;  /* [ncontact] workspace: bounds, forces */
-    double *free, *acceleration, *rate; /* [ndof] workspace: q'' without friction, with it, its rate */
+    double *free, *acceleration, *rate; /* [ndof] q'' without friction; workspace: with it, its rate */
     double *base_size, *base_rate_size; /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                  /* [ndof] how large accelerations by harmonic loads ever are */
     signed char *tied;                  /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
@@ -125,6 +126,9 @@ void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 
+/* The free motion at (t, y): m->free, and m->a. */
+void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y);
+
 /* q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
  * to [ncontact] = J acceleration - order-th derivative of b. */
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
@@ -139,6 +143,12 @@ static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i
 
 /* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
 #define TRIBO_CLOSE 0.1
+
+/* Whether contact i is the only one whose force was searched for, of those that it is coupled with. */
+static inline int tribo_stick_slip_alone(const struct stick_slip *m, size_t i)
+{
+    return m->uncoupled || m->only == i;
+}
 
 /* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
  * without them are a; the forces, with contacts at rest as they are marked, and who is close to its limit by them; both return a

@@ -117,7 +117,7 @@ static void find_sliding_limits(struct stick_slip *m, const tribo_system *sys, c
 
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
 {
-    tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
+    tribo_system_free_motion(sys, t, y, acceleration, m->v, m->own_a);
     if (sys->massless.count) {
         tribo_elastic_find(m, sys, y);
     }
