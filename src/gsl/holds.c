@@ -82,7 +82,7 @@ static int find_anew(struct stick_slip *m, const tribo_system *sys)
     return status;
 }
 
-int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+int tribo_stick_slip_find_holds_anew(struct stick_slip *m, const tribo_system *sys)
 {
     const int others = !m->independent && take_ties(m);
     return m->fresh || others ? find_anew(m, sys) : TRIBO_OK;
@@ -122,9 +122,26 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
     return TRIBO_OK;
 }
 
+/* The same as tribo_system_snap, where entry i of J is all that contact i has. */
+static void snap_single(const struct stick_slip *m, const struct matrix *j, const double *base, double *x)
+{
+    const size_t n = m->contacts, *const col = j->col;
+    const signed char *const loose = m->loose;
+    const double *const val = j->val;
+    for (size_t i = 0; i < n; i++) {
+        if (!loose[i]) {
+            x[col[i]] = base[i] / val[i];
+        }
+    }
+}
+
 /* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
+    if (m->single) {
+        snap_single(m, &sys->direction, base, x);
+        return TRIBO_OK;
+    }
     tribo_system_snap(sys, m->loose, base, x);
     if (m->simple || !moves(m, sys, base, x)) {
         return TRIBO_OK;

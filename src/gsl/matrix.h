@@ -69,6 +69,24 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
 /* The same with y = z - A x, z [end - begin] apart from y. */
 void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y);
 
+/* Whether a matrix has so few rows that a call would take as long as they do; and then, y += factor A x. */
+static inline int tribo_matrix_is_small(const struct matrix *a)
+{
+    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
+}
+
+static inline void tribo_matrix_add_few(const struct matrix *a, double factor, const double *x, double *y)
+{
+    for (size_t i = 0; a->diagonals && i < a->rows; i++) {
+        for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
+            y[i] += factor * a->val[k] * x[a->col[k]];
+        }
+    }
+    for (size_t i = 0; !a->diagonals && i < a->rows; i++) {
+        y[i] += factor * tribo_matrix_row_dot(a, i, x);
+    }
+}
+
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
 

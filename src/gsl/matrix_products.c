@@ -158,27 +158,10 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
     }
 }
 
-static int is_small(const struct matrix *a)
-{
-    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
-}
-
-/* y += factor A x of a small matrix. */
-static void add_few_rows(const struct matrix *a, double factor, const double *x, double *y)
-{
-    if (a->diagonals) {
-        add_outer_rows(a, 0, a->rows, factor, x, y);
-        return;
-    }
-    for (size_t i = 0; i < a->rows; i++) {
-        y[i] += factor * tribo_matrix_row_dot(a, i, x);
-    }
-}
-
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
-    if (is_small(a)) {
-        add_few_rows(a, factor, x, y);
+    if (tribo_matrix_is_small(a)) {
+        tribo_matrix_add_few(a, factor, x, y);
         return;
     }
     for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
@@ -189,7 +172,7 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
 {
-    const int small = is_small(a);
+    const int small = tribo_matrix_is_small(a);
     for (size_t i = 0; a->identity && i < a->rows; i++) {
         y[i] = x[i];
     }

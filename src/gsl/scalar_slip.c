@@ -149,8 +149,8 @@ static void set_bounds_ahead(struct stick_slip *m)
     }
 }
 
-/* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
-static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
+/* Who slides by the forces of a moment later; the others that are tied, and then fewer, stay so, or go back inside. */
+static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties, size_t *changes)
 {
     for (size_t k = 0; k < m->asks; k++) {
         if (tribo_stick_slip_searches(m, m->asked[k])) {
@@ -181,7 +181,10 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
             const int goes = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
             m->pulled[i] = (signed char)(goes && !may && m->tied[i] ? direction : 0);
-            *changes += goes && may ? let_go(m, i, direction) : 0;
+            if (goes && may) {
+                *ties -= m->tied[i] != 0;
+                *changes += let_go(m, i, direction);
+            }
             m->tied[i] = (signed char)(!m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
         }
     }
@@ -209,7 +212,7 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         status = tribo_stick_slip_find_forces(m, sys);
         changes = status ? 0 : let_slide(m, sys, y, &ties);
         if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
-            status = look_ahead(m, sys, y, &changes);
+            status = look_ahead(m, sys, y, &ties, &changes);
         }
         if (!status && !changes && ties) {
             status = tribo_stick_slip_relieve(m, sys, &changes);

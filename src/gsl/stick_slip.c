@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Accelerations, and velocities, are known to this part of what they are the sum of. */
+/* Accelerations are known to this part of what they are the sum of. */
 #define NOISE 2e-14
-#define VELOCITY_NOISE 2e-14
 
 /* The moment later, in parts of one over the highest frequency. What has changed by then is far above noise, as a rule, and
  * nearly linear in time. */
@@ -97,6 +96,7 @@ static void find_kinds(struct stick_slip *m, const tribo_system *sys)
         m->all[i] = i;
         m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
+    m->single = m->simple && sys->direction.first[sys->ncontact] == sys->ncontact;
 }
 
 /* Whether any contact can hold without the others. 0 if out of memory. */
@@ -159,26 +159,6 @@ void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
     add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
 }
 
-/* What of the velocity of contact i may be rounding, where the sizes of its terms come to this. */
-static inline double velocity_noise(const struct stick_slip *m, size_t i, double size)
-{
-    return VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
-}
-
-double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
-{
-    const struct matrix *j = &sys->direction;
-    const double *u = y + sys->ndof;
-    double v = -m->base[i], size = 0.0;
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        const double part = j->val[k] * u[j->col[k]];
-        v += part;
-        size += fabs(part);
-    }
-    m->noise[i] = velocity_noise(m, i, size);
-    return v;
-}
-
 void tribo_stick_slip_forget_gains(struct stick_slip *m)
 {
     memset(m->found, 0, m->founds * sizeof *m->found);
@@ -211,7 +191,7 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
         size += fabs(j->val[k] * find_size(m, sys, y, d));
         speed += fabs(j->val[k] * y[sys->ndof + d]);
     }
-    m->noise[i] = velocity_noise(m, i, speed);
+    m->noise[i] = tribo_stick_slip_velocity_noise(m, i, speed);
     m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
     m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
     m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
@@ -239,16 +219,6 @@ double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
 {
     return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0;
-}
-
-double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
-{
-    const struct matrix *j = &sys->direction;
-    double v = -m->base[i];
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        v += j->val[k] * y[sys->ndof + j->col[k]];
-    }
-    return v;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ motion */

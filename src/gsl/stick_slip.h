@@ -23,7 +23,8 @@ struct stick_slip {
     int uncoupled;   /* R is diagonal */
     int independent; /* the contacts at rest hold, whoever they are: none depends on others */
     int base_moves;
-    int simple;     /* no contact has more than one degree of freedom */
+    int simple;     /* no contact has more than one degree of freedom, */
+    int single;     /* and each has one */
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
@@ -61,7 +62,7 @@ struct stick_slip {
     signed char *tied;                  /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
     signed char *before; /* [ncontact] who was tied when find_holds looked last, if contacts depend on each other */
-    int fresh;           /* some slip has changed since then */
+    int fresh;           /* some slip has changed since then, or all may have: who holds has to be found anew */
     int hold_differs;    /* hold has not been told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
@@ -95,13 +96,14 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     }
     const int depended = tribo_stick_slip_depends(m, i);
     m->slip[i] = slip;
-    m->fresh |= !m->independent;
-    if (m->independent) {
-        m->holds[i] = (unsigned char)(slip == 0 && m->can_hold[i]);
-        m->loose[i] = (signed char)(!m->holds[i] || m->elastic[i]);
-        m->dependents += tribo_stick_slip_depends(m, i) - depended;
-        m->hold_differs = 1;
+    if (!m->independent) {
+        m->fresh = 1;
+        return;
     }
+    m->holds[i] = (unsigned char)((slip == 0) & m->can_hold[i]);
+    m->loose[i] = (signed char)((m->holds[i] == 0) | m->elastic[i]);
+    m->dependents += tribo_stick_slip_depends(m, i) - depended;
+    m->hold_differs = 1;
 }
 
 /* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest:
@@ -191,7 +193,12 @@ void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
 /* holds.c: finds out which of the contacts at rest hold, as they are marked; a status. */
-int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
+int tribo_stick_slip_find_holds_anew(struct stick_slip *m, const tribo_system *sys);
+
+static inline int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+{
+    return m->fresh || !m->independent ? tribo_stick_slip_find_holds_anew(m, sys) : TRIBO_OK;
+}
 
 /* stick_slip_instant.c: q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
@@ -225,8 +232,39 @@ static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i
  * count. */
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i);
 
+/* Velocities are known to this part of what they are the sum of. */
+#define TRIBO_VELOCITY_NOISE 2e-14
+
+/* What of the velocity of contact i may be rounding, where the sizes of its terms come to this. */
+static inline double tribo_stick_slip_velocity_noise(const struct stick_slip *m, size_t i, double size)
+{
+    return TRIBO_VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
+}
+
 /* v_i in a state, at the time that was last decided for; and the same, with its noise found. */
-double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
-double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
+static inline double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    const double *u = y + sys->ndof;
+    double v = -m->base[i];
+    for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
+        v += j->val[k] * u[j->col[k]];
+    }
+    return v;
+}
+
+static inline double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    const double *u = y + sys->ndof;
+    double v = -m->base[i], size = 0.0;
+    for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
+        const double part = j->val[k] * u[j->col[k]];
+        v += part;
+        size += fabs(part);
+    }
+    m->noise[i] = tribo_stick_slip_velocity_noise(m, i, size);
+    return v;
+}
 
 #endif

@@ -1,6 +1,7 @@
 /* The forces of contacts at an instant, within their bounds, and the accelerations that these leave. */
 #include "stick_slip.h"
 #include "../common/real.h"
+#include "../common/simd.h"
 
 #include <math.h>
 #include <string.h>
@@ -96,25 +97,47 @@ static inline double given_force(const struct stick_slip *m, size_t i)
     return m->elastic[i] ? m->spring[i] : m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->limit[i];
 }
 
-/* Whether contact i, which is at rest, has this part of its limit, or has reached it. */
-static inline int has_part(const struct stick_slip *m, size_t i, double part)
+/* Of contacts that are not coupled: force [n], as by given_force or force_alone, and over [n], how far it is above this part of the
+ * limit; below 0 for one that is not at rest. Of elastic ones both are those of any other. */
+TRIBO_SIMD static void find_alone(size_t n, const signed char *restrict slip, const double *restrict a,
+                                  const double *restrict diagonal, const double *restrict limit, const double *restrict stick,
+                                  double part, double *restrict force, double *restrict over)
 {
-    return fabs(m->force[i]) >= part * m->stick[i] || i == m->reached;
+    for (size_t i = 0; i < n; i++) {
+        const double far = a[i] > 0.0 ? HUGE_VAL : a[i] < 0.0 ? -HUGE_VAL : 0.0;
+        const double by = diagonal[i] > 0.0 ? diagonal[i] : 1.0, pull = diagonal[i] > 0.0 ? a[i] / by : far;
+        const double held = clamp(-pull, -stick[i], stick[i]), given = -slip[i] * limit[i];
+        const int rests = slip[i] == 0;
+        force[i] = rests ? held : given;
+        over[i] = rests ? fabs(held) - part * stick[i] : -1.0;
+    }
 }
 
-/* Forces of contacts that are not coupled, and who is near its limit. */
-static void find_alone(struct stick_slip *m)
+static void put_springs(struct stick_slip *m, double *over)
 {
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->force[i] = m->elastic[i] ? m->spring[i] : m->force[i];
+        over[i] = m->elastic[i] ? -1.0 : over[i];
+    }
+}
+
+/* Forces of contacts that are not coupled, and who is near its limit, or has reached it. */
+static void find_all_alone(struct stick_slip *m, const tribo_system *sys)
+{
+    const size_t n = m->contacts;
+    double *const over = m->f;
     size_t near = 0;
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
-        if (!tribo_stick_slip_searches(m, i)) {
-            m->force[i] = given_force(m, i);
-            continue;
+    find_alone(n, m->slip, m->a, m->diagonal, m->limit, m->stick, 1.0 - NEAR, m->force, over);
+    if (sys->massless.count) {
+        put_springs(m, over);
+    }
+    if (m->reached < n && tribo_stick_slip_searches(m, m->reached)) {
+        over[m->reached] = 0.0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (over[i] >= 0.0) {
+            m->close[near++] = i;
         }
-        m->force[i] = force_alone(m, i, m->a[i], -m->stick[i], m->stick[i]);
-        m->close[near] = i;
-        near += (size_t)has_part(m, i, 1.0 - NEAR);
     }
     m->closes = near;
 }
@@ -138,7 +161,7 @@ static void find_close(struct stick_slip *m)
         const int searches = tribo_stick_slip_searches(m, i);
         m->close[rest] = i;
         rest += (size_t)searches;
-        any |= searches && has_part(m, i, 1.0 - TRIBO_CLOSE);
+        any |= searches && (fabs(m->force[i]) >= (1.0 - TRIBO_CLOSE) * m->stick[i] || i == m->reached);
     }
     m->closes = any ? rest : 0;
 }
@@ -146,7 +169,7 @@ static void find_close(struct stick_slip *m)
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 {
     if (m->uncoupled) {
-        find_alone(m);
+        find_all_alone(m, sys);
         return TRIBO_OK;
     }
     set_bounds(m);

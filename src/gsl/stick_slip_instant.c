@@ -52,10 +52,11 @@ static int not_unique(const tribo_system *sys, size_t i)
 /* Those that have no velocity in the direction of their slip any more rest; returns how many. */
 static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
+    const size_t n = m->contacts;
+    const signed char *const slip = m->slip;
     size_t found = 0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const signed char slip = m->slip[i];
-        if ((slip == 1 || slip == -1) && slip != slip_of(m, sys, i, y)) {
+    for (size_t i = 0; i < n; i++) {
+        if (slip[i] * slip[i] == 1 && slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->doubt * m->noise[i]) {
             tribo_stick_slip_set(m, i, 0);
             found++;
         }
