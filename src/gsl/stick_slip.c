@@ -194,8 +194,12 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
     m->noise[i] = tribo_stick_slip_velocity_noise(m, i, speed);
     m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
     m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
-    m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
-    m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+    if (m->swing[i] > 0.0) {
+        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
+    }
+    if (m->base_moves) {
+        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+    }
 }
 
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)

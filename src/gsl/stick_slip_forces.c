@@ -9,6 +9,9 @@
 /* By rounding alone, which is far less. */
 #define NEAR 1e-3
 
+/* So few contacts are not worth getting ready for more. */
+enum { FEW = 3 };
+
 /* The force between lo and hi that lets contact i go on as it does, where without it the acceleration is a. One that friction
  * cannot move takes all that it can of any pull. */
 static inline double force_alone(const struct stick_slip *m, size_t i, double a, double lo, double hi)
@@ -40,44 +43,38 @@ void tribo_stick_slip_accelerate_searched(struct stick_slip *m, const tribo_syst
     }
 }
 
-/* The only contact whose force is searched for, ncontact if there is none; 0 if there are more. */
-static int find_only(struct stick_slip *m)
+/* Whether no more than one contact is searched for, where that can be told of each alone; and which one. */
+static int has_only(struct stick_slip *m)
 {
+    size_t found = 0;
     m->only = m->contacts;
     for (size_t i = 0; i < m->contacts; i++) {
         if (tribo_stick_slip_searches(m, i)) {
-            if (m->only < m->contacts) {
-                m->only = m->contacts;
-                return 0;
-            }
             m->only = i;
+            found++;
         }
     }
-    return 1;
+    if (found > 1 || !m->independent) {
+        m->only = m->contacts;
+    }
+    return found <= 1 && m->independent;
 }
 
-/* The solution where the forces of all contacts but one are known: that one is decided about alone. */
-static void solve_only(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+/* The force between lo and hi of the only contact that is searched for: it is decided about alone, the others having theirs in
+ * f. */
+static double find_force(struct stick_slip *m, const tribo_system *sys, double a, double lo, double hi, double *f)
 {
     const struct matrix *j = &sys->direction;
-    const size_t only = m->only;
-    memcpy(f, m->lo, m->contacts * sizeof *f);
-    if (only < m->contacts) {
-        f[only] = 0.0;
-        m->pull = a[only];
-        for (size_t k = j->first[only]; k < j->first[only + 1]; k++) {
-            m->pull += j->val[k] * tribo_matrix_row_dot(&sys->response, j->col[k], f);
-        }
-        f[only] = force_alone(m, only, m->pull, m->lo[only], m->hi[only]);
+    f[m->only] = 0.0;
+    m->pull = a;
+    for (size_t k = j->first[m->only], end = j->first[m->only + 1]; k < end; k++) {
+        m->pull += j->val[k] * tribo_matrix_row_dot(&sys->response, j->col[k], f);
     }
+    return force_alone(m, m->only, m->pull, lo, hi);
 }
 
-static int solve_coupled(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+static int solve_box(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
 {
-    if (m->independent && find_only(m)) {
-        solve_only(m, sys, a, f);
-        return TRIBO_OK;
-    }
     const int status = tribo_solve_box(m->box, a, m->lo, m->hi, f);
     return status ? tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->box)) : TRIBO_OK;
 }
@@ -88,7 +85,17 @@ int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const 
         const size_t i = m->asked[k];
         f[i] = force_alone(m, i, a[i], m->lo[i], m->hi[i]);
     }
-    return m->uncoupled ? TRIBO_OK : solve_coupled(m, sys, a, f);
+    if (m->uncoupled) {
+        return TRIBO_OK;
+    }
+    if (!has_only(m)) {
+        return solve_box(m, sys, a, f);
+    }
+    memcpy(f, m->lo, m->contacts * sizeof *f);
+    if (m->only < m->contacts) {
+        f[m->only] = find_force(m, sys, a[m->only], m->lo[m->only], m->hi[m->only], f);
+    }
+    return TRIBO_OK;
 }
 
 /* The force that contact i has whatever the others do. */
@@ -99,9 +106,9 @@ static inline double given_force(const struct stick_slip *m, size_t i)
 
 /* Of contacts that are not coupled: force [n], as by given_force or force_alone, and over [n], how far it is above this part of the
  * limit; below 0 for one that is not at rest. Of elastic ones both are those of any other. */
-TRIBO_SIMD static void find_alone(size_t n, const signed char *restrict slip, const double *restrict a,
-                                  const double *restrict diagonal, const double *restrict limit, const double *restrict stick,
-                                  double part, double *restrict force, double *restrict over)
+static inline void find_alone(size_t n, const signed char *restrict slip, const double *restrict a,
+                              const double *restrict diagonal, const double *restrict limit, const double *restrict stick,
+                              double part, double *restrict force, double *restrict over)
 {
     for (size_t i = 0; i < n; i++) {
         const double far = a[i] > 0.0 ? HUGE_VAL : a[i] < 0.0 ? -HUGE_VAL : 0.0;
@@ -111,6 +118,11 @@ TRIBO_SIMD static void find_alone(size_t n, const signed char *restrict slip, co
         force[i] = rests ? held : given;
         over[i] = rests ? fabs(held) - part * stick[i] : -1.0;
     }
+}
+
+TRIBO_SIMD static void find_many_alone(const struct stick_slip *m, double *restrict over)
+{
+    find_alone(m->contacts, m->slip, m->a, m->diagonal, m->limit, m->stick, 1.0 - NEAR, m->force, over);
 }
 
 static void put_springs(struct stick_slip *m, double *over)
@@ -127,7 +139,12 @@ static void find_all_alone(struct stick_slip *m, const tribo_system *sys)
     const size_t n = m->contacts;
     double *const over = m->f;
     size_t near = 0;
-    find_alone(n, m->slip, m->a, m->diagonal, m->limit, m->stick, 1.0 - NEAR, m->force, over);
+    if (n > FEW) {
+        find_many_alone(m, over);
+    }
+    for (size_t i = 0; n <= FEW && i < n; i++) {
+        find_alone(1, m->slip + i, m->a + i, m->diagonal + i, m->limit + i, m->stick + i, 1.0 - NEAR, m->force + i, over + i);
+    }
     if (sys->massless.count) {
         put_springs(m, over);
     }
@@ -152,6 +169,12 @@ static void set_bounds(struct stick_slip *m)
     }
 }
 
+/* Whether the force of contact i, which is searched for, is close to its limit, or has reached it. */
+static inline int is_close(const struct stick_slip *m, size_t i)
+{
+    return fabs(m->force[i]) >= (1.0 - TRIBO_CLOSE) * m->stick[i] || i == m->reached;
+}
+
 /* If any contact is close to its limit, all that are at rest may be at theirs. */
 static void find_close(struct stick_slip *m)
 {
@@ -161,19 +184,34 @@ static void find_close(struct stick_slip *m)
         const int searches = tribo_stick_slip_searches(m, i);
         m->close[rest] = i;
         rest += (size_t)searches;
-        any |= searches && (fabs(m->force[i]) >= (1.0 - TRIBO_CLOSE) * m->stick[i] || i == m->reached);
+        any |= searches && is_close(m, i);
     }
     m->closes = any ? rest : 0;
 }
 
+/* All forces where no more than one is searched for. */
+static void find_only(struct stick_slip *m, const tribo_system *sys)
+{
+    const size_t only = m->only;
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->force[i] = given_force(m, i);
+    }
+    m->closes = 0;
+    if (only < m->contacts) {
+        m->force[only] = find_force(m, sys, m->a[only], -m->stick[only], m->stick[only], m->force);
+        m->close[0] = only;
+        m->closes = (size_t)is_close(m, only);
+    }
+}
+
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys)
 {
-    if (m->uncoupled) {
-        find_all_alone(m, sys);
+    if (m->uncoupled || has_only(m)) {
+        (m->uncoupled ? find_all_alone : find_only)(m, sys);
         return TRIBO_OK;
     }
     set_bounds(m);
-    const int status = solve_coupled(m, sys, m->a, m->force);
+    const int status = solve_box(m, sys, m->a, m->force);
     find_close(m);
     return status;
 }
