@@ -204,21 +204,17 @@ static inline void differentiate(const struct harmonic *h, int order, double *c,
     }
 }
 
-static inline void add_harmonic_at(const struct harmonic *h, int order, double factor, double *to)
-{
-    double c, s;
-    differentiate(h, order, &c, &s);
-    for (size_t i = 0; i < h->count; i++) {
-        to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
-    }
-}
-
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        if (sys->harmonic[k].drives == drives) {
-            tribo_system_turn(sys, k);
-            add_harmonic_at(&sys->harmonic[k], order, factor, to);
+    for (struct harmonic *h = sys->harmonic, *end = h + sys->harmonics; h < end; h++) {
+        if (h->drives != drives) {
+            continue;
+        }
+        double c, s;
+        tribo_system_turn_to(sys, h);
+        differentiate(h, order, &c, &s);
+        for (size_t i = 0; i < h->count; i++) {
+            to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
     }
     if (drives == DRIVES_LOAD && sys->tables) {

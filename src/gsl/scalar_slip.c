@@ -72,22 +72,41 @@ static void ask_close(struct stick_slip *m)
     }
 }
 
+/* m->v = the accelerations that forces f, which were found last, leave at those of the contacts in the list that were searched for;
+ * a without them. */
+static void find_left(struct stick_slip *m, const tribo_system *sys, size_t n, const size_t *list, const double *a,
+                      const double *f)
+{
+    const int all = !m->uncoupled && m->only == m->contacts;
+    for (size_t k = 0; !all && k < n; k++) {
+        const size_t i = list[k];
+        m->v[i] = (m->uncoupled ? a[i] : m->pull) + m->diagonal[i] * f[i];
+    }
+    if (all) {
+        tribo_stick_slip_accelerate(m, sys, a, f, m->v);
+    }
+}
+
+/* Whether contact i, whose force is at its limit but for room, may be said to be there. */
+static inline int is_at_limit(const struct stick_slip *m, size_t i, double room)
+{
+    return room <= (i == m->reached ? TRIBO_CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED);
+}
+
 /* Who slides by the forces found; and who is tied. Returns how many have to be decided about once more, with how many are tied. */
 static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
 {
     size_t changes = 0;
     *ties = 0;
     ask_close(m);
-    if (m->closes == 0) {
-        return 0;
+    if (m->closes > 0) {
+        find_left(m, sys, m->closes, m->close, m->a, m->force);
     }
-    tribo_stick_slip_accelerate_searched(m, sys, m->a, m->force, m->v);
     for (size_t k = 0; k < m->closes; k++) {
         const size_t i = m->close[k];
-        tribo_stick_slip_find_gain(m, sys, y, i);
         const double room = m->stick[i] - fabs(m->force[i]);
-        const double within = i == m->reached ? TRIBO_CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
-        if (room <= within) {
+        tribo_stick_slip_find_gain(m, sys, y, i);
+        if (is_at_limit(m, i, room)) {
             const signed char direction = direction_of(m, i, m->force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->tied[i] = 1;
@@ -171,7 +190,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     if (status) {
         return status;
     }
-    tribo_stick_slip_accelerate_searched(m, sys, m->v, m->f, m->v);
+    find_left(m, sys, m->asks, m->asked, m->v, m->f);
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         m->pulled[i] = 0;
@@ -193,12 +212,13 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+/* Who is at rest at (t, y), and how all contacts go on without friction. A status. */
+static int find_instant(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_stick_slip_begin_decision(m, sys, t, y);
     tribo_stick_slip_update_limits(m, sys, y);
     tribo_elastic_place(m, sys, y);
-    int status = tribo_stick_slip_find_resting(m, sys, y);
+    const int status = tribo_stick_slip_find_resting(m, sys, y);
     find_static(m, sys, y);
     if (!status) {
         tribo_elastic_hold(m, sys, y);
@@ -207,26 +227,47 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
         m->asked = m->all;
         m->asks = m->contacts;
     }
-    for (size_t changes = 1; !status && changes;) {
-        size_t ties;
-        status = tribo_stick_slip_find_forces(m, sys);
-        changes = status ? 0 : let_slide(m, sys, y, &ties);
-        if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
-            status = look_ahead(m, sys, y, &ties, &changes);
-        }
-        if (!status && !changes && ties) {
-            status = tribo_stick_slip_relieve(m, sys, &changes);
-        }
-        if (changes) {
-            begin_again(m);
-        }
+    return status;
+}
+
+/* *changes = how many have to be decided about once more. A status. */
+static int go_round(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
+{
+    size_t ties;
+    int status = tribo_stick_slip_find_forces(m, sys);
+    *changes = status ? 0 : let_slide(m, sys, y, &ties);
+    if (!status && !*changes && (ties || (m->dependents && m->base_moves))) {
+        status = look_ahead(m, sys, y, &ties, changes);
     }
-    m->reached = m->contacts;
-    if (m->breakaway.some && !status) {
+    if (!status && !*changes && ties) {
+        status = tribo_stick_slip_relieve(m, sys, changes);
+    }
+    if (*changes) {
+        begin_again(m);
+    }
+    return status;
+}
+
+/* Those that broke away, and are held after all, hold by their static limits again. */
+static void restore_static(struct stick_slip *m, const tribo_system *sys, const double *y, int status)
+{
+    if (!status) {
         tribo_stick_slip_find_gains(m, sys, y);
     }
-    for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
+    for (size_t i = 0; i < m->contacts; i++) {
         m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
+    }
+}
+
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    int status = find_instant(m, sys, t, y);
+    for (size_t changes = 1; !status && changes;) {
+        status = go_round(m, sys, y, &changes);
+    }
+    m->reached = m->contacts;
+    if (m->breakaway.some) {
+        restore_static(m, sys, y, status);
     }
     if (!status) {
         tribo_elastic_finish(m, sys);

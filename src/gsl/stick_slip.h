@@ -154,13 +154,10 @@ static inline int tribo_stick_slip_alone(const struct stick_slip *m, size_t i)
 
 /* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
  * without them are a; the forces, with contacts at rest as they are marked, and who is close to its limit by them; both return a
- * status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. The last one finds only those of contacts
- * whose forces were searched for, by the solution f that was found last. */
+ * status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. */
 int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
-void tribo_stick_slip_accelerate_searched(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f,
-                                          double *v);
 
 /* Contact i, which cannot hold, slides; but if it held by a static limit, it is decided about once more by the other one. */
 static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)

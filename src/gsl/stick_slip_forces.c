@@ -33,16 +33,6 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
     }
 }
 
-void tribo_stick_slip_accelerate_searched(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f,
-                                          double *v)
-{
-    if (m->only < m->contacts) {
-        v[m->only] = m->pull + m->diagonal[m->only] * f[m->only];
-    } else {
-        tribo_stick_slip_accelerate(m, sys, a, f, v);
-    }
-}
-
 /* Whether no more than one contact is searched for, where that can be told of each alone; and which one. */
 static int has_only(struct stick_slip *m)
 {

@@ -120,11 +120,16 @@ size_t tribo_system_place(const tribo_system *sys, double t);
 /* Harmonic k becomes that of the time set, if it is not: whoever reads cos_t and sin_t asks for it first. */
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
 
+static inline void tribo_system_turn_to(const tribo_system *sys, struct harmonic *h)
+{
+    if (h->time != sys->time) {
+        tribo_harmonic_turn(sys, h);
+    }
+}
+
 static inline void tribo_system_turn(const tribo_system *sys, size_t k)
 {
-    if (sys->harmonic[k].time != sys->time) {
-        tribo_harmonic_turn(sys, &sys->harmonic[k]);
-    }
+    tribo_system_turn_to(sys, &sys->harmonic[k]);
 }
 
 /* ---- loads.c */
