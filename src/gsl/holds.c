@@ -122,15 +122,13 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
     return TRIBO_OK;
 }
 
-/* The same as tribo_system_snap, where entry i of J is all that contact i has. */
-static void snap_single(const struct stick_slip *m, const struct matrix *j, const double *base, double *x)
+/* The same as tribo_system_snap. */
+static void snap(const struct stick_slip *m, const double *base, double *x)
 {
-    const size_t n = m->contacts, *const col = j->col;
-    const signed char *const loose = m->loose;
-    const double *const val = j->val;
-    for (size_t i = 0; i < n; i++) {
-        if (!loose[i]) {
-            x[col[i]] = base[i] / val[i];
+    const struct follower *const end = m->follower + m->followers;
+    for (const struct follower *f = m->follower; f < end; f++) {
+        if (!m->loose[f->contact]) {
+            x[f->to] = (base[f->contact] - f->other * x[f->from]) / f->value;
         }
     }
 }
@@ -138,17 +136,13 @@ static void snap_single(const struct stick_slip *m, const struct matrix *j, cons
 /* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    if (m->single) {
-        snap_single(m, &sys->direction, base, x);
-        return TRIBO_OK;
-    }
-    tribo_system_snap(sys, m->loose, base, x);
+    snap(m, base, x);
     if (m->simple || !moves(m, sys, base, x)) {
         return TRIBO_OK;
     }
     const int status = tribo_stick_slip_project(m, sys, base, x);
     if (!status) {
-        tribo_system_snap(sys, m->loose, base, x);
+        snap(m, base, x);
     }
     return status;
 }

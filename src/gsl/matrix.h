@@ -47,7 +47,7 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
 static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
-    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+    for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
         sum += a->val[k] * x[a->col[k]];
     }
     return sum;
@@ -57,7 +57,7 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
 static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
-    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+    for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
         sum += fabs(a->val[k] * x[a->col[k]]);
     }
     return sum;

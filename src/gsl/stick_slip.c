@@ -5,6 +5,7 @@
 #include "../common/real.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,7 +59,8 @@ static int create_lists(struct stick_slip *m, size_t contacts)
         m->asked = m->all = m->at + contacts;
         m->close = m->at + 2 * contacts;
     }
-    return m->at != NULL;
+    m->follower = malloc(contacts * sizeof *m->follower);
+    return m->at && m->follower;
 }
 
 /* Contexts that know directions only. Where R couples nobody they are not asked for forces, and the second one is not needed. */
@@ -88,15 +90,41 @@ static int create_contexts(struct stick_slip *m, const tribo_context *contacts)
 /* What contacts are, whatever they do. */
 static void find_kinds(struct stick_slip *m, const tribo_system *sys)
 {
-    m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
         m->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
         m->can_hold[i] = m->diagonal[i] > 0.0 || m->elastic[i];
         m->all[i] = i;
-        m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
-    m->single = m->simple && sys->direction.first[sys->ncontact] == sys->ncontact;
+}
+
+/* Of contact i, whose row of J has one entry or two. */
+static struct follower follower_of(const struct matrix *j, size_t i, size_t dof)
+{
+    const size_t first = j->first[i], last = j->first[i + 1] - 1, to = j->col[first] == dof ? first : last;
+    const size_t from = first + last - to;
+    return (struct follower){i, dof, j->col[from], j->val[to], from == to ? 0.0 : j->val[from]};
+}
+
+/* Followers of contacts. They undo nothing of each other where they are of no contact before them; or where nobody has more than
+ * one degree of freedom, since those that hold are independent. */
+static void find_followers(struct stick_slip *m, const tribo_system *sys)
+{
+    const struct matrix *j = &sys->direction;
+    double *seen = m->rate;
+    int few = 1, ordered = 1;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t dof = tribo_system_follower(sys, i);
+        few &= j->first[i + 1] - j->first[i] <= 1;
+        ordered &= dof != SIZE_MAX && seen[dof] == 0.0;
+        if (dof != SIZE_MAX) {
+            m->follower[m->followers++] = follower_of(j, i, dof);
+        }
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            seen[j->col[k]] = 1.0;
+        }
+    }
+    m->simple = few || ordered;
 }
 
 /* Whether any contact can hold without the others. 0 if out of memory. */
@@ -114,6 +142,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
     if (create_contexts(m, sys->contacts) && create_numbers(m, c, sys->ndof) && create_marks(m, c) && create_lists(m, c) &&
         tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
         find_kinds(m, sys);
+        find_followers(m, sys);
         if (find_dependence(m, sys)) {
             return TRIBO_OK;
         }
@@ -130,6 +159,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
     free(m->limit);
     free(m->slip);
     free(m->at);
+    free(m->follower);
     memset(m, 0, sizeof *m);
 }
 

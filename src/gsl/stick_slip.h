@@ -15,6 +15,12 @@
 /* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
 #define TRIBO_ALLOWED 8.0
 
+/* A contact at rest moves this degree of freedom by its last bits: x[to] = (base - other x[from])/value. */
+struct follower {
+    size_t contact, to, from;
+    double value, other;
+};
+
 struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
     tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0; NULL
@@ -23,8 +29,7 @@ struct stick_slip {
     int uncoupled;   /* R is diagonal */
     int independent; /* the contacts at rest hold, whoever they are: none depends on others */
     int base_moves;
-    int simple;     /* no contact has more than one degree of freedom, */
-    int single;     /* and each has one */
+    int simple;     /* contacts that hold are held by what follows them, and undo nothing of each other */
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
@@ -73,8 +78,10 @@ struct stick_slip {
     size_t only;                          /* contact whose force alone was searched for last, R coupling it; else ncontact, */
     double pull;                          /* and its acceleration without that force */
     unsigned char *elastic, *can_hold;    /* [ncontact] 1: an elastic contact; one that holds something, if it rests */
-    size_t *at;                           /* [ncontact] workspace of find_holds, */
-    unsigned char *last;                  /* [ncontact] and this */
+    struct follower *follower;            /* [followers] of contacts that have one */
+    size_t followers;
+    size_t *at;          /* [ncontact] workspace of find_holds, */
+    unsigned char *last; /* [ncontact] and this */
 };
 
 /* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
