@@ -43,22 +43,17 @@ static inline double sine_near_0(struct twofold x)
     return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * tail);
 }
 
-/* Of an angle up to COS_SIN_NEAR. */
-static inline void turn_near(struct twofold angle, double *c, double *s)
-{
-    const double quarters = nearest(angle.hi * 0.63661977236758134);
-    const struct twofold x = without_quarters(angle, quarters);
-    const double cx = cosine_near_0(x), sx = sine_near_0(x);
-    const double left = quarters - 4.0 * nearest(0.25 * quarters); /* -2, -1, 0, 1 or 2 */
-    const double cq = 1.0 - fabs(left), sq = left * (2.0 - fabs(left));
-    *c = cq * cx - sq * sx;
-    *s = sq * cx + cq * sx;
-}
-
 TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
 {
     for (size_t k = 0; k < n; k++) {
-        turn_near(twofold_product(omega, t[k]), c + k, s + k);
+        const struct twofold angle = twofold_product(omega, t[k]);
+        const double quarters = nearest(angle.hi * 0.63661977236758134);
+        const struct twofold x = without_quarters(angle, quarters);
+        const double cx = cosine_near_0(x), sx = sine_near_0(x);
+        const double left = quarters - 4.0 * nearest(0.25 * quarters); /* -2, -1, 0, 1 or 2 */
+        const double cq = 1.0 - fabs(left), sq = left * (2.0 - fabs(left));
+        c[k] = cq * cx - sq * sx;
+        s[k] = sq * cx + cq * sx;
     }
 }
 
@@ -104,7 +99,8 @@ void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, doubl
 /* An angle so small has the cosine 1 and is its own sine. */
 #define TINY_ANGLE 1e-8
 
-static void turn_far(double omega, double t, double low, double *c, double *s)
+/* What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
+void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
 {
     const double angle = omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(omega, t).lo : 0.0) + omega * low;
     double ca, sa, cr = 1.0, sr = rest;
@@ -114,16 +110,4 @@ static void turn_far(double omega, double t, double low, double *c, double *s)
     }
     *c = ca * cr - sa * sr;
     *s = sa * cr + ca * sr;
-}
-
-/* What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
-void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
-{
-    if (fabs(omega * t) <= COS_SIN_NEAR && fabs(omega * low) <= TINY_ANGLE) {
-        struct twofold angle = twofold_product(omega, t);
-        angle.lo += omega * low;
-        turn_near(angle, c, s);
-    } else {
-        turn_far(omega, t, low, c, s);
-    }
 }

@@ -17,7 +17,7 @@ void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, doubl
 /* The same where all |omega t| are known to be at most COS_SIN_NEAR. */
 void tribo_cos_sin_near(double omega, size_t n, const double *t, double *c, double *s);
 
-/* The same at t + low, where low is what rounding left of a time. */
+/* The same at t + low, where low is what rounding left of a time, by the functions of math.h. */
 void tribo_cos_sin(double omega, double t, double low, double *c, double *s);
 
 #endif

@@ -128,7 +128,8 @@ static void snap(const struct stick_slip *m, const double *base, double *x)
     const struct follower *const end = m->follower + m->followers;
     for (const struct follower *f = m->follower; f < end; f++) {
         if (!m->loose[f->contact]) {
-            x[f->to] = (base[f->contact] - f->other * x[f->from]) / f->value;
+            const double moved = f->other != 0.0 ? f->other * x[f->from] : 0.0;
+            x[f->to] = (base[f->contact] - moved) / f->value;
         }
     }
 }
