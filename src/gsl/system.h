@@ -17,7 +17,8 @@ enum { FORESIGHT = 32 };
 
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
 struct harmonic {
-    double omega, time, cos_t, sin_t;                  /* the latter are those of this time */
+    double omega, time, cos_t, sin_t;                  /* the latter are those of this time, */
+    size_t turns;                                      /* as found anew, and then turned on so often */
     double cos_ahead[FORESIGHT], sin_ahead[FORESIGHT]; /* those of times foreseen */
     size_t next;                                       /* which of them may be asked for next */
     enum drives drives;
@@ -131,6 +132,10 @@ static inline void tribo_system_turn(const tribo_system *sys, size_t k)
 {
     tribo_system_turn_to(sys, &sys->harmonic[k]);
 }
+
+/* The same by what a motion has found them to be, c and s, going on from a time at which they were these; unless they have come
+ * that way often, or bases are moved. */
+void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s);
 
 /* ---- loads.c */
 
