@@ -370,7 +370,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }
-    drv->sys->low = 0.0;
+    tribo_system_set_low(drv->sys, 0.0);
     tribo_system_forget_time(drv->sys); /* others find harmonics anew */
     return status;
 }

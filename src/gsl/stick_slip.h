@@ -102,15 +102,15 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     if (slip == m->slip[i]) {
         return;
     }
-    const int depended = tribo_stick_slip_depends(m, i);
+    const int rested = m->slip[i] == 0, rests = slip == 0;
     m->slip[i] = slip;
     if (!m->independent) {
         m->fresh = 1;
         return;
     }
-    m->holds[i] = (unsigned char)((slip == 0) & m->can_hold[i]);
-    m->loose[i] = (signed char)((m->holds[i] == 0) | m->elastic[i]);
-    m->dependents += tribo_stick_slip_depends(m, i) - depended;
+    m->holds[i] = (unsigned char)(rests & m->can_hold[i]);
+    m->loose[i] = (signed char)(!m->holds[i] || m->elastic[i]);
+    m->dependents += m->can_hold[i] ? 0 : rests - rested;
     m->hold_differs = 1;
 }
 
@@ -170,7 +170,7 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
 /* Contact i, which cannot hold, slides; but if it held by a static limit, it is decided about once more by the other one. */
 static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
-    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
+    const int again = m->breakaway.some && tribo_breakaway_lets_go(&m->breakaway, i);
     tribo_stick_slip_set(m, i, again ? 0 : direction);
     m->tied[i] = 0;
     m->again |= again;
