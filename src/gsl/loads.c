@@ -206,7 +206,8 @@ static inline void differentiate(const struct harmonic *h, int order, double *c,
 
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
-    for (struct harmonic *h = sys->harmonic, *end = h + sys->harmonics; h < end; h++) {
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        struct harmonic *h = &sys->harmonic[k];
         if (h->drives != drives) {
             continue;
         }

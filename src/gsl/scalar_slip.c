@@ -12,7 +12,8 @@
  *     an independent set of those at rest holds: it keeps all of them where they are
  *
  * Where no contact is coupled with another one, each is decided about alone, and who is not near its limit by its force: all that
- * follows is asked about the others only. */
+ * follows is asked about the others only. So is the only contact at rest of those that are coupled, as the others have their
+ * forces whatever it does; and who slides by a decision about it alone is done with. */
 #include "stick_slip.h"
 #include "../common/real.h"
 
@@ -72,8 +73,8 @@ static void ask_close(struct stick_slip *m)
     }
 }
 
-/* m->v = the accelerations that forces f, which were found last, leave at those of the contacts in the list that were searched for;
- * a without them. */
+/* m->v = the accelerations that forces f, which were found last, leave at contacts of the list [n] that were searched for;
+ * without these forces they are a. */
 static void find_left(struct stick_slip *m, const tribo_system *sys, size_t n, const size_t *list, const double *a,
                       const double *f)
 {
@@ -93,7 +94,8 @@ static inline int is_at_limit(const struct stick_slip *m, size_t i, double room)
     return room <= (i == m->reached ? TRIBO_CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED);
 }
 
-/* Who slides by the forces found; and who is tied. Returns how many have to be decided about once more, with how many are tied. */
+/* Who slides by the forces found; and who is tied. Returns how many have to be decided about once more, with how many are
+ * tied. */
 static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
 {
     size_t changes = 0;

@@ -15,8 +15,8 @@
 /* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */
 #define TRIBO_ALLOWED 8.0
 
-/* A contact at rest moves this degree of freedom by its last bits: x[to] = (base - other x[from])/value, where other may be 0, and
- * x[from] anything. */
+/* A contact at rest moves this degree of freedom by its last bits: x[to] = (base - other x[from])/value, where other may be 0,
+ * and x[from] anything. */
 struct follower {
     size_t contact, to, from;
     double value, other;

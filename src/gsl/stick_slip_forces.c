@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* By rounding alone, which is far less. */
+/* Where contacts are not coupled only rounding may take a force beyond the limit, and only if it is this close. */
 #define NEAR 1e-3
 
 /* So few contacts are not worth getting ready for more. */
@@ -94,8 +94,8 @@ static inline double given_force(const struct stick_slip *m, size_t i)
     return m->elastic[i] ? m->spring[i] : m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->limit[i];
 }
 
-/* Of contacts that are not coupled: force [n], as by given_force or force_alone, and over [n], how far it is above this part of the
- * limit; below 0 for one that is not at rest. Of elastic ones both are those of any other. */
+/* Of contacts that are not coupled: force [n], as by given_force or force_alone, and over [n], how far it is above this part of
+ * the limit; below 0 for one that is not at rest. Of elastic ones both are those of any other. */
 static inline void find_alone(size_t n, const signed char *restrict slip, const double *restrict a,
                               const double *restrict diagonal, const double *restrict limit, const double *restrict stick,
                               double part, double *restrict force, double *restrict over)

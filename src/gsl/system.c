@@ -189,26 +189,16 @@ size_t tribo_system_follower(const tribo_system *sys, size_t i)
     return count == 1 ? j->col[first] : count == 2 && are_alike(j, first) ? j->col[first + follows(sys, i, first)] : SIZE_MAX;
 }
 
-/* The degree of freedom that entry k of J stands for becomes what is left for it. */
-static inline void leave(const struct matrix *j, size_t k, double left, double *x)
-{
-    x[j->col[k]] = left / j->val[k];
-}
-
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
-    const size_t n = sys->ncontact, *const begin = j->first;
-    for (size_t i = 0; i < n; i++) {
-        const size_t first = begin[i], count = begin[i + 1] - first;
-        if (loose[i]) {
-            continue;
-        }
-        if (count == 1) {
-            leave(j, first, base[i], x);
-        } else if (count == 2 && are_alike(j, first)) {
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        if (!loose[i] && count == 1) {
+            x[j->col[first]] = base[i] / j->val[first];
+        } else if (!loose[i] && count == 2 && are_alike(j, first)) {
             const size_t to = first + follows(sys, i, first), from = 2 * first + 1 - to;
-            leave(j, to, base[i] - j->val[from] * x[j->col[from]], x);
+            x[j->col[to]] = (base[i] - j->val[from] * x[j->col[from]]) / j->val[to];
         }
     }
 }
