@@ -20,7 +20,9 @@ static inline void subtract(const struct matrix *a, const double *x, double *y)
 void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
 {
     const size_t n = sys->ndof;
-    tribo_system_set_time(sys, t);
+    if (!tribo_system_is_at(sys, t)) {
+        tribo_system_set_time(sys, t);
+    }
     memset(acceleration, 0, n * sizeof *acceleration);
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, acceleration);
     subtract(&sys->stiffness, y, acceleration);

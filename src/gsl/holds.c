@@ -82,7 +82,7 @@ static int find_anew(struct stick_slip *m, const tribo_system *sys)
     return status;
 }
 
-int tribo_stick_slip_find_holds_anew(struct stick_slip *m, const tribo_system *sys)
+int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
 {
     const int others = !m->independent && take_ties(m);
     return m->fresh || others ? find_anew(m, sys) : TRIBO_OK;

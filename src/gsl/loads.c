@@ -153,7 +153,7 @@ void tribo_system_set_low(tribo_system *sys, double low)
     }
 }
 
-void tribo_system_move_to(tribo_system *sys, double t)
+void tribo_system_set_time(tribo_system *sys, double t)
 {
     const int moves = t != sys->time;
     if (moves) {

@@ -274,5 +274,5 @@ int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, d
     if (!status) {
         tribo_elastic_finish(m, sys);
     }
-    return status ? status : tribo_stick_slip_find_holds(m, sys);
+    return status || tribo_stick_slip_knows_holds(m) ? status : tribo_stick_slip_find_holds(m, sys);
 }

@@ -198,11 +198,12 @@ void tribo_elastic_hold(struct stick_slip *m, const tribo_system *sys, double *y
 void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
 /* holds.c: finds out which of the contacts at rest hold, as they are marked; a status. */
-int tribo_stick_slip_find_holds_anew(struct stick_slip *m, const tribo_system *sys);
+int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
 
-static inline int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys)
+/* Whether nothing is left to find out of that. */
+static inline int tribo_stick_slip_knows_holds(const struct stick_slip *m)
 {
-    return m->fresh || !m->independent ? tribo_stick_slip_find_holds_anew(m, sys) : TRIBO_OK;
+    return m->independent && !m->fresh;
 }
 
 /* stick_slip_instant.c: q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */

@@ -89,7 +89,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 {
     int status = TRIBO_OK;
     for (size_t found = 1; !status && found;) {
-        status = tribo_stick_slip_find_holds(m, sys);
+        status = tribo_stick_slip_knows_holds(m) ? TRIBO_OK : tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
         found = status ? 0 : stop(m, sys, y);
     }
@@ -147,7 +147,9 @@ static void find_base(struct stick_slip *m, const tribo_system *sys)
 
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
-    tribo_system_set_time(sys, t);
+    if (!tribo_system_is_at(sys, t)) {
+        tribo_system_set_time(sys, t);
+    }
     find_base(m, sys);
     memset(m->tied, 0, sys->ncontact);
     tribo_elastic_release(sys, y);

@@ -105,6 +105,9 @@ void tribo_loads_free(tribo_system *sys);
 /* The loads, motions and tables of from for sys, which has none; 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
+/* Prepares the loads for time t, and sets the limits of the context if they vary. */
+void tribo_system_set_time(tribo_system *sys, double t);
+
 /* ---- foresight.c */
 
 /* Times t, at most FORESIGHT and ascending, that will probably be set next: the loads' harmonics are found side by side. From
@@ -155,14 +158,10 @@ static inline int tribo_system_limits_vary(const tribo_system *sys)
     return sys->limits.knots || sys->limit_harmonics;
 }
 
-/* Prepares the loads for time t, and sets the limits of the context if they vary. */
-void tribo_system_move_to(tribo_system *sys, double t);
-
-static inline void tribo_system_set_time(tribo_system *sys, double t)
+/* Whether setting time t would change nothing. */
+static inline int tribo_system_is_at(const tribo_system *sys, double t)
 {
-    if (t != sys->time || tribo_system_limits_vary(sys)) {
-        tribo_system_move_to(sys, t);
-    }
+    return t == sys->time && !tribo_system_limits_vary(sys);
 }
 
 /* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */

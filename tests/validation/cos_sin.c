@@ -1,5 +1,5 @@
-/* Cosine and sine of omega t: right to rounding, and the same bits for one time and for many; and of harmonics that a motion turns
- * on from one time to the next. */
+/* Cosine and sine of omega t: right to rounding, and the same bits for one time and for many; and of harmonics that a motion
+ * turns on from one time to the next. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
