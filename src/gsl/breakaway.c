@@ -106,7 +106,7 @@ double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v)
 
 int tribo_breakaway_lets_go(struct breakaway *b, size_t i)
 {
-    if (!b->some || b->falls || !(b->stick[i] > b->kinetic[i])) {
+    if (b->falls || !(b->stick[i] > b->kinetic[i])) {
         return 0;
     }
     b->stick[i] = b->kinetic[i];

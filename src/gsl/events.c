@@ -333,6 +333,9 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     }
     memcpy(y, e->next, dimension * sizeof *y);
     *t = go_on(sys, *t, when, end);
+    if (e->arrive) {
+        e->arrive(e->motion, *t);
+    }
     e->met = event;
     status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
     if (status) {
@@ -376,6 +379,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }
     tribo_system_set_low(drv->sys, 0.0);
+    tribo_system_forget_time(drv->sys); /* others find harmonics anew */
     return status;
 }
 

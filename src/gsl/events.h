@@ -27,6 +27,8 @@ struct events {
     int (*begin)(void *motion, double t, const double *y, double *reach);
     /* The state at tau into the phase that began with `from`. */
     void (*state)(void *motion, double tau, const double *from, double *to);
+    /* Tells the system of what it knows of t, at which the phase that state was asked for last has ended; NULL: of nothing. */
+    void (*arrive)(void *motion, double t);
     /* Moves perturbations v [2 ndof][columns] of the state to tau into the phase, in which contacts at rest are held, and what
      * would move these is taken away first. Returns a status, its message on the system's context. */
     int (*transition)(void *motion, double tau, size_t columns, double *v);

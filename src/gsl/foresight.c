@@ -31,6 +31,7 @@ void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
     /* times are asked for in their order, if at all */
     const size_t k = is_foreseen(sys, h) ? place_from(sys, h->next, t) : FORESIGHT;
     h->time = t;
+    h->turns = 0;
     if (h->omega == 0.0) {
         h->cos_t = 1.0;
         h->sin_t = 0.0;
@@ -42,6 +43,19 @@ void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h)
         tribo_cos_sin_all(h->omega, 1, &t, &h->cos_t, &h->sin_t);
     } else {
         tribo_cos_sin(h->omega, t, sys->low, &h->cos_t, &h->sin_t);
+    }
+}
+
+/* Each turn adds its rounding: so many times that is a part of what decisions allow for. */
+enum { TURNS = 16 };
+
+void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s)
+{
+    if (h->drives == DRIVES_LOAD && h->turns < TURNS) {
+        h->turns++;
+        h->time = sys->time;
+        h->cos_t = c;
+        h->sin_t = s;
     }
 }
 

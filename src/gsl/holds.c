@@ -61,22 +61,17 @@ static void hold_all(size_t n, const signed char *restrict slip, const unsigned 
     }
 }
 
-/* What follows from who holds: who is loose, and whether that has changed; and whether some rest by themselves. */
+/* What follows from who holds: who is loose, and whether that has changed; and how many rest by themselves. */
 static void note_holds(struct stick_slip *m)
 {
-    const signed char *restrict slip = m->slip;
-    const unsigned char *restrict holds = m->holds, *restrict elastic = m->elastic;
-    signed char *restrict loose = m->loose;
-    unsigned char differs = 0, dependents = 0;
-    const size_t n = m->contacts;
-    for (size_t i = 0; i < n; i++) {
-        const unsigned char is = (holds[i] == 0) | elastic[i];
-        differs |= is != loose[i];
-        dependents |= (slip[i] == 0) & (holds[i] == 0);
-        loose[i] = (signed char)is;
+    m->dependents = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        const signed char loose = (signed char)(!m->holds[i] || m->elastic[i]);
+        m->unlisted |= loose != m->loose[i];
+        m->dependents += tribo_stick_slip_depends(m, i);
+        m->loose[i] = loose;
     }
-    m->dependents = dependents;
-    m->hold_differs |= differs;
+    m->hold_differs |= m->unlisted;
 }
 
 static int find_anew(struct stick_slip *m, const tribo_system *sys)
@@ -128,16 +123,37 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
     return TRIBO_OK;
 }
 
+static void list_snaps(struct stick_slip *m, const tribo_system *sys)
+{
+    size_t hold = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        hold += !m->loose[i];
+    }
+    m->snaps = tribo_system_list_snaps(sys, m->loose, m->snap);
+    m->simple = m->snaps == hold;
+    m->unlisted = 0;
+}
+
+static void snap(const struct stick_slip *m, const double *base, double *x)
+{
+    for (const struct snap *s = m->snap; s < m->snap + m->snaps; s++) {
+        tribo_snap(s, base, x);
+    }
+}
+
 /* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    tribo_system_snap(sys, m->loose, base, x);
+    if (m->unlisted) {
+        list_snaps(m, sys);
+    }
+    snap(m, base, x);
     if (m->simple || !moves(m, sys, base, x)) {
         return TRIBO_OK;
     }
     const int status = tribo_stick_slip_project(m, sys, base, x);
     if (!status) {
-        tribo_system_snap(sys, m->loose, base, x);
+        snap(m, base, x);
     }
     return status;
 }

@@ -213,7 +213,7 @@ void tribo_system_tables(const tribo_system *sys, int order, double factor, size
 }
 
 /* The order-th derivatives of cos(omega t) and sin(omega t) at the time set. */
-static void differentiate(const struct harmonic *h, int order, double *c, double *s)
+static inline void differentiate(const struct harmonic *h, int order, double *c, double *s)
 {
     *c = h->cos_t;
     *s = h->sin_t;
@@ -227,12 +227,12 @@ static void differentiate(const struct harmonic *h, int order, double *c, double
 void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
+        struct harmonic *h = &sys->harmonic[k];
         if (h->drives != drives) {
             continue;
         }
         double c, s;
-        tribo_system_turn(sys, k);
+        tribo_system_turn_to(sys, h);
         differentiate(h, order, &c, &s);
         for (size_t i = 0; i < h->count; i++) {
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);

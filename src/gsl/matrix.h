@@ -47,7 +47,7 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y);
 static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
-    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+    for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
         sum += a->val[k] * x[a->col[k]];
     }
     return sum;
@@ -57,7 +57,7 @@ static inline double tribo_matrix_row_dot(const struct matrix *a, size_t i, cons
 static inline double tribo_matrix_row_size(const struct matrix *a, size_t i, const double *x)
 {
     double sum = 0.0;
-    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+    for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
         sum += fabs(a->val[k] * x[a->col[k]]);
     }
     return sum;
@@ -68,6 +68,24 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
 
 /* The same with y = z - A x, z [end - begin] apart from y. */
 void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y);
+
+/* Whether a matrix has so few rows that a call would take as long as they do; and then, y += factor A x. */
+static inline int tribo_matrix_is_small(const struct matrix *a)
+{
+    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
+}
+
+static inline void tribo_matrix_add_few(const struct matrix *a, double factor, const double *x, double *y)
+{
+    for (size_t i = 0; a->diagonals && i < a->rows; i++) {
+        for (size_t k = a->first[i], end = a->first[i + 1]; k < end; k++) {
+            y[i] += factor * a->val[k] * x[a->col[k]];
+        }
+    }
+    for (size_t i = 0; !a->diagonals && i < a->rows; i++) {
+        y[i] += factor * tribo_matrix_row_dot(a, i, x);
+    }
+}
 
 /* y = A x. */
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y);
@@ -93,12 +111,6 @@ double tribo_matrix_noise(const struct matrix *a, const double *root, const doub
 /* to [z->cols][z->cols] = Z'AZ of a symmetric A, exactly symmetric. Of a and z, one that has no rows is the identity. 0 if out of
  * memory. */
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to);
-
-/* Whether products go entry by entry. */
-static inline int tribo_matrix_is_small(const struct matrix *a)
-{
-    return a->rows <= MATRIX_FEW && a->cols <= 4 * MATRIX_FEW;
-}
 
 /* dense [rows][cols] = the entries; the same in memory that the caller frees, or NULL if there is none. */
 void tribo_matrix_spread(const struct matrix *a, double *dense);

@@ -158,22 +158,10 @@ void tribo_matrix_add_sizes(const struct matrix *a, const double *x, double *y)
     }
 }
 
-/* y += factor A x of a small matrix. */
-static void add_few_rows(const struct matrix *a, double factor, const double *x, double *y)
-{
-    if (a->diagonals) {
-        add_outer_rows(a, 0, a->rows, factor, x, y);
-        return;
-    }
-    for (size_t i = 0; i < a->rows; i++) {
-        y[i] += factor * tribo_matrix_row_dot(a, i, x);
-    }
-}
-
 void tribo_matrix_multiply_add(const struct matrix *a, double factor, const double *x, double *y)
 {
     if (tribo_matrix_is_small(a)) {
-        add_few_rows(a, factor, x, y);
+        tribo_matrix_add_few(a, factor, x, y);
         return;
     }
     for (size_t i = 0; i < a->rows; i += MATRIX_BLOCK) {
@@ -184,15 +172,19 @@ void tribo_matrix_multiply_add(const struct matrix *a, double factor, const doub
 
 void tribo_matrix_multiply(const struct matrix *a, const double *x, double *y)
 {
-    const int small = tribo_matrix_is_small(a);
-    for (size_t i = 0; a->identity && i < a->rows; i++) {
-        y[i] = x[i];
+    const size_t rows = a->rows;
+    if (a->identity) {
+        memmove(y, x, rows * sizeof *y);
+        return;
     }
-    for (size_t i = 0; !a->identity && small && i < a->rows; i++) {
-        y[i] = tribo_matrix_row_dot(a, i, x);
+    if (tribo_matrix_is_small(a)) {
+        for (size_t i = 0; i < rows; i++) {
+            y[i] = tribo_matrix_row_dot(a, i, x);
+        }
+        return;
     }
-    for (size_t i = 0; !a->identity && !small && i < a->rows; i += MATRIX_BLOCK) {
-        const size_t end = a->rows - i < MATRIX_BLOCK ? a->rows : i + MATRIX_BLOCK;
+    for (size_t i = 0; i < rows; i += MATRIX_BLOCK) {
+        const size_t end = rows - i < MATRIX_BLOCK ? rows : i + MATRIX_BLOCK;
         memset(y + i, 0, (end - i) * sizeof *y);
         tribo_matrix_add_rows(a, i, end, 1.0, x, y + i);
     }

@@ -141,6 +141,16 @@ static void move_to(void *motion, double tau, const double *from, double *to)
     tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
 }
 
+/* The load at the end of a phase, where its terms are. */
+static void arrive(void *motion, double t)
+{
+    const struct modal_motion *x = &((struct exact *)motion)->motion;
+    tribo_system_set_time(x->sys, t);
+    for (size_t s = 0; s < x->h->given; s++) {
+        tribo_harmonic_take(x->sys, &x->sys->harmonic[x->h->forcing[s].harmonic], x->cos_t[s], x->sin_t[s]);
+    }
+}
+
 /* Bounds of a course, as far as they come from terms. */
 static void bound_course(const struct exact *x, struct course *c)
 {
@@ -332,6 +342,7 @@ static int create(tribo_driver *drv)
     x->events.search.motion = x->events.motion = x;
     x->events.begin = begin;
     x->events.state = move_to;
+    x->events.arrive = arrive;
     x->events.transition = transition;
     x->events.signal = combine;
     x->events.shows_between = 1;

@@ -421,7 +421,7 @@ int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, 
     tribo_stick_slip_begin_decision(m, sys, t, y);
     int status = find_resting(m, sys, y);
     if (!status) {
-        tribo_system_free_motion(sys, t, y, m->free, m->v, m->a);
+        tribo_stick_slip_find_free(m, sys, t, y);
         status = find_forces(m, sys, y);
     }
     if (status) {

@@ -12,18 +12,13 @@
  *     an independent set of those at rest holds: it keeps all of them where they are
  *
  * Where no contact is coupled with another one, each is decided about alone, and who is not near its limit by its force: all that
- * follows is asked about the others only. */
+ * follows is asked about the others only. So is the only contact at rest of those that are coupled, as the others have their
+ * forces whatever it does; and who slides by a decision about it alone is done with. */
 #include "stick_slip.h"
 #include "../common/real.h"
 
 #include <math.h>
 #include <string.h>
-
-/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
-#define CLOSE 0.1
-
-/* By rounding alone, which is far less. */
-#define NEAR 1e-3
 
 /* Of redundant contacts the solver may leave this many times the noise of accelerations. */
 #define CERTAIN 1e3
@@ -44,15 +39,23 @@ static void begin_again(struct stick_slip *m)
     m->again = 0;
 }
 
-/* A contact at rest whose force is at its limit, in `direction` of the slip that it resists, and accelerates that way by more
- * than rounding, slides. */
-static int breaks_away(struct stick_slip *m, size_t i, signed char direction, double acceleration)
+/* Whether a contact at rest whose force is at its limit, in `direction` of the slip that it resists, accelerates that way by more
+ * than rounding. */
+static inline int breaks_away(const struct stick_slip *m, size_t i, signed char direction, double acceleration)
 {
-    if (direction * acceleration <= m->gain[i]) {
-        return 0;
-    }
+    return direction * acceleration > m->gain[i];
+}
+
+/* Contact i slides, or holds by its other limit. Returns how many have to be decided about once more: none where it was decided
+ * about alone and slides, which makes its force known and changes no other one. */
+static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
+{
     tribo_stick_slip_let_go(m, i, direction);
-    return 1;
+    if (m->slip[i] == 0 || !tribo_stick_slip_alone(m, i)) {
+        return 1;
+    }
+    m->force[i] = -direction * m->limit[i];
+    return 0;
 }
 
 /* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
@@ -61,53 +64,57 @@ static signed char direction_of(const struct stick_slip *m, size_t i, double for
     return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
 }
 
-/* How many are close to their limits, or have reached them. Where contacts are not coupled, others are decided about, unless they
- * may part. */
-static size_t find_close(struct stick_slip *m)
+/* Where contacts are not coupled, those that are not close to their limits are decided about, unless they may part. */
+static void ask_close(struct stick_slip *m)
 {
-    const int all = !m->uncoupled || (m->dependents && m->base_moves);
-    const double part = 1.0 - (m->uncoupled ? NEAR : CLOSE);
-    const size_t asks = m->asks;
-    size_t found = 0, kept = 0;
-    for (size_t k = 0; k < asks; k++) {
-        const size_t i = m->asked[k];
-        const int near = fabs(m->force[i]) >= part * m->stick[i] || i == m->reached;
-        const int close = near && tribo_stick_slip_searches(m, i);
-        m->some[kept] = i;
-        kept += (size_t)(close | all);
-        found += (size_t)close;
-    }
-    m->asked = m->some;
-    m->asks = kept;
-    return found;
-}
-
-static void find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
-{
-    for (size_t k = 0; k < m->asks; k++) {
-        tribo_stick_slip_find_gain(m, sys, y, m->asked[k]);
+    if (m->uncoupled && !(m->dependents && m->base_moves)) {
+        m->asked = m->close;
+        m->asks = m->closes;
     }
 }
 
-/* Who slides by the forces found; and who is tied. Returns how many slide, with how many are tied. */
+/* m->v = the accelerations that forces f, which were found last, leave at contacts of the list [n] that were searched for;
+ * without these forces they are a. */
+static void find_left(struct stick_slip *m, const tribo_system *sys, size_t n, const size_t *list, const double *a,
+                      const double *f)
+{
+    const int all = !m->uncoupled && m->only == m->contacts;
+    for (size_t k = 0; !all && k < n; k++) {
+        const size_t i = list[k];
+        m->v[i] = (m->uncoupled ? a[i] : m->pull) + m->diagonal[i] * f[i];
+    }
+    if (all) {
+        tribo_stick_slip_accelerate(m, sys, a, f, m->v);
+    }
+}
+
+/* Whether contact i, whose force is at its limit but for room, may be said to be there. */
+static inline int is_at_limit(const struct stick_slip *m, size_t i, double room)
+{
+    return room <= (i == m->reached ? TRIBO_CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED);
+}
+
+/* Who slides by the forces found; and who is tied. Returns how many have to be decided about once more, with how many are
+ * tied. */
 static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties)
 {
     size_t changes = 0;
     *ties = 0;
-    if (find_close(m) == 0) {
-        return 0;
+    ask_close(m);
+    if (m->closes > 0) {
+        find_left(m, sys, m->closes, m->close, m->a, m->force);
     }
-    find_gains(m, sys, y);
-    tribo_stick_slip_accelerate(m, sys, m->a, m->force, m->v);
-    for (size_t k = 0; k < m->asks; k++) {
-        const size_t i = m->asked[k];
+    for (size_t k = 0; k < m->closes; k++) {
+        const size_t i = m->close[k];
         const double room = m->stick[i] - fabs(m->force[i]);
-        const double within = i == m->reached ? CLOSE * m->stick[i] : m->allowance[i] / TRIBO_ALLOWED;
-        if (tribo_stick_slip_searches(m, i) && room <= within) {
+        tribo_stick_slip_find_gain(m, sys, y, i);
+        if (is_at_limit(m, i, room)) {
             const signed char direction = direction_of(m, i, m->force[i]);
             const double sure = tribo_stick_slip_must_be_sure(m, i) ? CERTAIN : 1.0;
             m->tied[i] = 1;
-            changes += room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure);
+            if (room <= 0.0 && breaks_away(m, i, direction, m->v[i] / sure)) {
+                changes += let_go(m, i, direction);
+            }
             *ties += m->tied[i] != 0;
         }
     }
@@ -163,10 +170,14 @@ static void set_bounds_ahead(struct stick_slip *m)
     }
 }
 
-/* Who slides by the forces of a moment later; the others that are tied stay so, or go back inside. */
-static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
+/* Who slides by the forces of a moment later; the others that are tied, and then fewer, stay so, or go back inside. */
+static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, size_t *ties, size_t *changes)
 {
-    find_gains(m, sys, y);
+    for (size_t k = 0; k < m->asks; k++) {
+        if (tribo_stick_slip_searches(m, m->asked[k])) {
+            tribo_stick_slip_find_gain(m, sys, y, m->asked[k]);
+        }
+    }
     if (m->breakaway.falls) {
         find_falling(m, sys, y);
     }
@@ -181,7 +192,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     if (status) {
         return status;
     }
-    tribo_stick_slip_accelerate(m, sys, m->v, m->f, m->v);
+    find_left(m, sys, m->asks, m->asked, m->v, m->f);
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         m->pulled[i] = 0;
@@ -189,10 +200,13 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
         if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);
-            const int leaves = may && room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
-            m->pulled[i] = (signed char)(m->tied[i] && room <= 0.0 && direction * m->v[i] > m->gain[i] ? direction : 0);
-            *changes += (size_t)leaves;
-            m->tied[i] = (signed char)(leaves || !m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
+            const int goes = room <= 0.0 && breaks_away(m, i, direction, m->v[i]);
+            m->pulled[i] = (signed char)(goes && !may && m->tied[i] ? direction : 0);
+            if (goes && may) {
+                *ties -= m->tied[i] != 0;
+                *changes += let_go(m, i, direction);
+            }
+            m->tied[i] = (signed char)(!m->tied[i] ? 0 : room > m->allowance[i] ? 2 : 1);
         }
     }
     return TRIBO_OK;
@@ -200,44 +214,65 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
 
 /* ------------------------------------------------------------------------------------------------------------ decision */
 
-int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+/* Who is at rest at (t, y), and how all contacts go on without friction. A status. */
+static int find_instant(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
     tribo_stick_slip_begin_decision(m, sys, t, y);
     tribo_stick_slip_update_limits(m, sys, y);
     tribo_elastic_place(m, sys, y);
-    int status = tribo_stick_slip_find_resting(m, sys, y);
+    const int status = tribo_stick_slip_find_resting(m, sys, y);
     find_static(m, sys, y);
     if (!status) {
         tribo_elastic_hold(m, sys, y);
-        tribo_system_free_acceleration(sys, t, y, m->free);
-        tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->a);
+        tribo_stick_slip_find_free(m, sys, t, y);
         tribo_stick_slip_forget_gains(m);
         m->asked = m->all;
         m->asks = m->contacts;
     }
-    for (size_t changes = 1; !status && changes;) {
-        size_t ties;
-        status = tribo_stick_slip_find_forces(m, sys);
-        changes = status ? 0 : let_slide(m, sys, y, &ties);
-        if (!status && !changes && (ties || (m->dependents && m->base_moves))) {
-            status = look_ahead(m, sys, y, &changes);
-        }
-        if (!status && !changes && ties) {
-            status = tribo_stick_slip_relieve(m, sys, &changes);
-        }
-        if (changes) {
-            begin_again(m);
-        }
+    return status;
+}
+
+/* *changes = how many have to be decided about once more. A status. */
+static int go_round(struct stick_slip *m, tribo_system *sys, const double *y, size_t *changes)
+{
+    size_t ties;
+    int status = tribo_stick_slip_find_forces(m, sys);
+    *changes = status ? 0 : let_slide(m, sys, y, &ties);
+    if (!status && !*changes && (ties || (m->dependents && m->base_moves))) {
+        status = look_ahead(m, sys, y, &ties, changes);
     }
-    m->reached = m->contacts;
-    if (m->breakaway.some && !status) {
+    if (!status && !*changes && ties) {
+        status = tribo_stick_slip_relieve(m, sys, changes);
+    }
+    if (*changes) {
+        begin_again(m);
+    }
+    return status;
+}
+
+/* Those that broke away, and are held after all, hold by their static limits again. */
+static void restore_static(struct stick_slip *m, const tribo_system *sys, const double *y, int status)
+{
+    if (!status) {
         tribo_stick_slip_find_gains(m, sys, y);
     }
-    for (size_t i = 0; m->breakaway.some && i < m->contacts; i++) {
+    for (size_t i = 0; i < m->contacts; i++) {
         m->tied[i] = (signed char)(tribo_breakaway_restore(&m->breakaway, i) ? 0 : m->tied[i]);
+    }
+}
+
+int tribo_stick_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    int status = find_instant(m, sys, t, y);
+    for (size_t changes = 1; !status && changes;) {
+        status = go_round(m, sys, y, &changes);
+    }
+    m->reached = m->contacts;
+    if (m->breakaway.some) {
+        restore_static(m, sys, y, status);
     }
     if (!status) {
         tribo_elastic_finish(m, sys);
     }
-    return status ? status : tribo_stick_slip_find_holds(m, sys);
+    return status || tribo_stick_slip_knows_holds(m) ? status : tribo_stick_slip_find_holds(m, sys);
 }

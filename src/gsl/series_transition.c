@@ -52,7 +52,7 @@ static int reserve_slopes(struct series_transition *x, const tribo_system *sys, 
 /* x [ndof] -= accelerations by the springs of elastic contacts that hold, where place j is 1 and the others are 0. */
 static void add_springs(struct stick_slip *m, const tribo_system *sys, size_t j, double *x)
 {
-    double *unit = m->size, *force = m->a;
+    double *unit = m->size, *force = m->own_a;
     memset(unit, 0, sys->ndof * sizeof *unit);
     memset(force, 0, sys->ncontact * sizeof *force);
     unit[j] = 1.0;

@@ -39,21 +39,30 @@ static inline int is_pair(const struct snapping *s, size_t i)
     return !s->loose[i] && j->first[i + 1] - first == 2 && fabs(j->val[first]) == fabs(j->val[first + 1]);
 }
 
+/* Entry `to` of row i follows entry `from`, if that is another one. */
+static void take(struct snapping *s, size_t i, size_t to, size_t from)
+{
+    const struct matrix *j = &s->sys->direction;
+    const struct snap one = {i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
+    if (s->list) {
+        s->list[s->listed++] = one;
+    } else {
+        tribo_snap(&one, s->base, s->x);
+    }
+    s->known[one.to] = s->known[one.from] = 1.0;
+}
+
 /* Stops what one contact alone holds. Returns how many pairs there are. */
 static size_t snap_single(struct snapping *s)
 {
     const struct matrix *j = &s->sys->direction;
     size_t pairs = 0;
     for (size_t i = 0; i < s->sys->ncontact; i++) {
-        const size_t first = j->first[i], dof = j->col[first];
+        const size_t first = j->first[i];
         if (s->loose[i] || j->first[i + 1] - first != 1) {
             pairs += (size_t)is_pair(s, i);
-        } else if (s->list) {
-            s->list[s->listed++] = (struct snap){i, dof};
-            s->known[dof] = 1.0;
         } else {
-            s->x[dof] = s->base[i] / j->val[first];
-            s->known[dof] = 1.0;
+            take(s, i, first, first);
         }
     }
     return pairs;
@@ -62,14 +71,7 @@ static size_t snap_single(struct snapping *s)
 /* Entry `to` of row i, a pair, follows the other one. */
 static void snap_pair(struct snapping *s, size_t i, size_t to)
 {
-    const struct matrix *j = &s->sys->direction;
-    const size_t from = 2 * j->first[i] + 1 - to;
-    if (s->list) {
-        s->list[s->listed++] = (struct snap){i, j->col[to]};
-    } else {
-        s->x[j->col[to]] = (s->base[i] - j->val[from] * s->x[j->col[from]]) / j->val[to];
-    }
-    s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
+    take(s, i, to, 2 * s->sys->direction.first[i] + 1 - to);
 }
 
 static int knows(const struct snapping *s, size_t entry)

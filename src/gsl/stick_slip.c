@@ -8,9 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Accelerations, and velocities, are known to this part of what they are the sum of. */
+/* Accelerations are known to this part of what they are the sum of. */
 #define NOISE 2e-14
-#define VELOCITY_NOISE 2e-14
 
 /* The moment later, in parts of one over the highest frequency. What has changed by then is far above noise, as a rule, and
  * nearly linear in time. */
@@ -20,7 +19,7 @@
 static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
 {
     double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
-                                   &m->seen,      &m->parting,        &m->v,     &m->a,         &m->lo,    &m->hi,
+                                   &m->seen,      &m->parting,        &m->v,     &m->own_a,     &m->lo,    &m->hi,
                                    &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
                                    &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
@@ -57,9 +56,10 @@ static int create_lists(struct stick_slip *m, size_t contacts)
     m->at = malloc(3 * contacts * sizeof *m->at);
     if (m->at) {
         m->asked = m->all = m->at + contacts;
-        m->some = m->at + 2 * contacts;
+        m->close = m->at + 2 * contacts;
     }
-    return m->at != NULL;
+    m->snap = malloc(contacts * sizeof *m->snap);
+    return m->at && m->snap;
 }
 
 /* Contexts that know directions only. Where R couples nobody they are not asked for forces, and the second one is not needed. */
@@ -89,13 +89,11 @@ static int create_contexts(struct stick_slip *m, const tribo_context *contacts)
 /* What contacts are, whatever they do. */
 static void find_kinds(struct stick_slip *m, const tribo_system *sys)
 {
-    m->simple = 1;
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
         m->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
         m->can_hold[i] = m->diagonal[i] > 0.0 || m->elastic[i];
         m->all[i] = i;
-        m->simple &= sys->direction.first[i + 1] - sys->direction.first[i] <= 1;
     }
 }
 
@@ -110,7 +108,7 @@ static int find_dependence(struct stick_slip *m, const tribo_system *sys)
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1;
-    *m = (struct stick_slip){.contacts = sys->ncontact, .doubt = 1.0};
+    *m = (struct stick_slip){.contacts = sys->ncontact, .only = sys->ncontact, .unlisted = 1, .doubt = 1.0};
     if (create_contexts(m, sys->contacts) && create_numbers(m, c, sys->ndof) && create_marks(m, c) && create_lists(m, c) &&
         tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
         find_kinds(m, sys);
@@ -130,6 +128,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
     free(m->limit);
     free(m->slip);
     free(m->at);
+    free(m->snap);
     memset(m, 0, sizeof *m);
 }
 
@@ -159,60 +158,53 @@ void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
     add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
 }
 
-double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
-{
-    const struct matrix *j = &sys->direction;
-    const double *u = y + sys->ndof;
-    double v = -m->base[i], size = 0.0;
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        const double part = j->val[k] * u[j->col[k]];
-        v += part;
-        size += fabs(part);
-    }
-    m->noise[i] = VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
-    return v;
-}
-
 void tribo_stick_slip_forget_gains(struct stick_slip *m)
 {
     memset(m->found, 0, m->founds * sizeof *m->found);
 }
 
-/* The size of all that q'' of degree of freedom d is the sum of, which is not known yet. */
-static void find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
+/* The size of all that q'' of degree of freedom d is the sum of. */
+static double find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
 {
+    if (m->size[d] > 0.0) {
+        return m->size[d];
+    }
     if (sys->tables) {
         tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
     }
-    m->size[d] = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
-                 tribo_matrix_row_size(&sys->response, d, m->force);
-    m->size[d] += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
+    double size = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                  tribo_matrix_row_size(&sys->response, d, m->force);
+    size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
+    return m->size[d] = size;
 }
 
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
 {
     const struct matrix *j = &sys->direction;
-    double size = 0.0;
+    double size = 0.0, speed = 0.0;
     if (m->gain[i] > 0.0) {
         return;
     }
-    tribo_stick_slip_find_velocity(m, sys, i, y);
     for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        if (!(m->size[j->col[k]] > 0.0)) {
-            find_size(m, sys, y, j->col[k]);
-        }
-        size += fabs(j->val[k] * m->size[j->col[k]]);
+        const size_t d = j->col[k];
+        size += fabs(j->val[k] * find_size(m, sys, y, d));
+        speed += fabs(j->val[k] * y[sys->ndof + d]);
     }
+    m->noise[i] = tribo_stick_slip_velocity_noise(m, i, speed);
     m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
     m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
-    m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
-    m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+    if (m->swing[i] > 0.0) {
+        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
+    }
+    if (m->base_moves) {
+        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+    }
 }
 
 int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
 {
     tribo_stick_slip_find_gain(m, sys, y, i);
-    return fabs(tribo_stick_slip_velocity(m, sys, i, y)) <= VELOCITY_NOISE * m->gain[i] * m->horizon / LOOK_AHEAD;
+    return fabs(tribo_stick_slip_velocity(m, sys, i, y)) <= TRIBO_VELOCITY_NOISE * m->gain[i] * m->horizon / LOOK_AHEAD;
 }
 
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
@@ -238,17 +230,17 @@ double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
     return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0;
 }
 
-double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
-{
-    const struct matrix *j = &sys->direction;
-    double v = -m->base[i];
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        v += j->val[k] * y[sys->ndof + j->col[k]];
-    }
-    return v;
-}
-
 /* ------------------------------------------------------------------------------------------------------------ motion */
+
+void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y)
+{
+    tribo_system_free_acceleration(sys, t, y, m->free);
+    m->a = m->free;
+    if (!sys->direction.identity || sys->base_harmonics) {
+        tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->own_a);
+        m->a = m->own_a;
+    }
+}
 
 void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
 {

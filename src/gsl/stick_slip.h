@@ -23,7 +23,6 @@ struct stick_slip {
     int uncoupled;   /* R is diagonal */
     int independent; /* the contacts at rest hold, whoever they are: none depends on others */
     int base_moves;
-    int simple;     /* no contact has more than one degree of freedom */
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
@@ -31,7 +30,7 @@ struct stick_slip {
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
-    int dependents;        /* some rest by themselves */
+    int dependents;        /* how many rest by themselves */
     int steady;            /* limits are those that update_limits has seen */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
     double *limit, *limit_rate; /* [ncontact] by which contacts slide, and its rate */
@@ -52,35 +51,61 @@ struct stick_slip {
     double *base, *noise; /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
     double *seen;         /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
     double *diagonal;     /* [ncontact] R_ii */
-    double *v, *a;        /* [ncontact] relative velocity; acceleration without friction */
+    double *v, *own_a;    /* [ncontact] relative velocity; room for the next one */
+    const double *a;      /* [ncontact] acceleration without friction */
     double *lo, *hi, *f;  /* [ncontact] workspace: bounds, forces */
-    double *free, *acceleration, *rate; /* [ndof] workspace: q'' without friction, with it, its rate */
+    double *free, *acceleration, *rate; /* [ndof] q'' without friction; workspace: with it, its rate */
     double *base_size, *base_rate_size; /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                  /* [ndof] how large accelerations by harmonic loads ever are */
     signed char *tied;                  /* [ncontact] at rest just at its limit: 1 and staying there, 2 going back inside */
     signed char *pulled; /* [ncontact] workspace: the way a contact at its limit goes a moment later, if it breaks away */
     signed char *before; /* [ncontact] who was tied when find_holds looked last, if contacts depend on each other */
-    int fresh;           /* some slip has changed since then */
+    int fresh;           /* some slip has changed since then, or all may have: who holds has to be found anew */
     int hold_differs;    /* hold has not been told who holds */
     double *spring, *spring_rate, *slack; /* [ncontact] elastic contacts: their force, its rate, and its allowance */
     signed char *slid;                    /* [ncontact] slip as decided last */
     double *still;                        /* [ncontact] zeros */
     const size_t *asked;                  /* [asks] the contacts that a decision still asks about: all if R couples them */
-    size_t asks, *all, *some;             /* the latter are [ncontact]: all of them, and room for some */
+    size_t asks, *all;                    /* the latter is [ncontact] */
+    size_t *close, closes;                /* [closes] of those asked about: such as may be at their limits by the forces found */
+    size_t only;                          /* contact whose force alone was searched for last, R coupling it; else ncontact, */
+    double pull;                          /* and its acceleration without that force */
     unsigned char *elastic, *can_hold;    /* [ncontact] 1: an elastic contact; one that holds something, if it rests */
-    size_t *at;                           /* [ncontact] workspace of find_holds, */
-    unsigned char *last;                  /* [ncontact] and this */
+    struct snap *snap;                    /* [snaps] of the contacts that hold, */
+    size_t snaps;
+    int simple;          /* which are no more than these; */
+    int unlisted;        /* or who holds has changed since they were listed */
+    size_t *at;          /* [ncontact] workspace of find_holds, */
+    unsigned char *last; /* [ncontact] and this */
 };
 
 /* TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 
-/* Contact i does this from here on. Nobody else writes slip: who holds follows from it. */
+/* Whether contact i is at rest, and nothing that it holds keeps it there. */
+static inline int tribo_stick_slip_depends(const struct stick_slip *m, size_t i)
+{
+    return m->slip[i] == 0 && !m->holds[i];
+}
+
+/* Contact i does this from here on. Nobody else writes slip: who holds follows from it, at once where contacts do not depend on
+ * each other. */
 static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed char slip)
 {
-    m->fresh |= slip != m->slip[i];
+    if (slip == m->slip[i]) {
+        return;
+    }
+    const int rested = m->slip[i] == 0, rests = slip == 0;
     m->slip[i] = slip;
+    if (!m->independent) {
+        m->fresh = 1;
+        return;
+    }
+    m->holds[i] = (unsigned char)(rests & m->can_hold[i]);
+    m->loose[i] = (signed char)(!m->holds[i] || m->elastic[i]);
+    m->dependents += m->can_hold[i] ? 0 : rests - rested;
+    m->hold_differs = m->unlisted = 1;
 }
 
 /* stick_slip_instant.c: takes limits from the system, and, unless it continues, from the state who is at rest:
@@ -109,6 +134,9 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
  * leave so much. */
 int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 
+/* The free motion at (t, y): m->free, and m->a. */
+void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y);
+
 /* q'' [ndof] with the forces found, also after a decision; its rate while the forces of contacts at rest are what they are; and
  * to [ncontact] = J acceleration - order-th derivative of b. */
 const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys);
@@ -121,9 +149,18 @@ static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i
     return m->slip[i] == 0 && !m->elastic[i];
 }
 
+/* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
+#define TRIBO_CLOSE 0.1
+
+/* Whether contact i is the only one whose force was searched for, of those that it is coupled with. */
+static inline int tribo_stick_slip_alone(const struct stick_slip *m, size_t i)
+{
+    return m->uncoupled || m->only == i;
+}
+
 /* stick_slip_forces.c, of the contacts that are asked about: f [ncontact] = the forces within lo and hi, where accelerations
- * without them are a; the forces, with contacts at rest as they are marked; both return a status. v [ncontact] = a + R f, the
- * accelerations that forces f leave; v may be a. */
+ * without them are a; the forces, with contacts at rest as they are marked, and who is close to its limit by them; both return a
+ * status. v [ncontact] = a + R f, the accelerations that forces f leave; v may be a. */
 int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f);
 int tribo_stick_slip_find_forces(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, const double *a, const double *f, double *v);
@@ -131,7 +168,7 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
 /* Contact i, which cannot hold, slides; but if it held by a static limit, it is decided about once more by the other one. */
 static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
-    const int again = tribo_breakaway_lets_go(&m->breakaway, i);
+    const int again = m->breakaway.some && tribo_breakaway_lets_go(&m->breakaway, i);
     tribo_stick_slip_set(m, i, again ? 0 : direction);
     m->tied[i] = 0;
     m->again |= again;
@@ -160,6 +197,12 @@ void tribo_elastic_finish(struct stick_slip *m, const tribo_system *sys);
 
 /* holds.c: finds out which of the contacts at rest hold, as they are marked; a status. */
 int tribo_stick_slip_find_holds(struct stick_slip *m, const tribo_system *sys);
+
+/* Whether nothing is left to find out of that. */
+static inline int tribo_stick_slip_knows_holds(const struct stick_slip *m)
+{
+    return m->independent && !m->fresh;
+}
 
 /* stick_slip_instant.c: q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
@@ -193,8 +236,39 @@ static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i
  * count. */
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i);
 
+/* Velocities are known to this part of what they are the sum of. */
+#define TRIBO_VELOCITY_NOISE 2e-14
+
+/* What of the velocity of contact i may be rounding, where the sizes of its terms come to this. */
+static inline double tribo_stick_slip_velocity_noise(const struct stick_slip *m, size_t i, double size)
+{
+    return TRIBO_VELOCITY_NOISE * greater(m->base_size[i] + size, m->seen[i]);
+}
+
 /* v_i in a state, at the time that was last decided for; and the same, with its noise found. */
-double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
-double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y);
+static inline double tribo_stick_slip_velocity(const struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    const double *u = y + sys->ndof;
+    double v = -m->base[i];
+    for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
+        v += j->val[k] * u[j->col[k]];
+    }
+    return v;
+}
+
+static inline double tribo_stick_slip_find_velocity(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
+{
+    const struct matrix *j = &sys->direction;
+    const double *u = y + sys->ndof;
+    double v = -m->base[i], size = 0.0;
+    for (size_t k = j->first[i], end = j->first[i + 1]; k < end; k++) {
+        const double part = j->val[k] * u[j->col[k]];
+        v += part;
+        size += fabs(part);
+    }
+    m->noise[i] = tribo_stick_slip_velocity_noise(m, i, size);
+    return v;
+}
 
 #endif

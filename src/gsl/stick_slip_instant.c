@@ -52,10 +52,11 @@ static int not_unique(const tribo_system *sys, size_t i)
 /* Those that have no velocity in the direction of their slip any more rest; returns how many. */
 static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
+    const size_t n = m->contacts;
+    const signed char *const slip = m->slip;
     size_t found = 0;
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        const signed char slip = m->slip[i];
-        if ((slip == 1 || slip == -1) && slip != slip_of(m, sys, i, y)) {
+    for (size_t i = 0; i < n; i++) {
+        if (slip[i] * slip[i] == 1 && slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->doubt * m->noise[i]) {
             tribo_stick_slip_set(m, i, 0);
             found++;
         }
@@ -88,7 +89,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
 {
     int status = TRIBO_OK;
     for (size_t found = 1; !status && found;) {
-        status = tribo_stick_slip_find_holds(m, sys);
+        status = tribo_stick_slip_knows_holds(m) ? TRIBO_OK : tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
         found = status ? 0 : stop(m, sys, y);
     }
@@ -117,7 +118,7 @@ static void find_sliding_limits(struct stick_slip *m, const tribo_system *sys, c
 
 int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
 {
-    tribo_system_free_motion(sys, t, y, acceleration, m->v, m->a);
+    tribo_system_free_motion(sys, t, y, acceleration, m->v, m->own_a);
     if (sys->massless.count) {
         tribo_elastic_find(m, sys, y);
     }
@@ -146,7 +147,9 @@ static void find_base(struct stick_slip *m, const tribo_system *sys)
 
 void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, double t, double *y)
 {
-    tribo_system_set_time(sys, t);
+    if (!tribo_system_is_at(sys, t)) {
+        tribo_system_set_time(sys, t);
+    }
     find_base(m, sys);
     memset(m->tied, 0, sys->ncontact);
     tribo_elastic_release(sys, y);

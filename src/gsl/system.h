@@ -17,7 +17,8 @@ enum { FORESIGHT = 32 };
 
 /* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
 struct harmonic {
-    double omega, time, cos_t, sin_t;                  /* the latter are those of this time */
+    double omega, time, cos_t, sin_t;                  /* the latter are those of this time, */
+    size_t turns;                                      /* as found anew, and then turned on so often */
     double cos_ahead[FORESIGHT], sin_ahead[FORESIGHT]; /* those of times foreseen */
     size_t next;                                       /* which of them may be asked for next */
     enum drives drives;
@@ -123,12 +124,21 @@ size_t tribo_system_place(const tribo_system *sys, double t);
 /* Harmonic k becomes that of the time set, if it is not: whoever reads cos_t and sin_t asks for it first. */
 void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
 
-static inline void tribo_system_turn(const tribo_system *sys, size_t k)
+static inline void tribo_system_turn_to(const tribo_system *sys, struct harmonic *h)
 {
-    if (sys->harmonic[k].time != sys->time) {
-        tribo_harmonic_turn(sys, &sys->harmonic[k]);
+    if (h->time != sys->time) {
+        tribo_harmonic_turn(sys, h);
     }
 }
+
+static inline void tribo_system_turn(const tribo_system *sys, size_t k)
+{
+    tribo_system_turn_to(sys, &sys->harmonic[k]);
+}
+
+/* The same by what a motion has found them to be, c and s, going on from a time at which they were these; unless they have come
+ * that way often, or bases are moved. */
+void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s);
 
 /* ---- loads.c */
 
@@ -146,6 +156,12 @@ void tribo_system_tables(const tribo_system *sys, int order, double factor, size
 static inline int tribo_system_limits_vary(const tribo_system *sys)
 {
     return sys->limits.knots || sys->limit_harmonics;
+}
+
+/* Whether setting time t would change nothing. */
+static inline int tribo_system_is_at(const tribo_system *sys, double t)
+{
+    return t == sys->time && !tribo_system_limits_vary(sys);
 }
 
 /* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */
@@ -203,11 +219,19 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
  * difference of two. Uses the workspace of accelerations. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
-/* What that does, in its order: contact i makes x of degree of freedom `to` what it must be. list [ncontact] out; returns how
- * many. */
+/* What that does with a contact: x[to] = (base - other x[from])/value, where other may be 0, and x[from] anything. */
 struct snap {
-    size_t contact, to;
+    size_t contact, to, from;
+    double value, other;
 };
+
+static inline void tribo_snap(const struct snap *s, const double *base, double *x)
+{
+    const double moved = s->other != 0.0 ? s->other * x[s->from] : 0.0;
+    x[s->to] = (base[s->contact] - moved) / s->value;
+}
+
+/* All that it does, in its order: none undoes another. list [ncontact] out; returns how many. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
 
 /* jacobian.c: of odeiv2. */
