@@ -309,8 +309,8 @@ static void compare(const struct life *l, int seed, const char *whom, double t1,
 {
     const size_t n = 2 * l->s.ndof + 1;
     const double off = distance(y, want, n), size = fmax(1.0, size_of(want, n));
-    require(off <= near * size, "seed %d, %s, from t = %.17g to %.17g with %zu changes: %s is off %s by %.3g of %.3g", seed, l->s.name,
-            l->t, t1, l->changes, l->way->method, whom, off, size);
+    require(off <= near * size, "seed %d, %s, from t = %.17g to %.17g with %zu changes: %s is off %s by %.3g of %.3g", seed,
+            l->s.name, l->t, t1, l->changes, l->way->method, whom, off, size);
 }
 
 /* Steps of one length go on half a step later, or end elsewhere in pieces: those that differ are not compared. Contacts with static

@@ -335,5 +335,5 @@ TEST(redundant)
     tribo_system_destroy(s);
 }
 
-TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {reverses_on_line, 40}, {on_line, 9}, {tolerances, 40},
-          {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {redundant, 1})
+TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {reverses_on_line, 40}, {on_line, 9},
+          {tolerances, 40}, {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {redundant, 1})
