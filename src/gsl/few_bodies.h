@@ -14,7 +14,7 @@
 /* The most degrees of freedom, and the most contacts, that are few. */
 enum { FEW = 4 };
 
-/* What the velocity of degree of freedom `to` is while the contact rests: (base - rest u)/turn, which leaves no rounding in it. */
+/* What the velocity of degree of freedom `to` is while the contact rests: (base - rest u)/turn. No rounding is left. */
 struct few_snap {
     size_t contact, to;
     double turn, rest[FEW];

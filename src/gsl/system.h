@@ -199,8 +199,8 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 
 /* ---- snap.c */
 
-/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), and have one degree of freedom or the
- * difference of two. Uses the workspace of accelerations. */
+/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), and have one degree of freedom or
+ * the difference of two. Uses the workspace of accelerations. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
 
 /* What that does, in its order: contact i makes x of degree of freedom `to` what it must be. list [ncontact] out; returns how

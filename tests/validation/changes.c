@@ -306,9 +306,9 @@ TEST(shortest_advances)
     tribo_system_destroy(sys);
 }
 
-/* Bodies that stand on each other come to rest, by contacts that are listed in any order, or, as in the last case, hold two degrees
- * of freedom by sums of both. What moves then is nothing to a driver that knows no more than the state: by static limits, which
- * are twice as much, they hold a load of 1.5 limits. */
+/* Bodies that stand on each other come to rest, by contacts that are listed in any order, or, as in the last case, hold two
+ * degrees of freedom by sums of both. What moves then is nothing to a driver that knows no more than the state: by static limits,
+ * which are twice as much, they hold a load of 1.4 limits. */
 TEST(rest_is_seen_anew)
 {
     static const char *const methods[] = {"exact", "event"};
