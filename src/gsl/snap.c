@@ -39,24 +39,17 @@ static inline int is_pair(const struct snapping *s, size_t i)
     return !s->loose[i] && j->first[i + 1] - first == 2 && fabs(j->val[first]) == fabs(j->val[first + 1]);
 }
 
-/* Stops what one contact alone holds. Returns how many pairs there are. */
-static size_t snap_single(struct snapping *s)
+/* What one contact alone stops is known. */
+static void mark_single(struct snapping *s)
 {
     const struct matrix *j = &s->sys->direction;
-    size_t pairs = 0;
+    memset(s->known, 0, s->sys->ndof * sizeof *s->known);
     for (size_t i = 0; i < s->sys->ncontact; i++) {
-        const size_t first = j->first[i], dof = j->col[first];
-        if (s->loose[i] || j->first[i + 1] - first != 1) {
-            pairs += (size_t)is_pair(s, i);
-        } else if (s->list) {
-            s->list[s->listed++] = (struct snap){i, dof};
-            s->known[dof] = 1.0;
-        } else {
-            s->x[dof] = s->base[i] / j->val[first];
-            s->known[dof] = 1.0;
+        const size_t first = j->first[i];
+        if (!s->loose[i] && j->first[i + 1] - first == 1) {
+            s->known[j->col[first]] = 1.0;
         }
     }
-    return pairs;
 }
 
 /* Entry `to` of row i, a pair, follows the other one. */
@@ -111,11 +104,10 @@ static size_t snap_heaviest(struct snapping *s)
     return found < s->sys->ncontact;
 }
 
-static void snap(struct snapping *s)
+static void snap_pairs(struct snapping *s)
 {
-    memset(s->known, 0, s->sys->ndof * sizeof *s->known);
-    size_t pairs = snap_single(s);
-    for (size_t done = 1; pairs && done; pairs -= done) {
+    mark_single(s);
+    for (size_t done = 1; done;) {
         done = snap_known(s);
         done = done ? done : snap_heaviest(s);
     }
@@ -123,12 +115,30 @@ static void snap(struct snapping *s)
 
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
-    snap(&(struct snapping){sys, loose, base, x, sys->acceleration, NULL, 0});
+    const struct matrix *j = &sys->direction;
+    int more = 0;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        if (!loose[i] && count == 1) {
+            x[j->col[first]] = base[i] / j->val[first];
+        } else {
+            more |= !loose[i];
+        }
+    }
+    if (more) {
+        snap_pairs(&(struct snapping){sys, loose, base, x, sys->acceleration, NULL, 0});
+    }
 }
 
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
 {
+    const struct matrix *j = &sys->direction;
     struct snapping s = {sys, loose, NULL, NULL, sys->acceleration, list, 0};
-    snap(&s);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (!loose[i] && j->first[i + 1] - j->first[i] == 1) {
+            list[s.listed++] = (struct snap){i, j->col[j->first[i]]};
+        }
+    }
+    snap_pairs(&s);
     return s.listed;
 }
