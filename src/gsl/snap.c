@@ -113,20 +113,41 @@ static void snap_pairs(struct snapping *s)
     }
 }
 
+/* No contact moves what an earlier one touches. */
+void tribo_system_order_snaps(tribo_system *sys)
+{
+    const struct matrix *j = &sys->direction;
+    const struct snapping s = {.sys = sys, .loose = NULL, .known = sys->acceleration};
+    memset(s.known, 0, sys->ndof * sizeof *s.known);
+    sys->snaps_in_order = 1;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        const size_t moves = first + (count == 2 ? follows(sys, i, first) : 0);
+        sys->snaps_in_order &= count == 0 || count > 2 || !knows(&s, moves);
+        for (size_t k = first; count <= 2 && k < first + count; k++) {
+            s.known[j->col[k]] = 1.0;
+        }
+    }
+}
+
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
 {
     const struct matrix *j = &sys->direction;
+    struct snapping s = {sys, loose, base, x, sys->acceleration, NULL, 0};
     int more = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
         const size_t first = j->first[i], count = j->first[i + 1] - first;
         if (!loose[i] && count == 1) {
             x[j->col[first]] = base[i] / j->val[first];
+        } else if (sys->snaps_in_order && is_pair(&s, i)) {
+            const size_t to = first + follows(sys, i, first), from = 2 * first + 1 - to;
+            x[j->col[to]] = (base[i] - j->val[from] * x[j->col[from]]) / j->val[to];
         } else {
             more |= !loose[i];
         }
     }
-    if (more) {
-        snap_pairs(&(struct snapping){sys, loose, base, x, sys->acceleration, NULL, 0});
+    if (more && !sys->snaps_in_order) {
+        snap_pairs(&s);
     }
 }
 
