@@ -407,8 +407,8 @@ static int step_block(const struct bodies_alone *b, const tribo_system *sys, con
     const size_t i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
     const double *before = sys->base_harmonics ? b->before + i : nothing, *after = sys->base_harmonics ? b->after + i : nothing;
     accelerate_block(b, sys, k, s->q, s->u, work);
-    const int did = move(n, s->time, s->h, b->rows[k].mass, b->rows[k].brake, before, after, s->q + i, s->u + i,
-                         s->q_to + i, s->u_to + i, work);
+    const int did = move(n, s->time, s->h, b->rows[k].mass, b->rows[k].brake, before, after, s->q + i, s->u + i, s->q_to + i,
+                         s->u_to + i, work);
     *energy -= 0.5 * tribo_sum(n, work);
     return did;
 }

@@ -157,6 +157,7 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     d->state = work;
     d->slope = work + dimension;
     d->excess = d->backslip = NAN;
+    tribo_system_order_snaps(sys);
     status = m->create(d);
     if (status) {
         tribo_driver_destroy(d);

@@ -14,7 +14,7 @@
 /* The most degrees of freedom, and the most contacts, that are few. */
 enum { FEW = 4 };
 
-/* What the velocity of degree of freedom `to` is while the contact rests: (base - rest u)/turn, which leaves no rounding in it. */
+/* What the velocity of degree of freedom `to` is while the contact rests: (base - rest u)/turn. No rounding is left. */
 struct few_snap {
     size_t contact, to;
     double turn, rest[FEW];
@@ -35,7 +35,7 @@ struct few_bodies {
     double limit[FEW], tally[FEW];
     struct few_snap snap[1 << FEW][FEW]; /* of sets of contacts at rest, by bits: in this order, */
     size_t snaps[1 << FEW];              /* so many */
-    struct few_slip slip; /* of the step before */
+    struct few_slip slip;                /* of the step before */
     /* by steps of a run: the times for which velocities go on, and those at which they are known then; the lengths, that of the
      * step before the run first; and what acts */
     double time[FORESIGHT], to[FORESIGHT], h[FORESIGHT + 1];

@@ -15,7 +15,7 @@
 #define CLOSE 1e-6
 
 /* A turn is a small correction. What asks for more is between modes whose omega^2 are rounding, and would mix them at random. */
-#define SLIGHT 1e-4
+#define SLIGHT 1e-5
 
 /* Modes that turn by less than this stay orthonormal to rounding, whatever is done about the square of it. */
 #define TINY 1e-8
@@ -134,7 +134,7 @@ static void take_out(struct spectrum *s, size_t low, double part)
 }
 
 /* Takes out of the first `low` modes what they have of the others, and what those have of them; half before and half after that
- * leaves them orthonormal but for the fourth power of turns. Leaves ky of the first. */
+ * leaves them orthonormal but for a quarter of the third power of turns. Leaves ky of the first. */
 static void separate(struct spectrum *s, size_t low)
 {
     const size_t n = s->n, others = n - low;

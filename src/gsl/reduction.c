@@ -37,8 +37,8 @@ static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
     return 1;
 }
 
-/* Velocities of contacts of which rounding leaves less than two digits, in parts of what they are the sum of: as where a mode moves
- * both sides alike. They are none: a contact can hold nothing by them. */
+/* Velocities of contacts are none if rounding leaves less than two digits of them, in parts of what they are the sum of: as where
+ * a mode moves both sides alike. A contact can hold nothing by such. */
 #define NO_SHAPE (100.0 * DBL_EPSILON)
 
 /* How mode phi [ndof] moves contact i. */

@@ -40,7 +40,7 @@ static inline int is_pair(const struct snapping *s, size_t i)
 }
 
 /* Entry `to` of row i follows entry `from`, if that is another one. */
-static void take(struct snapping *s, size_t i, size_t to, size_t from)
+static inline void take(struct snapping *s, size_t i, size_t to, size_t from)
 {
     const struct matrix *j = &s->sys->direction;
     const struct snap one = {i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
@@ -49,29 +49,28 @@ static void take(struct snapping *s, size_t i, size_t to, size_t from)
     } else {
         tribo_snap(&one, s->base, s->x);
     }
-    s->known[one.to] = s->known[one.from] = 1.0;
 }
 
-/* Stops what one contact alone holds. Returns how many pairs there are. */
-static size_t snap_single(struct snapping *s)
+/* What one contact alone stops is known. */
+static void mark_single(struct snapping *s)
 {
     const struct matrix *j = &s->sys->direction;
-    size_t pairs = 0;
+    memset(s->known, 0, s->sys->ndof * sizeof *s->known);
     for (size_t i = 0; i < s->sys->ncontact; i++) {
         const size_t first = j->first[i];
-        if (s->loose[i] || j->first[i + 1] - first != 1) {
-            pairs += (size_t)is_pair(s, i);
-        } else {
-            take(s, i, first, first);
+        if (!s->loose[i] && j->first[i + 1] - first == 1) {
+            s->known[j->col[first]] = 1.0;
         }
     }
-    return pairs;
 }
 
 /* Entry `to` of row i, a pair, follows the other one. */
 static void snap_pair(struct snapping *s, size_t i, size_t to)
 {
-    take(s, i, to, 2 * s->sys->direction.first[i] + 1 - to);
+    const struct matrix *j = &s->sys->direction;
+    const size_t from = 2 * j->first[i] + 1 - to;
+    take(s, i, to, from);
+    s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
 }
 
 static int knows(const struct snapping *s, size_t entry)
@@ -113,13 +112,55 @@ static size_t snap_heaviest(struct snapping *s)
     return found < s->sys->ncontact;
 }
 
-static void snap(struct snapping *s)
+static void snap_pairs(struct snapping *s)
 {
-    memset(s->known, 0, s->sys->ndof * sizeof *s->known);
-    size_t pairs = snap_single(s);
-    for (size_t done = 1; pairs && done; pairs -= done) {
+    mark_single(s);
+    for (size_t done = 1; done;) {
         done = snap_known(s);
         done = done ? done : snap_heaviest(s);
+    }
+}
+
+/* No contact moves what an earlier one touches. */
+void tribo_system_order_snaps(tribo_system *sys)
+{
+    const struct matrix *j = &sys->direction;
+    const struct snapping s = {.sys = sys, .loose = NULL, .known = sys->acceleration};
+    memset(s.known, 0, sys->ndof * sizeof *s.known);
+    sys->snaps_in_order = 1;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        const size_t moves = first + (count == 2 ? follows(sys, i, first) : 0);
+        sys->snaps_in_order &= count == 0 || count > 2 || !knows(&s, moves);
+        for (size_t k = first; count <= 2 && k < first + count; k++) {
+            s.known[j->col[k]] = 1.0;
+        }
+    }
+}
+
+/* Whoever has one degree of freedom; in order, all. Returns whether any are left. */
+static int snap_first(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    int left = 0;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = j->first[i];
+        if (!s->loose[i] && j->first[i + 1] - first == 1) {
+            take(s, i, first, first);
+        } else if (s->sys->snaps_in_order && is_pair(s, i)) {
+            const size_t to = first + follows(s->sys, i, first);
+            take(s, i, to, 2 * first + 1 - to);
+        } else {
+            left |= !s->loose[i];
+        }
+    }
+    return left;
+}
+
+static void snap(struct snapping *s)
+{
+    if (snap_first(s) && !s->sys->snaps_in_order) {
+        snap_pairs(s);
     }
 }
 

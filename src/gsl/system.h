@@ -84,6 +84,7 @@ struct tribo_system {
     double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
     double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
     double *acceleration;            /* [ndof] workspace */
+    int snaps_in_order;              /* contacts at rest, whichever they are, can be snapped one after the other */
     double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
 };
 
@@ -215,9 +216,12 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
 
 /* ---- snap.c */
 
-/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), and have one degree of freedom or the
- * difference of two. Uses the workspace of accelerations. */
+/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), and have one degree of freedom or
+ * the difference of two. Uses the workspace of accelerations. */
 void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
+
+/* Finds out whether that can be done one contact after the other: whoever makes use of it asks for this first. */
+void tribo_system_order_snaps(tribo_system *sys);
 
 /* What that does with a contact: x[to] = (base - other x[from])/value, where other may be 0, and x[from] anything. */
 struct snap {

@@ -1,8 +1,8 @@
-/* What may happen between two advances, at random: limits, static ones, loads, tables and bases that change, states and times that
- * are set, advances of no length, of next to none, and in many pieces, calls that are refused, observers that stop a run, memory
- * that ends, periodic motions that are looked for, other drivers of the same system, copies of it, of which one lives on. A driver
- * that has seen all of that has to go on as a new one does, on a system that has the same settings and has seen nothing; and the
- * closed form has to agree with the event-driven series. TRIBO_SEED and TRIBO_BLOCKS as in random.c. */
+/* What may happen between two advances, at random: limits, static ones, loads, tables and bases that change, states and times
+ * that are set, advances of no length, of next to none, and in many pieces, calls that are refused, observers that stop a run,
+ * memory that ends, periodic motions that are looked for, other drivers of the same system, copies of it, of which one lives on.
+ * A driver that has seen all of that has to go on as a new one does, on a system that has the same settings and has seen nothing;
+ * and the closed form has to agree with the event-driven series. TRIBO_SEED and TRIBO_BLOCKS as in random.c. */
 #include <stdio.h>
 #include <string.h>
 
@@ -309,12 +309,12 @@ static void compare(const struct life *l, int seed, const char *whom, double t1,
 {
     const size_t n = 2 * l->s.ndof + 1;
     const double off = distance(y, want, n), size = fmax(1.0, size_of(want, n));
-    require(off <= near * size, "seed %d, %s, from t = %.17g to %.17g with %zu changes: %s is off %s by %.3g of %.3g", seed, l->s.name,
-            l->t, t1, l->changes, l->way->method, whom, off, size);
+    require(off <= near * size, "seed %d, %s, from t = %.17g to %.17g with %zu changes: %s is off %s by %.3g of %.3g", seed,
+            l->s.name, l->t, t1, l->changes, l->way->method, whom, off, size);
 }
 
-/* Steps of one length go on half a step later, or end elsewhere in pieces: those that differ are not compared. Contacts with static
- * limits that tie each other on bases that part may be refused, and rounding tells when. Returns whether life goes on. */
+/* Steps of one length go on half a step later, or end elsewhere in pieces: those that differ are not compared. Contacts with
+ * static limits that tie each other on bases that part may be refused, and rounding tells when. Returns whether life goes on. */
 static int advance_and_compare(struct life *l, int seed)
 {
     static const double lengths[] = {1e-13, 1e-9, 1e-5, 3e-3, 0.1, 1.0, 1.0, 2.0, 3.0};

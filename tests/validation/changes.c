@@ -306,13 +306,15 @@ TEST(shortest_advances)
     tribo_system_destroy(sys);
 }
 
-/* Bodies that stand on each other come to rest, by contacts that are listed in any order, or, as in the last case, hold two degrees
- * of freedom by sums of both. What moves then is nothing to a driver that knows no more than the state: by static limits, which
- * are twice as much, they hold a load of 1.5 limits. */
+/* Bodies that stand on each other come to rest, by contacts that are listed in any order, or, as in the last case, hold two
+ * degrees of freedom by sums of both. What moves then is nothing to a driver that knows no more than the state: by static limits,
+ * which are twice as much, they hold a load of 1.4 limits. */
 TEST(rest_is_seen_anew)
 {
     static const char *const methods[] = {"exact", "event"};
-    const double direction[4][6] = {{1.0, 0.0, -1.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 1.0, -1.0, 0.0, 0.0}, {-1.0, 1.0, 0.0, 1.0, 0.0, 0.0},
+    const double direction[4][6] = {{1.0, 0.0, -1.0, 1.0, 0.0, 0.0},
+                                    {0.0, 1.0, 1.0, -1.0, 0.0, 0.0},
+                                    {-1.0, 1.0, 0.0, 1.0, 0.0, 0.0},
                                     {0.6, 0.3, 0.2, 0.7, 0.0, 0.0}};
     const double mass[] = {1.0, 0.0, 0.0, 1.3}, stiffness[] = {0.2, 0.0, 0.0, 0.3}, limit[] = {1.0, 1.0}, ratio[] = {2.0, 2.0};
     const double push[] = {0.3, 0.2}, hold[4][2] = {{1.4, 0.1}, {0.1, 1.4}, {0.1, 1.4}, {0.9, 0.4}};
@@ -444,5 +446,5 @@ TEST(no_choice)
 }
 
 TEST_MAIN("changes", {like_a_new_driver, METHODS}, {order_after_a_change, 4}, {ground_that_starts, METHODS},
-          {beginnings, METHODS}, {shortest_advances, METHODS},
-          {rest_is_seen_anew, 10}, {limits_after_a_table, 1}, {limits_beside_a_table, 1}, {choices, 1}, {no_choice, 1})
+          {beginnings, METHODS}, {shortest_advances, METHODS}, {rest_is_seen_anew, 10}, {limits_after_a_table, 1},
+          {limits_beside_a_table, 1}, {choices, 1}, {no_choice, 1})

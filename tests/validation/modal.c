@@ -289,5 +289,69 @@ TEST(one_sided)
     tribo_system_destroy(sys);
 }
 
+/* Free structures of four bodies with a full mass matrix, of which the last is on no spring: two motions have no frequency but
+ * rounding, and that says how they mix. They are orthonormal nevertheless: phi'M phi = 1. */
+TEST(free_motions)
+{
+    struct random g = random_of(1);
+    double most = 0.0;
+    for (int k = 0; k < 10000; k++) {
+        const double a = uniform(&g, 0.2, 2.0), b = uniform(&g, 0.2, 2.0), direction[] = {1.0, 0.0, 0.0, 0.0};
+        const double stiffness[16] = {a, -a, 0.0, 0.0, -a, a + b, -b, 0.0, 0.0, -b, b};
+        double mass[16] = {0.0}, omega[4], phi[16], unit[4];
+        for (size_t i = 0; i < 4; i++) {
+            mass[5 * i] = uniform(&g, 0.5, 2.0);
+            for (size_t j = 0; j < i; j++) {
+                mass[4 * i + j] = mass[4 * j + i] = uniform(&g, -0.05, 0.05);
+            }
+        }
+        tribo_system *sys;
+        assert_ok(tribo_system_linear(&sys, 4, 1, mass, NULL, stiffness, direction, 4, NULL, 0));
+        assert_ok(tribo_system_get_frequencies(sys, omega));
+        assert_all_exact(omega, ((const double[2]){0.0}), 2);
+        for (size_t m = 0; m < 4; m++) {
+            for (size_t n = 0; n < 4; n++) {
+                unit[n] = m == n;
+            }
+            assert_ok(tribo_system_expand(sys, unit, phi + 4 * m));
+        }
+        for (size_t m = 0; m < 16; m++) {
+            double sum = 0.0;
+            for (size_t ij = 0; ij < 16; ij++) {
+                sum += phi[4 * (m / 4) + ij / 4] * mass[ij] * phi[4 * (m % 4) + ij % 4];
+            }
+            most = fmax(most, fabs(sum - (m % 5 == 0)));
+        }
+        tribo_system_destroy(sys);
+    }
+    require(most <= 1e-14, "off by %.3g", most);
+}
+
+/* A mode that moves all bodies alike moves no contact between two of them: there is nothing that it could hold, and the motion is
+ * that without it. */
+TEST(moved_alike)
+{
+    const double mass[16] = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0};
+    const double stiffness[16] = {2.6, -1.3, 0.0, 0.0, -1.3, 3.9, -1.3, 0.0, 0.0, -1.3, 3.9, -1.3, 0.0, 0.0, -1.3, 2.6};
+    const double direction[2][8] = {{-1.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0}, {0.0, 1.0, 0.0, 0.0}}, limit[] = {0.6, 0.3};
+    const double load[4] = {0.0, 1.0, 0.0, 0.0};
+    double y[2][3] = {{0.5, 0.2, 0.0}, {0.5, 0.2, 0.0}}, v[2], t;
+    for (int alone = 0; alone < 2; alone++) {
+        tribo_system *sys;
+        tribo_driver *drv;
+        assert_ok(tribo_system_linear(&sys, 4, alone ? 1 : 2, mass, NULL, stiffness, direction[alone], 1, NULL, 0));
+        assert_ok(tribo_set_limit(tribo_system_context(sys), limit + alone));
+        assert_ok(tribo_system_add_load(sys, 0.8, load, NULL));
+        assert_ok(tribo_system_contacts(sys, 0.0, y[alone], v, NULL, NULL));
+        assert_close(v[0], alone ? 0.1 : 0.0, alone ? 1e-12 : 0.0);
+        assert_ok(tribo_driver_create(&drv, sys, "exact", 1.0, 0.0, 0.0));
+        t = 0.0;
+        assert_ok(tribo_driver_advance(drv, &t, 20.0, y[alone]));
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    assert_all_close(y[0], y[1], 3, 1e-12);
+}
+
 TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {coupled_part, 1},
-          {one_sided, 1})
+          {one_sided, 1}, {free_motions, 1}, {moved_alike, 1})

@@ -112,8 +112,8 @@ TEST(on_line)
     tribo_system_destroy(scalar);
 }
 
-/* A contact that slides on a line, along an axis, and just reverses there on its base: the planar one is the scalar one, also where
- * what is left of its speed is next to nothing beside what it soon has. */
+/* A contact that slides on a line, along an axis, and just reverses there on its base: the planar one is the scalar one, also
+ * where what is left of its speed is next to nothing beside what it soon has. */
 TEST(reverses_on_line)
 {
     const double springs[4] = {1.9, 0.0, 0.0, 0.3}, load[2][2] = {{-0.15, 0.0}, {-0.71, 0.0}};
@@ -362,5 +362,6 @@ TEST(redundant)
     tribo_system_destroy(s);
 }
 
-TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {reverses_on_line, 40}, {on_line, 9}, {tolerances, 40},
-          {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {refused_static, 4}, {redundant, 1})
+TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {reverses_on_line, 40}, {on_line, 9},
+          {tolerances, 40}, {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {refused_static, 4},
+          {redundant, 1})
