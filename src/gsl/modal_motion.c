@@ -164,47 +164,69 @@ void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct
     *bend = most6;
 }
 
-/* By how much the exponential p has moved from t0 to where go() was. With a load far above its frequency the little by which it
- * moves is all of the motion. */
-static double complex moved(const struct modal_motion *x, size_t p)
-{
-    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I), z = x->zr[p] + x->zi[p] * I;
-    if (x->tau * x->h->size[p] < LITTLE && !x->h->any_resonant) {
-        return z * lambda_tau * tribo_exp_1(lambda_tau);
-    }
-    return x->wr[p] + x->wi[p] * I - z;
-}
-
-/* By how much eta has changed (into now), and eta' (into work) where go() was. */
-static void amplitudes(struct modal_motion *x)
+/* By how much exponentials have moved from t0 to where go() was: into er, ei. With a load far above its frequency the little by
+ * which one moves is all of the motion. */
+static void find_moves(struct modal_motion *x)
 {
     const struct modal *h = x->h;
-    const size_t m = h->modes, e = h->exponents;
-    for (size_t k = 0; k < m; k++) {
-        const double drift = h->drifts[k] ? x->drift_rate[k] : 0.0;
-        x->now[k] = x->tau * (x->vel[k] + drift + 0.5 * x->acc[k] * x->tau);
-        x->work[k] = x->vel[k] + x->acc[k] * x->tau + drift;
-    }
-    for (size_t p = 0; h->owner && p < e; p++) {
-        x->now[h->owner[p]] += creal(moved(x, p));
-        x->work[h->owner[p]] += x->w1r[p];
-    }
-    for (size_t p = 0; !h->owner && p < e; p++) {
-        const double complex z = moved(x, p);
-        for (size_t k = 0; k < m; k++) {
-            const double rr = h->rr[k * e + p], ri = h->ri[k * e + p];
-            x->now[k] += rr * creal(z) - ri * cimag(z);
-            x->work[k] += rr * x->w1r[p] - ri * x->w1i[p];
+    for (size_t p = 0; p < h->exponents; p++) {
+        x->er[p] = x->wr[p] - x->zr[p];
+        x->ei[p] = x->wi[p] - x->zi[p];
+        if (x->tau * h->size[p] < LITTLE && !h->any_resonant) {
+            const double complex lambda_tau = x->tau * (h->lr[p] + h->li[p] * I);
+            const double complex move = (x->zr[p] + x->zi[p] * I) * lambda_tau * tribo_exp_1(lambda_tau);
+            x->er[p] = creal(move);
+            x->ei[p] = cimag(move);
         }
     }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s], dc = ct - x->cos_0[s],
-                     ds = st - x->sin_0[s];
-        for (size_t k = 0; k < m; k++) {
-            const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * dc - xi * ds;
-            x->work[k] -= omega * (xr * st + xi * ct);
+}
+
+/* What of a mode is new where go() was: by how much eta has changed, and eta'. */
+struct amplitude {
+    double change, rate;
+};
+
+/* What harmonics have of mode k, and what is linear in time, or quadratic. */
+static struct amplitude forced_amplitude(const struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    const double drift = x->vel[k] + (h->drifts[k] ? x->drift_rate[k] : 0.0);
+    struct amplitude a = {x->tau * (drift + 0.5 * x->acc[k] * x->tau), drift + x->acc[k] * x->tau};
+    for (size_t s = 0, at = k; s < h->harmonics; s++, at += h->modes) {
+        const double ct = x->cos_t[s], st = x->sin_t[s], xr = h->xr[at], xi = h->xi[at];
+        a.change += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
+        a.rate -= h->forcing[s].omega * (xr * st + xi * ct);
+    }
+    return a;
+}
+
+/* Moves degrees of freedom by mode k. */
+static void add_mode(struct modal_motion *x, size_t k, struct amplitude a, double *velocity)
+{
+    const struct modal *h = x->h;
+    const double *phi = h->phi + k * h->moving;
+    for (size_t i = 0; i < h->moving; i++) {
+        x->dq[h->dof[i]] += phi[i] * a.change;
+        velocity[h->dof[i]] += phi[i] * a.rate;
+    }
+}
+
+static void add_modes(struct modal_motion *x, double *velocity)
+{
+    const struct modal *h = x->h;
+    find_moves(x);
+    for (size_t k = 0, p = 0; k < h->modes; k++) {
+        struct amplitude a = forced_amplitude(x, k);
+        for (; h->owner && p < h->exponents && h->owner[p] == k; p++) {
+            a.change += x->er[p];
+            a.rate += x->w1r[p];
         }
+        for (size_t e = 0; !h->owner && e < h->exponents; e++) {
+            const double rr = h->rr[k * h->exponents + e], ri = h->ri[k * h->exponents + e];
+            a.change += rr * x->er[e] - ri * x->ei[e];
+            a.rate += rr * x->w1r[e] - ri * x->w1i[e];
+        }
+        add_mode(x, k, a, velocity);
     }
 }
 
@@ -226,28 +248,22 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const tribo_system *sys = x->sys;
     const struct modal *h = x->h;
     const size_t n = sys->ndof;
+    double *velocity = to + n;
     tribo_modal_motion_go(x, tau);
-    amplitudes(x);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
         memcpy(to, from, (2 * n + 1) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         x->dq[h->dof[i]] = h->y0[i] * tau;
-        to[n + h->dof[i]] = h->y0[i];
+        velocity[h->dof[i]] = h->y0[i];
     }
-    for (size_t s = 0; s < h->given; s++) {
+    for (size_t s = 0; sys->base_harmonics && s < h->given; s++) {
         if (sys->harmonic[s].drives == DRIVES_BASE) {
-            carry(x, s, to + n);
+            carry(x, s, velocity);
         }
     }
-    for (size_t k = 0; k < h->modes; k++) {
-        const double *phi = h->phi + k * h->moving, change = x->now[k];
-        for (size_t i = 0; i < h->moving; i++) {
-            x->dq[h->dof[i]] += phi[i] * change;
-            to[n + h->dof[i]] += phi[i] * x->work[k];
-        }
-    }
+    add_modes(x, velocity);
     for (size_t i = 0; i < h->moving; i++) {
         to[h->dof[i]] += x->dq[h->dof[i]];
     }
