@@ -67,50 +67,51 @@ void tribo_events_clear_guards(struct events *e)
     e->search.guards = 0;
 }
 
-struct guard *tribo_events_guard(struct events *e, const struct guard *guard)
+void tribo_events_guard(struct events *e, const struct guard *guard)
 {
-    struct guard *g = &e->search.guard[e->search.guards++];
-    *g = *guard;
-    g->lowest = 0.0;
-    return g;
+    e->search.guard[e->search.guards++] = *guard;
 }
 
-/* As given, of contact i, one that slides or holds. */
-static struct guard *append(struct events *e, size_t i, int slides, double side, double allowance, const struct guard *guard)
+/* A guard of contact i, one that slides or holds. Its samples are the search's to set. */
+static struct guard *append(struct events *e, size_t i, int slides, double side, double allowance, const struct watch *watch)
 {
-    struct guard *g = tribo_events_guard(e, guard);
+    struct guard *g = &e->search.guard[e->search.guards++];
     g->contact = i;
     g->slides = slides;
     g->side = side;
+    g->output = watch->output;
+    g->offset = watch->offset;
+    g->limit = watch->limit;
     g->allowance = allowance;
+    g->lowest = g->right.g = 0.0;
     return g;
 }
 
-void tribo_events_guard_slip(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch)
 {
     const struct stick_slip *m = &e->stick_slip;
-    append(e, i, SLIDES, m->slip[i], m->doubt * m->noise[i], guard);
+    append(e, i, SLIDES, m->slip[i], m->doubt * m->noise[i], watch);
 }
 
-void tribo_events_guard_stick(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch)
 {
-    append(e, i, HOLDS, -1.0, e->stick_slip.allowance[i], guard);
-    append(e, i, HOLDS, 1.0, e->stick_slip.allowance[i], guard);
+    append(e, i, HOLDS, -1.0, e->stick_slip.allowance[i], watch);
+    append(e, i, HOLDS, 1.0, e->stick_slip.allowance[i], watch);
 }
 
-void tribo_events_guard_part(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch)
 {
-    append(e, i, SLIDES, -1.0, e->stick_slip.parting[i], guard);
-    append(e, i, SLIDES, 1.0, e->stick_slip.parting[i], guard);
+    append(e, i, SLIDES, -1.0, e->stick_slip.parting[i], watch);
+    append(e, i, SLIDES, 1.0, e->stick_slip.parting[i], watch);
 }
 
-void tribo_events_guard_limit(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch)
 {
     const struct stick_slip *m = &e->stick_slip;
     const int keeps = m->slip[i] == 0 && tribo_stick_slip_follows(m, i) == 0.0;
     const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
     const double allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
-    struct guard *g = append(e, i, HOLDS, 0.0, allowance, guard);
+    struct guard *g = append(e, i, HOLDS, 0.0, allowance, watch);
     g->limit *= times;
     g->offset = times * g->offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
 }

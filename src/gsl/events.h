@@ -65,15 +65,20 @@ int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int 
 /* The find_periodic of methods that have an open. */
 int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
-/* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest,
- * or two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or
- * force is side * value. Or one of its limit, which is offset + limit * value: whether the contact lifts off, or touches down, or
- * has its limit fall to the force that it keeps. */
+/* What a guard watches, in the method's own terms: the value is offset + output, and so many times the limit. */
+struct watch {
+    void *output;
+    double offset, limit;
+};
+
+/* For begin: forgets the guards; and adds one of any kind, all set; or one of the velocity of contact i, which slides, or two of
+ * its force, which is at rest, or two of its velocity, which may part from its base: of side * output. Or one of its limit:
+ * whether the contact lifts off, or touches down, or has its limit fall to the force that it keeps. */
 void tribo_events_clear_guards(struct events *e);
-struct guard *tribo_events_guard(struct events *e, const struct guard *guard); /* of any kind, all set */
-void tribo_events_guard_slip(struct events *e, size_t i, const struct guard *guard);
-void tribo_events_guard_stick(struct events *e, size_t i, const struct guard *guard);
-void tribo_events_guard_part(struct events *e, size_t i, const struct guard *guard);
-void tribo_events_guard_limit(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard(struct events *e, const struct guard *guard);
+void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch);
+void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch);
+void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch);
+void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch);
 
 #endif

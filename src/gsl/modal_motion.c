@@ -112,12 +112,6 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
     }
 }
 
-struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, const struct line *line)
-{
-    const struct sample v = tribo_modal_terms_sum(x, w);
-    return (struct sample){v.g + (line->start + line->ramp * x->tau), v.d + line->ramp, v.e};
-}
-
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
 {
     struct sample sum = {0.0, 0.0, 0.0};
@@ -141,27 +135,6 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
         sum += w->drives == DRIVES_LIMIT ? pow(w->omega, 6.0) * hypot(w->cosine[i], w->sine[i]) : 0.0;
     }
     return sum;
-}
-
-struct line tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, struct sample *at)
-{
-    const struct line none = {0.0, 0.0};
-    const struct sample terms = tribo_modal_motion_output(x, w, &none);
-    const double ramp = w->ramp + tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->modes);
-    at->d = terms.d + ramp;
-    at->e = terms.e;
-    return (struct line){at->g - terms.g, ramp};
-}
-
-void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend)
-{
-    double most = 0.0, most6 = 0.0;
-    for (size_t p = 0; p < x->h->terms; p++) {
-        most += w->size[p] * x->growth[p];
-        most6 += w->size[p] * x->growth6[p];
-    }
-    *size = most;
-    *bend = most6;
 }
 
 /* By how much exponentials have moved from t0 to where go() was: into er, ei. With a load far above its frequency the little by
@@ -372,6 +345,7 @@ static void find_course(struct modal_motion *x, size_t k)
         x->vel[k] = h->ramp[k] / stiffness;
         x->off[k] = force / stiffness;
     }
+    x->runs |= x->vel[k] != 0.0 || x->acc[k] != 0.0;
 }
 
 /* What damping of that makes of a mode with stiffness. */
@@ -407,6 +381,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     x->steady = find_steady_forces(x, sys);
     find_amplitudes(x, y);
     find_constant(x, sys, y);
+    x->runs = 0;
     for (size_t k = 0; k < m; k++) {
         find_course(x, k);
     }
@@ -441,8 +416,9 @@ static void find_lines(struct modal_motion *x, const double *y)
     const struct stick_slip *m = x->contacts;
     for (size_t o = 0; o < x->h->sliding; o++) {
         const size_t i = x->h->output[o].contact;
-        struct sample at = {m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y), 0.0, 0.0};
-        x->line[i] = tribo_modal_motion_line(x, &x->h->output[o], 1, &at);
+        struct course c = {.output = &x->h->output[o]};
+        tribo_course_begin(x, &c, 1, m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
+        x->line[i] = c.line;
     }
 }
 

@@ -12,6 +12,15 @@ struct line {
     double start, ramp;
 };
 
+/* An output in a phase. */
+struct course {
+    const struct output *output;
+    struct line line;
+    double size, bend; /* bounds of it, and of its sixth derivative */
+    double tau;        /* when it is that, */
+    struct sample at;  /* with two derivatives */
+};
+
 /* It began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
 struct modal_motion {
     tribo_system *sys;
@@ -19,6 +28,7 @@ struct modal_motion {
     const struct modal *h;
     double t0, tau;                        /* tau: where w is */
     double *eta, *rate, *off, *vel, *acc;  /* [modes] at t0 */
+    int runs;                              /* any vel or acc is not 0 */
     double *drift, *drift_rate;            /* [modes] of those that drift: what harmonics do not explain, at t0 */
     size_t room;                           /* of terms */
     double *zr, *zi;                       /* [terms] at t0 */
@@ -51,15 +61,9 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
 /* Goes to t0 + tau: z and its derivatives, and the harmonics. */
 void tribo_modal_motion_go(struct modal_motion *x, double tau);
 
-/* An output there, with two derivatives. */
-struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, const struct line *line);
-
 /* What harmonics add to the limit of contact i there, with two derivatives; and a bound of the sixth derivative of that. */
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
 double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
-
-/* The line of an output that is at->g at t0, where the motion still is. Sets its derivatives there, too. */
-struct line tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, struct sample *at);
 
 /* Energy dissipated until t0 + tau, where dq is. */
 double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
@@ -67,13 +71,16 @@ double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
 /* Goes to t0 + tau: the state there. from is the state at t0; to may be the same. */
 void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to);
 
-/* Bounds of the terms from tau on, */
+/* Bounds of the terms from tau on. */
 void tribo_modal_motion_bound(struct modal_motion *x, double tau);
-
-/* and of what an output has of them, and of the sixth derivative of that. */
-void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend);
 
 /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status. */
 int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to);
+
+/* modal_course.c: the course of c->output, a velocity or not, which is value at t0, where the motion still is; and where go() was;
+ * and its bounds, from those of terms. */
+void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_velocity, double value);
+void tribo_course_look(const struct modal_motion *x, struct course *c);
+void tribo_course_bound(const struct modal_motion *x, struct course *c);
 
 #endif

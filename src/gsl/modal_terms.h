@@ -1,4 +1,4 @@
-/* The terms of a modal motion: exponentials and harmonics, with two derivatives, and sums of them. */
+/* The terms of a modal motion: exponentials and harmonics, with two derivatives. */
 #ifndef TRIBO_MODAL_TERMS_H
 #define TRIBO_MODAL_TERMS_H
 
@@ -10,8 +10,5 @@ void tribo_modal_terms_clear(struct modal_motion *x);
 /* w = z at t0; or at t0 + tau, without resonances. */
 void tribo_modal_terms_rest(struct modal_motion *x);
 void tribo_modal_terms_go(struct modal_motion *x, double tau);
-
-/* Re(sum c_p w_p), with two derivatives. */
-struct sample tribo_modal_terms_sum(const struct modal_motion *x, const struct output *c);
 
 #endif
