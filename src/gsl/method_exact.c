@@ -57,16 +57,20 @@ static int find_whole(struct exact *x)
     return status;
 }
 
-/* x->key = what contacts do, as a structure that is held has it, and zeros after that. Returns its print. */
-static uint64_t find_key(struct exact *x)
+/* key [n] = what contacts do, as a structure that is held has it. */
+static void write_key(size_t n, const signed char *restrict slip, const unsigned char *restrict holds, signed char *restrict key)
 {
-    const struct stick_slip *m = &x->events.stick_slip;
-    uint64_t print = 0, part;
-    for (size_t i = 0; i < m->contacts; i++) {
-        x->key[i] = (signed char)((m->slip[i] == 0) + m->holds[i]);
+    for (size_t i = 0; i < n; i++) {
+        key[i] = (signed char)((slip[i] == 0) + holds[i]);
     }
-    for (size_t i = 0; i < m->contacts; i += sizeof part) {
-        memcpy(&part, x->key + i, sizeof part);
+}
+
+/* What a key of n bytes, and zeros after them, comes down to. */
+static uint64_t print_of(size_t n, const signed char *key)
+{
+    uint64_t print = 0, part;
+    for (size_t i = 0; i < n; i += sizeof part) {
+        memcpy(&part, key + i, sizeof part);
         print = (print ^ part) * 0x9e3779b97f4a7c15;
     }
     return print;
@@ -76,7 +80,9 @@ static uint64_t find_key(struct exact *x)
 static int find_held(struct exact *x, const struct modal **found)
 {
     tribo_system *sys = x->sys;
-    const uint64_t print = find_key(x);
+    const struct stick_slip *m = &x->events.stick_slip;
+    write_key(m->contacts, m->slip, m->holds, x->key);
+    const uint64_t print = print_of(m->contacts, x->key);
     for (size_t i = x->helds; i-- > 0;) {
         const struct held held = x->held[i];
         if (held.print == print && memcmp(held.modal->key, x->key, sys->ncontact) == 0) {

@@ -212,8 +212,13 @@ static int compress(struct modal_build *b)
     h->yr = tribo_modal_keep(b, s * h->moving);
     h->yi = tribo_modal_keep(b, s * h->moving);
     h->y0 = tribo_modal_keep(b, h->moving);
-    if (!h->dof || !h->phi || !h->psi || !h->yr || !h->yi || !h->y0) {
+    h->begin = tribo_modal_keep_indices(b, m);
+    h->end = tribo_modal_keep_indices(b, m);
+    if (!h->dof || !h->phi || !h->psi || !h->yr || !h->yi || !h->y0 || !h->begin || !h->end) {
         return 0;
+    }
+    for (size_t k = 0; k < m; k++) {
+        h->end[k] = h->moving;
     }
     for (size_t i = 0; i < h->moving; i++) {
         const size_t d = h->dof[i];

@@ -14,10 +14,9 @@
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
 {
     const size_t n = sys->ndof;
-    double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
-                                &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
+    double **const by_mode[] = {&x->vel, &x->acc, &x->drift, &x->drift_rate, &x->dq};
     const size_t modes = sizeof by_mode / sizeof *by_mode;
-    double *work = malloc((modes * n + sys->ncontact + 1) * sizeof *work);
+    double *work = malloc((modes * n + 2 * sys->ncontact + 1) * sizeof *work);
     x->line = malloc((sys->ncontact + 1) * sizeof *x->line);
     for (size_t k = 0; work && k < modes; k++) {
         *by_mode[k] = work + k * n;
@@ -27,13 +26,14 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     }
     x->sys = sys;
     x->room_for_steady = work + modes * n;
+    x->push = x->room_for_steady + sys->ncontact;
     x->contacts = contacts;
     return 1;
 }
 
 void tribo_modal_motion_free(struct modal_motion *x)
 {
-    free(x->eta);
+    free(x->vel);
     free(x->line);
     free(x->zr);
 }
@@ -154,9 +154,9 @@ static void find_moves(struct modal_motion *x)
     }
 }
 
-/* What of a mode is new where go() was: by how much eta has changed, and eta'. */
+/* Of a mode: eta, or by how much it has changed, and eta'. */
 struct amplitude {
-    double change, rate;
+    double place, rate;
 };
 
 /* What harmonics have of mode k, and what is linear in time, or quadratic. */
@@ -167,7 +167,7 @@ static struct amplitude forced_amplitude(const struct modal_motion *x, size_t k)
     struct amplitude a = {x->tau * (drift + 0.5 * x->acc[k] * x->tau), drift + x->acc[k] * x->tau};
     for (size_t s = 0, at = k; s < h->harmonics; s++, at += h->modes) {
         const double ct = x->cos_t[s], st = x->sin_t[s], xr = h->xr[at], xi = h->xi[at];
-        a.change += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
+        a.place += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
         a.rate -= h->forcing[s].omega * (xr * st + xi * ct);
     }
     return a;
@@ -178,8 +178,8 @@ static void add_mode(struct modal_motion *x, size_t k, struct amplitude a, doubl
 {
     const struct modal *h = x->h;
     const double *phi = h->phi + k * h->moving;
-    for (size_t i = 0; i < h->moving; i++) {
-        x->dq[h->dof[i]] += phi[i] * a.change;
+    for (size_t i = h->begin[k]; i < h->end[k]; i++) {
+        x->dq[h->dof[i]] += phi[i] * a.place;
         velocity[h->dof[i]] += phi[i] * a.rate;
     }
 }
@@ -191,12 +191,12 @@ static void add_modes(struct modal_motion *x, double *velocity)
     for (size_t k = 0, p = 0; k < h->modes; k++) {
         struct amplitude a = forced_amplitude(x, k);
         for (; h->owner && p < h->exponents && h->owner[p] == k; p++) {
-            a.change += x->er[p];
+            a.place += x->er[p];
             a.rate += x->w1r[p];
         }
         for (size_t e = 0; !h->owner && e < h->exponents; e++) {
             const double rr = h->rr[k * h->exponents + e], ri = h->ri[k * h->exponents + e];
-            a.change += rr * x->er[e] - ri * x->ei[e];
+            a.place += rr * x->er[e] - ri * x->ei[e];
             a.rate += rr * x->w1r[e] - ri * x->w1i[e];
         }
         add_mode(x, k, a, velocity);
@@ -258,24 +258,6 @@ static double offset(const tribo_system *sys, size_t i, const double *q)
     return sum;
 }
 
-/* now = the constant part of the right-hand side at t0: by forces that slide, by where contacts hold, by constant loads. The
- * stiffness of the whole has no part in it: what it makes of a rigid-body displacement would be its rounding. */
-static void find_constant(struct modal_motion *x, const tribo_system *sys, const double *y)
-{
-    const struct modal *h = x->h;
-    const size_t m = h->modes;
-    for (size_t k = 0; k < m; k++) {
-        x->now[k] = h->constant[k];
-    }
-    for (size_t o = 0; m > 0 && o < h->outputs; o++) {
-        const struct output *out = &h->output[o];
-        const double push = o < h->sliding ? x->steady[out->contact] : -offset(sys, out->contact, y);
-        for (size_t k = 0; k < m; k++) {
-            x->now[k] += push * out->on_rate[k];
-        }
-    }
-}
-
 /* The forces of contacts but for harmonics of limits that they follow. */
 static const double *find_steady_forces(const struct modal_motion *x, const tribo_system *sys)
 {
@@ -314,90 +296,102 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
     }
 }
 
-/* Amplitudes of eta at t0. */
-static void find_amplitudes(struct modal_motion *x, const double *y)
+/* By what contacts push modes: forces that slide, places where contacts hold. */
+static void find_pushes(struct modal_motion *x, const tribo_system *sys, const double *y)
 {
     const struct modal *h = x->h;
-    const double *velocity = y + x->sys->ndof;
-    for (size_t k = 0; k < h->modes; k++) {
-        const double *psi = h->psi + k * h->moving;
-        double q = 0.0, u = 0.0;
-        for (size_t i = 0; i < h->moving; i++) {
-            q += psi[i] * y[h->dof[i]];
-            u += psi[i] * velocity[h->dof[i]];
-        }
-        x->eta[k] = q;
-        x->rate[k] = u;
+    for (size_t o = 0; h->modes > 0 && o < h->outputs; o++) {
+        const size_t i = h->output[o].contact;
+        x->push[o] = o < h->sliding ? x->steady[i] : -offset(sys, i, y);
     }
 }
 
-/* What the constant part of the right-hand side, and what of it grows with time, make of mode k. */
-static void find_course(struct modal_motion *x, size_t k)
+/* The constant part of the right-hand side of mode k: by contacts, by constant loads. The stiffness of the whole has no part in
+ * it: what it makes of a rigid-body displacement would be its rounding. */
+static double constant_force(const struct modal_motion *x, size_t k)
 {
     const struct modal *h = x->h;
-    const double force = x->now[k], stiffness = h->omega2[k];
-    x->off[k] = x->vel[k] = x->acc[k] = 0.0;
+    double force = h->constant[k];
+    for (size_t o = 0; o < h->outputs; o++) {
+        force += x->push[o] * h->output[o].on_rate[k];
+    }
+    return force;
+}
+
+/* Of mode k at t0: where it is and how fast; and that, less what the right-hand side makes of it: by a constant and what grows
+ * with time, and by harmonics. */
+static struct amplitude amplitude(const struct modal *h, size_t k, const double *q, const double *velocity)
+{
+    const double *psi = h->psi + k * h->moving;
+    struct amplitude a = {0.0, 0.0};
+    for (size_t i = h->begin[k]; i < h->end[k]; i++) {
+        a.place += psi[i] * q[h->dof[i]];
+        a.rate += psi[i] * velocity[h->dof[i]];
+    }
+    return a;
+}
+
+static struct amplitude without_course(struct modal_motion *x, size_t k, struct amplitude a)
+{
+    const struct modal *h = x->h;
+    const double force = constant_force(x, k), stiffness = h->omega2[k];
+    double vel = 0.0, acc = 0.0;
     if (h->drifts[k]) {
-        x->acc[k] = force;
+        acc = force;
     } else if (stiffness == 0.0) {
-        x->vel[k] = force / h->damping[k];
+        vel = force / h->damping[k];
     } else {
-        x->vel[k] = h->ramp[k] / stiffness;
-        x->off[k] = force / stiffness;
+        vel = h->ramp[k] / stiffness;
+        a.place -= force / stiffness;
     }
-    x->runs |= x->vel[k] != 0.0 || x->acc[k] != 0.0;
+    x->vel[k] = vel;
+    x->acc[k] = acc;
+    x->runs |= vel != 0.0 || acc != 0.0;
+    a.rate -= vel;
+    return a;
 }
 
-/* What damping of that makes of a mode with stiffness. */
-static void correct_course(struct modal_motion *x, size_t k)
+static struct amplitude without_harmonics(const struct modal_motion *x, size_t k, struct amplitude a)
 {
     const struct modal *h = x->h;
-    const size_t m = h->modes;
-    if (h->omega2[k] != 0.0) {
-        x->off[k] -= (h->coupling ? tribo_dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
+    for (size_t s = 0, at = k; s < h->harmonics; s++, at += h->modes) {
+        const double xr = h->xr[at], xi = h->xi[at], c = x->cos_0[s], d = x->sin_0[s];
+        a.place -= xr * c - xi * d;
+        a.rate += h->forcing[s].omega * (xr * d + xi * c);
     }
+    return a;
 }
 
-/* What all of that, and harmonics, do not explain of mode k at t0. */
-static void find_rest(struct modal_motion *x, size_t k)
+/* z of exponent p: of its own mode, or of all. */
+static void begin_exponent(struct modal_motion *x, size_t p)
 {
     const struct modal *h = x->h;
-    double q = x->off[k], u = x->vel[k];
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double xr = h->xr[s * h->modes + k], xi = h->xi[s * h->modes + k];
-        q += xr * x->cos_0[s] - xi * x->sin_0[s];
-        u -= h->forcing[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
+    if (h->owner) {
+        const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
+        x->zr[p] = h->ar[p] * q + h->br[p] * u;
+        x->zi[p] = h->ai[p] * q + h->bi[p] * u;
+    } else {
+        const size_t m = h->modes;
+        x->zr[p] = tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m);
+        x->zi[p] = tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m);
     }
-    x->drift[k] = x->eta[k] - q;
-    x->drift_rate[k] = x->rate[k] - u;
 }
 
 /* Splits the motion into what the right-hand side makes of it and exponentials. */
 static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
 {
     const struct modal *h = x->h;
-    const size_t m = h->modes;
     start_harmonics(x, sys);
     x->steady = find_steady_forces(x, sys);
-    find_amplitudes(x, y);
-    find_constant(x, sys, y);
+    find_pushes(x, sys, y);
     x->runs = 0;
-    for (size_t k = 0; k < m; k++) {
-        find_course(x, k);
-    }
-    for (size_t k = 0; k < m; k++) {
-        correct_course(x, k);
-        find_rest(x, k);
+    for (size_t k = 0; k < h->modes; k++) {
+        const struct amplitude a = without_harmonics(x, k, without_course(x, k, amplitude(h, k, y, y + sys->ndof)));
+        x->drift[k] = a.place;
+        x->drift_rate[k] = a.rate;
     }
     for (size_t p = 0; p < h->exponents; p++) {
-        if (h->owner) {
-            const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
-            x->zr[p] = h->ar[p] * q + h->br[p] * u;
-            x->zi[p] = h->ai[p] * q + h->bi[p] * u;
-        } else {
-            x->zr[p] = tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m);
-            x->zi[p] = tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m);
-        }
+        begin_exponent(x, p);
     }
 }
 
@@ -431,21 +425,29 @@ static double longest_phase(const struct modal *h, double longest)
     return h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
 }
 
+/* What resonances add to the bounds of exponent p, whose frequency is within RESONANCE of theirs. */
+static void bound_resonances(struct modal_motion *x, size_t p)
+{
+    const struct modal *h = x->h;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const size_t at = s * h->modes + h->owner[p];
+        if (h->resonant[at]) {
+            const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
+            x->growth[p] += force * x->longest;
+            x->growth6[p] += h->sixth[p] * force * (x->longest + 6.1 / h->size[p]);
+        }
+    }
+}
+
 void tribo_modal_motion_bound(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double time = h->lr[p] > 0.0 ? x->longest : tau;
-        x->growth[p] = tribo_modal_magnitude(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
+        const double rate = h->lr[p], growth = rate == 0.0 ? 1.0 : exp(rate * (rate > 0.0 ? x->longest : tau));
+        x->growth[p] = tribo_modal_magnitude(x->zr[p], x->zi[p]) * growth;
         x->growth6[p] = h->sixth[p] * x->growth[p];
-        for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
-            const size_t at = s * h->modes + h->owner[p];
-            if (h->resonant[at]) {
-                const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
-                /* the frequencies are within RESONANCE of each other */
-                x->growth[p] += force * x->longest;
-                x->growth6[p] += h->sixth[p] * force * (x->longest + 6.1 / h->size[p]);
-            }
+        if (h->any_resonant) {
+            bound_resonances(x, p);
         }
     }
 }

@@ -21,13 +21,13 @@ struct course {
     struct sample at;  /* with two derivatives */
 };
 
-/* It began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
+/* It began at t0; amplitudes eta = constant + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
 struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
     const struct modal *h;
     double t0, tau;                        /* tau: where w is */
-    double *eta, *rate, *off, *vel, *acc;  /* [modes] at t0 */
+    double *vel, *acc;                     /* [modes] */
     int runs;                              /* any vel or acc is not 0 */
     double *drift, *drift_rate;            /* [modes] of those that drift: what harmonics do not explain, at t0 */
     size_t room;                           /* of terms */
@@ -40,7 +40,7 @@ struct modal_motion {
     double *growth, *growth6;              /* [terms] bounds of |z| and of its sixth derivative */
     double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] terms of harmonics at t0 + tau, at t0; of contacts times */
     double *side;                          /* [harmonics] how many times their force follows the limit; others 1 */
-    double *now, *work;                    /* [modes] eta and eta' at tau; workspace */
+    double *push;                          /* [outputs] by which an output pushes modes */
     double *dq;                            /* [ndof] by how much q has changed at tau */
     const double *steady;                  /* [ncontact] force of a sliding contact, without harmonics of its limit; */
     struct line *line;                     /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
