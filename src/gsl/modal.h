@@ -64,7 +64,8 @@ struct modal {
     struct output *output;
     int swings;             /* no exponent decays or grows */
     double fastest;         /* largest |lambda| */
-    double quickest, decay; /* the largest of these and the frequencies of harmonics; the largest decay rate */
+    double quickest;        /* the largest of these and the frequencies of harmonics */
+    double decay, growth;   /* the largest rate of decay, and of growth */
     void *memory;           /* all arrays */
     size_t bytes;
 };

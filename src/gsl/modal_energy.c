@@ -112,7 +112,7 @@ double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau)
             energy += x->sys->tally[v->contact] * slip[v->contact] * limit_work(x, v->contact, v, tau);
         }
     }
-    for (size_t s = 0; s < x->h->given; s++) {
+    for (size_t s = 0; x->sys->base_harmonics && s < x->h->given; s++) {
         const struct harmonic *w = &x->sys->harmonic[s];
         energy += w->drives == DRIVES_BASE ? belt_work(x, w, s, tau) : 0.0;
     }

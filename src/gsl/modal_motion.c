@@ -137,19 +137,27 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
     return sum;
 }
 
-/* By how much exponentials have moved from t0 to where go() was: into er, ei. With a load far above its frequency the little by
- * which one moves is all of the motion. */
+/* With a load far above the frequency of exponential p the little by which it moves is all of the motion: no difference. */
+static void find_little_move(struct modal_motion *x, size_t p)
+{
+    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
+    const double complex move = (x->zr[p] + x->zi[p] * I) * lambda_tau * tribo_exp_1(lambda_tau);
+    x->er[p] = creal(move);
+    x->ei[p] = cimag(move);
+}
+
+/* By how much terms have moved from t0 to where go() was: into er, ei. */
 static void find_moves(struct modal_motion *x)
 {
     const struct modal *h = x->h;
-    for (size_t p = 0; p < h->exponents; p++) {
+    const size_t e = h->exponents, terms = e + h->harmonics;
+    for (size_t p = 0; p < terms; p++) {
         x->er[p] = x->wr[p] - x->zr[p];
         x->ei[p] = x->wi[p] - x->zi[p];
-        if (x->tau * h->size[p] < LITTLE && !h->any_resonant) {
-            const double complex lambda_tau = x->tau * (h->lr[p] + h->li[p] * I);
-            const double complex move = (x->zr[p] + x->zi[p] * I) * lambda_tau * tribo_exp_1(lambda_tau);
-            x->er[p] = creal(move);
-            x->ei[p] = cimag(move);
+    }
+    for (size_t p = 0; p < e && !h->any_resonant; p++) {
+        if (x->tau * h->size[p] < LITTLE) {
+            find_little_move(x, p);
         }
     }
 }
@@ -159,45 +167,52 @@ struct amplitude {
     double place, rate;
 };
 
-/* What harmonics have of mode k, and what is linear in time, or quadratic. */
-static struct amplitude forced_amplitude(const struct modal_motion *x, size_t k)
+/* What is linear in time, or quadratic, of mode k. */
+static struct amplitude course(const struct modal_motion *x, size_t k)
 {
-    const struct modal *h = x->h;
-    const double drift = x->vel[k] + (h->drifts[k] ? x->drift_rate[k] : 0.0);
-    struct amplitude a = {x->tau * (drift + 0.5 * x->acc[k] * x->tau), drift + x->acc[k] * x->tau};
-    for (size_t s = 0, at = k; s < h->harmonics; s++, at += h->modes) {
-        const double ct = x->cos_t[s], st = x->sin_t[s], xr = h->xr[at], xi = h->xi[at];
-        a.place += xr * (ct - x->cos_0[s]) - xi * (st - x->sin_0[s]);
-        a.rate -= h->forcing[s].omega * (xr * st + xi * ct);
-    }
-    return a;
+    const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
+    return (struct amplitude){tau * (drift + 0.5 * acc * tau), drift + acc * tau};
+}
+
+/* Adds what term p, times r, has moved a mode by. */
+static inline void add_term(const struct modal_motion *x, size_t p, double rr, double ri, struct amplitude *a)
+{
+    a->place += rr * x->er[p] - ri * x->ei[p];
+    a->rate += rr * x->w1r[p] - ri * x->w1i[p];
 }
 
 /* Moves degrees of freedom by mode k. */
-static void add_mode(struct modal_motion *x, size_t k, struct amplitude a, double *velocity)
+static void add_mode(const struct modal_motion *x, size_t k, struct amplitude a, double *velocity)
 {
     const struct modal *h = x->h;
     const double *phi = h->phi + k * h->moving;
-    for (size_t i = h->begin[k]; i < h->end[k]; i++) {
-        x->dq[h->dof[i]] += phi[i] * a.place;
-        velocity[h->dof[i]] += phi[i] * a.rate;
+    double *dq = x->dq;
+    for (size_t i = h->begin[k], end = h->end[k]; i < end; i++) {
+        const size_t d = h->dof[i];
+        dq[d] += phi[i] * a.place;
+        velocity[d] += phi[i] * a.rate;
     }
 }
 
 static void add_modes(struct modal_motion *x, double *velocity)
 {
     const struct modal *h = x->h;
+    const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes;
     find_moves(x);
-    for (size_t k = 0, p = 0; k < h->modes; k++) {
-        struct amplitude a = forced_amplitude(x, k);
-        for (; h->owner && p < h->exponents && h->owner[p] == k; p++) {
+    for (size_t k = 0, p = 0; k < modes; k++) {
+        struct amplitude a = {0.0, 0.0};
+        if (x->runs) {
+            a = course(x, k);
+        }
+        for (; h->owner && p < e && h->owner[p] == k; p++) {
             a.place += x->er[p];
             a.rate += x->w1r[p];
         }
-        for (size_t e = 0; !h->owner && e < h->exponents; e++) {
-            const double rr = h->rr[k * h->exponents + e], ri = h->ri[k * h->exponents + e];
-            a.place += rr * x->er[e] - ri * x->ei[e];
-            a.rate += rr * x->w1r[e] - ri * x->w1i[e];
+        for (size_t l = 0; !h->owner && l < e; l++) {
+            add_term(x, l, h->rr[k * e + l], h->ri[k * e + l], &a);
+        }
+        for (size_t s = 0; s < harmonics; s++) {
+            add_term(x, e + s, h->xr[s * modes + k], h->xi[s * modes + k], &a);
         }
         add_mode(x, k, a, velocity);
     }
@@ -346,7 +361,7 @@ static struct amplitude without_course(struct modal_motion *x, size_t k, struct 
     }
     x->vel[k] = vel;
     x->acc[k] = acc;
-    x->runs |= vel != 0.0 || acc != 0.0;
+    x->runs |= vel != 0.0 || acc != 0.0 || h->drifts[k];
     a.rate -= vel;
     return a;
 }
@@ -419,10 +434,8 @@ static void find_lines(struct modal_motion *x, const double *y)
 /* How long the bounds of a phase can hold: for good, unless something grows. */
 static double longest_phase(const struct modal *h, double longest)
 {
-    for (size_t p = 0; p < h->exponents; p++) {
-        longest = h->lr[p] > 0.0 ? lesser(longest, 1.0 / h->lr[p]) : longest;
-    }
-    return h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
+    const double last = h->growth > 0.0 ? lesser(longest, 1.0 / h->growth) : longest;
+    return h->any_resonant ? lesser(last, 16.0 / h->fastest) : last;
 }
 
 /* What resonances add to the bounds of exponent p, whose frequency is within RESONANCE of theirs. */

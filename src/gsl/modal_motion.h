@@ -28,7 +28,7 @@ struct modal_motion {
     const struct modal *h;
     double t0, tau;                        /* tau: where w is */
     double *vel, *acc;                     /* [modes] */
-    int runs;                              /* any vel or acc is not 0 */
+    int runs;                              /* any mode drifts, or has a vel or acc */
     double *drift, *drift_rate;            /* [modes] of those that drift: what harmonics do not explain, at t0 */
     size_t room;                           /* of terms */
     double *zr, *zi;                       /* [terms] at t0 */
