@@ -36,11 +36,10 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
     if (status) {
         return status;
     }
-    e->next = malloc(tribo_system_dimension(sys) * sizeof *e->next);
     e->lasted = calloc(SLIPS * sys->ncontact + 1, sizeof *e->lasted);
     e->search.guard = malloc((3 * sys->ncontact + 1) * sizeof *e->search.guard);
     e->search.watched = malloc((3 * sys->ncontact + 1) * sizeof *e->search.watched);
-    if (!e->next || !e->lasted || !e->search.guard || !e->search.watched) {
+    if (!e->lasted || !e->search.guard || !e->search.watched) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
                                  plural(sys->ncontact));
     }
@@ -54,7 +53,6 @@ void tribo_events_free(struct events *e)
 {
     tribo_planar_slip_free(e->stick_slip.plane);
     tribo_stick_slip_free(&e->stick_slip);
-    free(e->next);
     free(e->lasted);
     free(e->search.guard);
     free(e->search.watched);
@@ -258,11 +256,12 @@ static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
     return status;
 }
 
-/* Says why the search for an event from (t, y) until reach later was given up: the state there overflows, or is too far away. */
-static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, const double *y)
+/* Says why the search for an event from (t, y) until reach later was given up: the state there, which y becomes, overflows, or is
+ * too far away. */
+static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, double *y)
 {
-    e->state(e->motion, reach, y, e->next);
-    const int status = tribo_driver_check(drv, e->next);
+    e->state(e->motion, reach, y, y);
+    const int status = tribo_driver_check(drv, y);
     return status ? status
                   : tribo_driver_fail(drv, TRIBO_ERR_STEP,
                                       "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s", t,
@@ -293,12 +292,12 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
     return seen ? tribo_driver_accept(drv, t, y, event || stops) : tribo_driver_keep(drv, t, y);
 }
 
-/* One phase, from (t, y) to its end and the decision there. */
+/* One phase, from (t, y) to its end and the decision there. What y is after a failure is nobody's: the driver has kept the state
+ * that the phase began with. */
 static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
                  double fastest)
 {
     tribo_system *sys = drv->sys;
-    const size_t dimension = tribo_system_dimension(sys);
     const double end = lesser(t1, tribo_system_next_kink(sys, *t));
     const struct guard *event = NULL;
     double reach = (end - *t) - sys->low, when = 0.0;
@@ -319,12 +318,11 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (status) {
         return status;
     }
-    e->state(e->motion, when, y, e->next);
-    status = tribo_driver_check(drv, e->next);
+    e->state(e->motion, when, y, y);
+    status = tribo_driver_check(drv, y);
     if (status) {
         return status;
     }
-    memcpy(y, e->next, dimension * sizeof *y);
     *t = go_on(sys, *t, when, end);
     e->met = event;
     status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;

@@ -18,14 +18,13 @@ struct company {
 struct events {
     struct stick_slip stick_slip;
     struct first_zero search;
-    double *next; /* [dimension] */
 
     /* the method's own */
     void *motion;
     /* Begins a phase at (t, y) that lasts *reach, or less if *reach becomes less, and sets its guards. Returns a status, its
      * message on the system's context. */
     int (*begin)(void *motion, double t, const double *y, double *reach);
-    /* The state at tau into the phase that began with `from`. */
+    /* The state at tau into the phase that began with `from`, which `to` may be. */
     void (*state)(void *motion, double tau, const double *from, double *to);
     /* Moves perturbations v [2 ndof][columns] of the state to tau into the phase, in which contacts at rest are held, and what
      * would move these is taken away first. Returns a status, its message on the system's context. */
