@@ -45,13 +45,15 @@ static inline void add_products(const double *restrict a, const double *restrict
 TRIBO_SIMD_OF_FOUR static void sum_terms(const struct modal_motion *x, const struct output *c, double *restrict sum)
 {
     const size_t n = x->h->terms;
-    real_parts(c->cr, c->ci, x->wr, x->wi, sum);
-    real_parts(c->cr, c->ci, x->w1r, x->w1i, sum + T);
-    real_parts(c->cr, c->ci, x->w2r, x->w2i, sum + 2 * T);
+    const struct lot *lot = x->lot;
+    real_parts(c->cr, c->ci, lot->wr, lot->wi, sum);
+    real_parts(c->cr, c->ci, lot->w1r, lot->w1i, sum + T);
+    real_parts(c->cr, c->ci, lot->w2r, lot->w2i, sum + 2 * T);
     for (size_t p = T; p < n; p += T) {
-        add_real_parts(c->cr + p, c->ci + p, x->wr + p, x->wi + p, sum);
-        add_real_parts(c->cr + p, c->ci + p, x->w1r + p, x->w1i + p, sum + T);
-        add_real_parts(c->cr + p, c->ci + p, x->w2r + p, x->w2i + p, sum + 2 * T);
+        lot++;
+        add_real_parts(c->cr + p, c->ci + p, lot->wr, lot->wi, sum);
+        add_real_parts(c->cr + p, c->ci + p, lot->w1r, lot->w1i, sum + T);
+        add_real_parts(c->cr + p, c->ci + p, lot->w2r, lot->w2i, sum + 2 * T);
     }
 }
 

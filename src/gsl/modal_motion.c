@@ -35,25 +35,25 @@ void tribo_modal_motion_free(struct modal_motion *x)
 {
     free(x->vel);
     free(x->line);
-    free(x->zr);
+    free(x->lot);
 }
 
 int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms)
 {
-    double **const by_term[] = {&x->zr,    &x->zi,    &x->wr, &x->wi, &x->w1r,    &x->w1i,     &x->w2r, &x->w2i,
-                                &x->far_r, &x->far_i, &x->er, &x->ei, &x->growth, &x->growth6, &x->side};
-    const size_t count = sizeof by_term / sizeof *by_term, room = 2 * terms + 1;
-    if (terms < x->room) {
+    double **const by_term[] = {&x->far_r, &x->far_i, &x->er, &x->ei, &x->growth, &x->growth6, &x->side};
+    const size_t count = sizeof by_term / sizeof *by_term, room = 2 * terms;
+    if (terms <= x->room) {
         return 1;
     }
-    double *more = malloc(count * room * sizeof *more);
-    if (!more) {
+    struct lot *lot = malloc(room / TRIBO_TERMS * sizeof *lot + count * room * sizeof **by_term[0]);
+    if (!lot) {
         return 0;
     }
-    free(x->zr);
+    free(x->lot);
+    x->lot = lot;
     x->room = room;
     for (size_t k = 0; k < count; k++) {
-        *by_term[k] = more + k * room;
+        *by_term[k] = (double *)(lot + room / TRIBO_TERMS) + k * room;
     }
     return 1;
 }
@@ -65,7 +65,7 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
 {
     const struct modal *h = x->h;
     const double omega = h->forcing[s].omega, nu = h->li[p];
-    const double c0 = x->cos_0[s], s0 = x->sin_0[s];
+    const double c0 = tribo_harmonic_at_start(x, s).re, s0 = tribo_harmonic_at_start(x, s).im;
     const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
     const double e = exp(h->lr[p] * tau), er = e * cos(nu * tau), ei = e * sin(nu * tau);
     double zr = 0.0, zi = 0.0;
@@ -79,15 +79,17 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
         zr += br * ur - bi * ui;
         zi += br * ui + bi * ur;
     }
-    const double ct = x->cos_t[s], st = x->sin_t[s], rate = omega * (gr * st + gi * ct) / nu;
+    const double ct = tribo_harmonic(x, s).re, st = tribo_harmonic(x, s).im, rate = omega * (gr * st + gi * ct) / nu;
     const double complex lambda = h->lr[p] + h->li[p] * I, z = zi / nu - zr / nu * I;
     const double complex z1 = lambda * z - (gr * ct - gi * st) / nu * I, z2 = lambda * z1 + rate * I;
-    x->wr[p] += creal(z);
-    x->wi[p] += cimag(z);
-    x->w1r[p] += creal(z1);
-    x->w1i[p] += cimag(z1);
-    x->w2r[p] += creal(z2);
-    x->w2i[p] += cimag(z2);
+    struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    const size_t k = p % TRIBO_TERMS;
+    lot->wr[k] += creal(z);
+    lot->wi[k] += cimag(z);
+    lot->w1r[k] += creal(z1);
+    lot->w1i[k] += cimag(z1);
+    lot->w2r[k] += creal(z2);
+    lot->w2i[k] += cimag(z2);
 }
 
 static void add_resonances(struct modal_motion *x, double tau)
@@ -118,9 +120,10 @@ struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
     for (size_t s = 0; s < x->h->given; s++) {
         const struct harmonic *w = &x->sys->harmonic[s];
         if (w->drives == DRIVES_LIMIT) {
-            const double c = w->cosine[i], d = w->sine[i], value = c * x->cos_t[s] + d * x->sin_t[s];
+            const struct number now = tribo_harmonic(x, s);
+            const double c = w->cosine[i], d = w->sine[i], value = c * now.re + d * now.im;
             sum.g += value;
-            sum.d += w->omega * (d * x->cos_t[s] - c * x->sin_t[s]);
+            sum.d += w->omega * (d * now.re - c * now.im);
             sum.e -= w->omega * w->omega * value;
         }
     }
@@ -141,7 +144,8 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
 static void find_little_move(struct modal_motion *x, size_t p)
 {
     const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
-    const double complex move = (x->zr[p] + x->zi[p] * I) * lambda_tau * tribo_exp_1(lambda_tau);
+    const struct number z = tribo_term_at_start(x, p);
+    const double complex move = (z.re + z.im * I) * lambda_tau * tribo_exp_1(lambda_tau);
     x->er[p] = creal(move);
     x->ei[p] = cimag(move);
 }
@@ -152,8 +156,9 @@ static void find_moves(struct modal_motion *x)
     const struct modal *h = x->h;
     const size_t e = h->exponents, terms = e + h->harmonics;
     for (size_t p = 0; p < terms; p++) {
-        x->er[p] = x->wr[p] - x->zr[p];
-        x->ei[p] = x->wi[p] - x->zi[p];
+        const struct number then = tribo_term_at_start(x, p), now = tribo_term(x, p);
+        x->er[p] = now.re - then.re;
+        x->ei[p] = now.im - then.im;
     }
     for (size_t p = 0; p < e && !h->any_resonant; p++) {
         if (x->tau * h->size[p] < LITTLE) {
@@ -177,8 +182,9 @@ static struct amplitude course(const struct modal_motion *x, size_t k)
 /* Adds what term p, times r, has moved a mode by. */
 static inline void add_term(const struct modal_motion *x, size_t p, double rr, double ri, struct amplitude *a)
 {
+    const struct number rate = tribo_term_rate(x, p);
     a->place += rr * x->er[p] - ri * x->ei[p];
-    a->rate += rr * x->w1r[p] - ri * x->w1i[p];
+    a->rate += rr * rate.re - ri * rate.im;
 }
 
 /* Moves degrees of freedom by mode k. */
@@ -206,7 +212,7 @@ static void add_modes(struct modal_motion *x, double *velocity)
         }
         for (; h->owner && p < e && h->owner[p] == k; p++) {
             a.place += x->er[p];
-            a.rate += x->w1r[p];
+            a.rate += tribo_term_rate(x, p).re;
         }
         for (size_t l = 0; !h->owner && l < e; l++) {
             add_term(x, l, h->rr[k * e + l], h->ri[k * e + l], &a);
@@ -223,7 +229,8 @@ static void carry(struct modal_motion *x, size_t s, double *u)
 {
     const struct modal *h = x->h;
     const double omega = h->forcing[s].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
-    const double c = x->cos_t[s], d = x->sin_t[s], dc = by * (c - x->cos_0[s]), dd = by * (d - x->sin_0[s]);
+    const struct number now = tribo_harmonic(x, s), then = tribo_harmonic_at_start(x, s);
+    const double c = now.re, d = now.im, dc = by * (c - then.re), dd = by * (d - then.im);
     for (size_t i = 0; i < h->moving; i++) {
         const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
         u[h->dof[i]] += yr * c - yi * d;
@@ -293,10 +300,6 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
     const struct modal *h = x->h;
     const size_t e = h->exponents;
-    x->cos_0 = x->zr + e;
-    x->sin_0 = x->zi + e;
-    x->cos_t = x->wr + e;
-    x->sin_t = x->wi + e;
     tribo_modal_terms_clear(x);
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -304,8 +307,7 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
         const double side = s < h->given ? 1.0 : tribo_stick_slip_follows(x->contacts, f->contact);
         x->side[s] = side;
         tribo_system_turn(sys, f->harmonic);
-        x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
-        x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
+        tribo_term_begin(x, e + s, side * sys->harmonic[f->harmonic].cos_t, side * sys->harmonic[f->harmonic].sin_t);
         x->growth[e + s] = fabs(side);
         x->growth6[e + s] = h->sixth[e + s] * fabs(side);
     }
@@ -370,9 +372,10 @@ static struct amplitude without_harmonics(const struct modal_motion *x, size_t k
 {
     const struct modal *h = x->h;
     for (size_t s = 0, at = k; s < h->harmonics; s++, at += h->modes) {
-        const double xr = h->xr[at], xi = h->xi[at], c = x->cos_0[s], d = x->sin_0[s];
-        a.place -= xr * c - xi * d;
-        a.rate += h->forcing[s].omega * (xr * d + xi * c);
+        const double xr = h->xr[at], xi = h->xi[at];
+        const struct number w = tribo_harmonic_at_start(x, s);
+        a.place -= xr * w.re - xi * w.im;
+        a.rate += h->forcing[s].omega * (xr * w.im + xi * w.re);
     }
     return a;
 }
@@ -383,12 +386,11 @@ static void begin_exponent(struct modal_motion *x, size_t p)
     const struct modal *h = x->h;
     if (h->owner) {
         const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
-        x->zr[p] = h->ar[p] * q + h->br[p] * u;
-        x->zi[p] = h->ai[p] * q + h->bi[p] * u;
+        tribo_term_begin(x, p, h->ar[p] * q + h->br[p] * u, h->ai[p] * q + h->bi[p] * u);
     } else {
         const size_t m = h->modes;
-        x->zr[p] = tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m);
-        x->zi[p] = tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m);
+        tribo_term_begin(x, p, tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m),
+                         tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m));
     }
 }
 
@@ -456,8 +458,9 @@ void tribo_modal_motion_bound(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
+        const struct number z = tribo_term_at_start(x, p);
         const double rate = h->lr[p], growth = rate == 0.0 ? 1.0 : exp(rate * (rate > 0.0 ? x->longest : tau));
-        x->growth[p] = tribo_modal_magnitude(x->zr[p], x->zi[p]) * growth;
+        x->growth[p] = tribo_modal_magnitude(z.re, z.im) * growth;
         x->growth6[p] = h->sixth[p] * x->growth[p];
         if (h->any_resonant) {
             bound_resonances(x, p);

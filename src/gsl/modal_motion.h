@@ -12,6 +12,12 @@ struct line {
     double start, ramp;
 };
 
+/* So many terms side by side: z at t0, z, z' and z'' at tau. */
+struct lot {
+    double zr[TRIBO_TERMS], zi[TRIBO_TERMS];
+    double wr[TRIBO_TERMS], wi[TRIBO_TERMS], w1r[TRIBO_TERMS], w1i[TRIBO_TERMS], w2r[TRIBO_TERMS], w2i[TRIBO_TERMS];
+};
+
 /* An output in a phase. */
 struct course {
     const struct output *output;
@@ -31,14 +37,11 @@ struct modal_motion {
     int runs;                              /* any mode drifts, or has a vel or acc */
     double *drift, *drift_rate;            /* [modes] of those that drift: what harmonics do not explain, at t0 */
     size_t room;                           /* of terms */
-    double *zr, *zi;                       /* [terms] at t0 */
-    double *wr, *wi, *w1r, *w1i;           /* [terms] z and z' at tau, */
-    double *w2r, *w2i;                     /* [terms] and z''; room apart */
+    struct lot *lot;                       /* the terms, of which harmonics are the last ones; of contacts times */
     double far;                            /* the time of the last look that was far from another one, or 0, */
     double *far_r, *far_i;                 /* [terms] and e^{lambda far} */
-    double *er, *ei;                       /* [terms] workspace */
+    double *er, *ei;                       /* [terms] workspace: by how much they have moved */
     double *growth, *growth6;              /* [terms] bounds of |z| and of its sixth derivative */
-    double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] terms of harmonics at t0 + tau, at t0; of contacts times */
     double *side;                          /* [harmonics] how many times their force follows the limit; others 1 */
     double *push;                          /* [outputs] by which an output pushes modes */
     double *dq;                            /* [ndof] by how much q has changed at tau */
@@ -47,6 +50,46 @@ struct modal_motion {
     double *room_for_steady;               /* [ncontact] where steady stands if limits have any */
     double longest;                        /* so long do bounds hold */
 };
+
+/* Term p at t0, and where it is, and its derivative there: a complex number, of harmonics cosine and sine. */
+struct number {
+    double re, im;
+};
+
+static inline struct number tribo_term_at_start(const struct modal_motion *x, size_t p)
+{
+    const struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    return (struct number){lot->zr[p % TRIBO_TERMS], lot->zi[p % TRIBO_TERMS]};
+}
+
+static inline struct number tribo_term(const struct modal_motion *x, size_t p)
+{
+    const struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    return (struct number){lot->wr[p % TRIBO_TERMS], lot->wi[p % TRIBO_TERMS]};
+}
+
+static inline struct number tribo_term_rate(const struct modal_motion *x, size_t p)
+{
+    const struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    return (struct number){lot->w1r[p % TRIBO_TERMS], lot->w1i[p % TRIBO_TERMS]};
+}
+
+static inline struct number tribo_harmonic_at_start(const struct modal_motion *x, size_t s)
+{
+    return tribo_term_at_start(x, x->h->exponents + s);
+}
+
+static inline struct number tribo_harmonic(const struct modal_motion *x, size_t s)
+{
+    return tribo_term(x, x->h->exponents + s);
+}
+
+static inline void tribo_term_begin(struct modal_motion *x, size_t p, double re, double im)
+{
+    struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    lot->zr[p % TRIBO_TERMS] = re;
+    lot->zi[p % TRIBO_TERMS] = im;
+}
 
 /* 1, or 0 if out of memory. tribo_modal_motion_free takes what failed too. */
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts);
