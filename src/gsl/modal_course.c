@@ -8,7 +8,7 @@ enum { T = TRIBO_TERMS };
 
 /* to = Re(a b) */
 static inline void real_parts(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                                 const double *restrict bi, double *restrict to)
+                              const double *restrict bi, double *restrict to)
 {
     for (size_t k = 0; k < T; k++) {
         to[k] = ar[k] * br[k] - ai[k] * bi[k];
@@ -17,7 +17,7 @@ static inline void real_parts(const double *restrict ar, const double *restrict 
 
 /* to += Re(a b) */
 static inline void add_real_parts(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                                const double *restrict bi, double *restrict to)
+                                  const double *restrict bi, double *restrict to)
 {
     for (size_t k = 0; k < T; k++) {
         to[k] += ar[k] * br[k] - ai[k] * bi[k];

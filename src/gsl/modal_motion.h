@@ -32,23 +32,23 @@ struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
     const struct modal *h;
-    double t0, tau;                        /* tau: where w is */
-    double *vel, *acc;                     /* [modes] */
-    int runs;                              /* any mode drifts, or has a vel or acc */
-    double *drift, *drift_rate;            /* [modes] of those that drift: what harmonics do not explain, at t0 */
-    size_t room;                           /* of terms */
-    struct lot *lot;                       /* the terms, of which harmonics are the last ones; of contacts times */
-    double far;                            /* the time of the last look that was far from another one, or 0, */
-    double *far_r, *far_i;                 /* [terms] and e^{lambda far} */
-    double *er, *ei;                       /* [terms] workspace: by how much they have moved */
-    double *growth, *growth6;              /* [terms] bounds of |z| and of its sixth derivative */
-    double *side;                          /* [harmonics] how many times their force follows the limit; others 1 */
-    double *push;                          /* [outputs] by which an output pushes modes */
-    double *dq;                            /* [ndof] by how much q has changed at tau */
-    const double *steady;                  /* [ncontact] force of a sliding contact, without harmonics of its limit; */
-    struct line *line;                     /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
-    double *room_for_steady;               /* [ncontact] where steady stands if limits have any */
-    double longest;                        /* so long do bounds hold */
+    double t0, tau;             /* tau: where w is */
+    double *vel, *acc;          /* [modes] */
+    int runs;                   /* any mode drifts, or has a vel or acc */
+    double *drift, *drift_rate; /* [modes] of those that drift: what harmonics do not explain, at t0 */
+    size_t room;                /* of terms */
+    struct lot *lot;            /* the terms, of which harmonics are the last ones; of contacts times */
+    double far;                 /* the time of the last look that was far from another one, or 0, */
+    double *far_r, *far_i;      /* [terms] and e^{lambda far} */
+    double *er, *ei;            /* [terms] workspace: by how much they have moved */
+    double *growth, *growth6;   /* [terms] bounds of |z| and of its sixth derivative */
+    double *side;               /* [harmonics] how many times their force follows the limit; others 1 */
+    double *push;               /* [outputs] by which an output pushes modes */
+    double *dq;                 /* [ndof] by how much q has changed at tau */
+    const double *steady;       /* [ncontact] force of a sliding contact, without harmonics of its limit; */
+    struct line *line;          /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
+    double *room_for_steady;    /* [ncontact] where steady stands if limits have any */
+    double longest;             /* so long do bounds hold */
 };
 
 /* Term p at t0, and where it is, and its derivative there: a complex number, of harmonics cosine and sine. */
