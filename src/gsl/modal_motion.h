@@ -23,8 +23,8 @@ struct course {
     const struct output *output;
     struct line line;
     double size, bend; /* bounds of it, and of its sixth derivative */
-    double tau;        /* when it is that, */
-    struct sample at;  /* with two derivatives */
+    double tau;        /* when it was looked at last, */
+    struct sample at;  /* and what it was, with two derivatives */
 };
 
 /* It began at t0; amplitudes eta = constant + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
@@ -38,7 +38,8 @@ struct modal_motion {
     double *drift, *drift_rate; /* [modes] of those that drift: what harmonics do not explain, at t0 */
     size_t room;                /* of terms */
     struct lot *lot;            /* the terms, of which harmonics are the last ones; of contacts times */
-    double far;                 /* the time of the last look that was far from another one, or 0, */
+    int looked;                 /* since t0; */
+    double far;                 /* the time of the last look that was far from another one, */
     double *far_r, *far_i;      /* [terms] and e^{lambda far} */
     double *er, *ei;            /* [terms] workspace: by how much they have moved */
     double *growth, *growth6;   /* [terms] bounds of |z| and of its sixth derivative */

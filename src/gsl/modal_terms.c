@@ -107,7 +107,7 @@ void tribo_modal_terms_clear(struct modal_motion *x)
 
 void tribo_modal_terms_rest(struct modal_motion *x)
 {
-    x->far = HUGE_VAL;
+    x->looked = 0;
     x->tau = 0.0;
     move_nowhere(x->h->terms, x->h->lr, x->h->li, x->lot);
 }
@@ -118,9 +118,10 @@ void tribo_modal_terms_go(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
     x->tau = tau;
-    if (fabs(tau - x->far) * h->quickest < CLOSE) {
+    if (x->looked && fabs(tau - x->far) * h->quickest < CLOSE) {
         move_little(x, tau - x->far);
     } else {
+        x->looked = 1;
         x->far = tau;
         grow(h, tau, x->far_r, x->far_i);
         move_far(h->terms, h->lr, h->li, x->far_r, x->far_i, x->lot);
