@@ -1,5 +1,5 @@
 /* An output in a phase: sums over terms, TRIBO_TERMS at a time as in modal_terms.c, and a line. */
-#include "modal_motion.h"
+#include "modal_terms.h"
 #include "../common/simd.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
  * What harmonics add to it is a sum of e^{i Omega t}, and so, with other exponents, is the velocity: integrals of their products
  * are divided differences of the exponential function (divided.h). */
 #include "divided.h"
-#include "modal_motion.h"
+#include "modal_terms.h"
 
 #include <math.h>
 

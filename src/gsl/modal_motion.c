@@ -173,7 +173,7 @@ struct amplitude {
 };
 
 /* What is linear in time, or quadratic, of mode k. */
-static struct amplitude course(const struct modal_motion *x, size_t k)
+static struct amplitude linear_part(const struct modal_motion *x, size_t k)
 {
     const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
     return (struct amplitude){tau * (drift + 0.5 * acc * tau), drift + acc * tau};
@@ -208,7 +208,7 @@ static void add_modes(struct modal_motion *x, double *velocity)
     for (size_t k = 0, p = 0; k < modes; k++) {
         struct amplitude a = {0.0, 0.0};
         if (x->runs) {
-            a = course(x, k);
+            a = linear_part(x, k);
         }
         for (; h->owner && p < e && h->owner[p] == k; p++) {
             a.place += x->er[p];
@@ -348,7 +348,7 @@ static struct amplitude amplitude(const struct modal *h, size_t k, const double 
     return a;
 }
 
-static struct amplitude without_course(struct modal_motion *x, size_t k, struct amplitude a)
+static struct amplitude without_linear_part(struct modal_motion *x, size_t k, struct amplitude a)
 {
     const struct modal *h = x->h;
     const double force = constant_force(x, k), stiffness = h->omega2[k];
@@ -403,7 +403,7 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     find_pushes(x, sys, y);
     x->runs = 0;
     for (size_t k = 0; k < h->modes; k++) {
-        const struct amplitude a = without_harmonics(x, k, without_course(x, k, amplitude(h, k, y, y + sys->ndof)));
+        const struct amplitude a = without_harmonics(x, k, without_linear_part(x, k, amplitude(h, k, y, y + sys->ndof)));
         x->drift[k] = a.place;
         x->drift_rate[k] = a.rate;
     }

@@ -1,5 +1,5 @@
 /* A linear combination of the state in a phase of method "exact". */
-#include "modal_motion.h"
+#include "modal_terms.h"
 
 #include <math.h>
 
