@@ -9,12 +9,14 @@ double complex tribo_exp_1(double complex z)
     if (cabs(z) >= CLOSE) {
         return (cexp(z) - 1.0) / z;
     }
-    double complex term = 1.0, sum = 1.0;
-    for (int k = 2; k < TERMS; k++) {
-        term *= z / k;
-        sum += term;
+    const double x = creal(z), y = cimag(z);
+    double re = 1.0, im = 0.0;
+    for (int k = TERMS - 1; k > 1; k--) { /* sum = 1 + sum z/k */
+        const double old = re;
+        re = 1.0 + (x * old - y * im) / k;
+        im = (x * im + y * old) / k;
     }
-    return sum;
+    return re + im * I;
 }
 
 /* exp[a, b], from the one of them that grows more: so nothing overflows that the result does not. */

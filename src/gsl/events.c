@@ -33,7 +33,6 @@ static double most_credit(const struct events *e)
 static void lay_out_events(struct events *e, struct layout *l, const tribo_system *sys)
 {
     const size_t c = sys->ncontact;
-    e->next = tribo_layout_array(l, tribo_system_dimension(sys), sizeof *e->next);
     e->lasted = tribo_layout_array(l, SLIPS * c, sizeof *e->lasted);
     e->search.guard = tribo_layout_array(l, 3 * c, sizeof *e->search.guard);
     e->search.watched = tribo_layout_array(l, 3 * c, sizeof *e->search.watched);
@@ -65,7 +64,7 @@ void tribo_events_free(struct events *e)
 {
     tribo_planar_slip_free(e->stick_slip.plane);
     tribo_stick_slip_free(&e->stick_slip);
-    free(e->next);
+    free(e->lasted);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- guards */
@@ -75,50 +74,51 @@ void tribo_events_clear_guards(struct events *e)
     e->search.guards = 0;
 }
 
-struct guard *tribo_events_guard(struct events *e, const struct guard *guard)
+void tribo_events_guard(struct events *e, const struct guard *guard)
 {
-    struct guard *g = &e->search.guard[e->search.guards++];
-    *g = *guard;
-    g->lowest = 0.0;
-    return g;
+    e->search.guard[e->search.guards++] = *guard;
 }
 
-/* As given, of contact i, one that slides or holds. */
-static struct guard *append(struct events *e, size_t i, int slides, double side, double allowance, const struct guard *guard)
+/* A guard of contact i, one that slides or holds. Its samples are the search's to set. */
+static struct guard *append(struct events *e, size_t i, int slides, double side, double allowance, const struct watch *watch)
 {
-    struct guard *g = tribo_events_guard(e, guard);
+    struct guard *g = &e->search.guard[e->search.guards++];
     g->contact = i;
     g->slides = slides;
     g->side = side;
+    g->output = watch->output;
+    g->offset = watch->offset;
+    g->limit = watch->limit;
     g->allowance = allowance;
+    g->lowest = g->right.g = 0.0;
     return g;
 }
 
-void tribo_events_guard_slip(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch)
 {
     const struct stick_slip *m = &e->stick_slip;
-    append(e, i, SLIDES, m->slip[i], m->doubt * m->noise[i], guard);
+    append(e, i, SLIDES, m->slip[i], m->doubt * m->noise[i], watch);
 }
 
-void tribo_events_guard_stick(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch)
 {
-    append(e, i, HOLDS, -1.0, e->stick_slip.allowance[i], guard);
-    append(e, i, HOLDS, 1.0, e->stick_slip.allowance[i], guard);
+    append(e, i, HOLDS, -1.0, e->stick_slip.allowance[i], watch);
+    append(e, i, HOLDS, 1.0, e->stick_slip.allowance[i], watch);
 }
 
-void tribo_events_guard_part(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch)
 {
-    append(e, i, SLIDES, -1.0, e->stick_slip.parting[i], guard);
-    append(e, i, SLIDES, 1.0, e->stick_slip.parting[i], guard);
+    append(e, i, SLIDES, -1.0, e->stick_slip.parting[i], watch);
+    append(e, i, SLIDES, 1.0, e->stick_slip.parting[i], watch);
 }
 
-void tribo_events_guard_limit(struct events *e, size_t i, const struct guard *guard)
+void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch)
 {
     const struct stick_slip *m = &e->stick_slip;
     const int keeps = m->slip[i] == 0 && tribo_stick_slip_follows(m, i) == 0.0;
     const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
     const double allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
-    struct guard *g = append(e, i, HOLDS, 0.0, allowance, guard);
+    struct guard *g = append(e, i, HOLDS, 0.0, allowance, watch);
     g->limit *= times;
     g->offset = times * g->offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
 }
@@ -265,11 +265,12 @@ static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
     return status;
 }
 
-/* Says why the search for an event from (t, y) until reach later was given up: the state there overflows, or is too far away. */
-static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, const double *y)
+/* Says why the search for an event from (t, y) until reach later was given up: the state there, which y becomes, overflows, or is
+ * too far away. */
+static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, double *y)
 {
-    e->state(e->motion, reach, y, e->next);
-    const int status = tribo_driver_check(drv, e->next);
+    e->state(e->motion, reach, y, y);
+    const int status = tribo_driver_check(drv, y);
     return status ? status
                   : tribo_driver_fail(drv, TRIBO_ERR_STEP,
                                       "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s", t,
@@ -300,12 +301,12 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
     return seen ? tribo_driver_accept(drv, t, y, event || stops) : tribo_driver_keep(drv, t, y);
 }
 
-/* One phase, from (t, y) to its end and the decision there. */
+/* One phase, from (t, y) to its end and the decision there. What y is after a failure is nobody's: the driver has kept the state
+ * that the phase began with. */
 static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
                  double fastest)
 {
     tribo_system *sys = drv->sys;
-    const size_t dimension = tribo_system_dimension(sys);
     const double end = lesser(t1, tribo_system_next_kink(sys, *t));
     const struct guard *event = NULL;
     double reach = (end - *t) - sys->low, when = 0.0;
@@ -326,12 +327,11 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (status) {
         return status;
     }
-    e->state(e->motion, when, y, e->next);
-    status = tribo_driver_check(drv, e->next);
+    e->state(e->motion, when, y, y);
+    status = tribo_driver_check(drv, y);
     if (status) {
         return status;
     }
-    memcpy(y, e->next, dimension * sizeof *y);
     *t = go_on(sys, *t, when, end);
     if (e->arrive) {
         e->arrive(e->motion, *t);

@@ -18,14 +18,13 @@ struct company {
 struct events {
     struct stick_slip stick_slip;
     struct first_zero search;
-    double *next; /* [dimension] */
 
     /* the method's own */
     void *motion;
     /* Begins a phase at (t, y) that lasts *reach, or less if *reach becomes less, and sets its guards. Returns a status, its
      * message on the system's context. */
     int (*begin)(void *motion, double t, const double *y, double *reach);
-    /* The state at tau into the phase that began with `from`. */
+    /* The state at tau into the phase that began with `from`, which `to` may be. */
     void (*state)(void *motion, double tau, const double *from, double *to);
     /* Tells the system of what it knows of t, at which the phase that state was asked for last has ended; NULL: of nothing. */
     void (*arrive)(void *motion, double t);
@@ -67,15 +66,20 @@ int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int 
 /* The find_periodic of methods that have an open. */
 int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
-/* For begin: forgets the guards; and adds one of the velocity of contact i, which slides, or two of its force, which is at rest,
- * or two of its velocity, which may part from its base. guard holds what is the method's own, in terms of which the velocity or
- * force is side * value. Or one of its limit, which is offset + limit * value: whether the contact lifts off, or touches down, or
- * has its limit fall to the force that it keeps. */
+/* What a guard watches, in the method's own terms: the value is offset + output, and so many times the limit. */
+struct watch {
+    void *output;
+    double offset, limit;
+};
+
+/* For begin: forgets the guards; and adds one of any kind, all set; or one of the velocity of contact i, which slides, or two of
+ * its force, which is at rest, or two of its velocity, which may part from its base: of side * output. Or one of its limit:
+ * whether the contact lifts off, or touches down, or has its limit fall to the force that it keeps. */
 void tribo_events_clear_guards(struct events *e);
-struct guard *tribo_events_guard(struct events *e, const struct guard *guard); /* of any kind, all set */
-void tribo_events_guard_slip(struct events *e, size_t i, const struct guard *guard);
-void tribo_events_guard_stick(struct events *e, size_t i, const struct guard *guard);
-void tribo_events_guard_part(struct events *e, size_t i, const struct guard *guard);
-void tribo_events_guard_limit(struct events *e, size_t i, const struct guard *guard);
+void tribo_events_guard(struct events *e, const struct guard *guard);
+void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch);
+void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch);
+void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch);
+void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch);
 
 #endif

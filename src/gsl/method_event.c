@@ -212,7 +212,7 @@ static void set_guards(struct event *e)
     }
     for (size_t i = 0; i < m->contacts; i++) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
-        struct guard g = {.output = e->watch + i};
+        struct watch g = {.output = e->watch + i};
         if (m->slip[i] == 2) { /* not guarded, but when it touches down, rounding of its velocity counts */
             e->events.stick_slip.seen[i] = e->size[i];
         }
@@ -230,7 +230,7 @@ static void set_guards(struct event *e)
         if (m->holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
             tribo_events_guard_stick(&e->events, i, &g);
         } else if (limit_tells(m, i, varies)) {
-            tribo_events_guard_limit(&e->events, i, &(struct guard){.limit = 1.0});
+            tribo_events_guard_limit(&e->events, i, &(struct watch){.limit = 1.0});
         }
     }
 }

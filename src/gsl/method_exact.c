@@ -4,31 +4,32 @@
  * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is
  * closed too (modal_energy.c). */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "events.h"
 #include "modal_motion.h"
+#include "modal_terms.h"
 #include "modal_transition.h"
 #include "../common/real.h"
 
 /* Decompositions are dropped when they take more than this. */
 #define CACHE_BYTES ((size_t)256 << 20)
 
-/* An output in a phase. */
-struct course {
-    const struct output *output;
-    struct line line;
-    double size, bend; /* bounds, as of a guard */
-    double tau;        /* when it is that */
-    struct sample at;
+/* A structure with contacts held, and what its key makes of all its bytes: two that differ in that have other keys. */
+struct held {
+    struct modal *modal;
+    uint64_t print;
 };
 
 struct exact {
     tribo_system *sys;
     struct events events;
     struct modal_whole whole; /* what these are decompositions of; zeros until there is one */
-    struct modal **held;
+    struct held *held;
     size_t helds, room, bytes, revision;
+    signed char *key; /* [ncontact] of the set that is looked for; room for zeros after it */
 
     struct modal_motion motion; /* of the phase, */
     struct course *course;      /* [ncontact] and of the outputs that guards are of */
@@ -41,7 +42,7 @@ struct exact {
 static void drop_helds(struct exact *x)
 {
     for (size_t i = 0; i < x->helds; i++) {
-        tribo_modal_free(x->held[i]);
+        tribo_modal_free(x->held[i].modal);
     }
     tribo_modal_whole_free(&x->whole);
     x->helds = 0;
@@ -57,28 +58,40 @@ static int find_whole(struct exact *x)
     return status;
 }
 
-static int rests_like(const struct modal *h, const struct stick_slip *m, size_t n)
+/* key [n] = what contacts do, as a structure that is held has it. */
+static void write_key(size_t n, const signed char *restrict slip, const unsigned char *restrict holds, signed char *restrict key)
 {
     for (size_t i = 0; i < n; i++) {
-        if (h->key[i] != (m->slip[i] == 0) + m->holds[i]) {
-            return 0;
-        }
+        key[i] = (signed char)((slip[i] == 0) + holds[i]);
     }
-    return 1;
+}
+
+/* What a key of n bytes, and zeros after them, comes down to. */
+static uint64_t print_of(size_t n, const signed char *key)
+{
+    uint64_t print = 0, part;
+    for (size_t i = 0; i < n; i += sizeof part) {
+        memcpy(&part, key + i, sizeof part);
+        print = (print ^ part) * 0x9e3779b97f4a7c15;
+    }
+    return print;
 }
 
 /* *found = the structure with the contacts at rest held. Those used last are looked at first. */
 static int find_held(struct exact *x, const struct modal **found)
 {
     tribo_system *sys = x->sys;
+    const struct stick_slip *m = &x->events.stick_slip;
+    write_key(m->contacts, m->slip, m->holds, x->key);
+    const uint64_t print = print_of(m->contacts, x->key);
     for (size_t i = x->helds; i-- > 0;) {
-        struct modal *h = x->held[i];
-        if (rests_like(h, &x->events.stick_slip, sys->ncontact)) {
+        const struct held held = x->held[i];
+        if (held.print == print && memcmp(held.modal->key, x->key, sys->ncontact) == 0) {
             for (; i + 1 < x->helds; i++) {
                 x->held[i] = x->held[i + 1];
             }
-            x->held[i] = h;
-            *found = h;
+            x->held[i] = held;
+            *found = held.modal;
             return TRIBO_OK;
         }
     }
@@ -87,7 +100,7 @@ static int find_held(struct exact *x, const struct modal **found)
     }
     if (x->helds == x->room) {
         const size_t room = 2 * x->room + 16;
-        struct modal **more = realloc(x->held, room * sizeof *more);
+        struct held *more = realloc(x->held, room * sizeof *more);
         if (!more) {
             return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structure%s", room, plural(room));
         }
@@ -100,7 +113,7 @@ static int find_held(struct exact *x, const struct modal **found)
     if (status) {
         return status;
     }
-    x->held[x->helds++] = h;
+    x->held[x->helds++] = (struct held){h, print};
     x->bytes += h->bytes;
     *found = h;
     return TRIBO_OK;
@@ -109,29 +122,39 @@ static int find_held(struct exact *x, const struct modal **found)
 /* --------------------------------------------------------------------------------------------------------------------- guards */
 
 /* The two sides of an output are computed at once. */
-static struct sample course_at(const struct modal_motion *x, struct course *c, double tau)
+static void look_at(const struct modal_motion *x, struct guard *g, double tau)
 {
+    struct course *c = g->output;
     if (c->tau != tau) {
-        c->tau = tau;
-        c->at = tribo_modal_motion_output(x, c->output, &c->line);
+        tribo_course_look(x, c);
     }
-    return c->at;
+    g->middle.g = g->offset + g->side * c->at.g;
+    g->middle.d = g->side * c->at.d;
+    g->middle.e = g->side * c->at.e;
+}
+
+/* Adds what harmonics make of the limit. */
+static void add_limit(const struct modal_motion *x, struct guard *g)
+{
+    const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+    g->middle.g += g->limit * limit.g;
+    g->middle.d += g->limit * limit.d;
+    g->middle.e += g->limit * limit.e;
 }
 
 static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
-    static const struct sample none = {0.0, 0.0, 0.0};
     struct modal_motion *x = &((struct exact *)motion)->motion;
     tribo_modal_motion_go(x, tau);
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
-        const struct sample v = g->output ? course_at(x, g->output, tau) : none;
-        g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+        if (g->output) {
+            look_at(x, g, tau);
+        } else {
+            g->middle = (struct sample){g->offset, 0.0, 0.0};
+        }
         if (g->limit != 0.0) {
-            const struct sample limit = tribo_modal_motion_limit(x, g->contact);
-            g->middle.g += g->limit * limit.g;
-            g->middle.d += g->limit * limit.d;
-            g->middle.e += g->limit * limit.e;
+            add_limit(x, g);
         }
     }
 }
@@ -147,15 +170,9 @@ static void arrive(void *motion, double t)
     const struct modal_motion *x = &((struct exact *)motion)->motion;
     tribo_system_set_time(x->sys, t);
     for (size_t s = 0; s < x->h->given; s++) {
-        tribo_harmonic_take(x->sys, &x->sys->harmonic[x->h->forcing[s].harmonic], x->cos_t[s], x->sin_t[s]);
+        const struct number at = tribo_harmonic(x, s);
+        tribo_harmonic_take(x->sys, &x->sys->harmonic[x->h->forcing[s].harmonic], at.re, at.im);
     }
-}
-
-/* Bounds of a course, as far as they come from terms. */
-static void bound_course(const struct exact *x, struct course *c)
-{
-    tribo_modal_motion_output_bounds(&x->motion, c->output, &c->size, &c->bend);
-    c->size += fabs(c->line.start) + fabs(c->line.ramp) * x->motion.longest;
 }
 
 /* Of a guard, its course being bounded. */
@@ -179,7 +196,7 @@ static double bound(void *motion, double tau)
     if (tau > 0.0) {
         tribo_modal_motion_bound(&x->motion, tau);
         for (size_t k = 0; k < x->motion.h->outputs; k++) {
-            bound_course(x, &x->course[k]);
+            tribo_course_bound(&x->motion, &x->course[k]);
         }
     }
     for (size_t k = 0; k < x->events.search.guards; k++) {
@@ -201,7 +218,7 @@ static void add_stick_guards(struct exact *x, struct course *c)
     const struct stick_slip *m = &x->events.stick_slip;
     const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = ratio * m->swing[i];
     const double offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
-    const struct guard g = {.output = c, .limit = swing > 0.0 ? ratio : 0.0, .offset = offset};
+    const struct watch g = {.output = c, .limit = swing > 0.0 ? ratio : 0.0, .offset = offset};
     if (c->size >= offset - swing) {
         tribo_events_guard_stick(&x->events, i, &g);
     }
@@ -213,7 +230,7 @@ static void add_limit_guard(struct exact *x, size_t i)
 {
     const struct stick_slip *m = &x->events.stick_slip;
     if (m->swing[i] > 0.0 && !m->holds[i]) {
-        const struct guard g = {.offset = x->sys->given_limit[i], .limit = 1.0};
+        const struct watch g = {.offset = x->sys->given_limit[i], .limit = 1.0};
         tribo_events_guard_limit(&x->events, i, &g);
     }
 }
@@ -227,16 +244,13 @@ static void add_guards(struct exact *x, size_t k, const double *y)
     c->output = &x->motion.h->output[k];
     const size_t i = c->output->contact;
     const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
-    c->tau = 0.0;
-    c->at.g = of_velocity ? v : m->force[i];
-    c->line = tribo_modal_motion_line(&x->motion, c->output, of_velocity, &c->at);
-    bound_course(x, c);
+    tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->force[i]);
     if (m->slip[i] == 2) {
         m->seen[i] = c->size;
     } else if (!of_velocity) {
         add_stick_guards(x, c);
     } else {
-        const struct guard g = {.output = c};
+        const struct watch g = {.output = c};
         (m->slip[i] == 0 ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
     }
 }
@@ -299,6 +313,7 @@ static void destroy(tribo_driver *drv)
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
         free(x->course);
+        free(x->key);
         free(x->work);
         free(x);
     }
@@ -333,6 +348,7 @@ static int create(tribo_driver *drv)
     }
     x->sys = drv->sys;
     x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
+    x->key = calloc(drv->sys->ncontact + sizeof(uint64_t), 1);
     const int status = tribo_events_create(&x->events, drv);
     if (status) {
         return status;
@@ -346,7 +362,7 @@ static int create(tribo_driver *drv)
     x->events.transition = transition;
     x->events.signal = combine;
     x->events.shows_between = 1;
-    if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
+    if (!x->course || !x->key || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     return TRIBO_OK;

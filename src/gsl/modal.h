@@ -37,7 +37,8 @@ struct modal {
 
     size_t moving, *dof; /* degrees of freedom that move */
     size_t modes;
-    double *phi, *psi; /* [modes][moving] and M phi */
+    double *phi, *psi;   /* [modes][moving] and M phi; */
+    size_t *begin, *end; /* [modes] these are 0 but for degrees of freedom from begin to end - 1 of those that move */
     double *omega2, *damping;
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
     unsigned char *drifts; /* [modes] omega = 0 and no damping */
@@ -54,17 +55,19 @@ struct modal {
     double *gr, *gi, *xr, *xi; /* [harmonics][modes] forcing and response of eta */
     double *yr, *yi;           /* [given][moving] velocities from the belts that hold */
     double *y0;                /* [moving] the same from belts of constant speed */
-    double *constant;          /* [modes] forcing by constant loads, and by damping, from belts of constant speed */
-    double *ramp;              /* [modes] forcing per unit of time, from belts of constant speed */
+    double
+        *constant; /* [modes] forcing by constant loads, and by damping, where belts of constant speed move contacts or modes */
+    double *ramp;  /* [modes] forcing per unit of time, from belts of constant speed */
     int any_resonant;
     unsigned char *resonant; /* [harmonics][modes] the response is not in x, since it would be close to infinite */
 
     size_t outputs, sliding; /* the first ones are of sliding contacts, the others of held ones */
     struct output *output;
-    int swings;             /* no exponent decays or grows */
-    double fastest;         /* largest |lambda| */
-    double quickest, decay; /* the largest of these and the frequencies of harmonics; the largest decay rate */
-    void *memory;           /* of itself and all arrays */
+    int swings;           /* no exponent decays or grows */
+    double fastest;       /* largest |lambda| */
+    double quickest;      /* the largest of these and the frequencies of harmonics */
+    double decay, growth; /* the largest rate of decay, and of growth */
+    void *memory;         /* of itself and all arrays */
     size_t bytes;
 };
 

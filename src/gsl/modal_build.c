@@ -206,8 +206,13 @@ static int compress(struct modal_build *b)
     }
     double **const kept[] = {&h->phi, &h->psi, &h->yr, &h->yi, &h->y0};
     const size_t count[] = {m * h->moving, m * h->moving, s * h->moving, s * h->moving, h->moving};
-    if (!h->dof || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
+    h->begin = tribo_modal_keep_indices(b, m);
+    h->end = tribo_modal_keep_indices(b, m);
+    if (!h->dof || !h->begin || !h->end || !tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count)) {
         return 0;
+    }
+    for (size_t k = 0; k < m; k++) {
+        h->end[k] = h->moving;
     }
     for (size_t i = 0; i < h->moving; i++) {
         const size_t d = h->dof[i];

@@ -2,7 +2,7 @@
  * What harmonics add to it is a sum of e^{i Omega t}, and so, with other exponents, is the velocity: integrals of their products
  * are divided differences of the exponential function (divided.h). */
 #include "divided.h"
-#include "modal_motion.h"
+#include "modal_terms.h"
 
 #include <math.h>
 
@@ -11,6 +11,11 @@ struct tide {
     double complex a, turn;
     double tau;
 };
+
+static double complex complex_of(struct number z)
+{
+    return z.re + z.im * I;
+}
 
 /* What the mean over [0, tau] of the tide times Re(c e^{z t/tau}) is the real part of, for c = 1. */
 static double complex mean(const struct tide *w, double complex z)
@@ -29,7 +34,7 @@ static double complex mean_resonance(const struct modal_motion *x, const struct 
 {
     const struct modal *h = x->h;
     const size_t at = s * h->modes + h->owner[p];
-    const double complex g = 0.5 * (h->gr[at] + h->gi[at] * I) * (x->cos_0[s] + x->sin_0[s] * I);
+    const double complex g = 0.5 * (h->gr[at] + h->gi[at] * I) * complex_of(tribo_harmonic_at_start(x, s));
     const double complex z = w->tau * (h->lr[p] + h->li[p] * I), y = w->tau * h->forcing[s].omega * I;
     return -I / h->li[p] * w->tau * (g * mean_2(w, y, z) + conj(g) * mean_2(w, -y, z));
 }
@@ -38,7 +43,7 @@ static double complex mean_resonance(const struct modal_motion *x, const struct 
 static double complex mean_exponent(const struct modal_motion *x, const struct tide *w, size_t p)
 {
     const struct modal *h = x->h;
-    double complex sum = (x->zr[p] + x->zi[p] * I) * mean(w, w->tau * (h->lr[p] + h->li[p] * I));
+    double complex sum = complex_of(tribo_term_at_start(x, p)) * mean(w, w->tau * (h->lr[p] + h->li[p] * I));
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         if (h->resonant[s * h->modes + h->owner[p]]) {
             sum += mean_resonance(x, w, p, s);
@@ -59,7 +64,7 @@ static double integral(const struct modal_motion *x, const struct tide *w, size_
     }
     for (size_t s = 0; s < h->harmonics; s++) {
         if (v->wave[s] > 0.0) {
-            const double complex r = (v->rr[s] + v->ri[s] * I) * (x->cos_0[s] + x->sin_0[s] * I);
+            const double complex r = (v->rr[s] + v->ri[s] * I) * complex_of(tribo_harmonic_at_start(x, s));
             sum += creal(r * mean(w, w->tau * h->forcing[s].omega * I));
         }
     }
@@ -73,7 +78,7 @@ static double limit_work(const struct modal_motion *x, size_t i, const struct ou
     for (size_t s = 0; s < x->h->given; s++) {
         const struct harmonic *limit = &x->sys->harmonic[s];
         if (limit->drives == DRIVES_LIMIT && limit->omega != 0.0 && (limit->cosine[i] != 0.0 || limit->sine[i] != 0.0)) {
-            const struct tide w = {(limit->cosine[i] - limit->sine[i] * I) * (x->cos_0[s] + x->sin_0[s] * I),
+            const struct tide w = {(limit->cosine[i] - limit->sine[i] * I) * complex_of(tribo_harmonic_at_start(x, s)),
                                    limit->omega * tau * I, tau};
             sum += integral(x, &w, i, v);
         }
@@ -90,12 +95,12 @@ static double steady_work(const struct modal_motion *x, size_t i)
 /* minus the way of the belts. */
 static double belt_work(const struct modal_motion *x, const struct harmonic *w, size_t s, double tau)
 {
+    const struct number now = tribo_harmonic(x, s), then = tribo_harmonic_at_start(x, s);
     double work = 0.0;
     for (size_t e = 0; e < w->count; e++) {
         const size_t i = w->index[e];
         const double c = w->cosine[e], d = w->sine[e];
-        const double way =
-            w->omega == 0.0 ? c * tau : (c * (x->sin_t[s] - x->sin_0[s]) - d * (x->cos_t[s] - x->cos_0[s])) / w->omega;
+        const double way = w->omega == 0.0 ? c * tau : (c * (now.im - then.im) - d * (now.re - then.re)) / w->omega;
         work += x->contacts->slip[i] ? x->sys->tally[i] * x->steady[i] * way : 0.0;
     }
     return work;
@@ -112,7 +117,7 @@ double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau)
             energy += x->sys->tally[v->contact] * slip[v->contact] * limit_work(x, v->contact, v, tau);
         }
     }
-    for (size_t s = 0; s < x->h->given; s++) {
+    for (size_t s = 0; x->sys->base_harmonics && s < x->h->given; s++) {
         const struct harmonic *w = &x->sys->harmonic[s];
         energy += w->drives == DRIVES_BASE ? belt_work(x, w, s, tau) : 0.0;
     }

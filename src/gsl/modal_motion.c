@@ -14,10 +14,9 @@
 int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
 {
     const size_t n = sys->ndof;
-    double **const by_mode[] = {&x->eta, &x->rate, &x->off,   &x->vel,        &x->acc,
-                                &x->now, &x->work, &x->drift, &x->drift_rate, &x->dq};
+    double **const by_mode[] = {&x->vel, &x->acc, &x->drift, &x->drift_rate, &x->dq};
     const size_t modes = sizeof by_mode / sizeof *by_mode;
-    double *work = malloc((modes * n + sys->ncontact + 1) * sizeof *work);
+    double *work = malloc((modes * n + 2 * sys->ncontact + 1) * sizeof *work);
     x->line = malloc((sys->ncontact + 1) * sizeof *x->line);
     for (size_t k = 0; work && k < modes; k++) {
         *by_mode[k] = work + k * n;
@@ -27,33 +26,34 @@ int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const s
     }
     x->sys = sys;
     x->room_for_steady = work + modes * n;
+    x->push = x->room_for_steady + sys->ncontact;
     x->contacts = contacts;
     return 1;
 }
 
 void tribo_modal_motion_free(struct modal_motion *x)
 {
-    free(x->eta);
+    free(x->vel);
     free(x->line);
-    free(x->zr);
+    free(x->lot);
 }
 
 int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms)
 {
-    double **const by_term[] = {&x->zr,    &x->zi,    &x->wr, &x->wi, &x->w1r,    &x->w1i,     &x->w2r, &x->w2i,
-                                &x->far_r, &x->far_i, &x->er, &x->ei, &x->growth, &x->growth6, &x->side};
-    const size_t count = sizeof by_term / sizeof *by_term, room = 2 * terms + 1;
-    if (terms < x->room) {
+    double **const by_term[] = {&x->far_r, &x->far_i, &x->er, &x->ei, &x->growth, &x->growth6, &x->side};
+    const size_t count = sizeof by_term / sizeof *by_term, room = 2 * terms;
+    if (terms <= x->room) {
         return 1;
     }
-    double *more = malloc(count * room * sizeof *more);
-    if (!more) {
+    struct lot *lot = malloc(room / TRIBO_TERMS * sizeof *lot + count * room * sizeof **by_term[0]);
+    if (!lot) {
         return 0;
     }
-    free(x->zr);
+    free(x->lot);
+    x->lot = lot;
     x->room = room;
     for (size_t k = 0; k < count; k++) {
-        *by_term[k] = more + k * room;
+        *by_term[k] = (double *)(lot + room / TRIBO_TERMS) + k * room;
     }
     return 1;
 }
@@ -65,7 +65,7 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
 {
     const struct modal *h = x->h;
     const double omega = h->forcing[s].omega, nu = h->li[p];
-    const double c0 = x->cos_0[s], s0 = x->sin_0[s];
+    const double c0 = tribo_harmonic_at_start(x, s).re, s0 = tribo_harmonic_at_start(x, s).im;
     const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
     const double e = exp(h->lr[p] * tau), er = e * cos(nu * tau), ei = e * sin(nu * tau);
     double zr = 0.0, zi = 0.0;
@@ -79,15 +79,17 @@ static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau
         zr += br * ur - bi * ui;
         zi += br * ui + bi * ur;
     }
-    const double ct = x->cos_t[s], st = x->sin_t[s], rate = omega * (gr * st + gi * ct) / nu;
+    const double ct = tribo_harmonic(x, s).re, st = tribo_harmonic(x, s).im, rate = omega * (gr * st + gi * ct) / nu;
     const double complex lambda = h->lr[p] + h->li[p] * I, z = zi / nu - zr / nu * I;
     const double complex z1 = lambda * z - (gr * ct - gi * st) / nu * I, z2 = lambda * z1 + rate * I;
-    x->wr[p] += creal(z);
-    x->wi[p] += cimag(z);
-    x->w1r[p] += creal(z1);
-    x->w1i[p] += cimag(z1);
-    x->w2r[p] += creal(z2);
-    x->w2i[p] += cimag(z2);
+    struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    const size_t k = p % TRIBO_TERMS;
+    lot->wr[k] += creal(z);
+    lot->wi[k] += cimag(z);
+    lot->w1r[k] += creal(z1);
+    lot->w1i[k] += cimag(z1);
+    lot->w2r[k] += creal(z2);
+    lot->w2i[k] += cimag(z2);
 }
 
 static void add_resonances(struct modal_motion *x, double tau)
@@ -112,21 +114,16 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau)
     }
 }
 
-struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, const struct line *line)
-{
-    const struct sample v = tribo_modal_terms_sum(x, w);
-    return (struct sample){v.g + (line->start + line->ramp * x->tau), v.d + line->ramp, v.e};
-}
-
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
 {
     struct sample sum = {0.0, 0.0, 0.0};
     for (size_t s = 0; s < x->h->given; s++) {
         const struct harmonic *w = &x->sys->harmonic[s];
         if (w->drives == DRIVES_LIMIT) {
-            const double c = w->cosine[i], d = w->sine[i], value = c * x->cos_t[s] + d * x->sin_t[s];
+            const struct number now = tribo_harmonic(x, s);
+            const double c = w->cosine[i], d = w->sine[i], value = c * now.re + d * now.im;
             sum.g += value;
-            sum.d += w->omega * (d * x->cos_t[s] - c * x->sin_t[s]);
+            sum.d += w->omega * (d * now.re - c * now.im);
             sum.e -= w->omega * w->omega * value;
         }
     }
@@ -143,68 +140,87 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
     return sum;
 }
 
-struct line tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, struct sample *at)
+/* With a load far above the frequency of exponential p the little by which it moves is all of the motion: no difference. */
+static void find_little_move(struct modal_motion *x, size_t p)
 {
-    const struct line none = {0.0, 0.0};
-    const struct sample terms = tribo_modal_motion_output(x, w, &none);
-    const double ramp = w->ramp + tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->modes);
-    at->d = terms.d + ramp;
-    at->e = terms.e;
-    return (struct line){at->g - terms.g, ramp};
+    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
+    const struct number z = tribo_term_at_start(x, p);
+    const double complex move = (z.re + z.im * I) * lambda_tau * tribo_exp_1(lambda_tau);
+    x->er[p] = creal(move);
+    x->ei[p] = cimag(move);
 }
 
-void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend)
-{
-    double most = 0.0, most6 = 0.0;
-    for (size_t p = 0; p < x->h->terms; p++) {
-        most += w->size[p] * x->growth[p];
-        most6 += w->size[p] * x->growth6[p];
-    }
-    *size = most;
-    *bend = most6;
-}
-
-/* By how much the exponential p has moved from t0 to where go() was. With a load far above its frequency the little by which it
- * moves is all of the motion. */
-static double complex moved(const struct modal_motion *x, size_t p)
-{
-    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I), z = x->zr[p] + x->zi[p] * I;
-    if (x->tau * x->h->size[p] < LITTLE && !x->h->any_resonant) {
-        return z * lambda_tau * tribo_exp_1(lambda_tau);
-    }
-    return x->wr[p] + x->wi[p] * I - z;
-}
-
-/* By how much eta has changed (into now), and eta' (into work) where go() was. */
-static void amplitudes(struct modal_motion *x)
+/* By how much terms have moved from t0 to where go() was: into er, ei. */
+static void find_moves(struct modal_motion *x)
 {
     const struct modal *h = x->h;
-    const size_t m = h->modes, e = h->exponents;
-    for (size_t k = 0; k < m; k++) {
-        const double drift = h->drifts[k] ? x->drift_rate[k] : 0.0;
-        x->now[k] = x->tau * (x->vel[k] + drift + 0.5 * x->acc[k] * x->tau);
-        x->work[k] = x->vel[k] + x->acc[k] * x->tau + drift;
+    const size_t e = h->exponents, terms = e + h->harmonics;
+    for (size_t p = 0; p < terms; p++) {
+        const struct number then = tribo_term_at_start(x, p), now = tribo_term(x, p);
+        x->er[p] = now.re - then.re;
+        x->ei[p] = now.im - then.im;
     }
-    for (size_t p = 0; h->owner && p < e; p++) {
-        x->now[h->owner[p]] += creal(moved(x, p));
-        x->work[h->owner[p]] += x->w1r[p];
-    }
-    for (size_t p = 0; !h->owner && p < e; p++) {
-        const double complex z = moved(x, p);
-        for (size_t k = 0; k < m; k++) {
-            const double rr = h->rr[k * e + p], ri = h->ri[k * e + p];
-            x->now[k] += rr * creal(z) - ri * cimag(z);
-            x->work[k] += rr * x->w1r[p] - ri * x->w1i[p];
+    for (size_t p = 0; p < e && !h->any_resonant; p++) {
+        if (x->tau * h->size[p] < LITTLE) {
+            find_little_move(x, p);
         }
     }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double omega = h->forcing[s].omega, ct = x->cos_t[s], st = x->sin_t[s], dc = ct - x->cos_0[s],
-                     ds = st - x->sin_0[s];
-        for (size_t k = 0; k < m; k++) {
-            const double xr = h->xr[s * m + k], xi = h->xi[s * m + k];
-            x->now[k] += xr * dc - xi * ds;
-            x->work[k] -= omega * (xr * st + xi * ct);
+}
+
+/* Of a mode: eta, or by how much it has changed, and eta'. */
+struct amplitude {
+    double place, rate;
+};
+
+/* What is linear in time, or quadratic, of mode k. */
+static struct amplitude linear_part(const struct modal_motion *x, size_t k)
+{
+    const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
+    return (struct amplitude){tau * (drift + 0.5 * acc * tau), drift + acc * tau};
+}
+
+/* Adds what term p, times r, has moved a mode by. */
+static inline void add_term(const struct modal_motion *x, size_t p, double rr, double ri, struct amplitude *a)
+{
+    const struct number rate = tribo_term_rate(x, p);
+    a->place += rr * x->er[p] - ri * x->ei[p];
+    a->rate += rr * rate.re - ri * rate.im;
+}
+
+/* Moves degrees of freedom by mode k. */
+static void add_mode(const struct modal_motion *x, size_t k, struct amplitude a, double *velocity)
+{
+    const struct modal *h = x->h;
+    const double *phi = h->phi + k * h->moving;
+    double *dq = x->dq;
+    for (size_t i = h->begin[k], end = h->end[k]; i < end; i++) {
+        const size_t d = h->dof[i];
+        dq[d] += phi[i] * a.place;
+        velocity[d] += phi[i] * a.rate;
+    }
+}
+
+static void add_modes(struct modal_motion *x, double *velocity)
+{
+    const struct modal *h = x->h;
+    const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes;
+    find_moves(x);
+    for (size_t k = 0, p = 0; k < modes; k++) {
+        struct amplitude a = {0.0, 0.0};
+        if (x->runs) {
+            a = linear_part(x, k);
         }
+        for (; h->owner && p < e && h->owner[p] == k; p++) {
+            a.place += x->er[p];
+            a.rate += tribo_term_rate(x, p).re;
+        }
+        for (size_t l = 0; !h->owner && l < e; l++) {
+            add_term(x, l, h->rr[k * e + l], h->ri[k * e + l], &a);
+        }
+        for (size_t s = 0; s < harmonics; s++) {
+            add_term(x, e + s, h->xr[s * modes + k], h->xi[s * modes + k], &a);
+        }
+        add_mode(x, k, a, velocity);
     }
 }
 
@@ -213,7 +229,8 @@ static void carry(struct modal_motion *x, size_t s, double *u)
 {
     const struct modal *h = x->h;
     const double omega = h->forcing[s].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
-    const double c = x->cos_t[s], d = x->sin_t[s], dc = by * (c - x->cos_0[s]), dd = by * (d - x->sin_0[s]);
+    const struct number now = tribo_harmonic(x, s), then = tribo_harmonic_at_start(x, s);
+    const double c = now.re, d = now.im, dc = by * (c - then.re), dd = by * (d - then.im);
     for (size_t i = 0; i < h->moving; i++) {
         const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
         u[h->dof[i]] += yr * c - yi * d;
@@ -226,28 +243,22 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const tribo_system *sys = x->sys;
     const struct modal *h = x->h;
     const size_t n = sys->ndof;
+    double *velocity = to + n;
     tribo_modal_motion_go(x, tau);
-    amplitudes(x);
     memset(x->dq, 0, n * sizeof *x->dq);
     if (to != from) {
         memcpy(to, from, (2 * n + 1) * sizeof *to);
     }
     for (size_t i = 0; i < h->moving; i++) {
         x->dq[h->dof[i]] = h->y0[i] * tau;
-        to[n + h->dof[i]] = h->y0[i];
+        velocity[h->dof[i]] = h->y0[i];
     }
-    for (size_t s = 0; s < h->given; s++) {
+    for (size_t s = 0; sys->base_harmonics && s < h->given; s++) {
         if (sys->harmonic[s].drives == DRIVES_BASE) {
-            carry(x, s, to + n);
+            carry(x, s, velocity);
         }
     }
-    for (size_t k = 0; k < h->modes; k++) {
-        const double *phi = h->phi + k * h->moving, change = x->now[k];
-        for (size_t i = 0; i < h->moving; i++) {
-            x->dq[h->dof[i]] += phi[i] * change;
-            to[n + h->dof[i]] += phi[i] * x->work[k];
-        }
-    }
+    add_modes(x, velocity);
     for (size_t i = 0; i < h->moving; i++) {
         to[h->dof[i]] += x->dq[h->dof[i]];
     }
@@ -267,24 +278,6 @@ static double offset(const tribo_system *sys, size_t i, const double *q)
         }
     }
     return sum;
-}
-
-/* now = the constant part of the right-hand side at t0: by forces that slide, by where contacts hold, by constant loads. The
- * stiffness of the whole has no part in it: what it makes of a rigid-body displacement would be its rounding. */
-static void find_constant(struct modal_motion *x, const tribo_system *sys, const double *y)
-{
-    const struct modal *h = x->h;
-    const size_t m = h->modes;
-    for (size_t k = 0; k < m; k++) {
-        x->now[k] = h->constant[k];
-    }
-    for (size_t o = 0; m > 0 && o < h->outputs; o++) {
-        const struct output *out = &h->output[o];
-        const double push = o < h->sliding ? x->steady[out->contact] : -offset(sys, out->contact, y);
-        for (size_t k = 0; k < m; k++) {
-            x->now[k] += push * out->on_rate[k];
-        }
-    }
 }
 
 /* The forces of contacts but for harmonics of limits that they follow. */
@@ -307,10 +300,6 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
 {
     const struct modal *h = x->h;
     const size_t e = h->exponents;
-    x->cos_0 = x->zr + e;
-    x->sin_0 = x->zi + e;
-    x->cos_t = x->wr + e;
-    x->sin_t = x->wi + e;
     tribo_modal_terms_clear(x);
     tribo_system_set_time(sys, x->t0);
     for (size_t s = 0; s < h->harmonics; s++) {
@@ -318,95 +307,108 @@ static void start_harmonics(struct modal_motion *x, tribo_system *sys)
         const double side = s < h->given ? 1.0 : tribo_stick_slip_follows(x->contacts, f->contact);
         x->side[s] = side;
         tribo_system_turn(sys, f->harmonic);
-        x->cos_0[s] = side * sys->harmonic[f->harmonic].cos_t;
-        x->sin_0[s] = side * sys->harmonic[f->harmonic].sin_t;
+        tribo_term_begin(x, e + s, side * sys->harmonic[f->harmonic].cos_t, side * sys->harmonic[f->harmonic].sin_t);
         x->growth[e + s] = fabs(side);
         x->growth6[e + s] = h->sixth[e + s] * fabs(side);
     }
 }
 
-/* Amplitudes of eta at t0. */
-static void find_amplitudes(struct modal_motion *x, const double *y)
+/* By what contacts push modes: forces that slide, places where contacts hold. */
+static void find_pushes(struct modal_motion *x, const tribo_system *sys, const double *y)
 {
     const struct modal *h = x->h;
-    const double *velocity = y + x->sys->ndof;
-    for (size_t k = 0; k < h->modes; k++) {
-        const double *psi = h->psi + k * h->moving;
-        double q = 0.0, u = 0.0;
-        for (size_t i = 0; i < h->moving; i++) {
-            q += psi[i] * y[h->dof[i]];
-            u += psi[i] * velocity[h->dof[i]];
-        }
-        x->eta[k] = q;
-        x->rate[k] = u;
+    for (size_t o = 0; h->modes > 0 && o < h->outputs; o++) {
+        const size_t i = h->output[o].contact;
+        x->push[o] = o < h->sliding ? x->steady[i] : -offset(sys, i, y);
     }
 }
 
-/* What the constant part of the right-hand side, and what of it grows with time, make of mode k. */
-static void find_course(struct modal_motion *x, size_t k)
+/* The constant part of the right-hand side of mode k: by contacts, by constant loads. The stiffness of the whole has no part in
+ * it: what it makes of a rigid-body displacement would be its rounding. */
+static double constant_force(const struct modal_motion *x, size_t k)
 {
     const struct modal *h = x->h;
-    const double force = x->now[k], stiffness = h->omega2[k];
-    x->off[k] = x->vel[k] = x->acc[k] = 0.0;
+    double force = h->constant[k];
+    for (size_t o = 0; o < h->outputs; o++) {
+        force += x->push[o] * h->output[o].on_rate[k];
+    }
+    return force;
+}
+
+/* Of mode k at t0: where it is and how fast; and that, less what the right-hand side makes of it: by a constant and what grows
+ * with time, and by harmonics. */
+static struct amplitude amplitude(const struct modal *h, size_t k, const double *q, const double *velocity)
+{
+    const double *psi = h->psi + k * h->moving;
+    struct amplitude a = {0.0, 0.0};
+    for (size_t i = h->begin[k]; i < h->end[k]; i++) {
+        a.place += psi[i] * q[h->dof[i]];
+        a.rate += psi[i] * velocity[h->dof[i]];
+    }
+    return a;
+}
+
+static struct amplitude without_linear_part(struct modal_motion *x, size_t k, struct amplitude a)
+{
+    const struct modal *h = x->h;
+    const double force = constant_force(x, k), stiffness = h->omega2[k];
+    double vel = 0.0, acc = 0.0;
     if (h->drifts[k]) {
-        x->acc[k] = force;
+        acc = force;
     } else if (stiffness == 0.0) {
-        x->vel[k] = force / h->damping[k];
+        vel = force / h->damping[k];
     } else {
-        x->vel[k] = h->ramp[k] / stiffness;
-        x->off[k] = force / stiffness;
+        vel = h->ramp[k] / stiffness;
+        a.place -= force / stiffness;
     }
+    x->vel[k] = vel;
+    x->acc[k] = acc;
+    x->runs |= vel != 0.0 || acc != 0.0 || h->drifts[k];
+    a.rate -= vel;
+    return a;
 }
 
-/* What damping of that makes of a mode with stiffness. */
-static void correct_course(struct modal_motion *x, size_t k)
+static struct amplitude without_harmonics(const struct modal_motion *x, size_t k, struct amplitude a)
 {
     const struct modal *h = x->h;
-    const size_t m = h->modes;
-    if (h->omega2[k] != 0.0) {
-        x->off[k] -= (h->coupling ? tribo_dot(h->coupling + k * m, x->vel, m) : h->damping[k] * x->vel[k]) / h->omega2[k];
+    for (size_t s = 0, at = k; s < h->harmonics; s++, at += h->modes) {
+        const double xr = h->xr[at], xi = h->xi[at];
+        const struct number w = tribo_harmonic_at_start(x, s);
+        a.place -= xr * w.re - xi * w.im;
+        a.rate += h->forcing[s].omega * (xr * w.im + xi * w.re);
     }
+    return a;
 }
 
-/* What all of that, and harmonics, do not explain of mode k at t0. */
-static void find_rest(struct modal_motion *x, size_t k)
+/* z of exponent p: of its own mode, or of all. */
+static void begin_exponent(struct modal_motion *x, size_t p)
 {
     const struct modal *h = x->h;
-    double q = x->off[k], u = x->vel[k];
-    for (size_t s = 0; s < h->harmonics; s++) {
-        const double xr = h->xr[s * h->modes + k], xi = h->xi[s * h->modes + k];
-        q += xr * x->cos_0[s] - xi * x->sin_0[s];
-        u -= h->forcing[s].omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
+    if (h->owner) {
+        const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
+        tribo_term_begin(x, p, h->ar[p] * q + h->br[p] * u, h->ai[p] * q + h->bi[p] * u);
+    } else {
+        const size_t m = h->modes;
+        tribo_term_begin(x, p, tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m),
+                         tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m));
     }
-    x->drift[k] = x->eta[k] - q;
-    x->drift_rate[k] = x->rate[k] - u;
 }
 
 /* Splits the motion into what the right-hand side makes of it and exponentials. */
 static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
 {
     const struct modal *h = x->h;
-    const size_t m = h->modes;
     start_harmonics(x, sys);
     x->steady = find_steady_forces(x, sys);
-    find_amplitudes(x, y);
-    find_constant(x, sys, y);
-    for (size_t k = 0; k < m; k++) {
-        find_course(x, k);
-    }
-    for (size_t k = 0; k < m; k++) {
-        correct_course(x, k);
-        find_rest(x, k);
+    find_pushes(x, sys, y);
+    x->runs = 0;
+    for (size_t k = 0; k < h->modes; k++) {
+        const struct amplitude a = without_harmonics(x, k, without_linear_part(x, k, amplitude(h, k, y, y + sys->ndof)));
+        x->drift[k] = a.place;
+        x->drift_rate[k] = a.rate;
     }
     for (size_t p = 0; p < h->exponents; p++) {
-        if (h->owner) {
-            const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
-            x->zr[p] = h->ar[p] * q + h->br[p] * u;
-            x->zi[p] = h->ai[p] * q + h->bi[p] * u;
-        } else {
-            x->zr[p] = tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m);
-            x->zi[p] = tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m);
-        }
+        begin_exponent(x, p);
     }
 }
 
@@ -425,35 +427,43 @@ static void find_lines(struct modal_motion *x, const double *y)
     const struct stick_slip *m = x->contacts;
     for (size_t o = 0; o < x->h->sliding; o++) {
         const size_t i = x->h->output[o].contact;
-        struct sample at = {m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y), 0.0, 0.0};
-        x->line[i] = tribo_modal_motion_line(x, &x->h->output[o], 1, &at);
+        struct course c = {.output = &x->h->output[o]};
+        tribo_course_begin(x, &c, 1, m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
+        x->line[i] = c.line;
     }
 }
 
 /* How long the bounds of a phase can hold: for good, unless something grows. */
 static double longest_phase(const struct modal *h, double longest)
 {
-    for (size_t p = 0; p < h->exponents; p++) {
-        longest = h->lr[p] > 0.0 ? lesser(longest, 1.0 / h->lr[p]) : longest;
+    const double last = h->growth > 0.0 ? lesser(longest, 1.0 / h->growth) : longest;
+    return h->any_resonant ? lesser(last, 16.0 / h->fastest) : last;
+}
+
+/* What resonances add to the bounds of exponent p, whose frequency is within RESONANCE of theirs. */
+static void bound_resonances(struct modal_motion *x, size_t p)
+{
+    const struct modal *h = x->h;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const size_t at = s * h->modes + h->owner[p];
+        if (h->resonant[at]) {
+            const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
+            x->growth[p] += force * x->longest;
+            x->growth6[p] += h->sixth[p] * force * (x->longest + 6.1 / h->size[p]);
+        }
     }
-    return h->any_resonant ? lesser(longest, 16.0 / h->fastest) : longest;
 }
 
 void tribo_modal_motion_bound(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
     for (size_t p = 0; p < h->exponents; p++) {
-        const double time = h->lr[p] > 0.0 ? x->longest : tau;
-        x->growth[p] = tribo_modal_magnitude(x->zr[p], x->zi[p]) * (h->lr[p] != 0.0 ? exp(h->lr[p] * time) : 1.0);
+        const struct number z = tribo_term_at_start(x, p);
+        const double rate = h->lr[p], growth = rate == 0.0 ? 1.0 : exp(rate * (rate > 0.0 ? x->longest : tau));
+        x->growth[p] = tribo_modal_magnitude(z.re, z.im) * growth;
         x->growth6[p] = h->sixth[p] * x->growth[p];
-        for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
-            const size_t at = s * h->modes + h->owner[p];
-            if (h->resonant[at]) {
-                const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
-                /* the frequencies are within RESONANCE of each other */
-                x->growth[p] += force * x->longest;
-                x->growth6[p] += h->sixth[p] * force * (x->longest + 6.1 / h->size[p]);
-            }
+        if (h->any_resonant) {
+            bound_resonances(x, p);
         }
     }
 }

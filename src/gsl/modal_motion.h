@@ -12,30 +12,38 @@ struct line {
     double start, ramp;
 };
 
-/* It began at t0; amplitudes eta = off + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
+/* An output in a phase. */
+struct course {
+    const struct output *output;
+    struct line line;
+    double size, bend; /* bounds of it, and of its sixth derivative */
+    double tau;        /* when it was looked at last, */
+    struct sample at;  /* and what it was, with two derivatives */
+};
+
+/* It began at t0; amplitudes eta = constant + vel t + acc t^2/2 (of modes that drift, from their state) + harmonics + Re(r z). */
 struct modal_motion {
     tribo_system *sys;
     const struct stick_slip *contacts; /* the caller's */
     const struct modal *h;
-    double t0, tau;                        /* tau: where w is */
-    double *eta, *rate, *off, *vel, *acc;  /* [modes] at t0 */
-    double *drift, *drift_rate;            /* [modes] of those that drift: what harmonics do not explain, at t0 */
-    size_t room;                           /* of terms */
-    double *zr, *zi;                       /* [terms] at t0 */
-    double *wr, *wi, *w1r, *w1i;           /* [terms] z and z' at tau, */
-    double *w2r, *w2i;                     /* [terms] and z''; room apart */
-    double far;                            /* the time of the last look that was far from another one, or 0, */
-    double *far_r, *far_i;                 /* [terms] and e^{lambda far} */
-    double *er, *ei;                       /* [terms] workspace */
-    double *growth, *growth6;              /* [terms] bounds of |z| and of its sixth derivative */
-    double *cos_t, *sin_t, *cos_0, *sin_0; /* [harmonics] terms of harmonics at t0 + tau, at t0; of contacts times */
-    double *side;                          /* [harmonics] how many times their force follows the limit; others 1 */
-    double *now, *work;                    /* [modes] eta and eta' at tau; workspace */
-    double *dq;                            /* [ndof] by how much q has changed at tau */
-    const double *steady;                  /* [ncontact] force of a sliding contact, without harmonics of its limit; */
-    struct line *line;                     /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
-    double *room_for_steady;               /* [ncontact] where steady stands if limits have any */
-    double longest;                        /* so long do bounds hold */
+    double t0, tau;             /* tau: where w is */
+    double *vel, *acc;          /* [modes] */
+    int runs;                   /* any mode drifts, or has a vel or acc */
+    double *drift, *drift_rate; /* [modes] of those that drift: what harmonics do not explain, at t0 */
+    size_t room;                /* of terms */
+    struct lot *lot;            /* the terms, of which harmonics are the last ones; of contacts times */
+    int looked;                 /* since t0; */
+    double far;                 /* the time of the last look that was far from another one, */
+    double *far_r, *far_i;      /* [terms] and e^{lambda far} */
+    double *er, *ei;            /* [terms] workspace: by how much they have moved */
+    double *growth, *growth6;   /* [terms] bounds of |z| and of its sixth derivative */
+    double *side;               /* [harmonics] how many times their force follows the limit; others 1 */
+    double *push;               /* [outputs] by which an output pushes modes */
+    double *dq;                 /* [ndof] by how much q has changed at tau */
+    const double *steady;       /* [ncontact] force of a sliding contact, without harmonics of its limit; */
+    struct line *line;          /* [ncontact] while limits have any: its velocity, as far as it is linear in time */
+    double *room_for_steady;    /* [ncontact] where steady stands if limits have any */
+    double longest;             /* so long do bounds hold */
 };
 
 /* 1, or 0 if out of memory. tribo_modal_motion_free takes what failed too. */
@@ -51,15 +59,9 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
 /* Goes to t0 + tau: z and its derivatives, and the harmonics. */
 void tribo_modal_motion_go(struct modal_motion *x, double tau);
 
-/* An output there, with two derivatives. */
-struct sample tribo_modal_motion_output(const struct modal_motion *x, const struct output *w, const struct line *line);
-
 /* What harmonics add to the limit of contact i there, with two derivatives; and a bound of the sixth derivative of that. */
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
 double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
-
-/* The line of an output that is at->g at t0, where the motion still is. Sets its derivatives there, too. */
-struct line tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, struct sample *at);
 
 /* Energy dissipated until t0 + tau, where dq is. */
 double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
@@ -67,13 +69,16 @@ double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
 /* Goes to t0 + tau: the state there. from is the state at t0; to may be the same. */
 void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to);
 
-/* Bounds of the terms from tau on, */
+/* Bounds of the terms from tau on. */
 void tribo_modal_motion_bound(struct modal_motion *x, double tau);
-
-/* and of what an output has of them, and of the sixth derivative of that. */
-void tribo_modal_motion_output_bounds(const struct modal_motion *x, const struct output *w, double *size, double *bend);
 
 /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status. */
 int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to);
+
+/* modal_course.c: the course of c->output, a velocity or not, which is value at t0, where the motion still is; and where go() was;
+ * and its bounds, from those of terms. */
+void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_velocity, double value);
+void tribo_course_look(const struct modal_motion *x, struct course *c);
+void tribo_course_bound(const struct modal_motion *x, struct course *c);
 
 #endif

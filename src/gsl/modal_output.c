@@ -301,6 +301,7 @@ int tribo_modal_find_terms(struct modal_build *b)
         h->fastest = greater(h->fastest, k < p ? h->size[k] : 0.0);
         h->quickest = greater(h->quickest, h->size[k]);
         h->decay = greater(h->decay, -h->lr[k]);
+        h->growth = greater(h->growth, h->lr[k]);
     }
     return 1;
 }

@@ -72,9 +72,11 @@ static int reserve(struct modal_build *b)
     const int done = tribo_modal_keep_all(b, sizeof kept / sizeof *kept, kept, count);
     h->dof = tribo_modal_keep_indices(b, h->moving);
     h->owner = tribo_modal_keep_indices(b, e);
+    h->begin = tribo_modal_keep_indices(b, m);
+    h->end = tribo_modal_keep_indices(b, m);
     h->drifts = tribo_modal_keep_bytes(b, m);
     h->resonant = tribo_modal_keep_bytes(b, s * m);
-    return done && h->dof && h->owner && h->drifts && h->resonant;
+    return done && h->dof && h->owner && h->begin && h->end && h->drifts && h->resonant;
 }
 
 static void put_modes(struct modal *h, const struct modal *part, const struct place *at)
@@ -87,6 +89,8 @@ static void put_modes(struct modal *h, const struct modal *part, const struct pl
     copy(h->ramp + at->mode, part->ramp, m);
     copy(h->constant + at->mode, part->constant, m);
     for (size_t k = 0; k < m; k++) {
+        h->begin[at->mode + k] = at->dof + part->begin[k];
+        h->end[at->mode + k] = at->dof + part->end[k];
         copy(h->phi + (at->mode + k) * h->moving + at->dof, part->phi + k * part->moving, part->moving);
         copy(h->psi + (at->mode + k) * h->moving + at->dof, part->psi + k * part->moving, part->moving);
     }

@@ -154,6 +154,18 @@ static void force_by_constants(struct modal_build *b, double *pull, double *drag
     }
 }
 
+/* Belts of constant speed move modes with stiffness, whose damping resists that: a constant force. Modes that damping couples all
+ * have stiffness. */
+static void drag_by_ramps(struct modal *h)
+{
+    const size_t m = h->modes;
+    for (size_t k = 0; k < m; k++) {
+        for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
+            h->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (h->ramp[l] / h->omega2[l]);
+        }
+    }
+}
+
 static int create_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
@@ -191,6 +203,7 @@ int tribo_modal_forcing(struct modal_build *b)
     }
     if (done) {
         force_by_constants(b, pull, drag);
+        drag_by_ramps(b->h);
     }
     return done;
 }

@@ -1,5 +1,5 @@
 /* A linear combination of the state in a phase of method "exact". */
-#include "modal_motion.h"
+#include "modal_terms.h"
 
 #include <math.h>
 
@@ -36,15 +36,17 @@ static void response(const struct modal_motion *x, size_t s, size_t k, double *x
 static void exponent(const struct modal_motion *x, size_t p, double *zr, double *zi)
 {
     const struct modal *h = x->h;
-    *zr = x->zr[p];
-    *zi = x->zi[p];
+    const struct number z = tribo_term_at_start(x, p);
+    *zr = z.re;
+    *zi = z.im;
     for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
         const size_t k = h->owner[p];
         const double omega = h->forcing[s].omega;
         double xr, xi;
         if (h->resonant[s * h->modes + k]) {
             response(x, s, k, &xr, &xi);
-            const double q = xr * x->cos_0[s] - xi * x->sin_0[s], u = -omega * (xr * x->sin_0[s] + xi * x->cos_0[s]);
+            const struct number w = tribo_harmonic_at_start(x, s);
+            const double q = xr * w.re - xi * w.im, u = -omega * (xr * w.im + xi * w.re);
             *zr -= h->ar[p] * q + h->br[p] * u;
             *zi -= h->ai[p] * q + h->bi[p] * u;
         }
@@ -111,7 +113,8 @@ static void add_harmonic(const struct modal_motion *x, const double *c, size_t s
         re += speed * yr + (omega != 0.0 ? place * yi / omega : 0.0);
         im += speed * yi - (omega != 0.0 ? place * yr / omega : 0.0);
     }
-    tribo_signal_add(to, re * x->cos_0[s] - im * x->sin_0[s], re * x->sin_0[s] + im * x->cos_0[s], 0.0, omega);
+    const struct number w = tribo_harmonic_at_start(x, s);
+    tribo_signal_add(to, re * w.re - im * w.im, re * w.im + im * w.re, 0.0, omega);
 }
 
 static void add_powers(const struct modal_motion *x, const double *c, double *a)

@@ -21,34 +21,56 @@ static inline void multiply(const double *restrict ar, const double *restrict ai
     }
 }
 
-/* w = e z, w' and w'' of n terms, each [2] a distance apart. */
-TRIBO_SIMD_OF_FOUR static void move(size_t n, const double *restrict lr, const double *restrict li, const double *restrict e,
-                                    const double *restrict z, double *restrict w, size_t apart)
+/* w = e z, w' and w'' of a lot. */
+static inline void turn(struct lot *lot, const double *lr, const double *li, const double *er, const double *ei)
 {
-    for (size_t p = 0; p < n; p += T) {
-        double *w1 = w + 2 * apart, *w2 = w + 4 * apart;
-        multiply(e + p, e + apart + p, z + p, z + apart + p, w + p, w + apart + p);
-        multiply(lr + p, li + p, w + p, w + apart + p, w1 + p, w1 + apart + p);
-        multiply(lr + p, li + p, w1 + p, w1 + apart + p, w2 + p, w2 + apart + p);
+    multiply(er, ei, lot->zr, lot->zi, lot->wr, lot->wi);
+    multiply(lr, li, lot->wr, lot->wi, lot->w1r, lot->w1i);
+    multiply(lr, li, lot->w1r, lot->w1i, lot->w2r, lot->w2i);
+}
+
+/* e^{lambda delta}, lambda delta being small. */
+static inline void grow_little(const double *restrict lr, const double *restrict li, double delta, double *restrict re,
+                               double *restrict im)
+{
+    for (size_t k = 0; k < T; k++) {
+        const double x = lr[k] * delta, y = li[k] * delta;
+        double r = 1.0 + 0.25 * x, i = 0.25 * y;
+        const double r3 = 1.0 + (x * r - y * i) * (1 / 3.), i3 = (x * i + y * r) * (1 / 3.);
+        r = 1.0 + 0.5 * (x * r3 - y * i3);
+        i = 0.5 * (x * i3 + y * r3);
+        re[k] = 1.0 + (x * r - y * i);
+        im[k] = x * i + y * r;
     }
 }
 
-/* e = far e^{lambda delta}, lambda delta being small. */
-TRIBO_SIMD_OF_FOUR static void grow_little(size_t n, const double *restrict lr, const double *restrict li, double delta,
-                                           const double *restrict far, double *restrict e, size_t apart)
+/* All lots: where they begin; where e = e^{lambda far} is; and a little later than that. */
+TRIBO_SIMD_OF_FOUR static void move_nowhere(size_t n, const double *lr, const double *li, struct lot *lot)
+{
+    static const double one[T] = {1.0, 1.0, 1.0, 1.0}, nothing[T];
+    for (size_t p = 0; p < n; p += T) {
+        turn(lot++, lr + p, li + p, one, nothing);
+    }
+}
+
+TRIBO_SIMD_OF_FOUR static void move_far(size_t n, const double *lr, const double *li, const double *er, const double *ei,
+                                        struct lot *lot)
 {
     for (size_t p = 0; p < n; p += T) {
-        double re[T], im[T];
-        for (size_t k = 0; k < T; k++) {
-            const double x = lr[p + k] * delta, y = li[p + k] * delta;
-            double r = 1.0 + 0.25 * x, i = 0.25 * y;
-            const double r3 = 1.0 + (x * r - y * i) * (1 / 3.), i3 = (x * i + y * r) * (1 / 3.);
-            r = 1.0 + 0.5 * (x * r3 - y * i3);
-            i = 0.5 * (x * i3 + y * r3);
-            re[k] = 1.0 + (x * r - y * i);
-            im[k] = x * i + y * r;
-        }
-        multiply(re, im, far + p, far + apart + p, e + p, e + apart + p);
+        turn(lot++, lr + p, li + p, er + p, ei + p);
+    }
+}
+
+TRIBO_SIMD_OF_FOUR static void move_little(const struct modal_motion *x, double delta)
+{
+    const size_t n = x->h->terms;
+    const double *lr = x->h->lr, *li = x->h->li;
+    struct lot *lot = x->lot;
+    for (size_t p = 0; p < n; p += T) {
+        double re[T], im[T], er[T], ei[T];
+        grow_little(lr + p, li + p, delta, re, im);
+        multiply(re, im, x->far_r + p, x->far_i + p, er, ei);
+        turn(lot++, lr + p, li + p, er, ei);
     }
 }
 
@@ -69,30 +91,25 @@ static void grow(const struct modal *h, double tau, double *re, double *im)
     }
 }
 
-/* Sets the terms from begin to end, of which re and im are the parts, or those of a derivative, to a real number. */
-static inline void fill(size_t begin, size_t end, double real, double *restrict re, double *restrict im)
+static inline void clear(double *re, double *im)
 {
-    for (size_t p = begin; p < end; p += T) {
-        for (size_t k = 0; k < T; k++) {
-            re[p + k] = real;
-            im[p + k] = 0.0;
-        }
+    for (size_t k = 0; k < T; k++) {
+        re[k] = im[k] = 0.0;
     }
 }
 
 void tribo_modal_terms_clear(struct modal_motion *x)
 {
-    const size_t n = x->h->terms;
-    fill(n - T, n, 0.0, x->zr, x->zi);
-    fill(n - T, n, 0.0, x->growth, x->growth6);
+    const size_t last = x->h->terms - T;
+    clear(x->lot[last / T].zr, x->lot[last / T].zi);
+    clear(x->growth + last, x->growth6 + last);
 }
 
 void tribo_modal_terms_rest(struct modal_motion *x)
 {
-    const struct modal *h = x->h;
-    fill(0, h->terms, 1.0, x->far_r, x->far_i);
-    x->far = x->tau = 0.0;
-    move(h->terms, h->lr, h->li, x->far_r, x->zr, x->wr, x->room);
+    x->looked = 0;
+    x->tau = 0.0;
+    move_nowhere(x->h->terms, x->h->lr, x->h->li, x->lot);
 }
 
 /* From t0, or, if that is close, from where it was. Far ones from t0, since what rounding leaves of a late time must not tremble
@@ -100,59 +117,13 @@ void tribo_modal_terms_rest(struct modal_motion *x)
 void tribo_modal_terms_go(struct modal_motion *x, double tau)
 {
     const struct modal *h = x->h;
-    const double *e = x->far_r;
     x->tau = tau;
-    if (fabs(tau - x->far) * h->quickest < CLOSE) {
-        grow_little(h->terms, h->lr, h->li, tau - x->far, x->far_r, x->er, x->room);
-        e = x->er;
+    if (x->looked && fabs(tau - x->far) * h->quickest < CLOSE) {
+        move_little(x, tau - x->far);
     } else {
+        x->looked = 1;
         x->far = tau;
         grow(h, tau, x->far_r, x->far_i);
+        move_far(h->terms, h->lr, h->li, x->far_r, x->far_i, x->lot);
     }
-    move(h->terms, h->lr, h->li, e, x->zr, x->wr, x->room);
-}
-
-/* to = Re(a b) */
-static inline void real_products(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                                 const double *restrict bi, double *restrict to)
-{
-    for (size_t k = 0; k < T; k++) {
-        to[k] = ar[k] * br[k] - ai[k] * bi[k];
-    }
-}
-
-/* to += Re(a b) */
-static inline void add_products(const double *restrict ar, const double *restrict ai, const double *restrict br,
-                                const double *restrict bi, double *restrict to)
-{
-    for (size_t k = 0; k < T; k++) {
-        to[k] += ar[k] * br[k] - ai[k] * bi[k];
-    }
-}
-
-/* Re(c w), Re(c w'), Re(c w'') into sum [3][T], which is not of this function, or compilers would take several lots of terms at
- * once, and sort them first. */
-TRIBO_SIMD_OF_FOUR static void sum_products(const struct modal_motion *x, const struct output *c, double *restrict sum)
-{
-    const size_t n = x->h->terms;
-    real_products(c->cr, c->ci, x->wr, x->wi, sum);
-    real_products(c->cr, c->ci, x->w1r, x->w1i, sum + T);
-    real_products(c->cr, c->ci, x->w2r, x->w2i, sum + 2 * T);
-    for (size_t p = T; p < n; p += T) {
-        add_products(c->cr + p, c->ci + p, x->wr + p, x->wi + p, sum);
-        add_products(c->cr + p, c->ci + p, x->w1r + p, x->w1i + p, sum + T);
-        add_products(c->cr + p, c->ci + p, x->w2r + p, x->w2i + p, sum + 2 * T);
-    }
-}
-
-static double total(const double *sum)
-{
-    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
-}
-
-struct sample tribo_modal_terms_sum(const struct modal_motion *x, const struct output *c)
-{
-    double sum[3 * T];
-    sum_products(x, c, sum);
-    return (struct sample){total(sum), total(sum + T), total(sum + 2 * T)};
 }

@@ -1,4 +1,5 @@
 /* What is known of a structure with contacts held: modes, forces of those that hold, and what cannot be. */
+#include "divided.h"
 #include "modal.h"
 #include "support.h"
 
@@ -353,5 +354,19 @@ TEST(moved_alike)
     assert_all_close(y[0], y[1], 3, 1e-12);
 }
 
+/* (e^z - 1)/z on both sides of where its series ends, in eight directions, by functions that lose no digits:
+ * e^{a + ib} - 1 = expm1(a) cos b - 2 sin^2(b/2) + i e^a sin b. */
+TEST(exponential_from_one)
+{
+    const double sizes[] = {1e-9, 0.03, 0.1, 0.49, 0.51}, size = sizes[_i];
+    for (int k = 0; k < 8; k++) {
+        const double a = size * cos(k * PI / 4.0), b = size * sin(k * PI / 4.0), half = sin(0.5 * b);
+        const double complex z = a + b * I, grown = expm1(a) * cos(b) - 2.0 * half * half + exp(a) * sin(b) * I;
+        const double complex by = tribo_exp_1(z);
+        assert_close(creal(by), creal(grown / z), 1e-15);
+        assert_close(cimag(by), cimag(grown / z), 1e-15);
+    }
+}
+
 TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {coupled_part, 1},
-          {one_sided, 1}, {free_motions, 1}, {moved_alike, 1})
+          {one_sided, 1}, {free_motions, 1}, {moved_alike, 1}, {exponential_from_one, 5})

@@ -101,4 +101,23 @@ TEST(systems)
     tribo_system_destroy(s);
 }
 
-TEST_MAIN("traps", {drivers, 2 * SYSTEMS *METHODS}, {systems, 2 * SYSTEMS * 6})
+/* Thrown blocks, without springs and loads: nothing swings, grows or decays. */
+TEST(thrown)
+{
+    const double mass[4] = {1.0, 0.0, 0.0, 2.0}, nothing[4] = {0.0}, direction[4] = {1.0, 0.0, -1.0, 1.0}, limit[2] = {0.5, 0.25};
+    double y[5] = {0.0, 0.0, 1.0, -0.5, 0.0}, t = 0.0;
+    tribo_system *s;
+    tribo_driver *d;
+    assert_ok(tribo_system_linear(&s, 2, 2, mass, NULL, nothing, direction, 0, NULL, 0));
+    assert_ok(tribo_set_limit(tribo_system_context(s), limit));
+    assert_quiet(tribo_driver_create(&d, s, "exact", 0.01, 0.0, 0.0));
+    if (_i == 0 || set_traps()) {
+        assert_quiet(tribo_driver_advance(d, &t, 10.0, y));
+        assert_close(y[2], 0.0, 1e-15);
+        assert_close(y[3], 0.0, 1e-15);
+    }
+    tribo_driver_destroy(d);
+    tribo_system_destroy(s);
+}
+
+TEST_MAIN("traps", {drivers, 2 * SYSTEMS *METHODS}, {systems, 2 * SYSTEMS * 6}, {thrown, 2})
