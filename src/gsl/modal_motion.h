@@ -61,6 +61,9 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
 /* The line of an output that is at->g at t0, where the motion still is. Sets its derivatives there, too. */
 struct line tribo_modal_motion_line(const struct modal_motion *x, const struct output *w, int of_velocity, struct sample *at);
 
+/* The third to fifth derivative of an output there, into to [3]; 1, or 0 if they are not known: where loads resonate. */
+int tribo_modal_motion_further(const struct modal_motion *x, const struct output *c, double *to);
+
 /* Energy dissipated until t0 + tau, where dq is. */
 double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
 
