@@ -27,6 +27,9 @@ static double most_credit(const struct events *e)
  * creep, and are too many for the longer steps of event_creep.h, take some ten thousand. */
 #define MOST_IDLE 100000
 
+/* By no more than this part of it do phases differ that are alike. */
+#define ALIKE 0.1
+
 /* Slips from -1 to 3. */
 #define SLIPS 5
 
@@ -190,14 +193,15 @@ static int count_step(struct events *e, tribo_driver *drv, double t, double tau,
                                    t, tau, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
 }
 
-/* Phases that begin alike in one period after the other last alike. */
+/* Where phases that begin alike lasted alike, the next one is expected to. */
 static void expect(struct events *e, const struct guard *event, double when)
 {
     if (e->begun && event) {
-        *e->begun = when;
+        *e->begun = (struct lasted){when, fabs(when - e->begun->time)};
     }
     e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.slip[event->contact] + 1) : NULL;
-    e->search.expected = e->begun ? *e->begun : 0.0;
+    e->search.early = e->begun ? e->begun->change : 0.0;
+    e->search.expected = e->begun && e->search.early <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
 
 /* A run that does not continue another one is not to depend on it, not even in its rounding. */

@@ -15,6 +15,11 @@ struct company {
     void (*decided)(struct company *c);
 };
 
+/* How long the last phase of a kind did, 0: there was none yet; and by how much less or more than the one before. */
+struct lasted {
+    double time, change;
+};
+
 struct events {
     struct stick_slip stick_slip;
     struct first_zero search;
@@ -42,8 +47,8 @@ struct events {
     int anew;                /* this run does not continue another one; the method takes note, and clears it */
     int sharp;               /* the motion is followed to rounding, whatever tolerances say */
 
-    double *lasted; /* [ncontact][5] how long the last phase did that began as contact i turned to this slip; 0: none yet */
-    double *begun;  /* which of them this phase is; NULL if it began otherwise */
+    struct lasted *lasted; /* [ncontact][5] the phases that began as contact i turned to this slip */
+    struct lasted *begun;  /* which of them this phase is; NULL if it began otherwise */
 
     double credit, paid, since;     /* how many more events there may be, as of when; since when it is being used up */
     double stuck;                   /* how many did so in a row in hardly any time */

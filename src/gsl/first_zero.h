@@ -29,17 +29,29 @@ struct first_zero {
     size_t guards;
     struct guard *guard;
     struct guard **watched; /* [guards] workspace: those that may be below zero before the next one is known to be, */
-    size_t watching;        /* their number */
+    size_t watching;        /* their number; */
+    size_t asked;           /* then the others that are looked at, up to this number; then those that are not, */
+    double positive_until;  /* since they are known to be positive until then */
     /* Sets middle of guards to what they are at tau. */
     void (*look)(void *motion, double tau, size_t guards, struct guard *const *guard);
+    /* The third to fifth derivative of a guard at tau, into to [3]; 1, or 0 if they are not known. Where they are, the guard is a
+     * sum of exponentials and sines, and what is linear in time. NULL: they never are. */
+    int (*further)(void *motion, double tau, const struct guard *g, double *to);
     /* Sets size and bend of all guards, for tau and all that comes; answers when smaller ones will be worth the work. */
     double (*bound)(void *motion, double tau);
     void *motion;
     double expected;   /* when there may be a zero, for all that the caller knows; 0: no idea */
-    double reach;      /* over such times two derivatives tell all of every guard but rounding */
+    double early;      /* by how much it may be earlier, as far as that is known */
+    double reach;      /* over such times two derivatives tell all of every guard but rounding, */
+    double far_reach;  /* and over such five */
     double resolution; /* times closer than this are the same */
     size_t looks;
-    int lost; /* there is no end of looks, or what they see is not finite */
+    double a;       /* nobody is below zero until then */
+    double h, most; /* so much longer is to be tried, or up to most if a zero is expected there */
+    double longest; /* the end of the search */
+    double better;  /* when smaller bounds will be worth the work */
+    int falls;      /* a guard is not positive where it was looked at last */
+    int lost;       /* there is no end of looks, or what they see is not finite */
 };
 
 /* The guard that is first to meet zero, and when; *first is NULL if none does before longest. Guards start at zero or above.

@@ -159,6 +159,24 @@ static void look(void *motion, double tau, size_t guards, struct guard *const *g
     }
 }
 
+/* Guards of limits that swing, and resonances, are left to two derivatives. */
+static int look_further(void *motion, double tau, const struct guard *g, double *to)
+{
+    struct modal_motion *x = &((struct exact *)motion)->motion;
+    const struct course *c = g->output;
+    if (!c || g->limit != 0.0) {
+        return 0;
+    }
+    tribo_modal_motion_go(x, tau);
+    if (!tribo_course_look_further(x, c, to)) {
+        return 0;
+    }
+    for (int k = 0; k < 3; k++) {
+        to[k] *= g->side;
+    }
+    return 1;
+}
+
 static void move_to(void *motion, double tau, const double *from, double *to)
 {
     tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
@@ -354,6 +372,7 @@ static int create(tribo_driver *drv)
         return status;
     }
     x->events.search.look = look;
+    x->events.search.further = look_further;
     x->events.search.bound = bound;
     x->events.search.motion = x->events.motion = x;
     x->events.begin = begin;

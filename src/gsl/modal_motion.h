@@ -81,4 +81,7 @@ void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_v
 void tribo_course_look(const struct modal_motion *x, struct course *c);
 void tribo_course_bound(const struct modal_motion *x, struct course *c);
 
+/* Its third to fifth derivative where go() was, into to [3]; 1, or 0 if they are not known: where loads resonate. */
+int tribo_course_look_further(const struct modal_motion *x, const struct course *c, double *to);
+
 #endif

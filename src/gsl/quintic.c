@@ -2,6 +2,7 @@
 #include "../common/real.h"
 
 #include <math.h>
+#include <string.h>
 
 /* In Bernstein's basis. */
 enum { COEFFICIENTS = 7 };
@@ -121,4 +122,11 @@ double tribo_quintic_zero(const struct sample *a, const struct sample *b, double
     const struct sample end = {-b->g, b->d, -b->e}, start = {-a->g, a->d, -a->e};
     powers(&end, &start, h, p);
     return h - zero(p, 1.0 - s) * h;
+}
+
+double tribo_taylor_zero(const double *p, double guess)
+{
+    double own[6];
+    memcpy(own, p, sizeof own);
+    return zero(own, guess);
 }
