@@ -95,10 +95,12 @@ static inline void snap(const struct few_bodies *b, struct few_parts has, size_t
     for (size_t i = 0; i < has.c; i++) {
         set |= (unsigned)(rests(slip, i) && fabs(x->p[i]) < x->most[i]) << i;
     }
-    const struct few_snap *const end = b->snap[set] + b->snaps[set];
-    for (const struct few_snap *to = b->snap[set]; to < end; to++) {
-        const double base = has.bases ? b->base[to->contact][s] : 0.0;
-        u[to->to] = (base - row_times(has.n, to->rest, u)) / to->turn;
+    for (size_t k = 0; k < has.c && k < b->snaps[set]; k++) {
+        const struct few_snap *to = &b->snap[set][k];
+        const double value = ((has.bases ? b->base[to->contact][s] : 0.0) - row_times(has.n, to->rest, u)) / to->turn;
+        for (size_t d = 0; d < has.n; d++) {
+            u[d] = to->to == d ? value : u[d];
+        }
     }
 }
 

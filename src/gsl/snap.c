@@ -40,7 +40,7 @@ static inline int is_pair(const struct snapping *s, size_t i)
 }
 
 /* Entry `to` of row i follows entry `from`, if that is another one. */
-static inline void take(struct snapping *s, size_t i, size_t to, size_t from)
+static void take(struct snapping *s, size_t i, size_t to, size_t from)
 {
     const struct matrix *j = &s->sys->direction;
     const struct snap one = {i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
@@ -138,18 +138,27 @@ void tribo_system_order_snaps(tribo_system *sys)
     }
 }
 
+/* The same for entry `to` alone, which each step asks for of many. */
+static inline void take_alone(struct snapping *s, size_t i, size_t to)
+{
+    if (s->list) {
+        take(s, i, to, to);
+    } else {
+        s->x[s->sys->direction.col[to]] = s->base[i] / s->sys->direction.val[to];
+    }
+}
+
 /* Whoever has one degree of freedom; in order, all. Returns whether any are left. */
 static int snap_first(struct snapping *s)
 {
-    const struct matrix *j = &s->sys->direction;
+    const size_t *first = s->sys->direction.first;
     int left = 0;
-    for (size_t i = 0; i < s->sys->ncontact; i++) {
-        const size_t first = j->first[i];
-        if (!s->loose[i] && j->first[i + 1] - first == 1) {
-            take(s, i, first, first);
+    for (size_t i = 0, n = s->sys->ncontact; i < n; i++) {
+        if (!s->loose[i] && first[i + 1] - first[i] == 1) {
+            take_alone(s, i, first[i]);
         } else if (s->sys->snaps_in_order && is_pair(s, i)) {
-            const size_t to = first + follows(s->sys, i, first);
-            take(s, i, to, 2 * first + 1 - to);
+            const size_t to = first[i] + follows(s->sys, i, first[i]);
+            take(s, i, to, 2 * first[i] + 1 - to);
         } else {
             left |= !s->loose[i];
         }
