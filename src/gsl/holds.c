@@ -123,7 +123,7 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
     return TRIBO_OK;
 }
 
-static void list_snaps(struct stick_slip *m, const tribo_system *sys)
+void tribo_stick_slip_list_snaps(struct stick_slip *m, const tribo_system *sys)
 {
     size_t hold = 0;
     for (size_t i = 0; i < m->contacts; i++) {
@@ -137,15 +137,17 @@ static void list_snaps(struct stick_slip *m, const tribo_system *sys)
 static void snap(const struct stick_slip *m, const double *base, double *x)
 {
     for (const struct snap *s = m->snap; s < m->snap + m->snaps; s++) {
-        tribo_snap(s, base, x);
+        if (!m->loose[s->contact]) {
+            tribo_snap(s, base, x);
+        }
     }
 }
 
 /* First the last bits of simple contacts; then, if there is more, what the contacts take away. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x)
 {
-    if (m->unlisted) {
-        list_snaps(m, sys);
+    if (m->unlisted && !sys->snaps_in_order) {
+        tribo_stick_slip_list_snaps(m, sys);
     }
     snap(m, base, x);
     if (m->simple || !moves(m, sys, base, x)) {

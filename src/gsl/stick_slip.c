@@ -108,10 +108,11 @@ static int find_dependence(struct stick_slip *m, const tribo_system *sys)
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1;
-    *m = (struct stick_slip){.contacts = sys->ncontact, .only = sys->ncontact, .unlisted = 1, .doubt = 1.0};
+    *m = (struct stick_slip){.contacts = sys->ncontact, .only = sys->ncontact, .doubt = 1.0};
     if (create_contexts(m, sys->contacts) && create_numbers(m, c, sys->ndof) && create_marks(m, c) && create_lists(m, c) &&
         tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
         find_kinds(m, sys);
+        tribo_stick_slip_list_snaps(m, sys); /* nobody being loose */
         if (find_dependence(m, sys)) {
             return TRIBO_OK;
         }

@@ -71,7 +71,7 @@ struct stick_slip {
     size_t only;                          /* contact whose force alone was searched for last, R coupling it; else ncontact, */
     double pull;                          /* and its acceleration without that force */
     unsigned char *elastic, *can_hold;    /* [ncontact] 1: an elastic contact; one that holds something, if it rests */
-    struct snap *snap;                    /* [snaps] of the contacts that hold, */
+    struct snap *snap;                    /* [snaps] of all contacts where their order is one for all, else of those that hold, */
     size_t snaps;
     int simple;          /* which are no more than these; */
     int unlisted;        /* or who holds has changed since they were listed */
@@ -221,6 +221,9 @@ int tribo_stick_slip_project(struct stick_slip *m, const tribo_system *sys, cons
 
 /* The same where J x - base is rounding: takes that out of x [ndof]. Returns a status. */
 int tribo_stick_slip_hold(struct stick_slip *m, const tribo_system *sys, const double *base, double *x);
+
+/* What takes the last bits out of the contacts that hold. */
+void tribo_stick_slip_list_snaps(struct stick_slip *m, const tribo_system *sys);
 
 /* How many times its limit to slide the force of contact i is from here on: +1 or -1, at rest these times the ratio of static
  * limits, or 0 if it does not follow it. */
