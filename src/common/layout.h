@@ -7,6 +7,8 @@
 #include <stdint.h>
 #include <stdlib.h>
 
+#include "zeros.h"
+
 struct layout {
     char *memory; /* NULL while sizes are added up */
     size_t used;
@@ -32,7 +34,7 @@ static inline void *tribo_layout_array(struct layout *b, size_t count, size_t si
 /* Memory for what has been measured, all of it zero, or as it comes; to be laid out from the beginning. 0 if there is none. */
 static inline int tribo_layout_zeros(struct layout *b)
 {
-    b->memory = calloc(b->used + 1, 1);
+    b->memory = tribo_zeros(b->used + 1, 1);
     b->used = 0;
     return b->memory != NULL;
 }

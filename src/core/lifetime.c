@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "context.h"
+#include "../common/zeros.h"
 
 #define DEFAULT_EPSILON 1e-6
 
@@ -58,7 +59,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
     if (ncontact >= SIZE_MAX / 64) {
         return TRIBO_ERR_SIZE;
     }
-    tribo_context *c = calloc(1, sizeof *c);
+    tribo_context *c = tribo_zeros(1, sizeof *c);
     if (!c || !allocate(c, ncontact) || !tribo_operator_diagonal(&c->op, ncontact, NULL)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;

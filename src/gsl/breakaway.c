@@ -1,4 +1,5 @@
 #include "breakaway.h"
+#include "../common/zeros.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -10,7 +11,7 @@ int tribo_breakaway_create(struct breakaway *b, size_t contacts)
     const size_t c = contacts + 1;
     memset(b, 0, sizeof *b);
     b->revision = SIZE_MAX;
-    b->ratio = calloc(6 * c, sizeof *b->ratio);
+    b->ratio = tribo_zeros(6 * c, sizeof *b->ratio);
     if (!b->ratio) {
         return 0;
     }

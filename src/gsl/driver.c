@@ -9,6 +9,7 @@
 
 #include "breakaway.h"
 #include "../common/real.h"
+#include "../common/zeros.h"
 
 static const struct method automatic;
 
@@ -139,7 +140,7 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     if (status) {
         return status;
     }
-    tribo_driver *d = calloc(1, sizeof *d);
+    tribo_driver *d = tribo_zeros(1, sizeof *d);
     const size_t dimension = tribo_system_dimension(sys);
     double *work = malloc(2 * dimension * sizeof *work);
     if (!d || !work) {
@@ -425,7 +426,7 @@ static int provide(tribo_driver *drv, int which)
 
 static int create_choice(tribo_driver *drv)
 {
-    drv->own = calloc(1, sizeof(struct choice));
+    drv->own = tribo_zeros(1, sizeof(struct choice));
     drv->excess = drv->backslip = 0.0;
     return drv->own ? provide(drv, choose(drv)) : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
 }

@@ -2,6 +2,7 @@
 #include "elastic.h"
 #include "../common/real.h"
 #include "../common/simd.h"
+#include "../common/zeros.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -215,9 +216,9 @@ int tribo_system_accept(tribo_system *sys, double t, const double *y)
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
                        struct matrix *direction, struct matrix *response)
 {
-    tribo_system *s = calloc(1, sizeof *s);
+    tribo_system *s = tribo_zeros(1, sizeof *s);
     int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
-    double *work = status ? NULL : calloc(8 * (ncontact + 1) + ndof, sizeof *work);
+    double *work = status ? NULL : tribo_zeros(8 * (ncontact + 1) + ndof, sizeof *work);
     if (!work) {
         tribo_system_destroy(s);
         tribo_matrix_free(stiffness);

@@ -2,6 +2,7 @@
 #include "system.h"
 #include "../common/layout.h"
 #include "../common/real.h"
+#include "../common/zeros.h"
 
 #include <float.h>
 #include <math.h>
@@ -400,7 +401,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
         return status;
     }
     struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
-    double *parts = calloc(2 * n + 1, sizeof *parts);
+    double *parts = tribo_zeros(2 * n + 1, sizeof *parts);
     struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
     sys->harmonic = all ? all : sys->harmonic;
     int done = parts && all;

@@ -12,6 +12,7 @@
 #include "spectrum.h"
 #include "step_form.h"
 #include "../common/real.h"
+#include "../common/zeros.h"
 
 struct central {
     struct step_form common;
@@ -35,11 +36,11 @@ static void destroy(tribo_driver *drv)
 
 static int create(tribo_driver *drv)
 {
-    struct central *x = calloc(1, sizeof *x);
+    struct central *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
     if (x) {
         x->few.revision = SIZE_MAX;
-        x->next = calloc(drv->sys->ndof, sizeof *x->next);
+        x->next = tribo_zeros(drv->sys->ndof, sizeof *x->next);
     }
     if (!x || !x->next || !tribo_step_form_create(&x->common, drv->sys) || !tribo_bodies_create(&x->alone, drv->sys)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);

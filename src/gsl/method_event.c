@@ -14,6 +14,7 @@
 #include "event_series.h"
 #include "../common/real.h"
 #include "../common/simd.h"
+#include "../common/zeros.h"
 
 /* A motion that is to come back must not depend on where steps happen to end: followed so, their errors are this part of it. */
 #define SHARP 1e-13
@@ -261,7 +262,7 @@ static int create(tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
     const size_t n = sys->ndof, c = sys->ncontact;
-    struct event *e = calloc(1, sizeof *e);
+    struct event *e = tribo_zeros(1, sizeof *e);
     drv->own = e;
     if (!e) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");

@@ -13,6 +13,7 @@
 #include "modal_terms.h"
 #include "modal_transition.h"
 #include "../common/real.h"
+#include "../common/zeros.h"
 
 /* Decompositions are dropped when they take more than this. */
 #define CACHE_BYTES ((size_t)256 << 20)
@@ -359,14 +360,14 @@ static int create(tribo_driver *drv)
     if (unsupported) {
         return unsupported;
     }
-    struct exact *x = calloc(1, sizeof *x);
+    struct exact *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
     if (!x) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
     x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
-    x->key = calloc(drv->sys->ncontact + sizeof(uint64_t), 1);
+    x->key = tribo_zeros(drv->sys->ncontact + sizeof(uint64_t), 1);
     const int status = tribo_events_create(&x->events, drv);
     if (status) {
         return status;

@@ -3,6 +3,7 @@
 #include "constraint.h"
 #include "stick_slip.h"
 #include "../common/real.h"
+#include "../common/zeros.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -24,7 +25,7 @@ static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
                                    &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
-    double *work = calloc(contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
+    double *work = tribo_zeros(contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
     for (size_t k = 0; work && k < contact_arrays; k++) {
         *by_contact[k] = work + k * contacts;
     }
@@ -41,7 +42,7 @@ static int create_marks(struct stick_slip *m, size_t contacts)
     signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled};
     unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
     const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
-    signed char *work = calloc(signs + marks, contacts);
+    signed char *work = tribo_zeros(signs + marks, contacts);
     for (size_t k = 0; work && k < signs; k++) {
         *sign[k] = work + k * contacts;
     }

@@ -8,6 +8,7 @@
 #include "../../common/csr.h"
 #include "../../common/simd.h"
 #include "../../common/twofold.h"
+#include "../../common/zeros.h"
 
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128
@@ -502,7 +503,7 @@ static int create_groups(struct delassus *op, struct memory *m, const struct csr
         op->fixed_size += fixed_by(g);
         op->kept_size += kept_by(g);
     }
-    op->fixed = calloc(op->fixed_size + 1, sizeof *op->fixed);
+    op->fixed = tribo_zeros(op->fixed_size + 1, sizeof *op->fixed);
     if (!op->fixed || !allocate_memory(m, op)) {
         return TRIBO_ERR_MEMORY;
     }
