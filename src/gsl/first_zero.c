@@ -51,18 +51,17 @@ static double noise(const struct guard *g)
     return 4.0 * DBL_EPSILON * g->size;
 }
 
-/* x^(1/6) within a factor of 1.13, by the bits of the exponent: frexp and ldexp take three times as long. */
+/* x^(1/6) within 7%: of the bits of a number, read as a whole number, logarithms are nearly linear. */
 static double sixth_root(double x)
 {
-    static const double root[] = {1.0, 1.122, 1.26, 1.414, 1.587, 1.782};
+    const uint64_t one = (uint64_t)1023 << 52;
     const double normal = greater(x, DBL_MIN);
     uint64_t bits;
-    double scale;
+    double root;
     memcpy(&bits, &normal, sizeof bits);
-    const int e = (int)(bits >> 52) - 1022 + 6000; /* normal = m 2^(e - 6000), 1/2 <= m < 1 */
-    bits = (uint64_t)(e / 6 - 1000 + 1023) << 52;
-    memcpy(&scale, &bits, sizeof scale); /* 2^(e/6 - 1000) */
-    return x > 0.0 && x <= DBL_MAX ? root[e % 6] * scale : x;
+    bits = bits / 6 + one / 6 * 5;
+    memcpy(&root, &bits, sizeof root);
+    return x > 0.0 && x <= DBL_MAX ? root : x;
 }
 
 static void watch_all(struct first_zero *s)
