@@ -22,10 +22,10 @@
 /* The third derivative of a sum of exponentials and sines is at most the root of its size times its bend (Cauchy, Schwarz), that
  * of powers of time at most 4.5 times this and 60 size/longest^3. So over this part of a first length it changes what two
  * derivatives tell by a tenth of noise. */
-#define SHORT 2e-6
+#define SHORT 1.9e-6
 
 /* Over this part of a first length, what five derivatives tell is changed by a tenth of noise by the bound of the sixth. */
-#define FAR 2e-3
+#define FAR 2.2e-3
 
 /* So far ahead, in terms of an interval, do five derivatives tell as much as all samples at the ends of it tell in its middle. */
 #define AHEAD 0.5
@@ -156,7 +156,7 @@ static double first_length(const struct first_zero *s, double longest)
         const struct guard *g = &s->guard[k];
         ratio = lesser(ratio, g->bend > 0.0 ? g->size / g->bend : HUGE_VAL);
     }
-    return lesser(sixth_root(300.0 * ratio), longest);
+    return lesser(sixth_root(400.0 * ratio), longest);
 }
 
 /* What is known of an interval at the end of which the middle samples are: that no guard is below zero in it, or that one is not
