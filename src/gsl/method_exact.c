@@ -78,6 +78,13 @@ static uint64_t print_of(size_t n, const signed char *key)
     return print;
 }
 
+/* Few contacts have a print that no other key has. */
+static int has_key(const struct exact *x, struct held held, uint64_t print)
+{
+    const size_t n = x->sys->ncontact;
+    return held.print == print && (n <= sizeof print || memcmp(held.modal->key, x->key, n) == 0);
+}
+
 /* *found = the structure with the contacts at rest held. Those used last are looked at first. */
 static int find_held(struct exact *x, const struct modal **found)
 {
@@ -87,7 +94,7 @@ static int find_held(struct exact *x, const struct modal **found)
     const uint64_t print = print_of(m->contacts, x->key);
     for (size_t i = x->helds; i-- > 0;) {
         const struct held held = x->held[i];
-        if (held.print == print && memcmp(held.modal->key, x->key, sys->ncontact) == 0) {
+        if (has_key(x, held, print)) {
             for (; i + 1 < x->helds; i++) {
                 x->held[i] = x->held[i + 1];
             }

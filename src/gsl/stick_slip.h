@@ -50,7 +50,7 @@ struct stick_slip {
     double *parting;      /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
     double *base, *noise; /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
     double *seen;         /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
-    double *diagonal;     /* [ncontact] R_ii */
+    double *diagonal, *inertia; /* [ncontact] R_ii, and one over it, or 0 */
     double *v, *own_a;    /* [ncontact] relative velocity; room for the next one */
     const double *a;      /* [ncontact] acceleration without friction */
     double *lo, *hi, *f;  /* [ncontact] workspace: bounds, forces */
