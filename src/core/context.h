@@ -108,7 +108,6 @@ struct counters {
 struct tribo_context {
     size_t n;
     const char *owner; /* of the operator; NULL: the caller */
-    void *block;       /* the memory of all arrays below that are of no other object, and of the message */
     struct settings set;
     struct following follow;
     struct delassus *op;   /* constant; clones have it in common */

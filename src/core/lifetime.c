@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "context.h"
-#include "../common/zeros.h"
 
 #define DEFAULT_EPSILON 1e-6
 
@@ -25,11 +24,10 @@ static void lay_out_numbers(tribo_context *ctx, struct layout *b, size_t n)
     }
 }
 
-/* Everything but the operator. One contact more than asked for, so that no array is empty. */
-static void lay_out_context(tribo_context *ctx, struct layout *b, size_t n)
+/* All arrays. One contact more than asked for, so that none of them is empty. */
+static void lay_out_arrays(tribo_context *ctx, struct layout *b, size_t n)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);
-    ctx->block = tribo_layout_array(b, 0, 1);
     lay_out_numbers(ctx, b, n);
     ctx->message = tribo_layout_array(b, 1, tribo_message_size());
     ctx->follow.chunk = tribo_layout_array(b, chunks, sizeof *ctx->follow.chunk);
@@ -41,14 +39,23 @@ static void lay_out_context(tribo_context *ctx, struct layout *b, size_t n)
     ctx->spare.stored = tribo_layout_array(b, chunks, 1);
 }
 
-static int allocate(tribo_context *ctx, size_t n)
+/* A context with arrays of zeros, and all else as in another one; NULL if out of memory. */
+static tribo_context *allocate(size_t n, const tribo_context *like)
 {
     struct layout b = {0};
+    tribo_context measured, *ctx = tribo_layout_array(&b, 1, sizeof *ctx);
+    const size_t begin = b.used;
+    lay_out_arrays(&measured, &b, n);
+    const size_t end = b.used;
+    if (!tribo_layout_create(&b)) {
+        return NULL;
+    }
+    ctx = tribo_layout_array(&b, 1, sizeof *ctx);
+    memcpy(ctx, like, sizeof *ctx);
+    memset(b.memory + begin, 0, end - begin);
+    lay_out_arrays(ctx, &b, n);
     ctx->n = n;
-    lay_out_context(ctx, &b, n);
-    const int done = tribo_layout_zeros(&b);
-    lay_out_context(ctx, &b, done ? n : 0);
-    return done;
+    return ctx;
 }
 
 int tribo_create(tribo_context **ctx, size_t ncontact)
@@ -59,8 +66,9 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
     if (ncontact >= SIZE_MAX / 64) {
         return TRIBO_ERR_SIZE;
     }
-    tribo_context *c = tribo_zeros(1, sizeof *c);
-    if (!c || !allocate(c, ncontact) || !tribo_operator_diagonal(&c->op, ncontact, NULL)) {
+    static const tribo_context blank;
+    tribo_context *c = allocate(ncontact, &blank);
+    if (!c || !tribo_operator_diagonal(&c->op, ncontact, NULL)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
     }
@@ -88,18 +96,15 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "copy is NULL");
     }
     const size_t n = ctx->n;
-    tribo_context *c = malloc(sizeof *c);
+    tribo_context *c = allocate(n, ctx);
     if (!c) {
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
     }
-    *c = *ctx;
     c->owner = NULL;
     c->op = tribo_operator_share(ctx->op);
     c->memory = (struct memory){0};
     c->planar = tribo_planar_share(ctx->planar);
-    c->plane = (struct plane){0};
-    if (!allocate(c, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op) ||
-        !tribo_plane_create(&c->plane, c->planar, n)) {
+    if (!tribo_plane_create(&c->plane, c->planar, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op)) {
         tribo_destroy(c);
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
     }
@@ -134,7 +139,6 @@ void tribo_destroy(tribo_context *ctx)
     tribo_memory_free(&ctx->memory);
     tribo_planar_release(ctx->planar);
     tribo_plane_free(&ctx->plane);
-    free(ctx->block);
     free(ctx);
 }
 

@@ -1,11 +1,13 @@
 #include "modal_parts.h"
 #include "../common/layout.h"
+#include "../common/zeros.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 /* Arrays are many and short: blocks hold several, the first one this many bytes, for which allocators need not search, the next
- * ones twice as many as those before. An emptied list keeps no block of more than LASTING. */
+ * ones twice as many as those before. The first one is zeroed as a whole, which is little; of larger ones every array is when it is
+ * taken. An emptied list keeps no block of more than LASTING. */
 #define BLOCK 992
 #define LASTING ((size_t)1 << 20)
 
@@ -15,12 +17,18 @@ struct block {
     union layout_unit unit[];
 };
 
+/* Whether a block with so many units is not a first one. */
+static int is_large(size_t room)
+{
+    return room > BLOCK / sizeof(union layout_unit);
+}
+
 static struct block *add_block(void **list, size_t *bytes, size_t units)
 {
     struct block *last = *list;
     const size_t least = last ? 2 * last->room : BLOCK / sizeof *last->unit, room = units > least ? units : least;
     const size_t size = sizeof *last + room * sizeof *last->unit;
-    struct block *block = malloc(size);
+    struct block *block = is_large(room) ? malloc(size) : tribo_zeros(size, 1);
     if (block) {
         block->next = last;
         block->used = 0;
@@ -33,7 +41,6 @@ static struct block *add_block(void **list, size_t *bytes, size_t units)
 
 void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size)
 {
-    enum { FEW = 4 };
     struct block *block = *list;
     const size_t units = (count * size + sizeof *block->unit - 1) / sizeof *block->unit;
     if (!block || block->room - block->used < units) {
@@ -44,13 +51,7 @@ void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size)
     }
     union layout_unit *array = block->unit + block->used;
     block->used += units;
-    if (units > FEW) {
-        return memset(array, 0, units * sizeof *array);
-    }
-    for (size_t k = 0; k < units; k++) {
-        array[k] = (union layout_unit){0};
-    }
-    return array;
+    return is_large(block->room) ? memset(array, 0, units * sizeof *array) : array;
 }
 
 void tribo_modal_give_back(void *list)
@@ -89,6 +90,7 @@ void tribo_modal_empty(void **list)
         *list = NULL;
     } else if (block) {
         tribo_modal_give_back(block->next);
+        memset(block->unit, 0, is_large(block->room) ? 0 : block->used * sizeof *block->unit);
         block->next = NULL;
         block->used = 0;
     }
