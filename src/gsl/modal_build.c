@@ -232,8 +232,8 @@ static int compress(struct modal_build *b)
 /* What the contacts of the part do: as the set is known, or, if it has no key, whether they hold. */
 static int find_part_key(struct modal_build *b, const unsigned char *holds)
 {
-    b->key = (signed char *)tribo_modal_scratch_bytes(b, b->part.ncontact);
-    for (size_t i = 0; b->key && i < b->part.ncontact; i++) {
+    b->key = (signed char *)tribo_modal_scratch_bytes(b, b->contacts);
+    for (size_t i = 0; b->key && i < b->contacts; i++) {
         const size_t at = b->contact[i];
         b->key[i] = b->h->key ? b->h->key[at] : (signed char)(2 * holds[at]);
     }
@@ -259,8 +259,6 @@ static void number_as_whole(struct modal_build *b)
 /* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
 static int find_all(struct modal_build *b, const unsigned char *holds)
 {
-    b->sys = &b->part;
-    b->n = b->part.ndof;
     if (!find_part_key(b, holds) || !list_rest(b, holds) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
         !find_drifts(b)) {
         return b->status ? b->status : TRIBO_ERR_MEMORY;

@@ -8,8 +8,8 @@
 static void add_dof(struct modal_build *b, size_t d)
 {
     if (b->whole->dof_place[d] == NOWHERE) {
-        b->whole->dof_place[d] = b->part.ndof;
-        b->dof[b->part.ndof++] = d;
+        b->whole->dof_place[d] = b->n;
+        b->dof[b->n++] = d;
     }
 }
 
@@ -40,8 +40,8 @@ static void list_dofs(struct modal_build *b, size_t owns, const size_t *own)
             add_dof(b, w->beside[e]);
         }
     }
-    sort(b->dof, b->part.ndof);
-    for (size_t d = 0; d < b->part.ndof; d++) {
+    sort(b->dof, b->n);
+    for (size_t d = 0; d < b->n; d++) {
         w->dof_place[b->dof[d]] = d;
     }
 }
@@ -49,8 +49,8 @@ static void list_dofs(struct modal_build *b, size_t owns, const size_t *own)
 static void add_contact(struct modal_build *b, size_t i)
 {
     if (b->whole->contact_place[i] == NOWHERE) {
-        b->whole->contact_place[i] = b->part.ncontact;
-        b->contact[b->part.ncontact++] = i;
+        b->whole->contact_place[i] = b->contacts;
+        b->contact[b->contacts++] = i;
     }
 }
 
@@ -58,7 +58,7 @@ static void add_contact(struct modal_build *b, size_t i)
 static void list_contacts(struct modal_build *b, const unsigned char *holds)
 {
     struct modal_whole *w = b->whole;
-    for (size_t k = 0; k < b->part.ndof; k++) {
+    for (size_t k = 0; k < b->n; k++) {
         const size_t d = b->dof[k];
         for (size_t e = w->first_contact[d]; e < w->first_contact[d + 1]; e++) {
             if (holds[w->contact[e]] || w->ours[d]) {
@@ -71,8 +71,8 @@ static void list_contacts(struct modal_build *b, const unsigned char *holds)
             add_contact(b, i);
         }
     }
-    sort(b->contact, b->part.ncontact);
-    for (size_t i = 0; i < b->part.ncontact; i++) {
+    sort(b->contact, b->contacts);
+    for (size_t i = 0; i < b->contacts; i++) {
         w->contact_place[b->contact[i]] = i;
     }
 }
@@ -81,7 +81,7 @@ int tribo_modal_list(struct modal_build *b, size_t part, const unsigned char *ho
 {
     struct modal_whole *w = b->whole;
     const size_t *own = w->own + w->first_own[part], owns = w->first_own[part + 1] - w->first_own[part];
-    b->part.ndof = b->part.ncontact = 0;
+    b->n = b->contacts = 0;
     b->dof = tribo_modal_scratch_indices(b, w->sys->ndof);
     b->contact = tribo_modal_scratch_indices(b, w->sys->ncontact);
     if (!b->dof || !b->contact) {
@@ -96,11 +96,11 @@ int tribo_modal_list(struct modal_build *b, size_t part, const unsigned char *ho
 void tribo_modal_unlist(struct modal_build *b)
 {
     struct modal_whole *w = b->whole;
-    for (size_t d = 0; d < b->part.ndof; d++) {
+    for (size_t d = 0; d < b->n; d++) {
         w->ours[b->dof[d]] = 0;
         w->dof_place[b->dof[d]] = NOWHERE;
     }
-    for (size_t i = 0; i < b->part.ncontact; i++) {
+    for (size_t i = 0; i < b->contacts; i++) {
         w->contact_place[b->contact[i]] = NOWHERE;
     }
 }
@@ -116,7 +116,7 @@ static int extract(struct modal_build *b, const struct matrix *from, size_t rows
         room += from->first[row[i] + 1] - from->first[row[i]];
     }
     *to = (struct matrix){.rows = rows,
-                          .cols = b->part.ndof,
+                          .cols = b->n,
                           .first = tribo_modal_scratch_indices(b, rows + 2),
                           .col = tribo_modal_scratch_indices(b, room),
                           .val = tribo_modal_scratch(b, room)};
@@ -162,54 +162,62 @@ static int extract_entries(struct modal_build *b, struct harmonic *h)
 static int extract_limits(struct modal_build *b, struct harmonic *h)
 {
     const struct harmonic from = *h;
-    h->cosine = tribo_modal_scratch(b, b->part.ncontact);
-    h->sine = tribo_modal_scratch(b, b->part.ncontact);
-    for (size_t i = 0; h->cosine && h->sine && i < b->part.ncontact; i++) {
+    h->cosine = tribo_modal_scratch(b, b->contacts);
+    h->sine = tribo_modal_scratch(b, b->contacts);
+    for (size_t i = 0; h->cosine && h->sine && i < b->contacts; i++) {
         h->cosine[i] = from.cosine[b->contact[i]];
         h->sine[i] = from.sine[b->contact[i]];
     }
     return h->cosine && h->sine;
 }
 
-static int extract_harmonics(struct modal_build *b)
+static int extract_harmonics(struct modal_build *b, tribo_system *part)
 {
-    tribo_system *sys = &b->part;
-    sys->harmonic = tribo_modal_scratch_harmonics(b, sys->harmonics);
-    int done = sys->harmonic != NULL;
-    for (size_t k = 0; done && k < sys->harmonics; k++) {
-        sys->harmonic[k] = b->whole->sys->harmonic[k];
-        done = sys->harmonic[k].drives == DRIVES_LIMIT ? extract_limits(b, &sys->harmonic[k])
-                                                       : extract_entries(b, &sys->harmonic[k]);
+    part->harmonic = tribo_modal_scratch_harmonics(b, part->harmonics);
+    int done = part->harmonic != NULL;
+    for (size_t k = 0; done && k < part->harmonics; k++) {
+        part->harmonic[k] = b->whole->sys->harmonic[k];
+        done = part->harmonic[k].drives == DRIVES_LIMIT ? extract_limits(b, &part->harmonic[k])
+                                                        : extract_entries(b, &part->harmonic[k]);
     }
     return done;
 }
 
-static int extract_massless(struct modal_build *b)
+static int extract_massless(struct modal_build *b, tribo_system *part)
 {
     const struct massless *from = &b->whole->sys->massless;
-    b->part.massless.is = from->count ? tribo_modal_scratch_bytes(b, b->part.ndof) : NULL;
-    for (size_t d = 0; b->part.massless.is && d < b->part.ndof; d++) {
-        b->part.massless.is[d] = from->is[b->dof[d]];
+    part->massless.is = from->count ? tribo_modal_scratch_bytes(b, b->n) : NULL;
+    for (size_t d = 0; part->massless.is && d < b->n; d++) {
+        part->massless.is[d] = from->is[b->dof[d]];
     }
-    return b->part.massless.is || !from->count;
+    return part->massless.is || !from->count;
+}
+
+static int extract_system(struct modal_build *b)
+{
+    const struct modal_whole *w = b->whole;
+    tribo_system *part = tribo_modal_scratch_system(b);
+    if (!part) {
+        return 0;
+    }
+    *part = *w->sys;
+    part->ndof = b->n;
+    part->ncontact = b->contacts;
+    b->sys = part;
+    b->stiffness = &b->own_stiffness;
+    b->damping = w->damping ? &b->own_damping : NULL;
+    return extract(b, &w->sys->direction, b->contacts, b->contact, &part->direction) &&
+           (!w->sys->mass.rows || extract(b, &w->sys->mass, b->n, b->dof, &part->mass)) &&
+           extract(b, w->stiffness, b->n, b->dof, &b->own_stiffness) &&
+           (!w->damping || extract(b, w->damping, b->n, b->dof, &b->own_damping)) && extract_massless(b, part) &&
+           extract_harmonics(b, part);
 }
 
 int tribo_modal_extract(struct modal_build *b)
 {
     const struct modal_whole *w = b->whole;
-    const size_t n = b->part.ndof, c = b->part.ncontact;
-    b->part = *w->sys;
-    b->part.ndof = n;
-    b->part.ncontact = c;
+    b->sys = w->sys;
     b->stiffness = w->stiffness;
     b->damping = w->damping;
-    if (b->owns == w->sys->ndof) {
-        return 1;
-    }
-    b->stiffness = &b->own_stiffness;
-    b->damping = w->damping ? &b->own_damping : NULL;
-    return extract(b, &w->sys->direction, c, b->contact, &b->part.direction) &&
-           (!w->sys->mass.rows || extract(b, &w->sys->mass, n, b->dof, &b->part.mass)) &&
-           extract(b, w->stiffness, n, b->dof, &b->own_stiffness) &&
-           (!w->damping || extract(b, w->damping, n, b->dof, &b->own_damping)) && extract_massless(b) && extract_harmonics(b);
+    return b->owns == w->sys->ndof || extract_system(b);
 }

@@ -159,6 +159,12 @@ struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t cou
     return tribo_modal_take(&b->whole->scratch, &ignored, count, sizeof(struct harmonic));
 }
 
+tribo_system *tribo_modal_scratch_system(struct modal_build *b)
+{
+    size_t ignored = 0;
+    return tribo_modal_take(&b->whole->scratch, &ignored, 1, sizeof(tribo_system));
+}
+
 /* ----------------------------------------------------------------------------------------------------- the contacts that hold */
 
 double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k)

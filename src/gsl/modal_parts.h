@@ -10,14 +10,13 @@
  * [modes][ndof]. */
 struct modal_build {
     struct modal_whole *whole;
-    tribo_system part;                        /* as much of it as is looked at, */
-    size_t *dof, *contact;                    /* [part.ndof], [part.ncontact] and where that is in the whole; */
+    size_t n, contacts;                       /* of degrees of freedom and contacts: as much of it as is looked at, */
+    size_t *dof, *contact;                    /* [n], [contacts] and where that is in the whole; */
     size_t owns;                              /* how many degrees of freedom are its own */
     const struct matrix *stiffness, *damping; /* K and C of the part, or NULL */
     struct matrix own_stiffness, own_damping; /* if it is not the whole */
     const tribo_system *sys;                  /* the part */
     struct modal *h;
-    size_t n;
     signed char *key;                  /* [ncontact] as in h */
     size_t rests, *rest;               /* [rests] the contacts that hold */
     struct constraints ties;           /* and what they tie together */
@@ -58,6 +57,7 @@ double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
 unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count);
 struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count);
+tribo_system *tribo_modal_scratch_system(struct modal_build *b);
 void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size); /* of a list, and adds to its bytes */
 void tribo_modal_give_back(void *list);
 void tribo_modal_empty(void **list); /* what is on the list is nobody's, but it may keep a block for what comes */

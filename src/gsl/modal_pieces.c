@@ -13,10 +13,10 @@ static size_t write_key(const struct modal_build *b, size_t part, const unsigned
     const size_t owns = w->first_own[part + 1] - w->first_own[part];
     key[0] = owns;
     memcpy(key + 1, w->own + w->first_own[part], owns * sizeof *key);
-    for (size_t i = 0; i < b->part.ncontact; i++) {
+    for (size_t i = 0; i < b->contacts; i++) {
         key[1 + owns + i] = 2 * b->contact[i] + holds[b->contact[i]];
     }
-    return 1 + owns + b->part.ncontact;
+    return 1 + owns + b->contacts;
 }
 
 /* b->h = the part that is listed, which has no key. Returns a status, and leaves b->h NULL on failure. */
@@ -227,7 +227,6 @@ int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds)
     if (status || !w->divides) {
         return status;
     }
-    b->part = *w->sys;
-    b->sys = &b->part;
+    b->sys = w->sys;
     return put_together(b, w->found) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
