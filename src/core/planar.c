@@ -56,7 +56,6 @@ void tribo_plane_free(struct plane *plane)
     }
     free(plane->near);
     free(plane->y);
-    *plane = (struct plane){0};
 }
 
 /* -------------------------------------------------------------------------------------------------------- clusters */

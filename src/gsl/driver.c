@@ -140,12 +140,9 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     if (status) {
         return status;
     }
-    tribo_driver *d = tribo_zeros(1, sizeof *d);
     const size_t dimension = tribo_system_dimension(sys);
-    double *work = malloc(2 * dimension * sizeof *work);
-    if (!d || !work) {
-        free(d);
-        free(work);
+    tribo_driver *d = tribo_zeros(sizeof *d + 2 * dimension * sizeof *d->state, 1);
+    if (!d) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", dimension,
                                  plural(dimension));
     }
@@ -155,8 +152,8 @@ static int create(tribo_driver **drv, tribo_system *sys, const struct method *m,
     d->dt = dt;
     d->abstol = abstol;
     d->reltol = reltol;
-    d->state = work;
-    d->slope = work + dimension;
+    d->state = (double *)(d + 1);
+    d->slope = d->state + dimension;
     d->excess = d->backslip = NAN;
     tribo_system_order_snaps(sys);
     status = m->create(d);
@@ -189,7 +186,6 @@ void tribo_driver_destroy(tribo_driver *drv)
         drv->free_shooting(drv->shooting);
     }
     drv->method->destroy(drv);
-    free(drv->state);
     free(drv);
 }
 

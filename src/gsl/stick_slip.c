@@ -2,8 +2,8 @@
  * made in scalar_slip.c and planar_slip.c. */
 #include "constraint.h"
 #include "stick_slip.h"
+#include "../common/layout.h"
 #include "../common/real.h"
-#include "../common/zeros.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,8 +16,7 @@
  * nearly linear in time. */
 #define LOOK_AHEAD 1e-4
 
-/* All arrays of numbers are one block. */
-static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
+static void lay_out_numbers(struct stick_slip *m, struct layout *l, size_t contacts, size_t dofs)
 {
     double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force,   &m->base,   &m->noise,     &m->diagonal,
                                    &m->seen,      &m->parting,        &m->v,       &m->own_a,  &m->lo,        &m->hi,
@@ -25,7 +24,7 @@ static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
                                    &m->base_size, &m->base_rate_size, &m->inertia, &m->gain,   &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
-    double *work = tribo_zeros(contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
+    double *work = tribo_layout_array(l, contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
     for (size_t k = 0; work && k < contact_arrays; k++) {
         *by_contact[k] = work + k * contacts;
     }
@@ -34,33 +33,42 @@ static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
     }
     m->found = m->gain; /* three arrays of contacts, the last ones, and one of degrees of freedom, the first one */
     m->founds = 3 * contacts + dofs;
-    return work != NULL;
 }
 
-static int create_marks(struct stick_slip *m, size_t contacts)
+static void lay_out_marks(struct stick_slip *m, struct layout *l, size_t contacts)
 {
     signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled};
     unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
     const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
-    signed char *work = tribo_zeros(signs + marks, contacts);
+    signed char *work = tribo_layout_array(l, (signs + marks) * contacts, sizeof *work);
     for (size_t k = 0; work && k < signs; k++) {
         *sign[k] = work + k * contacts;
     }
     for (size_t k = 0; work && k < marks; k++) {
         *mark[k] = (unsigned char *)work + (signs + k) * contacts;
     }
-    return work != NULL;
 }
 
-static int create_lists(struct stick_slip *m, size_t contacts)
+static void lay_out_arrays(struct stick_slip *m, struct layout *l, size_t contacts, size_t dofs)
 {
-    m->at = malloc(3 * contacts * sizeof *m->at);
-    if (m->at) {
-        m->asked = m->all = m->at + contacts;
-        m->close = m->at + 2 * contacts;
+    m->memory = tribo_layout_array(l, 0, 1);
+    lay_out_numbers(m, l, contacts, dofs);
+    lay_out_marks(m, l, contacts);
+    m->at = tribo_layout_array(l, contacts, sizeof *m->at);
+    m->asked = m->all = tribo_layout_array(l, contacts, sizeof *m->all);
+    m->close = tribo_layout_array(l, contacts, sizeof *m->close);
+    m->snap = tribo_layout_array(l, contacts, sizeof *m->snap);
+}
+
+static int create_arrays(struct stick_slip *m, size_t contacts, size_t dofs)
+{
+    struct layout l = {0};
+    lay_out_arrays(m, &l, contacts, dofs);
+    const int done = tribo_layout_zeros(&l);
+    if (done) {
+        lay_out_arrays(m, &l, contacts, dofs);
     }
-    m->snap = malloc(contacts * sizeof *m->snap);
-    return m->at && m->snap;
+    return done;
 }
 
 /* Contexts that know directions only. Where R couples nobody they are not asked for forces, and the second one is not needed. */
@@ -111,7 +119,7 @@ int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys)
 {
     const size_t c = sys->ncontact + 1;
     *m = (struct stick_slip){.contacts = sys->ncontact, .only = sys->ncontact, .doubt = 1.0};
-    if (create_contexts(m, sys->contacts) && create_numbers(m, c, sys->ndof) && create_marks(m, c) && create_lists(m, c) &&
+    if (create_contexts(m, sys->contacts) && create_arrays(m, c, sys->ndof) &&
         tribo_breakaway_create(&m->breakaway, sys->ncontact)) {
         find_kinds(m, sys);
         tribo_stick_slip_list_snaps(m, sys); /* nobody being loose */
@@ -128,10 +136,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
     tribo_destroy(m->box);
     tribo_destroy(m->hold);
     tribo_breakaway_free(&m->breakaway);
-    free(m->limit);
-    free(m->slip);
-    free(m->at);
-    free(m->snap);
+    free(m->memory);
     memset(m, 0, sizeof *m);
 }
 

@@ -19,6 +19,7 @@ struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
     tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0; NULL
                             where R couples nobody */
+    void *memory; /* of all arrays, but for those of breakaway and plane */
     size_t contacts;
     int uncoupled;   /* R is diagonal */
     int independent; /* the contacts at rest hold, whoever they are: none depends on others */
