@@ -27,7 +27,8 @@ static inline void *tribo_layout_array(struct layout *b, size_t count, size_t si
     enum { UNIT = sizeof(union layout_unit) };
     void *array = b->memory ? b->memory + b->used : NULL;
     const size_t most = SIZE_MAX / 4, bytes = count < most / size ? (count * size + UNIT - 1) / UNIT * UNIT : most;
-    b->used = bytes < most - b->used ? b->used + bytes : most;
+    const size_t used = b->used + bytes;
+    b->used = used < most ? used : most;
     return array;
 }
 
