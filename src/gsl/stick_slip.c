@@ -107,10 +107,22 @@ static void find_kinds(struct stick_slip *m, const tribo_system *sys)
     }
 }
 
+/* Whether every contact, in order, moves a body that none before it touches: a single one, or one of two that it takes the
+ * difference of, so that no pivot is lost to rounding. */
+static int are_in_order(const struct stick_slip *m, const tribo_system *sys)
+{
+    size_t i = 0;
+    while (i < sys->ncontact && m->diagonal[i] > 0.0) {
+        i++;
+    }
+    return i == sys->ncontact && sys->snaps_in_order && m->simple;
+}
+
 /* Whether any contact can hold without the others. 0 if out of memory. */
 static int find_dependence(struct stick_slip *m, const tribo_system *sys)
 {
-    const size_t rank = m->uncoupled ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
+    const int plain = m->uncoupled || are_in_order(m, sys);
+    const size_t rank = plain ? sys->ncontact : tribo_constraints_rank(&sys->direction, &sys->mass);
     m->independent = rank == sys->ncontact;
     return rank <= sys->ncontact;
 }

@@ -19,7 +19,7 @@ struct stick_slip {
     tribo_context *box;  /* a clone of the system's context, for problems with bounds */
     tribo_context *hold; /* another one, that finds the forces of the contacts that hold, and only theirs, as f_eq for v = 0; NULL
                             where R couples nobody */
-    void *memory; /* of all arrays, but for those of breakaway and plane */
+    void *memory;        /* of all arrays, but for those of breakaway and plane */
     size_t contacts;
     int uncoupled;   /* R is diagonal */
     int independent; /* the contacts at rest hold, whoever they are: none depends on others */
@@ -44,17 +44,17 @@ struct stick_slip {
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *found;              /* [founds] what a decision finds out where that is needed, and else is 0: */
     size_t founds;
-    double *gain;         /* [ncontact] what accelerations of contacts may be rounding, */
-    double *allowance;    /* [ncontact] by how much forces may exceed their limits before that counts, */
-    double *excess;       /* [ncontact] by how much they do where this begins, */
-    double *size;         /* [ndof] and how large the parts of q'' are */
-    double *parting;      /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
-    double *base, *noise; /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
-    double *seen;         /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
+    double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
+    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts, */
+    double *excess;             /* [ncontact] by how much they do where this begins, */
+    double *size;               /* [ndof] and how large the parts of q'' are */
+    double *parting;            /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
+    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
+    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
     double *diagonal, *inertia; /* [ncontact] R_ii, and one over it, or 0 */
-    double *v, *own_a;    /* [ncontact] relative velocity; room for the next one */
-    const double *a;      /* [ncontact] acceleration without friction */
-    double *lo, *hi, *f;  /* [ncontact] workspace: bounds, forces */
+    double *v, *own_a;          /* [ncontact] relative velocity; room for the next one */
+    const double *a;            /* [ncontact] acceleration without friction */
+    double *lo, *hi, *f;        /* [ncontact] workspace: bounds, forces */
     double *free, *acceleration, *rate; /* [ndof] q'' without friction; workspace: with it, its rate */
     double *base_size, *base_rate_size; /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                  /* [ndof] how large accelerations by harmonic loads ever are */
