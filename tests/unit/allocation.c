@@ -277,7 +277,7 @@ TEST(failures_of_a_sparse_group)
             assert_status(status, TRIBO_ERR_MEMORY);
             require(memory_live() == live, "leak when allocation %zu fails", fails);
         } else {
-            require(fails > (_i ? 3 : 15), "only %zu allocations", fails); /* a copy shares the operator */
+            require(fails > (_i ? 2 : 15), "only %zu allocations", fails); /* a copy shares the operator */
         }
         tribo_destroy(copy);
         tribo_destroy(c);
