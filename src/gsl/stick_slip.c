@@ -5,6 +5,7 @@
 #include "../common/real.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,15 +39,15 @@ static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
 
 static int create_marks(struct stick_slip *m, size_t contacts)
 {
-    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled};
+    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled, &m->key};
     unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
     const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
-    signed char *work = calloc(signs + marks, contacts);
-    for (size_t k = 0; work && k < signs; k++) {
-        *sign[k] = work + k * contacts;
-    }
+    signed char *work = calloc((signs + marks) * contacts + sizeof(uint64_t), 1);
     for (size_t k = 0; work && k < marks; k++) {
-        *mark[k] = (unsigned char *)work + (signs + k) * contacts;
+        *mark[k] = (unsigned char *)work + k * contacts;
+    }
+    for (size_t k = 0; work && k < signs; k++) {
+        *sign[k] = work + (marks + k) * contacts;
     }
     return work != NULL;
 }
@@ -128,7 +129,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
     tribo_destroy(m->hold);
     tribo_breakaway_free(&m->breakaway);
     free(m->limit);
-    free(m->slip);
+    free(m->holds);
     free(m->at);
     free(m->snap);
     memset(m, 0, sizeof *m);
