@@ -6,6 +6,7 @@
 #include "../common/real.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,15 +38,15 @@ static void lay_out_numbers(struct stick_slip *m, struct layout *l, size_t conta
 
 static void lay_out_marks(struct stick_slip *m, struct layout *l, size_t contacts)
 {
-    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled};
+    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled, &m->key};
     unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
     const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
-    signed char *work = tribo_layout_array(l, (signs + marks) * contacts, sizeof *work);
-    for (size_t k = 0; work && k < signs; k++) {
-        *sign[k] = work + k * contacts;
-    }
+    signed char *work = tribo_layout_array(l, (signs + marks) * contacts + sizeof(uint64_t), 1);
     for (size_t k = 0; work && k < marks; k++) {
-        *mark[k] = (unsigned char *)work + (signs + k) * contacts;
+        *mark[k] = (unsigned char *)work + k * contacts;
+    }
+    for (size_t k = 0; work && k < signs; k++) {
+        *sign[k] = work + (marks + k) * contacts;
     }
 }
 

@@ -31,6 +31,7 @@ struct stick_slip {
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
+    signed char *key;      /* [ncontact] 1: at rest, 2: and holds; and zeros after it, up to whole words of 8 */
     int dependents;        /* how many rest by themselves */
     int steady;            /* limits are those that update_limits has seen */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
@@ -105,6 +106,7 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     }
     m->holds[i] = (unsigned char)(rests & m->can_hold[i]);
     m->loose[i] = (signed char)(!m->holds[i] || m->elastic[i]);
+    m->key[i] = (signed char)(rests + m->holds[i]);
     m->dependents += m->can_hold[i] ? 0 : rests - rested;
     m->hold_differs = m->unlisted = 1;
 }
