@@ -80,7 +80,8 @@
 !>   TRBBOX(IH, N, A, FLO, FUP, F, IERR)             A(N), FLO(N) <= FUP(N)            F(N): minimum of F'RF/2 + A'F in the box
 !>   TRBACC(IH, N, V, FEQ, IERR)                     V(N), FEQ(N) of an accepted step
 !> Queries
-!>   TRBSLP(IH, N, ISLIP, IERR)                                                        ISLIP(N): 0 stuck, +1 -1 sliding, 2 open
+!>   TRBSLP(IH, N, ISLIP, IERR)                                                        ISLIP(N): 0 stuck, +1 -1 sliding, 2 open,
+!>                                                                                     3 sliding in the plane
 !>   TRBCNT(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_...            IVAL
 !>   TRBVAL(IH, IWHICH, VAL, IERR)                   IWHICH TRIBO_REAL_...             VAL
 

@@ -447,7 +447,7 @@ contains
 
     call begin(this, w)
     do k = 1, size(first)
-      if (first(k) < 1 .or. first(k) >= w%n) call fail_at(w, TRIBO_ERR_RANGE, 'first', k, first(k), 'is out of range')
+      call expect_index(w, 'first', k, first(k), w%n - 1)
     end do
     if (w%status == TRIBO_OK) w%status = c_set_planar(w%ctx, size(first, kind=c_size_t), from_zero(first))
     call finish(w, stat, errmsg)

@@ -154,8 +154,8 @@ contains
     call expect_shape(w, 'val', shape(val), shape(row))
     if (w%status == TRIBO_OK) then
       do k = 1, size(row)
-        if (row(k) < 1 .or. row(k) > rows) call fail_at(w, TRIBO_ERR_RANGE, 'row', k, row(k), 'is out of range')
-        if (col(k) < 1 .or. col(k) > columns) call fail_at(w, TRIBO_ERR_RANGE, 'col', k, col(k), 'is out of range')
+        call expect_index(w, 'row', k, row(k), rows)
+        call expect_index(w, 'col', k, col(k), columns)
       end do
     end if
     if (w%status == TRIBO_OK) then

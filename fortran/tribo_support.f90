@@ -11,7 +11,7 @@ module tribo_support
   integer, parameter, public :: dp = c_double
 
   public :: object_of, adopt, lend
-  public :: begin, finish, fail, fail_at, expect_size, expect_shape, expect_count, check_rows, blame
+  public :: begin, finish, fail, expect_size, expect_shape, expect_count, expect_index, check_rows, blame
   public :: from_zero, to_int, transpose_in_place
   public :: to_text, message_of
 
@@ -192,6 +192,17 @@ contains
     call fail(w, TRIBO_ERR_NEGATIVE, trim(text))
   end subroutine expect_count
 
+  !> Expects one of many indices to be one of 1 to most.
+  subroutine expect_index(w, name, i, index, most)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    integer, intent(in) :: i, index, most
+    character(len=40) :: text
+    if (index >= 1 .and. index <= most) return
+    write (text, '(a,i0)') 'is not in 1 to ', most
+    call fail_at(w, TRIBO_ERR_RANGE, name, i, index, trim(text))
+  end subroutine expect_index
+
   !> For calls that have no context, and so no message of the library's: names the value that was refused, which is the first that
   !> the status speaks of. What may be negative is asked about after what may not.
   subroutine blame_one(w, name, x)
@@ -264,7 +275,7 @@ contains
       call fail_at(w, TRIBO_ERR_SIZE, 'rowptr', rows + 1, rowptr(rows + 1), 'does not end where col does')
     end if
     do k = 1, size(col)
-      if (col(k) < 1 .or. col(k) > columns) call fail_at(w, TRIBO_ERR_RANGE, 'col', k, col(k), 'is out of range')
+      call expect_index(w, 'col', k, col(k), columns)
     end do
   end subroutine check_rows
 

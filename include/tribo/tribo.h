@@ -244,7 +244,8 @@ TRIBO_API int tribo_set_epsilon_all(tribo_context *ctx, double epsilon);
 /* Fixes the rate at which stuck contacts relax, lambda = 2 limit R_ii/epsilon, to lambda_dt/dt, whatever limits and
  * operator are or become: epsilon_i = 2 limit_i R_ii dt/lambda_dt follows them. Contacts that share bodies relax up to a few
  * times as fast in the partition coupling, see TRIBO_REAL_MAX_RATE. Before there is an operator there is no epsilon either, and
- * tribo_get_epsilon, tribo_force, tribo_force_tangent and tribo_accept return TRIBO_ERR_STATE.
+ * tribo_get_epsilon, tribo_force, tribo_force_tangent, tribo_force_tangent_planar and, with QUINN_REVERSAL, tribo_accept return
+ * TRIBO_ERR_STATE.
  * dt         in  time step of the caller's integrator, > 0
  * lambda_dt  in  > 0; the paper takes 1 for the oscillator and 0.4 for the chain; rk4 is stable to 2.785
  * Returns what tribo_set_epsilon does. tribo_get_epsilon: epsilon [n] out. */

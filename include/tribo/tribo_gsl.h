@@ -160,9 +160,9 @@ TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced
  * omega  in   the highest frequency that matters: of the load, and of those of its harmonics that matter
  * error  out  harmonic forces at the contacts, up to that frequency and in any proportion to each other, make displacements
  *             there of which at most this part is missing, in terms of the work that the same forces do on the whole elastic
- *             structure while they are steady. With static contacts it is (omega/omega_next)^4 and less, omega_next being the
- *             first frequency left out. HUGE_VAL if modes that slow may be left out. The places where loads act count if they
- *             are contacts, too
+ *             structure while they are steady. With static contacts it is x^2/(1 - x) and less, x being (omega/omega_next)^2 and
+ *             omega_next the first frequency left out, or a bound below it: not less than the last of the nmode kept. HUGE_VAL
+ *             if modes that slow may be left out. The places where loads act count if they are contacts, too
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (not reduced). */
 TRIBO_API int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error);
 
@@ -289,7 +289,7 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * part. Motions next to it, in which contacts that rest do so too, come closer by these factors a period. Contacts at rest
  * forget: multipliers of 0.
  * re, im  [2 ndof] out
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search failed), TRIBO_ERR_UNSUPPORTED (contacts that
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search found none), TRIBO_ERR_UNSUPPORTED (contacts that
  * bear upon each other stop, or reach their static limits, at one instant: what motions next to it do is not linear). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 

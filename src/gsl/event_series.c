@@ -118,55 +118,76 @@ static void find_velocities(const struct event *e, size_t k, double *v)
     }
 }
 
-/* The k-th coefficients of accelerations and of what is watched. Returns a status. */
-static int expand_forces(struct event *e, size_t k)
+/* The k-th coefficients of accelerations by stiffness, damping and loads. */
+static void expand_free(struct event *e, size_t k)
 {
-    const struct stick_slip *m = &e->events.stick_slip;
-    tribo_system *sys = e->sys;
-    const size_t n = sys->ndof, c = sys->ncontact;
-    const double *q = e->q + k * n, *u = e->u + k * n;
-    double *acc = e->acceleration, *watch = e->watch + k * c;
+    const tribo_system *sys = e->sys;
+    const size_t n = sys->ndof;
+    double *acc = e->acceleration;
     memset(acc, 0, n * sizeof *acc);
     add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
-    tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, acc);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, e->q + k * n, acc);
     if (sys->damping.rows) {
-        tribo_matrix_multiply_add(&sys->damping, -1.0, u, acc);
+        tribo_matrix_multiply_add(&sys->damping, -1.0, e->u + k * n, acc);
     }
-    tribo_system_tables(sys, (int)k, 1.0, 0, sys->ndof, acc);
-    find_velocities(e, k, watch);
-    if (m->breakaway.falls) {
-        expand_falling(e, k);
-    }
-    const int given = find_given(e, k);
-    if (given) {
-        const int unclear = m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->given) : TRIBO_OK;
-        if (unclear) {
-            return unclear;
-        }
-        tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
-    }
+    tribo_system_tables(sys, (int)k, 1.0, 0, n, acc);
+}
+
+/* base and a = the k-th coefficients of accelerations of the bases, and of the contacts against them. */
+static void expand_relative(struct event *e, size_t k)
+{
+    const size_t c = e->sys->ncontact;
     memset(e->base, 0, c * sizeof *e->base);
     add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
     for (size_t i = 0; i < c; i++) {
         e->a[i] = -e->base[i];
     }
-    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, e->a);
-    int status = tribo_stick_slip_balance(&e->events.stick_slip, e->a, e->held);
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->acceleration, e->a);
+}
+
+/* What is watched of contacts at rest is their force. */
+static void watch_forces(const struct event *e, size_t k, int given, double *watch)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t i = 0; i < e->sys->ncontact; i++) {
+        if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
+            watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
+        }
+    }
+}
+
+/* The k-th coefficients of accelerations and of what is watched. Returns a status. */
+static int expand_forces(struct event *e, size_t k)
+{
+    struct stick_slip *m = &e->events.stick_slip;
+    tribo_system *sys = e->sys;
+    double *acc = e->acceleration, *watch = e->watch + k * sys->ncontact;
+    expand_free(e, k);
+    find_velocities(e, k, watch);
+    if (m->breakaway.falls) {
+        expand_falling(e, k);
+    }
+    const int given = find_given(e, k);
+    int status = given && m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->given) : TRIBO_OK;
     if (status) {
-        return tribo_system_fail(sys, status, "%s", tribo_message(e->events.stick_slip.hold));
+        return status;
+    }
+    if (given) {
+        tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
+    }
+    expand_relative(e, k);
+    status = tribo_stick_slip_balance(m, e->a, e->held);
+    if (status) {
+        return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
     }
     tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
     status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->base, acc, e->held) : TRIBO_OK;
     if (status) {
         return status;
     }
-    for (size_t i = 0; i < c; i++) {
-        if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
-            watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
-        }
-    }
+    watch_forces(e, k, given, watch);
     /* contacts at rest must not creep by what rounding leaves in acc */
-    status = tribo_stick_slip_hold(&e->events.stick_slip, sys, e->base, acc);
+    status = tribo_stick_slip_hold(m, sys, e->base, acc);
     if (!status && sys->massless.count) {
         tribo_elastic_move(sys, m->slip, e->base, acc, e->spring);
     }

@@ -1,5 +1,6 @@
 /* The motions that a structure is reduced to: its lowest modes, found densely or by Lanczos' method, and what steady forces at
  * its contacts add to them. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,8 +24,10 @@
 #define SAME 1e-5
 #define SAME_SHIFT 1e-3
 
-/* A static response that has no more of its own than this part is one of the others. */
+/* A static response that has no more of its own than this part is one of the others; and what is left of it beside the modes is
+ * nothing if it is no more than this part of the whole, rounding of what was taken out. */
 #define OWN 1e-7
+#define ROUNDING (16.0 * DBL_EPSILON)
 
 /* Contacts whose displacements depend on each other make a flexibility that is singular but for this part. */
 #define RIDGE 1e-12
@@ -274,31 +277,37 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
 
 /* --------------------------------------------------------------------------------------------------------------- contacts */
 
+/* mx [ndof] = M x. Returns the norm of x in M. */
+static double weigh(const struct model *m, const double *x, double *mx)
+{
+    memset(mx, 0, m->ndof * sizeof *mx);
+    tribo_matrix_multiply_add(&m->mass, 1.0, x, mx);
+    const double square = tribo_dot(x, mx, m->ndof);
+    return square > 0.0 ? sqrt(square) : 0.0;
+}
+
 /* x -= the part of it in each of count motions, orthonormal in M, twice. mx [ndof] is workspace. Returns the norm of the rest. */
 static double separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
 {
-    double square = 0.0;
-    for (int pass = 0; pass < 3; pass++) {
-        memset(mx, 0, m->ndof * sizeof *mx);
-        tribo_matrix_multiply_add(&m->mass, 1.0, x, mx);
-        for (size_t k = 0; pass < 2 && k < count; k++) {
+    for (int pass = 0; pass < 2; pass++) {
+        weigh(m, x, mx);
+        for (size_t k = 0; k < count; k++) {
             tribo_add(x, -tribo_dot(phi + k * m->ndof, mx, m->ndof), phi + k * m->ndof, m->ndof);
         }
-        square = tribo_dot(x, mx, m->ndof);
     }
-    return square > 0.0 ? sqrt(square) : 0.0;
+    return weigh(m, x, mx);
 }
 
 /* x [ndof] is what a steady force at contact i does. Takes out of it what the modes have, enters what the rest does at the
  * contacts into missing [ncontact][ncontact], and adds what is new in it to the motions. */
 static void add_static(const struct model *m, struct reduced *r, size_t i, double *x, double *mx, double *missing)
 {
-    const double before = separate(m, m->nmode, r->phi, x, mx);
+    const double whole = weigh(m, x, mx), before = separate(m, m->nmode, r->phi, x, mx);
     for (size_t j = 0; j < m->ncontact; j++) {
         missing[i * m->ncontact + j] = tribo_matrix_row_dot(&m->direction, j, x);
     }
     const double norm = m->statics ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
-    if (norm > OWN * before) {
+    if (norm > greater(OWN * before, ROUNDING * whole)) {
         for (size_t k = 0; k < m->ndof; k++) {
             r->phi[r->count * m->ndof + k] = x[k] / norm;
         }
@@ -358,7 +367,8 @@ static void add_modes(const struct model *m, const struct shifted *s, const stru
     }
 }
 
-/* The largest x'Ax beside x'Bx, A [n][n] semidefinite, B, of which A is a part, to rounding of its diagonal. A is overwritten. */
+/* The largest x'Ax beside x'Bx, A [n][n] semidefinite, B, of which A is a part, to rounding of its diagonal: 1 where B is lost in
+ * the rounding of what was taken out, as beside rigid-body motions. Both are overwritten. */
 static int largest_part(size_t n, double *a, double *b, double *part)
 {
     struct matrix whole = {0};
@@ -368,18 +378,20 @@ static int largest_part(size_t n, double *a, double *b, double *part)
     for (size_t i = 0; i < n; i++) {
         b[i * n + i] += b[i * n + i] > 0.0 ? RIDGE * b[i * n + i] : 1.0;
     }
-    int done = value && tribo_matrix_from_dense(&whole, n, n, b) && tribo_cholesky_create(&c, &whole, &where, &pivot) == TRIBO_OK;
-    if (done) {
+    int status =
+        value && tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_create(&c, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
+    *part = 1.0;
+    if (!status) {
         tribo_half_solve(&c, a, n);
         tribo_transpose(n, n, a, b);
         tribo_half_solve(&c, b, n);
-        done = tribo_symmetric_eigen(b, n, value, a);
+        status = tribo_symmetric_eigen(b, n, value, a) ? TRIBO_OK : TRIBO_ERR_MEMORY;
         *part = clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
     }
     tribo_cholesky_free(&c);
     tribo_matrix_free(&whole);
     free(value);
-    return done;
+    return status != TRIBO_ERR_MEMORY;
 }
 
 /* What the modes lack at the contacts, and the static motions beside them. */

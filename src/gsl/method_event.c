@@ -25,7 +25,7 @@ static double size_on_step(const struct event *e, const double *series, size_t n
     double size = 0.0, power = 1.0;
     for (size_t k = 0; k <= e->order; k++) {
         size = greater(size, power * tribo_largest(series + k * n, n));
-        power *= length;
+        power = lesser(power * length, DBL_MAX);
     }
     return size;
 }
@@ -122,19 +122,18 @@ static void look(void *motion, double tau, size_t guards, struct guard *const *g
 TRIBO_SIMD static void find_bounds(size_t c, size_t terms, double h, const double *restrict watch, double *restrict size,
                                    double *restrict bend)
 {
-    double power = 1.0;
+    double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
     memset(size, 0, c * sizeof *size);
     memset(bend, 0, c * sizeof *bend);
     for (size_t k = 0; k < terms; k++) {
-        const double six =
-            k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) / (h * h * h * h * h * h);
+        const double six = k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) * sixth;
         const double *restrict w = watch + k * c;
         for (size_t i = 0; i < c; i++) {
-            const double x = fabs(w[i]) * power;
-            size[i] += x;
-            bend[i] += six * x;
+            size[i] += fabs(w[i]) * power;
+            bend[i] += fabs(w[i]) * six;
         }
-        power *= h;
+        power = lesser(power * h, DBL_MAX);
+        sixth = k < 6 ? 1.0 : lesser(sixth * h, DBL_MAX);
     }
 }
 
@@ -162,7 +161,7 @@ static double parts_of_velocity(const struct event *e, size_t i, double h)
     }
     for (size_t k = 0; k <= e->order; k++) {
         size += lever * tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
-        power *= h;
+        power = lesser(power * h, DBL_MAX);
     }
     return size;
 }
@@ -258,6 +257,17 @@ static int combine(void *motion, const double *c, double tau, const double *end,
 static double work(const void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
 
+/* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes; but so many terms there are. */
+#define MOST_DIGITS 240.0
+#define LEAST_ORDER 4.0
+
+/* The more digits are wanted, the more terms pay. */
+static size_t best_order(double tolerance, double fastest)
+{
+    const double wanted = 10.0 - 1.5 * log10(tolerance);
+    return (size_t)(fastest > 0.0 ? greater(lesser(wanted, MOST_DIGITS / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
+}
+
 static int create(tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
@@ -271,9 +281,8 @@ static int create(tribo_driver *drv)
     if (status) {
         return status;
     }
-    /* the more digits are wanted, the more terms pay */
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
-    e->order = e->most_order = (size_t)(10.0 - 1.5 * log10(e->tolerance));
+    e->order = e->most_order = best_order(e->tolerance, 0.0);
     const size_t terms = e->order + 1;
     double *all = malloc((terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
     if (!all) {
@@ -318,6 +327,8 @@ static int prepare(struct event *e)
     if (e->cosine && e->revision == sys->revision) {
         return TRIBO_OK;
     }
+    e->fastest = tribo_system_fastest(sys);
+    e->most_order = best_order(e->tolerance, e->fastest);
     const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
@@ -327,7 +338,6 @@ static int prepare(struct event *e)
     e->cosine = more;
     e->sine = more + room;
     e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limits.knots ? 2 : 1;
-    e->fastest = tribo_system_fastest(sys);
     e->revision = sys->revision;
     return TRIBO_OK;
 }
@@ -494,7 +504,9 @@ static int begin(void *motion, double t, const double *y, double *reach)
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
     set_guards(e);
-    return TRIBO_OK;
+    return tribo_dense_finite(e->size, 2 * e->sys->ncontact)
+               ? TRIBO_OK
+               : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE, "at t = %.17g derivatives of the motion overflow", t);
 }
 
 static int transition(void *motion, double tau, size_t columns, double *v)

@@ -13,6 +13,9 @@
 /* Modes without stiffness count with this part of the frequency of the period. */
 #define LEAST_OMEGA 0.1
 
+/* Sizes between this and one over it have squares that are numbers, and so have those of what is far smaller or larger. */
+#define LARGE 1e100
+
 static double turn(void)
 {
     return 2.0 * acos(-1.0);
@@ -32,6 +35,23 @@ static double distance(const double *a, const double *b, size_t n)
     return sqrt(square);
 }
 
+void tribo_period_map_coordinates(const struct period_map *m, const double *y, double *x)
+{
+    tribo_energy_norm_of(&m->norm, 1, y, x);
+    for (size_t i = 0; i < m->n; i++) {
+        x[i] *= m->scale;
+    }
+}
+
+/* m->y = the state that has the coordinates x. */
+static void set_state(struct period_map *m, const double *x)
+{
+    tribo_energy_norm_state(&m->norm, 1, x, m->y);
+    for (size_t i = 0; i < m->n; i++) {
+        m->y[i] /= m->scale;
+    }
+}
+
 /* -------------------------------------------------------------------------------------------------------------- integration */
 
 static struct period_map *of_company(struct company *company)
@@ -42,7 +62,7 @@ static struct period_map *of_company(struct company *company)
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct period_map *m = of_company(company);
-    tribo_energy_norm_of(&m->norm, 1, y, m->x);
+    tribo_period_map_coordinates(m, y, m->x);
     m->size = greater(m->size, length(m->x, m->n));
     return m->variation.company.ends(&m->variation.company, tau, t, y);
 }
@@ -89,11 +109,11 @@ int tribo_period_map_replay(struct period_map *m, const double *y, struct compan
 int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
 {
     int status = TRIBO_OK;
-    tribo_energy_norm_state(&m->norm, 1, x, m->y);
+    set_state(m, x);
     for (size_t k = 0; !status && k < periods; k++) {
         status = integrate(m, m->t, m->t + m->period, NULL);
     }
-    tribo_energy_norm_of(&m->norm, 1, m->y, x);
+    tribo_period_map_coordinates(m, m->y, x);
     return status;
 }
 
@@ -127,11 +147,11 @@ static void set_image(const struct period_map *m, size_t count, double *x)
 int tribo_period_map_follow(struct period_map *m, struct point *p)
 {
     const size_t n = m->n;
-    tribo_energy_norm_state(&m->norm, 1, p->x, m->y);
+    set_state(m, p->x);
     int status = m->moved ? hold_still(m) : TRIBO_OK;
     enter(m);
     memcpy(p->y, m->y, n * sizeof *p->y);
-    tribo_energy_norm_of(&m->norm, 1, m->y, p->x);
+    tribo_period_map_coordinates(m, m->y, p->x);
     tribo_variation_begin(&m->variation, m->unit);
     m->size = greater(m->least, length(p->x, n));
     status = status ? status : integrate(m, m->t, m->t + m->span, &m->company);
@@ -140,7 +160,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     }
     m->moved = 1;
     memcpy(p->end, m->y, n * sizeof *p->end);
-    tribo_energy_norm_of(&m->norm, 1, m->y, p->image);
+    tribo_period_map_coordinates(m, m->y, p->image);
     tribo_energy_norm_of(&m->norm, n, m->variation.v, p->derivative);
     set_image(m, n, p->image);
     set_image(m, n * n, p->derivative);
@@ -163,7 +183,7 @@ int tribo_period_map_complete(struct period_map *m, struct point *p, double *res
     }
     memcpy(m->y, p->end, m->n * sizeof *m->y);
     const int status = integrate(m, m->t + m->span, m->t + m->period, NULL);
-    tribo_energy_norm_of(&m->norm, 1, m->y, m->x);
+    tribo_period_map_coordinates(m, m->y, m->x);
     *residual = distance(m->x, p->x, m->n);
     return status;
 }
@@ -193,44 +213,64 @@ static void add_modal(const struct period_map *m, const struct harmonic *w, cons
     }
 }
 
-/* The square of how far a load moves the structure at least, against stiffness or inertia. */
+/* How far a load moves the structure at least, against stiffness or inertia. */
 static double size_of_load(struct period_map *m, const struct harmonic *w, const double *amplitude)
 {
-    double square = 0.0;
+    double size = 0.0;
     memset(m->x, 0, m->n * sizeof *m->x);
     add_modal(m, w, amplitude, m->x);
     for (size_t d = 0; d < m->sys->ndof; d++) {
-        const double x = m->x[d] / greater(m->norm.omega[d], fabs(w->omega));
-        square += x * x;
+        size = hypot(size, m->x[d] / greater(m->norm.omega[d], fabs(w->omega)));
     }
-    return square;
+    return size;
 }
 
 /* The same of a base that takes along what its contacts touch, or stretches their springs. */
 static double size_of_base(const struct period_map *m, const struct harmonic *w, const double *amplitude)
 {
-    double square = 0.0;
+    double size = 0.0;
     for (size_t k = 0; k < w->count; k++) {
         const double r = tribo_system_delassus(m->sys, w->index[k], w->index[k]);
         const int elastic = tribo_massless_touches(&m->sys->massless, w->index[k]) && w->omega != 0.0;
-        square += r > 0.0 ? amplitude[k] * amplitude[k] / r : 0.0;
-        square += elastic ? amplitude[k] * amplitude[k] / (w->omega * w->omega * m->sys->massless.compliance[w->index[k]]) : 0.0;
+        size = r > 0.0 ? hypot(size, amplitude[k] / sqrt(r)) : size;
+        size = elastic ? hypot(size, amplitude[k] / (w->omega * sqrt(m->sys->massless.compliance[w->index[k]]))) : size;
     }
-    return square;
+    return size;
 }
 
-static double least_size(struct period_map *m)
+/* How far loads and bases move the structure at least. */
+static double least_motion(struct period_map *m)
 {
-    double square = 0.0;
+    double size = 0.0;
     for (size_t k = 0; k < m->sys->harmonics; k++) {
         const struct harmonic *w = &m->sys->harmonic[k];
         if (w->drives == DRIVES_LOAD) {
-            square += size_of_load(m, w, w->cosine) + size_of_load(m, w, w->sine);
+            size = hypot(size, hypot(size_of_load(m, w, w->cosine), size_of_load(m, w, w->sine)));
         } else if (w->drives == DRIVES_BASE) {
-            square += size_of_base(m, w, w->cosine) + size_of_base(m, w, w->sine);
+            size = hypot(size, hypot(size_of_base(m, w, w->cosine), size_of_base(m, w, w->sine)));
         }
     }
-    return LEAST_SIZE * sqrt(square);
+    return size;
+}
+
+/* A power of two that makes very small or very large motions ordinary ones. */
+static double scale_of(double size)
+{
+    return size > 0.0 && !(size >= 1.0 / LARGE && size <= LARGE) ? ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0)) : 1.0;
+}
+
+/* Sizes of motions are those of what drives the system, and of the guess y. */
+static void prepare_sizes(struct period_map *m, const double *y)
+{
+    const double least = least_motion(m);
+    double size = least;
+    m->scale = 1.0;
+    tribo_period_map_coordinates(m, y, m->x);
+    for (size_t i = 0; i < m->n; i++) {
+        size = greater(size, fabs(m->x[i]));
+    }
+    m->scale = scale_of(size);
+    m->least = LEAST_SIZE * (m->scale * least);
 }
 
 static int prepare_norm(struct period_map *m, double period)
@@ -254,7 +294,7 @@ static int prepare_norm(struct period_map *m, double period)
     return TRIBO_OK;
 }
 
-int tribo_period_map_prepare(struct period_map *m, double t, double period)
+int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y)
 {
     m->halves = 0;
     m->moved = 0;
@@ -266,7 +306,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period)
     if (!status) {
         m->t = t;
         tribo_period_map_choose(m, is_odd(m->sys, period));
-        m->least = least_size(m);
+        prepare_sizes(m, y);
     }
     return status;
 }

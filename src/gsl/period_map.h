@@ -6,7 +6,7 @@
 #include "energy_norm.h"
 #include "variation.h"
 
-/* Begins with y, [n] as all of this, x in coordinates of the energy norm. */
+/* Begins with y, [n] as all of this, x in coordinates of the energy norm, times the map's scale. */
 struct point {
     double *y, *x;
     double *end, *image; /* the state after the span; and the image of x: that, or minus that */
@@ -22,6 +22,7 @@ struct period_map {
     struct events *events;
     size_t n; /* 2 ndof */
     struct energy_norm norm;
+    double scale;    /* 1, but for motions so small or large that squares of their sizes are no numbers */
     size_t revision; /* of the system whose norm it is */
     struct company company;
     struct variation variation;
@@ -39,12 +40,15 @@ struct period_map {
 int tribo_period_map_create(struct period_map *m, tribo_driver *drv);
 void tribo_period_map_free(struct period_map *m);
 
-/* These return a status, its message on the driver. The first makes ready for the system as it is; the second one follows the
- * motion from p->x, and finds the rest of p; with the third one *residual is that of the whole period, and p->y has
+/* These return a status, its message on the driver. The first makes ready for the system as it is, and a guess y; the second one
+ * follows the motion from p->x, and finds the rest of p; with the third one *residual is that of the whole period, and p->y has
  * velocities of what has no mass, too. */
-int tribo_period_map_prepare(struct period_map *m, double t, double period);
+int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual);
+
+/* x [n] of a state y [n]. */
+void tribo_period_map_coordinates(const struct period_map *m, const double *y, double *x);
 
 /* Takes x [n] along for that number of periods; a status, its message on the driver. */
 int tribo_period_map_march(struct period_map *m, size_t periods, double *x);

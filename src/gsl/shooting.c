@@ -78,9 +78,15 @@ static int no_memory(const struct shooting *s)
 
 /* -------------------------------------------------------------------------------------------------------------- points */
 
+/* Whether what is left of a motion of that size is this part of it; of what overflows it never is. */
+static int comes_back(double residual, double size, double part)
+{
+    return residual <= part * size && isfinite(size);
+}
+
 static int close_enough(const struct point *p, double part)
 {
-    return p->residual <= part * p->size;
+    return comes_back(p->residual, p->size, part);
 }
 
 static void exchange(struct shooting *s)
@@ -392,7 +398,7 @@ static int no_convergence(const struct shooting *s, double residual)
 static int find(struct shooting *s, double *y)
 {
     double residual = 0.0;
-    tribo_energy_norm_of(&s->map.norm, 1, y, s->here.x);
+    tribo_period_map_coordinates(&s->map, y, s->here.x);
     memcpy(s->guess, s->here.x, s->map.n * sizeof *s->guess);
     int status = search_all(s);
     if (!status && !close_enough(&s->best, TOLERANCE)) {
@@ -400,7 +406,7 @@ static int find(struct shooting *s, double *y)
     }
     status = status ? status : approach_guess(s);
     status = status ? status : tribo_period_map_complete(&s->map, &s->best, &residual);
-    if (!status && !(residual <= TOLERANCE * s->best.size)) {
+    if (!status && !comes_back(residual, s->best.size, TOLERANCE)) {
         return no_convergence(s, residual / s->best.size);
     }
     status = status ? status : find_multipliers(s);
@@ -417,7 +423,7 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 {
     tribo_driver *drv = s->map.drv;
     s->found = 0;
-    int status = tribo_period_map_prepare(&s->map, t, period);
+    int status = tribo_period_map_prepare(&s->map, t, period, y);
     status = status ? status : find(s, y);
     drv->periods += (s->map.halves + 1) / 2;
     return status;

@@ -238,7 +238,8 @@ C     Values
       IPL(1) = 1
       IPL(2) = N
       CALL TRBPLN(IH, 2, IPL, IERR)
-      CALL WANTED('TRBPLN', IH, IERR, 5, 'first(2) = 3 is out of range')
+      CALL WANTED('TRBPLN', IH, IERR, 5,
+     1            'first(2) = 3 is not in 1 to 2')
       IPL(2) = 2
       CALL TRBPLN(IH, 2, IPL, IERR)
       CALL WANTED('TRBPLN', IH, IERR, 22,
@@ -305,12 +306,12 @@ C     Values
       ICOL(2) = 4
       ICOL(3) = 3
       CALL TRBOPS(IH, N, IROW, ICOL, VAL, IERR)
-      CALL WANTED('TRBOPS', IH, IERR, 5, 'col(2) = 4 is out of range')
+      CALL WANTED('TRBOPS', IH, IERR, 5, 'col(2) = 4 is not in 1 to 3')
       ICOL(2) = 2
       CALL TRBOPM(IH, N, 2, VAL, IROW, ICOL, VAL, IERR)
-      CALL WANTED('TRBOPM', IH, IERR, 5, 'col(3) = 3 is out of range')
+      CALL WANTED('TRBOPM', IH, IERR, 5, 'col(3) = 3 is not in 1 to 2')
       CALL TRBOPC(IH, N, 2, MINV, IROW, ICOL, VAL, VAL, IPAR, IERR)
-      CALL WANTED('TRBOPC', IH, IERR, 5, 'col(3) = 3 is out of range')
+      CALL WANTED('TRBOPC', IH, IERR, 5, 'col(3) = 3 is not in 1 to 2')
       CALL EXPECT('MINV not called', IPAR(1) .EQ. 0)
       CALL TRBOPC(IH, N, 3, MINV, IROW, ICOL, VAL, VAL, IPAR, IERR)
       CALL WANTED('TRBOPC', IH, IERR, 62,

@@ -243,7 +243,7 @@ C     Nothing is made of what is wrong, and the handle stays as it was.
       CALL TRBLSP(6, 2, IRM, ICM, RM, IRM, ICM, RM, IRK, ICK, RK, IRJ,
      1            ICJ, RJ, IH, TEXT, IERR)
       CALL SAYS('ICK', IERR, 5, TEXT,
-     1          'stiffness: col(3) = 7 is out of range')
+     1          'stiffness: col(3) = 7 is not in 1 to 6')
       ICK(3) = 1
       IRJ(1) = 2
       CALL TRBRED(6, 2, IRM, ICM, RM, IRK, ICK, RK, IRJ, ICJ, RJ, 2, 1,

@@ -491,8 +491,59 @@ TEST(on_the_edge)
     tribo_system_destroy(sys);
 }
 
+/* ---------------------------------------------------------------------------------------------------------- any units */
+
+/* Two masses on springs with contacts, in other units of mass, length and time. y out: the state at 7, in these. */
+static void move_in_units(double mass, double length, double time, double *y)
+{
+    const double force = mass * length / (time * time), stiff = mass / (time * time), t1 = 7.0 * time;
+    const double m[] = {mass, 0.0, 0.0, 2.0 * mass}, k[] = {3.0 * stiff, -stiff, -stiff, 2.0 * stiff};
+    const double j[] = {1.0, 0.0, -1.0, 1.0}, limit[] = {0.6 * force, 0.3 * force}, load[] = {2.0 * force, 0.0};
+    double t = 0.0;
+    tribo_system *sys;
+    tribo_driver *drv;
+    assert_ok(tribo_system_linear(&sys, 2, 2, m, NULL, k, j, 0, NULL, 0));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    assert_ok(tribo_system_add_load(sys, 2.3 / time, load, NULL));
+    assert_ok(tribo_driver_create(&drv, sys, "event", time, 1e-10 * length, 1e-10));
+    driver_advance(drv, &t, t1, y);
+    for (size_t i = 0; i < 2; i++) {
+        y[i] /= length;
+        y[2 + i] *= time / length;
+    }
+    y[4] /= force * length;
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
+/* Small, fast machines, earthquakes, and what is neither: powers of times are no numbers for long. */
+TEST(units)
+{
+    const double unit[][3] = {{1e-15, 1e-9, 1e-9}, {1e-15, 1e-9, 1e-10}, {1e3, 1e-14, 1e10}, {1.0, 1.0, 1e40}, {1.0, 1.0, 1e-40}};
+    double y[5] = {0}, want[5] = {0};
+    move_in_units(1.0, 1.0, 1.0, want);
+    move_in_units(unit[_i][0], unit[_i][1], unit[_i][2], y);
+    assert_all_close(y, want, 5, 1e-8);
+}
+
+/* A body without springs and loads, of which no frequency tells how fast it is: it slides for long, or for an instant. */
+TEST(long_slide)
+{
+    const double one = 1.0, none = 0.0, limit = _i ? 1.0 : 1e-14, t1 = _i ? 1e-60 : 1e16;
+    double t = 0.0, y[3] = {0.0, 1.0, 0.0};
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &none, &one, 0, NULL, 0));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
+    tribo_driver *drv = driver_create(sys, "event", 1.0, 1e-9);
+    driver_advance(drv, &t, t1, y);
+    assert_close(y[0] * (_i ? 1e60 : 2e-14), 1.0, 1e-9);
+    assert_close(y[1], _i ? 1.0 : 0.0, 1e-15);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
 TEST_MAIN("event", {errors_follow_the_tolerance, REFERENCES}, {work_for_the_chain, 1}, {nothing_is_missed, REFERENCES},
           {fast_and_small, 1}, {rest_on_a_belt, 1}, {rest_on_each_other, 2}, {nothing_left_over, 4}, {state_changed, 2},
           {reversal, 2}, {stop, 2}, {grazing_velocity, 2}, {grazing_force, 4}, {break_away_and_stick, 2}, {twins, 2},
           {redundant_contacts, 4}, {driven_from_both_sides, 2}, {beside_one_at_its_limit, 1}, {load_table, 3}, {limit_table, 3},
-          {kinks_that_are_events, 3}, {observed_events, 2}, {on_the_edge, 2})
+          {kinks_that_are_events, 3}, {observed_events, 2}, {on_the_edge, 2}, {units, 5}, {long_slide, 2})

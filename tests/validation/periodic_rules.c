@@ -221,5 +221,33 @@ TEST(automatic)
     require(count[1] == count[0] && count[0] > 0, "%zu periods, not %zu", count[1], count[0]);
 }
 
+/* Motions of any size: squares of the smallest are 0, and squares of the largest are no numbers. */
+TEST(any_size)
+{
+    const double sizes[] = {1e-280, 1e-160, 1e140};
+    const double size = sizes[_i / 2], e[2] = {1.0, 0.0};
+    double y[3] = {0}, want[3] = {0}, least, most;
+    struct search s = oscillator_search(methods[_i % 2], 0.1, 0.1 * size, size, 0.7),
+                  ordinary = oscillator_search(methods[_i % 2], 0.1, 0.1, 1.0, 0.7);
+    find(&s, 0.0, y);
+    find(&ordinary, 0.0, want);
+    assert_close(y[0] / size, want[0], 1e-11);
+    assert_close(y[1] / size, want[1], 1e-11);
+    assert_ok(tribo_driver_period_extremes(s.drv, e, &least, &most));
+    assert_close(least / most, -1.0, 1e-11);
+    search_free(&s);
+    search_free(&ordinary);
+}
+
+/* A contact that is nothing beside its load: 1/(1 - omega^2) of that, as without friction. */
+TEST(huge_load)
+{
+    double y[3] = {0};
+    struct search s = oscillator_search("exact", 0.0, 0.5, 1e200, 0.7);
+    find(&s, 0.0, y);
+    assert_close(hypot(y[0], y[1] / 0.7) / 1e200, 1.0 / 0.51, 1e-9);
+    search_free(&s);
+}
+
 TEST_MAIN("periodic_rules", {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12}, {falling_limit, 12},
-          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1})
+          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1}, {any_size, 6}, {huge_load, 1})

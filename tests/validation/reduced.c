@@ -225,6 +225,65 @@ TEST(truncation_errors)
     tribo_system_destroy(chain);
 }
 
+/* Where modes and static responses are together all that a small structure can do, they are that: its own frequencies, none twice
+ * and none missing, also where a contact moves one mode and nothing else, so that its static response has nothing new. */
+TEST(all_of_a_small_structure)
+{
+    enum { N = 4 };
+    gsl_spmatrix *mass = gsl_spmatrix_alloc(N, N), *stiffness = gsl_spmatrix_alloc(N, N), *direction = gsl_spmatrix_alloc(N, N);
+    const size_t nmode = (size_t)_i + 1;
+    char text[200] = "";
+    double omega[N], error;
+    tribo_system *sys;
+    for (size_t i = 0; i < N; i++) {
+        gsl_spmatrix_set(mass, i, i, (double)(i + 1));
+        gsl_spmatrix_set(stiffness, i, i, 100.0);
+        gsl_spmatrix_set(direction, i, i, i == 2 ? 1e6 : 1.0);
+    }
+    require(!tribo_system_reduced(&sys, mass, stiffness, direction, nmode, 1, text, sizeof text), "%zu modes: %s", nmode, text);
+    ck_assert_uint_eq(tribo_system_ndof(sys), N);
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    for (size_t k = 0; k < N; k++) {
+        assert_close(omega[k], 10.0 / sqrt((double)(N - k)), 1e-13);
+    }
+    assert_ok(tribo_system_get_truncation(sys, 1.0, &error));
+    ck_assert(error < 1e-2);
+    tribo_system_destroy(sys);
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+}
+
+/* Two bodies on a spring and a third one by itself, all free: the contacts at both ends of the spring feel one elastic motion, and
+ * what they lack is lost beside the rigid-body motions. Then all of it may be missing. */
+TEST(free_bodies)
+{
+    gsl_spmatrix *mass = gsl_spmatrix_alloc(3, 3), *stiffness = gsl_spmatrix_alloc(3, 3), *direction = gsl_spmatrix_alloc(2, 3);
+    char text[200] = "";
+    double omega[3], error;
+    tribo_system *sys;
+    for (size_t i = 0; i < 3; i++) {
+        gsl_spmatrix_set(mass, i, i, i == 1 ? 2.0 : 1.0);
+    }
+    for (size_t i = 0; i < 2; i++) {
+        gsl_spmatrix_set(stiffness, i, i, 1.0);
+        gsl_spmatrix_set(stiffness, i, 1 - i, -1.0);
+        gsl_spmatrix_set(direction, i, i, i ? -1.0 : 1.0);
+    }
+    require(!tribo_system_reduced(&sys, mass, stiffness, direction, 2, 1, text, sizeof text), "%s", text);
+    ck_assert_uint_eq(tribo_system_ndof(sys), 3);
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    assert_exact(omega[0], 0.0);
+    assert_exact(omega[1], 0.0);
+    assert_close(omega[2], sqrt(1.5), 1e-13);
+    assert_ok(tribo_system_get_truncation(sys, 0.01, &error));
+    ck_assert(error >= 0.0);
+    tribo_system_destroy(sys);
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+}
+
 /* A copy knows it, too. */
 TEST(copies_keep_truncation)
 {
@@ -238,4 +297,5 @@ TEST(copies_keep_truncation)
     tribo_system_destroy(copy);
 }
 
-TEST_MAIN("reduced", {beam_stuck, 4}, {beam_best, 8}, {truncation_bounds, 8}, {truncation_errors, 1}, {copies_keep_truncation, 1})
+TEST_MAIN("reduced", {beam_stuck, 4}, {beam_best, 8}, {truncation_bounds, 8}, {truncation_errors, 1},
+          {all_of_a_small_structure, 4}, {free_bodies, 1}, {copies_keep_truncation, 1})
