@@ -91,14 +91,14 @@ static int box_solve_sets(struct box_qp *p)
     return tribo_box_settled(p, TRIBO_SETTLED);
 }
 
-/* The same; where forces of earlier calls are in the way without them, and if rounding has gathered in the factor over many
- * changes with a new one. */
+/* The same; if rounding has gathered in the factor over many changes with a new one, and where forces of earlier calls are in the
+ * way without them. */
 static void box_find(struct box_qp *p)
 {
     if (!box_solve_sets(p)) {
-        box_forget(p);
+        tribo_factor_rebuild(p, NULL);
         if (!box_solve_sets(p)) {
-            tribo_factor_rebuild(p, NULL);
+            box_forget(p);
             box_solve_sets(p);
         }
     }
