@@ -5,6 +5,7 @@
 #include "../common/layout.h"
 #include "../common/real.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -167,6 +168,20 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
     }
 }
 
+/* A time is known to its rounding. Where contacts that repeat each other may rest, what one holds follows its base, and the others
+ * see the rounding of that. */
+static void find_base_sizes(struct stick_slip *m, const tribo_system *sys)
+{
+    const double late = DBL_EPSILON * fabs(sys->time) / TRIBO_VELOCITY_NOISE;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->base_size[i] += late * m->base_rate_size[i];
+    }
+    const double largest = m->independent ? 0.0 : tribo_largest(m->base_size, sys->ncontact);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->base_size[i] = greater(m->base_size[i], largest);
+    }
+}
+
 void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
 {
     const double fastest = tribo_system_fastest(sys) + m->breakaway.steepest;
@@ -177,6 +192,7 @@ void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
     add_amplitudes(sys, DRIVES_BASE, 0, m->base_size);
     add_amplitudes(sys, DRIVES_BASE, 1, m->base_rate_size);
     add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
+    find_base_sizes(m, sys);
 }
 
 void tribo_stick_slip_forget_gains(struct stick_slip *m)

@@ -143,5 +143,60 @@ TEST(beyond_all_numbers)
     tribo_destroy(c);
 }
 
-TEST_MAIN("extremes", {extreme_limits_and_masses, 200}, {limits_that_are_never_reached, 20},
-          {far_limits_of_redundant_contacts, 1}, {ill_conditioned, 60}, {beyond_all_numbers, 2})
+/* What is left of forces that were larger than all others is not taken for a solution. */
+TEST(after_huge_forces)
+{
+    const double r[] = {2.0, 1.0, 1.0, 2.0}, limit[] = {1e300, 1.0}, huge[] = {-1e300, 0.0}, pull[] = {-3.0, -1.0};
+    double f[2];
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 2));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_limit(c, limit));
+    assert_ok(tribo_step_force(c, 1.0, huge, f));
+    assert_close(f[0], 5e299, 1e285);
+    assert_ok(tribo_step_force(c, 1.0, pull, f));
+    assert_close(f[0], 5.0 / 3.0, 1e-15);
+    assert_close(f[1], -1.0 / 3.0, 1e-15);
+    tribo_destroy(c);
+}
+
+/* The same where bounds are far, and contacts that repeat each other have others. */
+TEST(after_huge_forces_of_redundant_contacts)
+{
+    const double sign[] = {1.0, -1.0, -1.0}, huge[] = {1e300, -1e300, -1e300}, pull[] = {-0.5, 0.5, 0.5},
+                 lower[] = {-1e9, 0.0, -1.5}, upper[] = {3e9, 1e300, 1.5}, want[] = {0.25, 0.0, -0.25};
+    double r[9], f[3];
+    tribo_context *c;
+    for (size_t i = 0; i < 9; i++) {
+        r[i] = sign[i / 3] * sign[i % 3];
+    }
+    assert_ok(tribo_create(&c, 3));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_solve_box(c, huge, lower, upper, f));
+    assert_ok(tribo_solve_box(c, pull, lower, upper, f));
+    assert_all_close(f, want, 3, 1e-14);
+    tribo_destroy(c);
+}
+
+/* Contacts of one body are driven apart, and two of them have no limit to speak of: one of these finds the others' limits, and
+ * only its own are out of reach. */
+TEST(one_unlimited_contact_holds)
+{
+    const double sign[] = {1.0, -1.0, 1.0, 1.0, -1.0}, a[] = {0.55, 2.0, 2.8, -0.07, -0.25},
+                 lower[] = {-1.0, 0.0, -1.0, -1e300, -1.0}, upper[] = {3.0, 1e300, 1.0, 1e300, 3.0},
+                 want[] = {-1.0, 0.0, -1.0, 5.07, 3.0};
+    double r[25], f[5];
+    tribo_context *c;
+    for (size_t i = 0; i < 25; i++) {
+        r[i] = sign[i / 5] * sign[i % 5];
+    }
+    assert_ok(tribo_create(&c, 5));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_solve_box(c, a, lower, upper, f));
+    assert_all_close(f, want, 5, 1e-13);
+    tribo_destroy(c);
+}
+
+TEST_MAIN("extremes", {after_huge_forces, 1}, {after_huge_forces_of_redundant_contacts, 1}, {one_unlimited_contact_holds, 1},
+          {extreme_limits_and_masses, 200}, {limits_that_are_never_reached, 20}, {far_limits_of_redundant_contacts, 1},
+          {ill_conditioned, 60}, {beyond_all_numbers, 2})

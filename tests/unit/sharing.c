@@ -289,5 +289,27 @@ TEST(nothing_is_shared_of_nothing)
     tribo_destroy(c);
 }
 
-TEST_MAIN("sharing", {identical_contacts_share, 100}, {twins_share_beside_twins_at_limits, 1}, {share_without_order, 200},
-          {least_norm, 200}, {shares_that_last, 40}, {shares_after_sliding, 1}, {nothing_is_shared_of_nothing, 1})
+/* Contacts of one body, one of which is pulled to its limit; what rounding leaves of the others' accelerations does not pit them
+ * against each other, in the first call nor in a later one. */
+TEST(rounding_takes_no_part)
+{
+    const double sign[] = {1.0, -1.0, 1.0, -2.0, 1.0, 1.0}, vfree[] = {0.0, 0.0, 0.0, 0.0, -2.0, -1.6e-13},
+                 want[] = {-0.125, 0.125, -0.125, 0.25, 1.0, -0.125};
+    double r[36], f[6];
+    tribo_context *c;
+    for (size_t i = 0; i < 36; i++) {
+        r[i] = sign[i / 6] * sign[i % 6];
+    }
+    assert_ok(tribo_create(&c, 6));
+    assert_ok(tribo_set_operator_dense(c, r));
+    assert_ok(tribo_set_limit_all(c, 1.0));
+    for (int k = 0; k < 2; k++) {
+        assert_ok(tribo_step_force(c, 1.0, vfree, f));
+        assert_all_close(f, want, 6, 1e-12);
+    }
+    tribo_destroy(c);
+}
+
+TEST_MAIN("sharing", {rounding_takes_no_part, 1}, {identical_contacts_share, 100}, {twins_share_beside_twins_at_limits, 1},
+          {share_without_order, 200}, {least_norm, 200}, {shares_that_last, 40}, {shares_after_sliding, 1},
+          {nothing_is_shared_of_nothing, 1})

@@ -26,7 +26,7 @@ static void box_refine(struct box_qp *p)
             const size_t i = p->order[k];
             p->x[i] = tribo_box_moved(p, i);
         }
-        tribo_box_gradients(p, 0);
+        tribo_box_gradients(p);
     }
 }
 
@@ -72,18 +72,48 @@ static void put_at_bounds(struct box_qp *p)
     }
 }
 
-/* x with the sets as they are; if rounding has gathered in the factor over many changes, with a new one. */
-static void box_solve_sets(struct box_qp *p, int first)
+/* Forces of earlier calls go, which may have been so large that their rounding is what is left of them. */
+static void box_forget(struct box_qp *p)
+{
+    tribo_box_forget_low(p);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = clamp(0.0, p->lo[i], p->hi[i]);
+    }
+}
+
+/* x with the sets and the factor as they are. Returns whether it is found to rounding. */
+static int box_solve_sets(struct box_qp *p)
 {
     put_at_bounds(p);
-    tribo_box_gradients(p, first);
+    tribo_box_gradients(p);
     box_refine(p);
-    if (!tribo_box_settled(p, TRIBO_SETTLED)) {
+    return tribo_box_settled(p, TRIBO_SETTLED);
+}
+
+/* The same; if rounding has gathered in the factor over many changes with a new one, and where forces of earlier calls are in the
+ * way without them. */
+static void box_find(struct box_qp *p)
+{
+    if (!box_solve_sets(p)) {
         tribo_factor_rebuild(p, NULL);
-        put_at_bounds(p);
-        tribo_box_gradients(p, 0);
-        box_refine(p);
+        if (!box_solve_sets(p)) {
+            box_forget(p);
+            box_solve_sets(p);
+        }
     }
+}
+
+/* Whether a dependent is to go to a bound so far away that beside its force there what pulls at it is rounding. */
+static int box_hides(const struct box_qp *p)
+{
+    int hides = 0;
+    for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
+        const size_t i = p->order[k];
+        const double bound = p->to[i] == AT_LOWER ? p->lo[i] : p->to[i] == AT_UPPER ? p->hi[i] : 0.0;
+        hides |= p->part[i] * fabs(bound) > product(fabs(p->gradient[i]), p->scale[i] * p->scale[i]);
+    }
+    return hides;
 }
 
 /* Patience as with block pivoting (Judice and Pires 1994, Comput. Oper. Res. 21, 587): it ends when the number of changes has
@@ -91,10 +121,13 @@ static void box_solve_sets(struct box_qp *p, int first)
 static int box_primal_dual(struct box_qp *p)
 {
     size_t least = SIZE_MAX;
-    for (int patience = 10, first = 1; patience > 0; patience--, first = 0) {
-        box_solve_sets(p, first);
+    for (int patience = 10; patience > 0; patience--) {
+        box_find(p);
         if (box_revise(p)) {
             return 1;
+        }
+        if (box_hides(p)) {
+            return 0;
         }
         const size_t changes = tribo_box_change_all(p);
         if (changes < least) {
@@ -171,7 +204,7 @@ static int box_slide(struct box_qp *p, size_t d)
 /* 1 if something moved as far as a bound. */
 static int box_descend(struct box_qp *p)
 {
-    tribo_box_gradients(p, 0);
+    tribo_box_gradients(p);
     tribo_box_newton(p);
     return box_move(p, 1.0);
 }
@@ -191,7 +224,7 @@ static int box_primal(struct box_qp *p)
         if (box_descend(p)) {
             continue;
         }
-        tribo_box_gradients(p, 0);
+        tribo_box_gradients(p);
         const size_t d = box_worst(p, 1);
         if (d < p->group->size) {
             box_slide(p, d);
@@ -200,7 +233,7 @@ static int box_primal(struct box_qp *p)
         if (box_descend(p)) {
             continue;
         }
-        tribo_box_gradients(p, 0);
+        tribo_box_gradients(p);
         const size_t i = box_worst(p, 0);
         if (i < p->group->size) {
             tribo_box_change(p, i, FREE);
@@ -213,7 +246,7 @@ static int box_primal(struct box_qp *p)
     return 0;
 }
 
-/* How far x is from the fixed point, in parts of what may be rounding. */
+/* How far x is from the fixed point, in parts of what is no gradient. */
 static double box_violation(const struct box_qp *p)
 {
     double most = 0.0;
@@ -221,7 +254,7 @@ static double box_violation(const struct box_qp *p)
         const size_t i = p->near[e];
         const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
         const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
-        most = greater(most, quotient(fabs(off), greater(p->noise[i], DBL_MIN)));
+        most = greater(most, quotient(fabs(off), greater(tribo_box_tolerance(p, i), DBL_MIN)));
     }
     return most;
 }
@@ -232,7 +265,7 @@ static void box_restore(struct box_qp *p, const double *x)
     for (size_t e = 0; e < p->count; e++) {
         p->x[p->near[e]] = x[p->near[e]];
     }
-    tribo_box_gradients(p, 0);
+    tribo_box_gradients(p);
 }
 
 static int box_inside(const struct box_qp *p)
@@ -267,7 +300,7 @@ static double box_share_once(struct box_qp *p, double *before, double *after)
         return 0.0;
     }
     memcpy(after, p->x, p->group->size * sizeof *after);
-    tribo_box_gradients(p, 0);
+    tribo_box_gradients(p);
     box_refine(p);
     if (!box_inside(p)) {
         box_restore(p, after);
@@ -279,11 +312,7 @@ static double box_share_once(struct box_qp *p, double *before, double *after)
 /* A solution as without earlier calls. Returns 0 if none is found with patience. */
 static int box_solve_afresh(struct box_qp *p)
 {
-    tribo_box_forget_low(p);
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->near[e];
-        p->x[i] = clamp(0.0, p->lo[i], p->hi[i]);
-    }
+    box_forget(p);
     tribo_box_enter(p, 0);
     return box_primal_dual(p);
 }

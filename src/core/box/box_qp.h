@@ -80,7 +80,8 @@ struct box_qp {
     const struct group *group;
     const size_t *member;    /* [size] the contacts, ascending */
     const double *scale;     /* [size] powers of 2 that bring the diagonal of R to between 1/2 and 2 */
-    const size_t *terms;     /* [size] entries of R in a row */
+    const double *part;      /* [size] of the terms of a gradient that may be rounding; terms so small that forces */
+    const double *least;     /* underflow in them */
     const double *r, *r_low; /* [size][size] R, if dense; what rounding left of it, if graded */
     /* kept */
     struct sets *sets;
@@ -97,8 +98,8 @@ struct box_qp {
     int twofold;              /* x is kept to twice as many digits */
     double *low;              /* what rounding left of it */
     double pull;              /* then, the largest q */
-    double *first;            /* the size of the terms of the gradient that the call began with */
     double *unit;             /* R_ii times the limit, or half the box; of groups with redundant contacts */
+    double *terms;            /* size of the gradient's terms where each contact carries what it would alone; of the same */
     signed char *to;          /* workspace */
     double *step, *step_low;  /* workspace, [size]; the latter is what rounding left, if the group is graded */
     double *spare[2];         /* workspace, [size] */
@@ -230,7 +231,7 @@ void tribo_box_enter(struct box_qp *p, int keep_bounds);
 size_t tribo_box_advance(struct box_qp *p, double longest);
 
 /* What a caller's rounding may do to a must not pit redundant contacts against each other: so much of its unit the gradient of
- * one may have; but not more than so much of the first terms, since limits that are never reached say nothing of rounding. */
+ * one may have; but not more than so much of its terms, since limits that are never reached say nothing of rounding. */
 #define TRIBO_DISAGREEMENT 5e-13
 #define TRIBO_DISAGREED_TERMS 5e-9
 
@@ -242,7 +243,7 @@ static inline double tribo_box_disagreement(const struct box_qp *p, size_t i)
     }
     /* of a graded group a unit may be a billion times what counts: there the largest q is taken */
     return p->twofold ? TRIBO_DISAGREEMENT * p->pull
-                      : lesser(TRIBO_DISAGREEMENT * p->unit[i], TRIBO_DISAGREED_TERMS * p->first[i]);
+                      : lesser(TRIBO_DISAGREEMENT * p->unit[i], TRIBO_DISAGREED_TERMS * p->terms[i]);
 }
 
 static inline double tribo_box_tolerance(const struct box_qp *p, size_t i)
@@ -258,8 +259,8 @@ static inline double tribo_box_tolerance(const struct box_qp *p, size_t i)
 /* Chooses whether x is kept to twice as many digits in this call; bounded: lo and hi are set. */
 void tribo_box_begin(struct box_qp *p, int bounded);
 
-/* gradient and noise at x; first: they are the first ones of a call. */
-void tribo_box_gradients(struct box_qp *p, int first);
+/* gradient and noise at x. */
+void tribo_box_gradients(struct box_qp *p);
 
 /* step = the move of the independent x that takes their gradient to zero; dependent ones stay. */
 void tribo_box_newton(struct box_qp *p);

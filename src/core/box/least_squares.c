@@ -15,7 +15,7 @@ static int minimum_norm(struct box_qp *p)
     const size_t vectors = tribo_null_basis(p);
     int consistent = 1;
     for (int pass = 0; pass < 3; pass++) {
-        tribo_box_gradients(p, pass == 0);
+        tribo_box_gradients(p);
         if (vectors) {
             double rounding = DBL_MIN;
             for (size_t e = 0; e < p->count; e++) {
@@ -37,7 +37,7 @@ static int minimum_norm(struct box_qp *p)
             p->x[i] = tribo_box_moved(p, i);
         }
     }
-    tribo_box_gradients(p, 0);
+    tribo_box_gradients(p);
     /* without null vectors those that depend on others tell by themselves */
     for (size_t d = 0; d < p->sets->dependents && !vectors; d++) {
         const size_t i = p->order[p->sets->rank + d];

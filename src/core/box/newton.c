@@ -5,44 +5,28 @@
 #include <float.h>
 #include <math.h>
 
-/* So much of the first terms is no gradient at all, though it may be all that there is. */
-#define NOTHING 1e-45
-
 /* Rounding of a graded group's terms beside that of doubles. */
 #define GRADED_PART 0x1p-50
 
-/* The gradient of i is found, its terms being of this size, and what of it is rounded of that. */
-static inline void set_noise(struct box_qp *p, size_t i, double terms, double rounded, int first)
+/* The gradient of i is found, what of its terms is rounded being of this size. */
+static inline void set_noise(struct box_qp *p, size_t i, double rounded)
 {
-    p->first[i] = first ? terms : p->first[i];
-    p->noise[i] = tribo_resolution(p->terms[i]) * rounded + NOTHING * p->first[i];
+    p->noise[i] = p->part[i] * (rounded + p->least[i]);
 }
 
-/* Of terms some may have underflowed. A graded group's forces and R are as good as
- * exact, and what it knows of q is q. */
-static inline void find_gradients(struct box_qp *p, int first)
+/* A graded group's forces and R are as good as exact, and what it knows of q is q. */
+void tribo_box_gradients(struct box_qp *p)
 {
     double size, low;
     for (size_t e = 0; !p->twofold && e < p->count; e++) {
         const size_t i = p->near[e];
         p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
-        const double terms = size + fabs(p->q[i]) + DBL_MIN;
-        set_noise(p, i, terms, terms, first);
+        set_noise(p, i, size + fabs(p->q[i]));
     }
     for (size_t e = 0; p->twofold && e < p->count; e++) {
         const size_t i = p->near[e];
         p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
-        const double q = fabs(p->q[i]) + DBL_MIN;
-        set_noise(p, i, size + q, q + GRADED_PART * size, first);
-    }
-}
-
-void tribo_box_gradients(struct box_qp *p, int first)
-{
-    if (first) {
-        find_gradients(p, 1);
-    } else {
-        find_gradients(p, 0);
+        set_noise(p, i, fabs(p->q[i]) + GRADED_PART * size);
     }
 }
 
@@ -73,12 +57,31 @@ void tribo_box_newton(struct box_qp *p)
     }
 }
 
+/* What the gradient consists of where each contact carries what it would alone: forces of earlier calls have no part in it. */
+static void find_terms(struct box_qp *p, int bounded)
+{
+    double *alone = p->step, size;
+    for (size_t e = 0; e < p->group->size; e++) {
+        const size_t i = p->near[e];
+        const double stops = -product(p->q[i], p->scale[i] * p->scale[i]);
+        alone[i] = e >= p->count ? p->x[i] : bounded ? clamp(stops, p->lo[i], p->hi[i]) : stops;
+    }
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        tribo_row_dot(p, i, alone, &size);
+        p->terms[i] = size + fabs(p->q[i]);
+    }
+}
+
 void tribo_box_begin(struct box_qp *p, int bounded)
 {
     p->twofold = p->group->graded && tribo_graded_fits(p, bounded);
     p->pull = 0.0;
     for (size_t e = 0; p->twofold && e < p->count; e++) {
         p->pull = greater(p->pull, fabs(p->q[p->near[e]]));
+    }
+    if (p->group->nullity && !p->twofold) {
+        find_terms(p, bounded);
     }
 }
 

@@ -90,7 +90,7 @@ int tribo_operator_diagonal(struct delassus **op, size_t n, const double *r)
 /* What is constant of a group, and what a memory keeps of it, in doubles, which are as large as everything else. */
 static size_t fixed_by(const struct group *g)
 {
-    return 2 * g->size + (g->sparse ? 0 : (g->graded ? 2 : 1) * g->size * g->size);
+    return 3 * g->size + (g->sparse ? 0 : (g->graded ? 2 : 1) * g->size * g->size);
 }
 
 static size_t kept_by(const struct group *g)
@@ -108,8 +108,9 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
     p->sets = &m->sets[k];
     p->member = op->member + g->first;
     p->scale = fixed;
-    p->terms = (void *)(fixed + size);
-    p->r = fixed + 2 * size;
+    p->part = fixed + size;
+    p->least = fixed + 2 * size;
+    p->r = fixed + 3 * size;
     p->r_low = p->r + size * size;
     p->x = m->store + g->kept;
     p->order = (void *)(p->x + size);
@@ -134,7 +135,7 @@ void tribo_memory_expect(const struct delassus *op, const struct memory *m, size
 
 static void lay_out_problem(struct box_qp *p, struct layout *b, size_t largest)
 {
-    double **const vector[] = {&p->q,    &p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,     &p->first,
+    double **const vector[] = {&p->q,    &p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,     &p->terms,
                                &p->unit, &p->step, &p->step_low, &p->row,      &p->spare[0], &p->spare[1]};
     enum { VECTORS = sizeof vector / sizeof *vector };
     const size_t s = largest + 1;
@@ -430,8 +431,7 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
 {
     struct box_qp *p = tribo_memory_problem(op, m, k);
     struct group *g = &op->group[k];
-    double *scale = op->fixed + g->fixed, *r = scale + 2 * g->size;
-    size_t *terms = (void *)(scale + g->size);
+    double *scale = op->fixed + g->fixed, *part = scale + g->size, *least = part + g->size, *r = least + g->size;
     const size_t span = p->member[g->size - 1] - p->member[0];
     op->span = span > op->span ? span : op->span;
     g->lightest = HUGE_VAL;
@@ -439,17 +439,22 @@ static void fill_group(struct delassus *op, struct memory *m, size_t k, const st
     for (size_t c = 0; c < g->size; c++) {
         const size_t i = p->member[c];
         p->at[c] = AWAY;
+        size_t terms = 0;
         op->row_sum[i] = 0.0;
         scale[c] = tribo_scale(op->diagonal[i]);
         g->lightest = lesser(g->lightest, scale[c]);
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
-            terms[c] += a->val[e] != 0.0;
+            terms += a->val[e] != 0.0;
             op->row_sum[i] += lesser(fabs(a->val[e]), TRIBO_FAR);
             if (a->val[e] != 0.0 && !g->sparse) {
                 r[c * g->size + place[a->col[e]]] = a->val[e];
             }
         }
-        g->terms = terms[c] > g->terms ? terms[c] : g->terms;
+        part[c] = tribo_resolution(terms);
+        g->terms = terms > g->terms ? terms : g->terms;
+    }
+    for (size_t c = 0; c < g->size; c++) {
+        least[c] = DBL_MIN + quotient(DBL_MIN, scale[c] * g->lightest);
     }
     if (g->graded) {
         g->graded = 0;
