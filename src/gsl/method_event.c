@@ -491,6 +491,12 @@ static int expand(struct event *e, double t, const double *y, double most, doubl
     return status;
 }
 
+/* Whether all steps that frequencies allow are lost beside `end`, which is never come to. */
+static int never_ends(const struct event *e, double end)
+{
+    return (double)(e->order + 1) < DBL_EPSILON * fabs(end) * e->fastest;
+}
+
 static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
@@ -499,13 +505,15 @@ static int begin(void *motion, double t, const double *y, double *reach)
     if (status) {
         return status;
     }
+    length = never_ends(e, t + *reach) ? 0.0 : length;
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
     set_guards(e);
     return tribo_dense_finite(e->size, 2 * e->sys->ncontact)
                ? TRIBO_OK
-               : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE, "at t = %.17g derivatives of the motion overflow", t);
+               : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE,
+                                   "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
 }
 
 static int transition(void *motion, double tau, size_t columns, double *v)
