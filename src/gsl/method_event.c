@@ -256,15 +256,16 @@ static int combine(void *motion, const double *c, double tau, const double *end,
 static double work(const void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
 
-/* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes; but so many terms there are. */
+/* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes, and half as many where squares of
+ * series are made, as in a plane; but so many terms there are. */
 #define MOST_DIGITS 240.0
 #define LEAST_ORDER 4.0
 
 /* The more digits are wanted, the more terms pay. */
-static size_t best_order(double tolerance, double fastest)
+static size_t best_order(double tolerance, double fastest, double digits)
 {
     const double wanted = 10.0 - 1.5 * log10(tolerance);
-    return (size_t)(fastest > 0.0 ? greater(lesser(wanted, MOST_DIGITS / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
+    return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
 }
 
 static int create(tribo_driver *drv)
@@ -281,7 +282,7 @@ static int create(tribo_driver *drv)
         return status;
     }
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
-    e->order = e->most_order = best_order(e->tolerance, 0.0);
+    e->order = e->most_order = best_order(e->tolerance, 0.0, MOST_DIGITS);
     const size_t terms = e->order + 1;
     double *all = malloc((terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
     if (!all) {
@@ -319,6 +320,16 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
+/* Series in a plane and of what creeps find room anew for as many terms. */
+static void set_order(struct event *e, size_t order)
+{
+    if (order != e->most_order) {
+        tribo_planar_series_free(&e->planar);
+        tribo_creep_free(&e->creep);
+    }
+    e->most_order = order;
+}
+
 /* Room for the harmonics, which may have become more, and the highest frequency. */
 static int prepare(struct event *e)
 {
@@ -327,7 +338,7 @@ static int prepare(struct event *e)
         return TRIBO_OK;
     }
     e->fastest = tribo_system_fastest(sys);
-    e->most_order = best_order(e->tolerance, e->fastest);
+    set_order(e, best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS));
     const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
