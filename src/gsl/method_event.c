@@ -257,15 +257,16 @@ static int combine(void *motion, const double *c, double tau, const double *end,
 static double work(const void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
 
-/* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes; but so many terms there are. */
+/* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes, and half as many where squares of
+ * series are made, as in a plane; but so many terms there are. */
 #define MOST_DIGITS 240.0
 #define LEAST_ORDER 4.0
 
 /* The more digits are wanted, the more terms pay. */
-static size_t best_order(double tolerance, double fastest)
+static size_t best_order(double tolerance, double fastest, double digits)
 {
     const double wanted = 10.0 - 1.5 * log10(tolerance);
-    return (size_t)(fastest > 0.0 ? greater(lesser(wanted, MOST_DIGITS / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
+    return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
 }
 
 static int create(tribo_driver *drv)
@@ -282,7 +283,7 @@ static int create(tribo_driver *drv)
         return status;
     }
     e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
-    e->order = e->most_order = best_order(e->tolerance, 0.0);
+    e->order = e->most_order = best_order(e->tolerance, 0.0, MOST_DIGITS);
     const size_t terms = e->order + 1;
     double *all = malloc((terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
     if (!all) {
@@ -320,6 +321,16 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
+/* Series in a plane and of what creeps find room anew for as many terms. */
+static void set_order(struct event *e, size_t order)
+{
+    if (order != e->most_order) {
+        tribo_planar_series_free(&e->planar);
+        tribo_creep_free(&e->creep);
+    }
+    e->most_order = order;
+}
+
 /* Room for the harmonics, which may have become more, and the highest frequency. */
 static int prepare(struct event *e)
 {
@@ -328,7 +339,7 @@ static int prepare(struct event *e)
         return TRIBO_OK;
     }
     e->fastest = tribo_system_fastest(sys);
-    e->most_order = best_order(e->tolerance, e->fastest);
+    set_order(e, best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS));
     const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {
@@ -492,6 +503,12 @@ static int expand(struct event *e, double t, const double *y, double most, doubl
     return status;
 }
 
+/* Whether all steps that frequencies allow are lost beside `end`, which is never come to. */
+static int never_ends(const struct event *e, double end)
+{
+    return (double)(e->order + 1) < DBL_EPSILON * fabs(end) * e->fastest;
+}
+
 static int begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
@@ -500,13 +517,15 @@ static int begin(void *motion, double t, const double *y, double *reach)
     if (status) {
         return status;
     }
+    length = never_ends(e, t + *reach) ? 0.0 : length;
     *reach = lesser(length, *reach);
     /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
     e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
     set_guards(e);
     return tribo_dense_finite(e->size, 2 * e->sys->ncontact)
                ? TRIBO_OK
-               : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE, "at t = %.17g derivatives of the motion overflow", t);
+               : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE,
+                                   "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
 }
 
 static int transition(void *motion, double tau, size_t columns, double *v)

@@ -91,7 +91,7 @@ TEST(guards_overflow)
     assert_ok(tribo_system_add_limit(sys, fast[_i], NULL, sine));
     assert_ok(tribo_driver_create(&drv, sys, _i ? "exact" : "event", 0.01, 1e-9, 1e-9));
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_STEP);
-    assert_says(tribo_driver_message(drv), "after 1 look");
+    assert_says(tribo_driver_message(drv), _i ? "after 1 look" : "the step is down to 0");
     assert_exact(t, 0.0);
     give_back();
 }

@@ -362,6 +362,34 @@ TEST(redundant)
     tribo_system_destroy(s);
 }
 
+/* Beside a load so fast that few terms have numbers for powers of its frequency, and without it again: as from the beginning. */
+TEST(fewer_and_more_terms)
+{
+    const double m[] = {1.0, 0.0, 0.0, 1.0}, k[] = {1.0, 0.0, 0.0, 1.7}, load[] = {1e-9, 0.0}, slow[] = {0.0, 1.5};
+    const size_t first = 0;
+    double y[2][5] = {{0.9, 0.3, 0.0, 0.5, 0.0}, {0.9, 0.3, 0.0, 0.5, 0.0}};
+    for (int with = 0; with < 2; with++) {
+        double t = 0.0, z[5] = {0.9, 0.3, 0.0, 0.5, 0.0};
+        tribo_system *sys;
+        assert_ok(tribo_system_linear(&sys, 2, 2, m, NULL, k, m, 0, NULL, 0));
+        assert_ok(tribo_set_planar(tribo_system_context(sys), 1, &first));
+        assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
+        assert_ok(tribo_system_add_load(sys, 0.6, slow, NULL));
+        tribo_driver *drv = driver_create(sys, "event", 0.1, 1e-14);
+        if (with) {
+            assert_ok(tribo_system_add_load(sys, 1e12, load, NULL));
+            driver_advance(drv, &t, 1e-11, z);
+            assert_ok(tribo_system_clear_loads(sys));
+            assert_ok(tribo_system_add_load(sys, 0.6, slow, NULL));
+        }
+        t = 0.0;
+        driver_advance(drv, &t, 5.0, y[with]);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    assert_all_close(y[1], y[0], 5, 1e-11);
+}
+
 TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {reverses_on_line, 40}, {on_line, 9},
           {tolerances, 40}, {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {refused_static, 4},
-          {redundant, 1})
+          {redundant, 1}, {fewer_and_more_terms, 1})
