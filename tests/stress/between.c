@@ -1,8 +1,9 @@
-/* What may happen between two advances, at random: limits, static ones, loads, tables and bases that change, states and times
- * that are set, advances of no length, of next to none, and in many pieces, calls that are refused, observers that stop a run,
- * memory that ends, periodic motions that are looked for, other drivers of the same system, copies of it, of which one lives on.
- * A driver that has seen all of that has to go on as a new one does, on a system that has the same settings and has seen nothing;
- * and the closed form has to agree with the event-driven series. TRIBO_SEED and TRIBO_BLOCKS as in random.c. */
+/* What may happen between two advances, at random: limits, static ones, some that fall with the speed, loads, tables and bases that
+ * change, states and times that are set, advances of no length, of next to none, and in many pieces, calls that are refused,
+ * observers that stop a run, memory that ends, periodic motions that are looked for, other drivers of the same system, copies of
+ * it, of which one lives on. A driver that has seen all of that has to go on as a new one does, on a system that has the same
+ * settings and has seen nothing; and the closed form has to agree with the event-driven series. TRIBO_SEED and TRIBO_BLOCKS as in
+ * random.c. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +15,21 @@
 #define KNOTS 4
 #define DT 0.01 /* of methods with steps of one length */
 
-enum { LIMITS, NORMAL_LOADS, STATIC, NO_STATIC, LOAD, NO_LOADS, BASE, SWING, LOAD_TABLE, LIMIT_TABLE, NO_LIMIT_TABLE, KINDS };
+enum {
+    LIMITS,
+    NORMAL_LOADS,
+    STATIC,
+    NO_STATIC,
+    LOAD,
+    NO_LOADS,
+    BASE,
+    SWING,
+    LOAD_TABLE,
+    LIMIT_TABLE,
+    NO_LIMIT_TABLE,
+    FALLING,
+    KINDS
+};
 
 /* A setting, and its numbers: by contacts, degrees of freedom or knots. */
 struct change {
@@ -26,7 +41,7 @@ static const struct way {
     const char *method;
     double dt, tolerance;
     double near; /* the most that it may be off a new driver, of the size of the state */
-    int closed;  /* takes no tables */
+    int closed;  /* takes no tables, nor limits that fall with the speed */
 } ways[] = {{"exact", 0.5, 0.0, 1e-10, 1},
             {"event", 0.5, 1e-11, 1e-8, 0},
             {"central/fixed", DT, 0.0, 1e-10, 0},
@@ -64,6 +79,8 @@ static int apply(tribo_system *sys, const struct change *c)
     case STATIC:
     case NO_STATIC:
         return tribo_set_static(contacts, c->kind == STATIC ? c->x : NULL, NULL);
+    case FALLING:
+        return tribo_set_static(contacts, c->x, c->y);
     case LOAD:
         return tribo_system_add_load(sys, c->omega, c->y, NULL);
     case NO_LOADS:
@@ -85,6 +102,7 @@ static double number(struct random *g, int kind, int swings)
 {
     switch (kind) {
     case STATIC:
+    case FALLING:
         return chance(g, 0.5) ? 1.0 : uniform(g, 1.0, 2.0);
     case LIMITS:
     case NORMAL_LOADS:
@@ -104,7 +122,9 @@ static struct change any_change(struct life *l)
         c.x[k] = number(g, c.kind, l->swings);
     }
     for (size_t k = 0; k < COUNT(c.y); k++) {
-        c.y[k] = c.kind == NORMAL_LOADS ? uniform(g, l->swings ? 0.1 : -0.3, 2.0) : uniform(g, -0.5, 0.5);
+        c.y[k] = c.kind == NORMAL_LOADS ? uniform(g, l->swings ? 0.1 : -0.3, 2.0)
+                 : c.kind == FALLING    ? uniform(g, 0.1, 1.0)
+                                        : uniform(g, -0.5, 0.5);
     }
     for (size_t k = 0; k < KNOTS; k++) {
         c.time[k] = (k ? c.time[k - 1] : l->t - 0.5) + uniform(g, 0.3, 1.0);
