@@ -18,13 +18,13 @@
 enum {
     LIMITS,
     NORMAL_LOADS,
-    STATIC,
-    NO_STATIC,
     LOAD,
     NO_LOADS,
     BASE,
+    STATIC, /* elastic contacts take what stands before this, */
+    NO_STATIC,
     SWING,
-    LOAD_TABLE,
+    LOAD_TABLE, /* and the closed form what stands before this */
     LIMIT_TABLE,
     NO_LIMIT_TABLE,
     FALLING,
@@ -42,11 +42,12 @@ static const struct way {
     double dt, tolerance;
     double near; /* the most that it may be off a new driver, of the size of the state */
     int closed;  /* takes no tables, nor limits that fall with the speed */
-} ways[] = {{"exact", 0.5, 0.0, 1e-10, 1},
-            {"event", 0.5, 1e-11, 1e-8, 0},
-            {"central/fixed", DT, 0.0, 1e-10, 0},
-            {"moreau/fixed", DT, 0.0, 1e-10, 0},
-            {"rk4/fixed", DT, 0.0, 1e-10, 0}};
+    int elastic; /* takes elastic contacts */
+} ways[] = {{"exact", 0.5, 0.0, 1e-10, 1, 1},
+            {"event", 0.5, 1e-11, 1e-8, 0, 1},
+            {"central/fixed", DT, 0.0, 1e-10, 0, 0},
+            {"moreau/fixed", DT, 0.0, 1e-10, 0, 1},
+            {"rk4/fixed", DT, 0.0, 1e-10, 0, 0}};
 
 /* A system with the driver that lives long, what was set since, and where they are. */
 struct life {
@@ -113,18 +114,32 @@ static double number(struct random *g, int kind, int swings)
     }
 }
 
+/* The k-th of the others: what has no mass takes no load. */
+static double second_number(struct life *l, int kind, size_t k)
+{
+    switch (kind) {
+    case NORMAL_LOADS:
+        return uniform(&l->g, l->swings ? 0.1 : -0.3, 2.0);
+    case FALLING:
+        return uniform(&l->g, 0.1, 1.0);
+    default:
+        return kind == LOAD && k >= l->s.ndof - l->s.springs ? 0.0 : uniform(&l->g, -0.5, 0.5);
+    }
+}
+
 static struct change any_change(struct life *l)
 {
     struct random *g = &l->g;
-    struct change c = {.kind = (int)below(g, l->way->closed ? LOAD_TABLE : KINDS), .omega = uniform(g, 0.3, 2.0)};
+    struct change c = {.kind = (int)below(g, l->s.springs     ? STATIC
+                                             : l->way->closed ? LOAD_TABLE
+                                                              : KINDS),
+                       .omega = uniform(g, 0.3, 2.0)};
     c.omega = chance(g, 0.3) ? 0.0 : c.omega;
     for (size_t k = 0; k < COUNT(c.x); k++) {
         c.x[k] = number(g, c.kind, l->swings);
     }
     for (size_t k = 0; k < COUNT(c.y); k++) {
-        c.y[k] = c.kind == NORMAL_LOADS ? uniform(g, l->swings ? 0.1 : -0.3, 2.0)
-                 : c.kind == FALLING    ? uniform(g, 0.1, 1.0)
-                                        : uniform(g, -0.5, 0.5);
+        c.y[k] = second_number(l, c.kind, k);
     }
     for (size_t k = 0; k < KNOTS; k++) {
         c.time[k] = (k ? c.time[k - 1] : l->t - 0.5) + uniform(g, 0.3, 1.0);
@@ -381,7 +396,7 @@ static void live(const struct structure *s, const struct way *way, int seed)
     tribo_system_destroy(l.sys);
 }
 
-/* Structures of up to 12 degrees of freedom, and small ones of whole numbers. */
+/* Structures of up to 12 degrees of freedom, small ones of whole numbers, and some with elastic contacts. */
 TEST(as_a_new_driver)
 {
     const struct way *way = &ways[_i % (int)COUNT(ways)];
@@ -390,6 +405,10 @@ TEST(as_a_new_driver)
         const struct structure any = structure_create(seed), even = structure_even(seed);
         live(&any, way, seed);
         live(&even, way, seed);
+        if (way->elastic) {
+            const struct structure elastic = structure_elastic(seed);
+            live(&elastic, way, seed);
+        }
     }
 }
 

@@ -214,6 +214,7 @@ static void add_spring(struct structure *s, struct random *g, size_t bodies, siz
         s->load[a].cosine[n] = s->load[a].sine[n] = 0.0;
     }
     s->ndof++;
+    s->springs++;
 }
 
 struct structure structure_elastic(int seed)
@@ -226,7 +227,7 @@ struct structure structure_elastic(int seed)
             add_spring(&s, &g, bodies, i);
         }
     }
-    snprintf(s.name + strlen(s.name), sizeof s.name - strlen(s.name), ", %zu elastic", s.ndof - bodies);
+    snprintf(s.name + strlen(s.name), sizeof s.name - strlen(s.name), ", %zu elastic", s.springs);
     return s;
 }
 

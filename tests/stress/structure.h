@@ -19,7 +19,8 @@ struct structure {
     int damped;
     double mass[MOST_DOFS * MOST_DOFS], damping[MOST_DOFS * MOST_DOFS], stiffness[MOST_DOFS * MOST_DOFS];
     double direction[MOST_CONTACTS * MOST_DOFS], limit[MOST_CONTACTS];
-    int falls; /* limits fall from so many times that with the speed, over these velocities */
+    size_t springs; /* in front of contacts */
+    int falls;      /* limits fall from so many times that with the speed, over these velocities */
     double ratio[MOST_CONTACTS], velocity[MOST_CONTACTS];
     struct wave load[2], motion[2];
     double begin, start[MOST_STATES]; /* time and state */
