@@ -51,11 +51,10 @@ static inline double tribo_breakaway_most(const struct breakaway *b, size_t i)
     return product(b->ratio[i], b->kinetic[i]);
 }
 
-/* Whether contact i, at rest, would let go of more than rounding by breaking away: then that must be certain. A limit that falls
- * with the speed is at first what it was. */
+/* Whether contact i, at rest, would let go of more than rounding by breaking away: then that must be certain. */
 static inline int tribo_breakaway_is_sudden(const struct breakaway *b, size_t i)
 {
-    return b->some && !b->falls && b->stick[i] > b->kinetic[i];
+    return b->some && b->stick[i] > b->kinetic[i];
 }
 
 /* The contact holds no more by its static limit; 0 if it has none, or does not already. */

@@ -1,5 +1,5 @@
-/* What may happen between two advances, at random: limits, static ones, some that fall with the speed, loads, tables and bases that
- * change, states and times that are set, advances of no length, of next to none, and in many pieces, calls that are refused,
+/* What may happen between two advances, at random: limits, static ones, some that fall with the speed, loads, tables and bases
+ * that change, states and times that are set, advances of no length, of next to none, and in many pieces, calls that are refused,
  * observers that stop a run, memory that ends, periodic motions that are looked for, other drivers of the same system, copies of
  * it, of which one lives on. A driver that has seen all of that has to go on as a new one does, on a system that has the same
  * settings and has seen nothing; and the closed form has to agree with the event-driven series. TRIBO_SEED and TRIBO_BLOCKS as in
