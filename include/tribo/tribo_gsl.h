@@ -216,9 +216,9 @@ typedef struct tribo_driver tribo_driver;
  *               more than rounding. Redundant contacts at rest hold as long as any forces within their limits hold all of them;
  *               when none do any more, those that move all the same under the forces that come nearest break away together.
  *               Where contacts that tie each other come to rest on bases that part in the same instant, which of them keeps its
- *               limit is not unique, and event and exact refuse to choose (TRIBO_ERR_UNSUPPORTED); where bases part by their
- *               accelerations only, they choose a motion that the rule allows, which need not be that of methods with steps. All
- *               methods with steps are of first order with static limits.
+ *               limit is not unique if limits drop at once, and event and exact refuse to choose (TRIBO_ERR_UNSUPPORTED); where
+ *               bases part by their accelerations only, they choose a motion that the rule allows, which need not be that of
+ *               methods with steps, and which may go with rounding. All methods with steps are of first order with static limits.
  *               The law, coupling and epsilon of the context:
  *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step
  *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL

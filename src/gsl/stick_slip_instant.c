@@ -64,14 +64,15 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
     return found;
 }
 
-/* Where bases part, a contact that rests by itself goes with them. */
+/* Where bases part, a contact that rests by itself goes with them. A limit that falls with the speed is not lost by that. */
 static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     int status = TRIBO_OK;
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
         if (m->slip[i] == 0 && !m->holds[i]) {
             tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
-            status = m->slip[i] && m->rested[i] && tribo_breakaway_is_sudden(&m->breakaway, i) ? not_unique(sys, i) : TRIBO_OK;
+            const int loses = m->rested[i] && !m->breakaway.falls && tribo_breakaway_is_sudden(&m->breakaway, i);
+            status = m->slip[i] && loses ? not_unique(sys, i) : TRIBO_OK;
         }
     }
     return status;

@@ -1,8 +1,9 @@
-/* What may happen between two advances, at random: limits, static ones, loads, tables and bases that change, states and times
- * that are set, advances of no length, of next to none, and in many pieces, calls that are refused, observers that stop a run,
- * memory that ends, periodic motions that are looked for, other drivers of the same system, copies of it, of which one lives on.
- * A driver that has seen all of that has to go on as a new one does, on a system that has the same settings and has seen nothing;
- * and the closed form has to agree with the event-driven series. TRIBO_SEED and TRIBO_BLOCKS as in random.c. */
+/* What may happen between two advances, at random: limits, static ones, some that fall with the speed, loads, tables and bases
+ * that change, states and times that are set, advances of no length, of next to none, and in many pieces, calls that are refused,
+ * observers that stop a run, memory that ends, periodic motions that are looked for, other drivers of the same system, copies of
+ * it, of which one lives on. A driver that has seen all of that has to go on as a new one does, on a system that has the same
+ * settings and has seen nothing; and the closed form has to agree with the event-driven series. TRIBO_SEED and TRIBO_BLOCKS as in
+ * random.c. */
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +15,21 @@
 #define KNOTS 4
 #define DT 0.01 /* of methods with steps of one length */
 
-enum { LIMITS, NORMAL_LOADS, STATIC, NO_STATIC, LOAD, NO_LOADS, BASE, SWING, LOAD_TABLE, LIMIT_TABLE, NO_LIMIT_TABLE, KINDS };
+enum {
+    LIMITS,
+    NORMAL_LOADS,
+    LOAD,
+    NO_LOADS,
+    BASE,
+    STATIC, /* elastic contacts take what stands before this, */
+    NO_STATIC,
+    SWING,
+    LOAD_TABLE, /* and the closed form what stands before this */
+    LIMIT_TABLE,
+    NO_LIMIT_TABLE,
+    FALLING,
+    KINDS
+};
 
 /* A setting, and its numbers: by contacts, degrees of freedom or knots. */
 struct change {
@@ -26,12 +41,13 @@ static const struct way {
     const char *method;
     double dt, tolerance;
     double near; /* the most that it may be off a new driver, of the size of the state */
-    int closed;  /* takes no tables */
-} ways[] = {{"exact", 0.5, 0.0, 1e-10, 1},
-            {"event", 0.5, 1e-11, 1e-8, 0},
-            {"central/fixed", DT, 0.0, 1e-10, 0},
-            {"moreau/fixed", DT, 0.0, 1e-10, 0},
-            {"rk4/fixed", DT, 0.0, 1e-10, 0}};
+    int closed;  /* takes no tables, nor limits that fall with the speed */
+    int elastic; /* takes elastic contacts */
+} ways[] = {{"exact", 0.5, 0.0, 1e-10, 1, 1},
+            {"event", 0.5, 1e-11, 1e-8, 0, 1},
+            {"central/fixed", DT, 0.0, 1e-10, 0, 0},
+            {"moreau/fixed", DT, 0.0, 1e-10, 0, 1},
+            {"rk4/fixed", DT, 0.0, 1e-10, 0, 0}};
 
 /* A system with the driver that lives long, what was set since, and where they are. */
 struct life {
@@ -64,6 +80,8 @@ static int apply(tribo_system *sys, const struct change *c)
     case STATIC:
     case NO_STATIC:
         return tribo_set_static(contacts, c->kind == STATIC ? c->x : NULL, NULL);
+    case FALLING:
+        return tribo_set_static(contacts, c->x, c->y);
     case LOAD:
         return tribo_system_add_load(sys, c->omega, c->y, NULL);
     case NO_LOADS:
@@ -85,6 +103,7 @@ static double number(struct random *g, int kind, int swings)
 {
     switch (kind) {
     case STATIC:
+    case FALLING:
         return chance(g, 0.5) ? 1.0 : uniform(g, 1.0, 2.0);
     case LIMITS:
     case NORMAL_LOADS:
@@ -95,16 +114,32 @@ static double number(struct random *g, int kind, int swings)
     }
 }
 
+/* The k-th of the others: what has no mass takes no load. */
+static double second_number(struct life *l, int kind, size_t k)
+{
+    switch (kind) {
+    case NORMAL_LOADS:
+        return uniform(&l->g, l->swings ? 0.1 : -0.3, 2.0);
+    case FALLING:
+        return uniform(&l->g, 0.1, 1.0);
+    default:
+        return kind == LOAD && k >= l->s.ndof - l->s.springs ? 0.0 : uniform(&l->g, -0.5, 0.5);
+    }
+}
+
 static struct change any_change(struct life *l)
 {
     struct random *g = &l->g;
-    struct change c = {.kind = (int)below(g, l->way->closed ? LOAD_TABLE : KINDS), .omega = uniform(g, 0.3, 2.0)};
+    struct change c = {.kind = (int)below(g, l->s.springs     ? STATIC
+                                             : l->way->closed ? LOAD_TABLE
+                                                              : KINDS),
+                       .omega = uniform(g, 0.3, 2.0)};
     c.omega = chance(g, 0.3) ? 0.0 : c.omega;
     for (size_t k = 0; k < COUNT(c.x); k++) {
         c.x[k] = number(g, c.kind, l->swings);
     }
     for (size_t k = 0; k < COUNT(c.y); k++) {
-        c.y[k] = c.kind == NORMAL_LOADS ? uniform(g, l->swings ? 0.1 : -0.3, 2.0) : uniform(g, -0.5, 0.5);
+        c.y[k] = second_number(l, c.kind, k);
     }
     for (size_t k = 0; k < KNOTS; k++) {
         c.time[k] = (k ? c.time[k - 1] : l->t - 0.5) + uniform(g, 0.3, 1.0);
@@ -361,7 +396,7 @@ static void live(const struct structure *s, const struct way *way, int seed)
     tribo_system_destroy(l.sys);
 }
 
-/* Structures of up to 12 degrees of freedom, and small ones of whole numbers. */
+/* Structures of up to 12 degrees of freedom, small ones of whole numbers, and some with elastic contacts. */
 TEST(as_a_new_driver)
 {
     const struct way *way = &ways[_i % (int)COUNT(ways)];
@@ -370,6 +405,10 @@ TEST(as_a_new_driver)
         const struct structure any = structure_create(seed), even = structure_even(seed);
         live(&any, way, seed);
         live(&even, way, seed);
+        if (way->elastic) {
+            const struct structure elastic = structure_elastic(seed);
+            live(&elastic, way, seed);
+        }
     }
 }
 

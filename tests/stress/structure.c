@@ -170,6 +170,67 @@ struct structure structure_even(int seed)
     return s;
 }
 
+struct structure structure_falling(int seed)
+{
+    struct random g = random_of(seed);
+    struct structure s = structure_create(seed);
+    s.falls = 1;
+    for (size_t i = 0; i < s.ncontact; i++) {
+        s.ratio[i] = chance(&g, 0.2) ? 1.0 : uniform(&g, 1.0, 2.0);
+        s.velocity[i] = log_uniform(&g, 0.5);
+    }
+    return s;
+}
+
+/* a [rows][n] with a column of zeros more. */
+static void widen(double *a, size_t rows, size_t n)
+{
+    for (size_t i = rows; i-- > 0;) {
+        memmove(a + i * (n + 1), a + i * n, n * sizeof *a);
+        a[i * (n + 1) + n] = 0.0;
+    }
+}
+
+/* A spring holds the body that contact i is on, and its far end slides. */
+static void add_spring(struct structure *s, struct random *g, size_t bodies, size_t i)
+{
+    const size_t n = s->ndof, body = below(g, bodies);
+    const double k = uniform(g, 0.3, 3.0) * s->mass[body * (n + 1)];
+    double *const square[] = {s->mass, s->damping, s->stiffness};
+    for (size_t a = 0; a < 3; a++) {
+        memset(square[a] + n * n, 0, n * sizeof **square);
+        widen(square[a], n + 1, n);
+    }
+    widen(s->direction, s->ncontact, n);
+    memset(s->direction + i * (n + 1), 0, n * sizeof *s->direction);
+    s->direction[i * (n + 1) + n] = 1.0;
+    s->stiffness[body * (n + 2)] += k;
+    s->stiffness[n * (n + 2)] = k;
+    s->stiffness[body * (n + 1) + n] = s->stiffness[n * (n + 1) + body] = -k;
+    memmove(s->start + n + 1, s->start + n, n * sizeof *s->start);
+    s->start[n] = s->start[body];
+    s->start[2 * n + 1] = 0.0;
+    for (size_t a = 0; a < 2; a++) {
+        s->load[a].cosine[n] = s->load[a].sine[n] = 0.0;
+    }
+    s->ndof++;
+    s->springs++;
+}
+
+struct structure structure_elastic(int seed)
+{
+    struct random g = random_of(seed);
+    struct structure s = structure_create(seed);
+    const size_t bodies = s.ndof;
+    for (size_t i = 0; i < s.ncontact && s.ndof < MOST_DOFS; i++) {
+        if (!i || chance(&g, 0.5)) {
+            add_spring(&s, &g, bodies, i);
+        }
+    }
+    snprintf(s.name + strlen(s.name), sizeof s.name - strlen(s.name), ", %zu elastic", s.springs);
+    return s;
+}
+
 /* ---------------------------------------------------------------------------------------------------------------- use */
 
 tribo_system *structure_system(const struct structure *s)
@@ -184,6 +245,9 @@ tribo_system *structure_system(const struct structure *s)
         assert_ok(tribo_system_add_base_motion(sys, s->motion[k].omega, s->motion[k].cosine, s->motion[k].sine));
     }
     assert_ok(tribo_set_limit(tribo_system_context(sys), s->limit));
+    if (s->falls) {
+        assert_ok(tribo_set_static(tribo_system_context(sys), s->ratio, s->velocity));
+    }
     return sys;
 }
 

@@ -19,6 +19,9 @@ struct structure {
     int damped;
     double mass[MOST_DOFS * MOST_DOFS], damping[MOST_DOFS * MOST_DOFS], stiffness[MOST_DOFS * MOST_DOFS];
     double direction[MOST_CONTACTS * MOST_DOFS], limit[MOST_CONTACTS];
+    size_t springs; /* in front of contacts */
+    int falls;      /* limits fall from so many times that with the speed, over these velocities */
+    double ratio[MOST_CONTACTS], velocity[MOST_CONTACTS];
     struct wave load[2], motion[2];
     double begin, start[MOST_STATES]; /* time and state */
     char name[120];                   /* what kind it is, for messages */
@@ -29,6 +32,11 @@ struct structure structure_create(int seed);
 
 /* The same of small whole numbers, so that everything that may coincide does. */
 struct structure structure_even(int seed);
+
+/* The first with limits that fall with the speed, from up to twice what they are; and with a spring in front of some contacts, as
+ * many as there are degrees of freedom left for their far ends. */
+struct structure structure_falling(int seed);
+struct structure structure_elastic(int seed);
 
 /* Its system, with the limits set. */
 tribo_system *structure_system(const struct structure *s);
