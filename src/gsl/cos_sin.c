@@ -22,25 +22,27 @@ static inline struct twofold without_quarters(struct twofold angle, double quart
     return twofold_sum(x.hi, (x.lo - quarters * third) + angle.lo);
 }
 
+/* The sum of c[k] (-z)^k, by pairs, so that no term waits for more than three others. */
+static inline double alternating(double z, const double *c)
+{
+    const double z2 = z * z;
+    return ((c[0] - z * c[1]) + z2 * (c[2] - z * c[3])) + z2 * z2 * ((c[4] - z * c[5]) + z2 * (c[6] - z * c[7]));
+}
+
 static inline double cosine_near_0(struct twofold x)
 {
+    static const double c[] = {1 / 24.,        1 / 720.,         1 / 40320.,          1 / 3628800.,
+                               1 / 479001600., 1 / 87178291200., 1 / 20922789888000., 1 / 6402373705728000.};
     const double z = x.hi * x.hi, half = 0.5 * z, w = 1.0 - half;
-    const double tail =
-        1 / 24. -
-        z * (1 / 720. -
-             z * (1 / 40320. - z * (1 / 3628800. - z * (1 / 479001600. - z * (1 / 87178291200. - z * (1 / 20922789888000.))))));
-    return w + (((1.0 - w) - half) + (z * z * tail - x.hi * x.lo));
+    return w + (((1.0 - w) - half) + (z * z * alternating(z, c) - x.hi * x.lo));
 }
 
 static inline double sine_near_0(struct twofold x)
 {
+    static const double c[] = {1 / 6.,        1 / 120.,        1 / 5040.,          1 / 362880.,
+                               1 / 39916800., 1 / 6227020800., 1 / 1307674368000., 1 / 355687428096000.};
     const double z = x.hi * x.hi;
-    const double tail =
-        1 / 6. -
-        z * (1 / 120. - z * (1 / 5040. -
-                             z * (1 / 362880. - z * (1 / 39916800. - z * (1 / 6227020800. - z * (1 / 1307674368000. -
-                                                                                                 z * (1 / 355687428096000.)))))));
-    return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * tail);
+    return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * alternating(z, c));
 }
 
 TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)

@@ -61,7 +61,7 @@ static void hold_all(size_t n, const signed char *restrict slip, const unsigned 
     }
 }
 
-/* What follows from who holds: who is loose, and whether that has changed; and how many rest by themselves. */
+/* What follows from who holds: who is loose, and whether that has changed; keys; and how many rest by themselves. */
 static void note_holds(struct stick_slip *m)
 {
     m->dependents = 0;
@@ -70,6 +70,7 @@ static void note_holds(struct stick_slip *m)
         m->unlisted |= loose != m->loose[i];
         m->dependents += tribo_stick_slip_depends(m, i);
         m->loose[i] = loose;
+        m->key[i] = (signed char)((m->slip[i] == 0) + m->holds[i]);
     }
     m->hold_differs |= m->unlisted;
 }

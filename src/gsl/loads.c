@@ -190,6 +190,9 @@ void tribo_system_set_time(tribo_system *sys, double t)
 double tribo_system_next_kink(const tribo_system *sys, double t)
 {
     double next = HUGE_VAL;
+    if (sys->tables == 0 && sys->limits.knots == 0) {
+        return next;
+    }
     for (size_t k = 0; k <= sys->tables; k++) {
         const struct table *table = k < sys->tables ? &sys->table[k] : &sys->limits;
         for (size_t i = table->knots ? knot_at(table, t) : 0; i < table->knots; i++) {

@@ -29,7 +29,6 @@ struct exact {
     struct modal_whole whole; /* what these are decompositions of; zeros until there is one */
     struct held *held;
     size_t helds, room, bytes, revision;
-    signed char *key; /* [ncontact] of the set that is looked for; room for zeros after it */
 
     struct modal_motion motion; /* of the phase, */
     struct course *course;      /* [ncontact] and of the outputs that guards are of */
@@ -58,14 +57,6 @@ static int find_whole(struct exact *x)
     return status;
 }
 
-/* key [n] = what contacts do, as a structure that is held has it. */
-static void write_key(size_t n, const signed char *restrict slip, const unsigned char *restrict holds, signed char *restrict key)
-{
-    for (size_t i = 0; i < n; i++) {
-        key[i] = (signed char)((slip[i] == 0) + holds[i]);
-    }
-}
-
 /* What a key of n bytes, and zeros after them, comes down to. */
 static uint64_t print_of(size_t n, const signed char *key)
 {
@@ -77,16 +68,21 @@ static uint64_t print_of(size_t n, const signed char *key)
     return print;
 }
 
+/* Few contacts have a print that no other key has. */
+static int has_key(struct held held, uint64_t print, size_t n, const signed char *key)
+{
+    return held.print == print && (n <= sizeof print || memcmp(held.modal->key, key, n) == 0);
+}
+
 /* *found = the structure with the contacts at rest held. Those used last are looked at first. */
 static int find_held(struct exact *x, const struct modal **found)
 {
     tribo_system *sys = x->sys;
     const struct stick_slip *m = &x->events.stick_slip;
-    write_key(m->contacts, m->slip, m->holds, x->key);
-    const uint64_t print = print_of(m->contacts, x->key);
+    const uint64_t print = print_of(m->contacts, m->key);
     for (size_t i = x->helds; i-- > 0;) {
         const struct held held = x->held[i];
-        if (held.print == print && memcmp(held.modal->key, x->key, sys->ncontact) == 0) {
+        if (has_key(held, print, m->contacts, m->key)) {
             for (; i + 1 < x->helds; i++) {
                 x->held[i] = x->held[i + 1];
             }
@@ -109,7 +105,7 @@ static int find_held(struct exact *x, const struct modal **found)
     }
     struct modal *h;
     int status = find_whole(x);
-    status = status ? status : tribo_modal_create(&h, &x->whole, x->events.stick_slip.slip, x->events.stick_slip.holds);
+    status = status ? status : tribo_modal_create(&h, &x->whole, m->slip, m->holds);
     if (status) {
         return status;
     }
@@ -331,7 +327,6 @@ static void destroy(tribo_driver *drv)
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
         free(x->course);
-        free(x->key);
         free(x->work);
         free(x);
     }
@@ -366,7 +361,6 @@ static int create(tribo_driver *drv)
     }
     x->sys = drv->sys;
     x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
-    x->key = calloc(drv->sys->ncontact + sizeof(uint64_t), 1);
     const int status = tribo_events_create(&x->events, drv);
     if (status) {
         return status;
@@ -381,7 +375,7 @@ static int create(tribo_driver *drv)
     x->events.transition = transition;
     x->events.signal = combine;
     x->events.shows_between = 1;
-    if (!x->course || !x->key || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
+    if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     return TRIBO_OK;

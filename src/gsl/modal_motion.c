@@ -245,7 +245,9 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const size_t n = sys->ndof;
     double *velocity = to + n;
     tribo_modal_motion_go(x, tau);
-    memset(x->dq, 0, n * sizeof *x->dq);
+    if (h->moving < n) {
+        memset(x->dq, 0, n * sizeof *x->dq);
+    }
     if (to != from) {
         memcpy(to, from, (2 * n + 1) * sizeof *to);
     }

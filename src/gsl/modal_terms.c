@@ -34,13 +34,10 @@ static inline void grow_little(const double *restrict lr, const double *restrict
                                double *restrict im)
 {
     for (size_t k = 0; k < T; k++) {
-        const double x = lr[k] * delta, y = li[k] * delta;
-        double r = 1.0 + 0.25 * x, i = 0.25 * y;
-        const double r3 = 1.0 + (x * r - y * i) * (1 / 3.), i3 = (x * i + y * r) * (1 / 3.);
-        r = 1.0 + 0.5 * (x * r3 - y * i3);
-        i = 0.5 * (x * i3 + y * r3);
-        re[k] = 1.0 + (x * r - y * i);
-        im[k] = x * i + y * r;
+        const double x = lr[k] * delta, y = li[k] * delta, x2 = x * x - y * y, y2 = 2.0 * x * y;
+        const double r = 0.5 + (x * (1 / 6.) + x2 * (1 / 24.)), i = y * (1 / 6.) + y2 * (1 / 24.);
+        re[k] = 1.0 + (x + (x2 * r - y2 * i));
+        im[k] = y + (x2 * i + y2 * r);
     }
 }
 

@@ -4,8 +4,11 @@
 #include <math.h>
 #include <string.h>
 
-/* In Bernstein's basis. */
-enum { COEFFICIENTS = 7 };
+/* In Bernstein's basis, and in powers. */
+enum { COEFFICIENTS = 7, POWERS = 6 };
+
+/* So many roots at the start are divided out, after which that many coefficients are zero. */
+enum { ROOTS = 3 };
 
 /* So often is an interval halved to see that a function is positive. */
 #define HALVINGS 3
@@ -85,21 +88,21 @@ static void powers(const struct sample *a, const struct sample *b, double h, dou
 }
 
 /* Where that falls to zero, by Newton's method from s on, and by halves where it leaves the interval. Roots at the start are
- * divided out. */
-static double zero(double *p, double s)
+ * divided out. Sums are by pairs, so that no term waits for more than two others. */
+static double zero(const double *p, double s)
 {
-    int first = 0;
-    while (first < 3 && p[first] <= 0.0) {
-        p[first++] = 0.0;
+    int roots = 0;
+    while (roots < ROOTS && p[roots] <= 0.0) {
+        roots++;
     }
+    const double *const c = p + roots;
+    const double c2 = 2.0 * c[2], c3 = 3.0 * c[3], c4 = 4.0 * c[4], c5 = 5.0 * c[5];
     double lo = 0.0, hi = 1.0;
-    s = first ? 0.5 : s;
+    s = roots ? 0.5 : s;
     for (int i = 0; i < 40; i++) {
-        double value = 0.0, slope = 0.0;
-        for (int k = 5; k >= first; k--) {
-            slope = slope * s + value;
-            value = value * s + p[k];
-        }
+        const double s2 = s * s;
+        const double value = (c[0] + c[1] * s) + s2 * ((c[2] + c[3] * s) + s2 * (c[4] + c[5] * s));
+        const double slope = (c[1] + c2 * s) + s2 * ((c3 + c4 * s) + s2 * c5);
         *(value > 0.0 ? &lo : &hi) = s;
         const double next = s - value / slope;
         if (slope < 0.0 && fabs(next - s) < CLOSE) {
@@ -113,7 +116,7 @@ static double zero(double *p, double s)
 /* Near the end it is found from there, or rounding of what the other end tells would count. */
 double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
 {
-    double p[6];
+    double p[POWERS + ROOTS] = {0.0};
     powers(a, b, h, p);
     const double s = zero(p, a->g / (a->g - b->g));
     if (s <= 0.5 || !(b->g < 0.0)) {
@@ -126,7 +129,7 @@ double tribo_quintic_zero(const struct sample *a, const struct sample *b, double
 
 double tribo_taylor_zero(const double *p, double guess)
 {
-    double own[6];
-    memcpy(own, p, sizeof own);
+    double own[POWERS + ROOTS] = {0.0};
+    memcpy(own, p, POWERS * sizeof *own);
     return zero(own, guess);
 }

@@ -5,6 +5,7 @@
 #include "../common/real.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,10 +19,10 @@
 /* All arrays of numbers are one block. */
 static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
 {
-    double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force, &m->base,      &m->noise, &m->diagonal,
-                                   &m->seen,      &m->parting,        &m->v,     &m->own_a,     &m->lo,    &m->hi,
-                                   &m->f,         &m->still,          &m->swing, &m->spring,    &m->slack, &m->spring_rate,
-                                   &m->base_size, &m->base_rate_size, &m->gain,  &m->allowance, &m->excess};
+    double **const by_contact[] = {&m->limit,     &m->limit_rate,     &m->force,   &m->base,   &m->noise,     &m->diagonal,
+                                   &m->seen,      &m->parting,        &m->v,       &m->own_a,  &m->lo,        &m->hi,
+                                   &m->f,         &m->still,          &m->swing,   &m->spring, &m->slack,     &m->spring_rate,
+                                   &m->base_size, &m->base_rate_size, &m->inertia, &m->gain,   &m->allowance, &m->excess};
     double **const by_dof[] = {&m->size, &m->acceleration, &m->free, &m->rate, &m->load_size};
     const size_t contact_arrays = sizeof by_contact / sizeof *by_contact, dof_arrays = sizeof by_dof / sizeof *by_dof;
     double *work = calloc(contact_arrays * contacts + dof_arrays * dofs, sizeof *work);
@@ -38,15 +39,15 @@ static int create_numbers(struct stick_slip *m, size_t contacts, size_t dofs)
 
 static int create_marks(struct stick_slip *m, size_t contacts)
 {
-    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled};
+    signed char **const sign[] = {&m->slip, &m->tied, &m->before, &m->loose, &m->slid, &m->pulled, &m->key};
     unsigned char **const mark[] = {&m->holds, &m->rested, &m->can_hold, &m->elastic, &m->last};
     const size_t signs = sizeof sign / sizeof *sign, marks = sizeof mark / sizeof *mark;
-    signed char *work = calloc(signs + marks, contacts);
-    for (size_t k = 0; work && k < signs; k++) {
-        *sign[k] = work + k * contacts;
-    }
+    signed char *work = calloc((signs + marks) * contacts + sizeof(uint64_t), 1);
     for (size_t k = 0; work && k < marks; k++) {
-        *mark[k] = (unsigned char *)work + (signs + k) * contacts;
+        *mark[k] = (unsigned char *)work + k * contacts;
+    }
+    for (size_t k = 0; work && k < signs; k++) {
+        *sign[k] = work + (marks + k) * contacts;
     }
     return work != NULL;
 }
@@ -91,6 +92,7 @@ static void find_kinds(struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; i < sys->ncontact; i++) {
         m->diagonal[i] = tribo_system_delassus(sys, i, i);
+        m->inertia[i] = m->diagonal[i] > 0.0 ? quotient(1.0, m->diagonal[i]) : 0.0;
         m->elastic[i] = (unsigned char)tribo_massless_touches(&sys->massless, i);
         m->can_hold[i] = m->diagonal[i] > 0.0 || m->elastic[i];
         m->all[i] = i;
@@ -127,7 +129,7 @@ void tribo_stick_slip_free(struct stick_slip *m)
     tribo_destroy(m->hold);
     tribo_breakaway_free(&m->breakaway);
     free(m->limit);
-    free(m->slip);
+    free(m->holds);
     free(m->at);
     free(m->snap);
     memset(m, 0, sizeof *m);
@@ -193,7 +195,7 @@ void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, c
     }
     m->noise[i] = tribo_stick_slip_velocity_noise(m, i, speed);
     m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
-    m->allowance[i] = m->diagonal[i] > 0.0 ? TRIBO_ALLOWED * m->gain[i] / m->diagonal[i] : 0.0;
+    m->allowance[i] = TRIBO_ALLOWED * m->gain[i] * m->inertia[i];
     if (m->swing[i] > 0.0) {
         m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
     }

@@ -30,6 +30,7 @@ struct stick_slip {
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
+    signed char *key;      /* [ncontact] 1: at rest, 2: and holds; and zeros after it, up to whole words of 8 */
     int dependents;        /* how many rest by themselves */
     int steady;            /* limits are those that update_limits has seen */
     unsigned char *rested; /* [ncontact] 1: was at rest when last decided about: its velocity starts from zero */
@@ -43,17 +44,17 @@ struct stick_slip {
     double *force;              /* [ncontact] after tribo_stick_slip_decide: friction, */
     double *found;              /* [founds] what a decision finds out where that is needed, and else is 0: */
     size_t founds;
-    double *gain;         /* [ncontact] what accelerations of contacts may be rounding, */
-    double *allowance;    /* [ncontact] by how much forces may exceed their limits before that counts, */
-    double *excess;       /* [ncontact] by how much they do where this begins, */
-    double *size;         /* [ndof] and how large the parts of q'' are */
-    double *parting;      /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
-    double *base, *noise; /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
-    double *seen;         /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
-    double *diagonal;     /* [ncontact] R_ii */
-    double *v, *own_a;    /* [ncontact] relative velocity; room for the next one */
-    const double *a;      /* [ncontact] acceleration without friction */
-    double *lo, *hi, *f;  /* [ncontact] workspace: bounds, forces */
+    double *gain;               /* [ncontact] what accelerations of contacts may be rounding, */
+    double *allowance;          /* [ncontact] by how much forces may exceed their limits before that counts, */
+    double *excess;             /* [ncontact] by how much they do where this begins, */
+    double *size;               /* [ndof] and how large the parts of q'' are */
+    double *parting;            /* [ncontact] by how much the velocity of one that rests by itself may differ from zero */
+    double *base, *noise;       /* [ncontact] b(t); what of v may be rounding, of those that slide, and where gain is known */
+    double *seen;               /* [ncontact] size of all that v was the sum of in the phase before, if known, else 0 */
+    double *diagonal, *inertia; /* [ncontact] R_ii, and one over it, or 0 */
+    double *v, *own_a;          /* [ncontact] relative velocity; room for the next one */
+    const double *a;            /* [ncontact] acceleration without friction */
+    double *lo, *hi, *f;        /* [ncontact] workspace: bounds, forces */
     double *free, *acceleration, *rate; /* [ndof] q'' without friction; workspace: with it, its rate */
     double *base_size, *base_rate_size; /* [ncontact] how large b, and its rate, ever are */
     double *load_size;                  /* [ndof] how large accelerations by harmonic loads ever are */
@@ -104,6 +105,7 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     }
     m->holds[i] = (unsigned char)(rests & m->can_hold[i]);
     m->loose[i] = (signed char)(!m->holds[i] || m->elastic[i]);
+    m->key[i] = (signed char)(rests + m->holds[i]);
     m->dependents += m->can_hold[i] ? 0 : rests - rested;
     m->hold_differs = m->unlisted = 1;
 }
