@@ -150,6 +150,16 @@ static int look_at_met(struct variation *x, const double *y)
     return status ? status : find_bond(x);
 }
 
+/* x->force = what contacts do where the phase ends, of which those that hold have just been found. */
+static void keep_forces(struct variation *x)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const int slides = m->slip[i] == 1 || m->slip[i] == -1;
+        x->force[i] = m->holds[i] ? m->f[i] : slides ? -m->slip[i] * m->lo[i] : m->slip[i] == 0 ? m->force[i] : 0.0;
+    }
+}
+
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct variation *x = (struct variation *)company;
@@ -159,6 +169,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
         tribo_elastic_perturb(sys, x->before, x->columns, x->v, x->work);
     }
     int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration);
+    keep_forces(x);
     find_met(x);
     memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
     tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
@@ -199,17 +210,6 @@ static void jump_earlier(struct variation *x, double slope, const double *row)
     }
 }
 
-/* Of several contacts that stop at once, i reverses; the accelerations that others make will be taken from what they hold. */
-static void reverse(struct variation *x, size_t i, const double *row)
-{
-    const struct stick_slip *m = &x->events->stick_slip;
-    const size_t n = x->sys->ndof;
-    const double jump = m->slip[i] == 0 ? 0.0 : 2.0 * x->before[i] * m->limit[i] / x->slope[i];
-    for (size_t d = 0; d < n; d++) {
-        tribo_add(x->v + (n + d) * x->columns, jump * tribo_matrix_get(&x->sys->response, d, i), row, x->columns);
-    }
-}
-
 /* The contacts that stop, to x->stopped, and how much earlier perturbed motions have them do so, in rows. Returns how many. */
 static size_t find_stopped(struct variation *x)
 {
@@ -239,29 +239,108 @@ static int together(const struct variation *x, const size_t *contact, size_t cou
     return 1;
 }
 
-/* Whether contact i, of those that stop, goes on, and so changes when another one stops with which it shares bodies. */
-static void find_torn(struct variation *x, size_t i, size_t count)
+/* 1 if the force of contact i may have changed where others stop: it stops itself, or rests before or after. */
+static int takes_part(const struct variation *x, size_t i)
 {
-    for (size_t k = 0; x->events->stick_slip.slip[i] != 0 && k < count; k++) {
-        const size_t j = x->stopped[k];
-        if (j != i && fabs(tribo_system_delassus(x->sys, i, j)) > TOGETHER * tribo_system_delassus(x->sys, i, i)) {
-            x->torn = i;
-            x->other = j;
+    const int rests = x->before[i] == 0 || x->events->stick_slip.slip[i] == 0;
+    return !x->events->stick_slip.elastic[i] && (rests || stops(x, i));
+}
+
+/* x->group = group, of contact i and all to which it passes forces, by shared bodies and through others that take part. */
+static void gather(struct variation *x, size_t i, size_t group)
+{
+    size_t count = 0;
+    x->queue[count++] = i;
+    x->group[i] = group;
+    for (size_t k = 0; k < count; k++) {
+        const size_t one = x->queue[k];
+        for (size_t j = 0; j < x->sys->ncontact; j++) {
+            const double coupling = x->group[j] ? 0.0 : fabs(tribo_system_delassus(x->sys, one, j));
+            if (coupling > TOGETHER * tribo_system_delassus(x->sys, one, one) && takes_part(x, j)) {
+                x->group[j] = group;
+                x->queue[count++] = j;
+            }
         }
     }
 }
 
-/* Contacts that stop by coincidence do so by what moved them before, each at its own time. */
+static void swap_stopped(struct variation *x, size_t i, size_t k)
+{
+    const size_t contact = x->stopped[i];
+    x->stopped[i] = x->stopped[k];
+    x->stopped[k] = contact;
+    for (size_t j = 0; i != k && j < x->columns; j++) {
+        const double change = x->rows[i * x->columns + j];
+        x->rows[i * x->columns + j] = x->rows[k * x->columns + j];
+        x->rows[k * x->columns + j] = change;
+    }
+}
+
+/* Moves those of a group, from contact first of those that stop on, to there. Returns how many. */
+static size_t bring_forward(struct variation *x, size_t first, size_t count, size_t group)
+{
+    size_t next = first;
+    for (size_t k = first; k < count; k++) {
+        if (x->group[x->stopped[k]] == group) {
+            swap_stopped(x, next++, k);
+        }
+    }
+    return next - first;
+}
+
+/* u += the part that a group has in the jump of accelerations, dt earlier: slope dt = row. */
+static void jump_of_group(struct variation *x, size_t group, double slope, const double *row)
+{
+    const size_t n = x->sys->ndof;
+    double *jump = x->column;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        x->f[i] = x->group[i] == group ? x->events->stick_slip.force[i] - x->force[i] : 0.0;
+    }
+    memset(jump, 0, n * sizeof *jump);
+    tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, jump);
+    for (size_t d = 0; d < n; d++) {
+        tribo_add(x->v + (n + d) * x->columns, jump[d] / slope, row, x->columns);
+    }
+}
+
+/* Whether one of a group slides from there on: which of them stops first then changes when the
+ * next one stops. If all rest, that takes away all that their order does. */
+static void find_torn(struct variation *x, size_t group, const size_t *stopped)
+{
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        if (x->group[i] == group && x->events->stick_slip.slip[i] != 0) {
+            x->torn = i;
+            x->other = stopped[i == stopped[0]];
+        }
+    }
+}
+
+/* Contacts that stop by coincidence do so each at its own time: groups of them, between which no forces pass, one by one. */
+static void stop_by_groups(struct variation *x, size_t count)
+{
+    size_t next = 0;
+    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
+    for (size_t group = 1; next < count; group++) {
+        const size_t *stopped = x->stopped + next;
+        const double *rows = x->rows + next * x->columns;
+        gather(x, stopped[0], group);
+        const size_t of_group = bring_forward(x, next, count, group);
+        if (together(x, stopped, of_group, x->slope, rows)) {
+            jump_of_group(x, group, x->slope[stopped[0]], rows);
+        } else {
+            find_torn(x, group, stopped);
+        }
+        next += of_group;
+    }
+}
+
 static void stop_earlier(struct variation *x)
 {
     const size_t count = find_stopped(x);
     if (count && together(x, x->stopped, count, x->slope, x->rows)) {
         jump_earlier(x, x->slope[x->stopped[0]], x->rows);
     } else {
-        for (size_t k = 0; k < count; k++) {
-            reverse(x, x->stopped[k], x->rows + k * x->columns);
-            find_torn(x, x->stopped[k], count);
-        }
+        stop_by_groups(x, count);
     }
 }
 
@@ -327,9 +406,9 @@ void tribo_variation_begin(struct variation *x, const double *v)
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
     *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
-    x->v = malloc((2 * (sys->ndof + sys->ncontact) * columns + 5 * sys->ncontact + 6 * sys->ndof + 1) * sizeof *x->v);
+    x->v = malloc((2 * (sys->ndof + sys->ncontact) * columns + 6 * sys->ncontact + 6 * sys->ndof + 1) * sizeof *x->v);
     x->before = malloc(2 * sys->ncontact + 1);
-    x->stopped = malloc((2 * sys->ncontact + 1) * sizeof *x->stopped);
+    x->stopped = malloc((4 * sys->ncontact + 1) * sizeof *x->stopped);
     if (!x->v || !x->before || !x->stopped) {
         return 0;
     }
@@ -343,7 +422,10 @@ int tribo_variation_create(struct variation *x, struct events *e, tribo_system *
     x->work = x->pull + sys->ncontact * columns;
     x->rise = x->work + 2 * sys->ndof + sys->ncontact;
     x->side = x->before + sys->ncontact;
+    x->force = x->rise + sys->ncontact;
     x->met = x->stopped + sys->ncontact;
+    x->group = x->met + sys->ncontact;
+    x->queue = x->group + sys->ncontact;
     return 1;
 }
 

@@ -323,6 +323,23 @@ TEST(no_multipliers)
     search_free(&s);
 }
 
+/* Nor where no inertia couples them, but a third contact that rests does, which leaves their sum with the block between. */
+TEST(no_multipliers_by_a_third)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0},
+                 stiffness[] = {1.8, 0.0, 0.0, 0.0, 1.8, 0.0, 0.0, 0.0, 1.8};
+    const double damping[] = {0.1, 0.0, 0.0, 0.0, 0.1, 0.0, 0.0, 0.0, 0.1};
+    const double direction[] = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0};
+    const double force[] = {1.75, 0.0, 1.75}, limit[] = {0.02, 0.02, 100.0};
+    struct search s = search_create(methods[_i], 3, 3, mass, damping, stiffness, direction, 0.63, force);
+    double y[7] = {0}, re[6], im[6];
+    assert_ok(tribo_set_limit(tribo_system_context(s.sys), limit));
+    find(&s, 0.0, y);
+    assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "contact 1 and contact 0 ");
+    search_free(&s);
+}
+
 /* A free body between two bounds of friction: x'' = cos(t) + f. */
 TEST(rigid_body)
 {
@@ -452,5 +469,5 @@ TEST(resonance)
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
           {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
-          {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {no_multipliers, 4}, {belt, 2}, {rigid_body, 2},
-          {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
+          {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {no_multipliers, 4}, {no_multipliers_by_a_third, 2},
+          {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
