@@ -207,8 +207,10 @@ static inline int tribo_stick_slip_knows_holds(const struct stick_slip *m)
     return m->independent && !m->fresh;
 }
 
-/* stick_slip_instant.c: q'' [ndof] in a state while contacts do what they did when last decided about. Returns a status. */
-int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration);
+/* stick_slip_instant.c: q'' [ndof] in a state, and all forces [ncontact], while contacts do what they did when last decided
+ * about. Returns a status. */
+int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
+                                  double *force);
 
 /* The force by which contact i, coupled with no other one, holds; 0 if it does not. */
 static inline double tribo_stick_slip_balance_alone(const struct stick_slip *m, size_t i, double a)

@@ -117,7 +117,22 @@ static void find_sliding_limits(struct stick_slip *m, const tribo_system *sys, c
     }
 }
 
-int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration)
+/* The force of contact i, which does not hold, at the time that limits were found for: one that rests by itself keeps its force,
+ * or follows its limit. */
+static double own_force(const struct stick_slip *m, size_t i)
+{
+    const double follows = m->slip[i] == 0 && m->swing[i] > 0.0 ? tribo_stick_slip_follows(m, i) : 0.0;
+    if (m->slip[i] != 0) {
+        return m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->lo[i];
+    }
+    if (follows != 0.0) {
+        return follows * (m->breakaway.some ? m->breakaway.kinetic[i] : m->lo[i]);
+    }
+    return m->elastic[i] ? m->spring[i] : m->force[i];
+}
+
+int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, double t, const double *y, double *acceleration,
+                                  double *force)
 {
     tribo_system_free_motion(sys, t, y, acceleration, m->v, m->own_a);
     if (sys->massless.count) {
@@ -125,13 +140,15 @@ int tribo_stick_slip_acceleration(struct stick_slip *m, tribo_system *sys, doubl
     }
     find_sliding_limits(m, sys, m->v);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const double rests = m->elastic[i] ? m->spring[i] : m->force[i];
-        m->f[i] = !m->loose[i] || m->slip[i] == 2 ? 0.0 : m->slip[i] == 0 ? rests : -m->slip[i] * m->lo[i];
+        force[i] = m->loose[i] ? own_force(m, i) : 0.0;
     }
-    tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
+    tribo_matrix_multiply_add(&sys->response, 1.0, force, acceleration);
     tribo_stick_slip_contact_accelerations(sys, acceleration, 1, m->v);
     const int status = tribo_stick_slip_balance(m, m->v, m->f);
     tribo_matrix_multiply_add(&sys->response, 1.0, m->f, acceleration);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        force[i] += m->f[i];
+    }
     return status ? tribo_system_fail(sys, status, "%s", tribo_message(m->hold)) : TRIBO_OK;
 }
 

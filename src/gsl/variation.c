@@ -124,7 +124,24 @@ static void keep_rising(struct variation *x)
     x->count = count;
 }
 
-/* Whether letting one of them go changes the force of another one: x->bond, or ncontact. */
+/* x->f = how letting contact i go changes the rates of forces that hold: damping hands on the jump of its acceleration. */
+static int change_of_rates(struct variation *x, size_t i)
+{
+    const struct breakaway *b = &x->events->stick_slip.breakaway;
+    const tribo_system *sys = x->sys;
+    double *jump = x->column, *rate = jump + sys->ndof;
+    memset(jump, 0, 2 * sys->ndof * sizeof *jump);
+    memset(x->f, 0, sys->ncontact * sizeof *x->f);
+    x->f[i] = tribo_breakaway_most(b, i) - b->kinetic[i];
+    tribo_matrix_multiply_add(&sys->response, 1.0, x->f, jump);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, jump, rate);
+    }
+    return change_of_holds(x, rate, 0);
+}
+
+/* Whether letting one of them go changes the force of another one, or how fast that rises: x->bond, one but the first, or
+ * ncontact. */
 static int find_bond(struct variation *x)
 {
     int status = TRIBO_OK;
@@ -136,6 +153,10 @@ static int find_bond(struct variation *x)
         status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
         for (size_t l = 0; l < k; l++) {
             x->bond = fabs(x->f[x->met[l]]) > TOGETHER * fabs(x->f[i]) ? i : x->bond;
+        }
+        status = status ? status : change_of_rates(x, i);
+        for (size_t l = 0; l < x->count; l++) {
+            x->bond = l != k && fabs(x->f[x->met[l]]) > TOGETHER * x->rise[x->met[l]] ? x->met[k ? k : l] : x->bond;
         }
     }
     return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.hold)) : TRIBO_OK;
@@ -150,16 +171,6 @@ static int look_at_met(struct variation *x, const double *y)
     return status ? status : find_bond(x);
 }
 
-/* x->force = what contacts do where the phase ends, of which those that hold have just been found. */
-static void keep_forces(struct variation *x)
-{
-    const struct stick_slip *m = &x->events->stick_slip;
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        const int slides = m->slip[i] == 1 || m->slip[i] == -1;
-        x->force[i] = m->holds[i] ? m->f[i] : slides ? -m->slip[i] * m->lo[i] : m->slip[i] == 0 ? m->force[i] : 0.0;
-    }
-}
-
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct variation *x = (struct variation *)company;
@@ -168,8 +179,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     if (sys->massless.count) {
         tribo_elastic_perturb(sys, x->before, x->columns, x->v, x->work);
     }
-    int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration);
-    keep_forces(x);
+    int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration, x->force);
     find_met(x);
     memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
     tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
@@ -334,9 +344,32 @@ static void stop_by_groups(struct variation *x, size_t count)
     }
 }
 
+/* Whether a contact loses its static limit where others stop, but not because they do: that is a coincidence of jumps, whose
+ * order counts. */
+static void find_apart(struct variation *x, size_t count)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
+    for (size_t k = 0; k < count; k++) {
+        if (!x->group[x->stopped[k]]) {
+            gather(x, x->stopped[k], k + 1);
+        }
+    }
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const int goes = x->before[i] == 0 && (m->slip[i] == 1 || m->slip[i] == -1);
+        if (goes && (x->side[i] || !x->group[i]) && tribo_breakaway_is_sudden(&m->breakaway, i)) {
+            x->torn = i;
+            x->other = x->stopped[0];
+        }
+    }
+}
+
 static void stop_earlier(struct variation *x)
 {
     const size_t count = find_stopped(x);
+    if (count) {
+        find_apart(x, count);
+    }
     if (count && together(x, x->stopped, count, x->slope, x->rows)) {
         jump_earlier(x, x->slope[x->stopped[0]], x->rows);
     } else {

@@ -5,12 +5,12 @@
  * perturbed motions a little earlier or later, by J_i du/v_i': S = I + (q''+ - q''-) J_i/v_i'. Where several do so at once
  * by coincidence, each makes the jump of its force and of those of contacts at rest that it pulls at; but if it passes forces to
  * another one, directly or through these, and any of them slides from there on, the order in which they stop changes when, and
- * there is no derivative. Where one breaks away accelerations are continuous, since the problem
- * that decides about them has one solution: S = I. But not by a static limit that drops at once: there they jump when the force
- * that holds contact i meets it, S = I + (q''+ - q''-) df_i/(limit' - f_i') for a force that rises. Where several forces meet
- * theirs at once by coincidence, each contact makes its own jump, if letting one go leaves the force of the other what it is;
- * else who goes first decides, and there is no derivative. Forces of elastic contacts are continuous, too; but once one slides,
- * its force stays, and what has no mass moves by the rest. */
+ * there is no derivative. Where one breaks away accelerations are continuous, since the problem that decides about them has one
+ * solution: S = I. But not by a static limit that drops at once: there they jump when the force that holds contact i meets it,
+ * S = I + (q''+ - q''-) df_i/(limit' - f_i') for a force that rises. Where several forces meet theirs at once by coincidence,
+ * each contact makes its own jump, if letting one go leaves the force of the other, and how fast that rises, what they are; else
+ * who goes first decides, and there is no derivative, nor where others stop at that instant. Forces of elastic contacts are
+ * continuous, too; but once one slides, its force stays, and what has no mass moves by the rest. */
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 

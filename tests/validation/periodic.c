@@ -275,10 +275,10 @@ TEST(multipliers_of_swinging_limits)
     search_free(&s);
 }
 
-/* Two blocks that move alike, each held by its own static limit; with_mass: inertia couples them. */
-static struct search twins(const char *method, double with_mass, double limit)
+/* Two blocks that move alike, each held by its own static limit; with_mass, with_damping: inertia, or damping, couples them. */
+static struct search twins(const char *method, double with_mass, double with_damping, double limit)
 {
-    const double mass[] = {1.0, with_mass, with_mass, 1.0}, damping[] = {0.1, 0.0, 0.0, 0.1},
+    const double mass[] = {1.0, with_mass, with_mass, 1.0}, damping[] = {0.1, with_damping, with_damping, 0.1},
                  stiffness[] = {1.8, -0.3, -0.3, 1.8};
     const double direction[] = {1.0, 0.0, 0.0, 1.0}, force[] = {1.75, 1.75}, ratio[] = {1.3, 1.3};
     struct search s = search_create(method, 2, 2, mass, damping, stiffness, direction, 0.63, force);
@@ -290,7 +290,7 @@ static struct search twins(const char *method, double with_mass, double limit)
 /* Both lose their static limits at one instant; motions next to it have each do so at its own time. */
 TEST(multipliers_of_twins)
 {
-    struct search s = twins(methods[_i], 0.0, 0.6);
+    struct search s = twins(methods[_i], 0.0, 0.0, 0.6);
     double y[5] = {0}, re[4], im[4], trace = 0.0;
     const double apart = 1e-5;
     find(&s, 0.0, y);
@@ -309,17 +309,37 @@ TEST(multipliers_of_twins)
     search_free(&s);
 }
 
-/* If inertia couples them, who breaks away first, or, where limits are low, reverses first, changes the other one's time. */
+/* If inertia couples them, who breaks away first, or, where limits are low, reverses first, changes the other one's time; and if
+ * damping does, who breaks away first changes how fast the other one's force rises. */
 TEST(no_multipliers)
 {
-    struct search s = twins(methods[_i % 2], 0.2, _i < 2 ? 0.6 : 0.02);
+    const int reverses = _i / 2 == 1, damped = _i / 2 == 2;
+    struct search s = twins(methods[_i % 2], damped ? 0.0 : 0.2, damped ? -0.05 : 0.0, reverses ? 0.02 : 0.6);
     double y[5] = {0}, re[4] = {7.0}, im[4], share[2];
     find(&s, 0.0, y);
     assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_driver_message(s.drv), _i < 2 ? "contact 0 and contact 1 " : "contact 1 and contact 0 ");
+    assert_says(tribo_driver_message(s.drv), reverses ? "contact 1 and contact 0 " : "contact 0 and contact 1 ");
     assert_exact(re[0], 7.0);
     assert_ok(tribo_driver_period_stick(s.drv, share));
-    require(_i < 2 ? share[0] > 0.0 : share[0] == 0.0, "%g of the period at rest", share[0]);
+    require(reverses ? share[0] == 0.0 : share[0] > 0.0, "%g of the period at rest", share[0]);
+    search_free(&s);
+}
+
+/* Blocks with two contacts each, of which one follows its swinging limit while the other one holds: both of them let go. */
+TEST(no_multipliers_of_pairs)
+{
+    const double mass[] = {1.0, 0.0, 0.0, 1.0}, damping[] = {0.3, 0.0, 0.0, 0.3}, stiffness[] = {3.0, -2.0, -2.0, 3.0},
+                 direction[] = {1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0}, force[] = {1.0, -1.0}, limit[] = {0.1, 0.1, 0.25, 0.25},
+                 swing[] = {0.04, 0.04, 0.1, 0.1}, ratio[] = {1.3, 1.3, 1.3, 1.3};
+    struct search s = search_create(methods[_i], 2, 4, mass, damping, stiffness, direction, 0.65, force);
+    double y[5] = {0}, re[4], im[4], share[4];
+    assert_ok(tribo_set_limit(tribo_system_context(s.sys), limit));
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), ratio, NULL));
+    assert_ok(tribo_system_add_limit(s.sys, 1.3, swing, NULL));
+    find(&s, 0.0, y);
+    assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_UNSUPPORTED);
+    assert_ok(tribo_driver_period_stick(s.drv, share));
+    require(share[0] > 0.0 && share[0] < 1.0, "%g of the period at rest", share[0]);
     search_free(&s);
 }
 
@@ -469,5 +489,6 @@ TEST(resonance)
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
           {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
-          {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {no_multipliers, 4}, {no_multipliers_by_a_third, 2},
-          {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
+          {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {no_multipliers, 6}, {no_multipliers_of_pairs, 2},
+          {no_multipliers_by_a_third, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2},
+          {no_contacts, 2}, {resonance, 2})
