@@ -290,7 +290,8 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
  * forget: multipliers of 0.
  * re, im  [2 ndof] out
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search found none), TRIBO_ERR_UNSUPPORTED (contacts that
- * bear upon each other stop, or reach their static limits, at one instant: what motions next to it do is not linear). */
+ * bear upon each other stop, or reach their static limits, at one instant: what motions next to it do is not linear; or one
+ * reaches its static limit at an instant at which another one stops). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
 /* What the last periodic motion found holds, in closed form from event to event: nothing is sampled. Each call follows the motion

@@ -114,8 +114,8 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
     if (s->best.torn < s->map.sys->ncontact) {
         return tribo_driver_fail(
             drv, TRIBO_ERR_UNSUPPORTED,
-            "contact %zu and contact %zu stop or break away at one instant, and bear upon each other: which of "
-            "them is first changes the motion, and it has no multipliers",
+            "contact %zu and contact %zu stop or break away at one instant: which of them is first may change the motion, "
+            "and it has no multipliers",
             s->best.torn, s->best.other);
     }
     memcpy(re, s->re, s->map.n * sizeof *re);

@@ -343,6 +343,54 @@ TEST(no_multipliers_of_pairs)
     search_free(&s);
 }
 
+/* When block 0 reverses, and when block 1 loses its static limit, last. */
+struct instants {
+    tribo_system *sys;
+    double reverses, goes;
+};
+
+static int note_instants(double t, const double *y, int event, void *data)
+{
+    struct instants *x = data;
+    double v[2], f[2];
+    assert_ok(tribo_system_contacts(x->sys, t, y, v, NULL, f));
+    x->reverses = event && fabs(v[0]) < 1e-9 ? t : x->reverses;
+    x->goes = event && v[1] == 0.0 && fabs(fabs(f[1]) - 0.6) < 1e-9 ? t : x->goes;
+    return 0;
+}
+
+/* Two blocks that nothing couples: one slides all the time, one sticks in turn. Its load lags by so much time. */
+static struct search strangers(const char *method, double lag)
+{
+    const double omega = 0.63, mass[] = {1.0, 0.0, 0.0, 1.0}, damping[] = {0.1, 0.0, 0.0, 0.1},
+                 stiffness[] = {1.8, 0.0, 0.0, 1.5};
+    const double direction[] = {1.0, 0.0, 0.0, 1.0}, force[] = {1.75, 0.0}, limit[] = {0.02, 0.6}, ratio[] = {1.0, 1.3};
+    const double cosine[] = {0.0, 1.75 * cos(omega * lag)}, sine[] = {0.0, 1.75 * sin(omega * lag)};
+    struct search s = search_create(method, 2, 2, mass, damping, stiffness, direction, omega, force);
+    assert_ok(tribo_system_add_load(s.sys, omega, cosine, sine));
+    assert_ok(tribo_set_limit(tribo_system_context(s.sys), limit));
+    assert_ok(tribo_set_static(tribo_system_context(s.sys), ratio, NULL));
+    return s;
+}
+
+/* Nor where a block loses its static limit in the instant in which another one reverses: what of the jump is whose is not known. */
+TEST(no_multipliers_of_strangers)
+{
+    struct search s = strangers(methods[_i], 0.0);
+    struct instants x = {s.sys, 0.0, 0.0};
+    double y[5] = {0}, t = 0.0, re[4], im[4];
+    find(&s, 0.0, y);
+    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
+    assert_ok(tribo_driver_set_observer(s.drv, note_instants, &x));
+    driver_advance(s.drv, &t, s.period, y);
+    search_free(&s);
+    s = strangers(methods[_i], x.reverses - x.goes);
+    find(&s, 0.0, y);
+    assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_UNSUPPORTED);
+    assert_says(tribo_driver_message(s.drv), "contact 1 and contact 0 ");
+    search_free(&s);
+}
+
 /* Nor where no inertia couples them, but a third contact that rests does, which leaves their sum with the block between. */
 TEST(no_multipliers_by_a_third)
 {
@@ -490,5 +538,5 @@ TEST(resonance)
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
           {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
           {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {no_multipliers, 6}, {no_multipliers_of_pairs, 2},
-          {no_multipliers_by_a_third, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2},
-          {no_contacts, 2}, {resonance, 2})
+          {no_multipliers_of_strangers, 2}, {no_multipliers_by_a_third, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
+          {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
