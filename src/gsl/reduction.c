@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model.h"
+#include "../common/real.h"
 
 /* a = diag(factor x); zeroed if out of memory. */
 static int diagonal_matrix(struct matrix *a, const double *x, double factor, size_t n)
@@ -41,19 +42,33 @@ static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
  * a mode moves both sides alike. A contact can hold nothing by such. */
 #define NO_SHAPE (100.0 * DBL_EPSILON)
 
-/* How mode phi [ndof] moves contact i. */
-static double shape(const struct model *m, size_t i, const double *phi)
+/* What of a mode may be rounding at contact i: modes have a norm of 1, and degrees of freedom that move alone one over the root of
+ * their mass. */
+static double least_shape(const struct model *m, size_t i)
+{
+    const struct matrix *j = &m->direction;
+    double alone = 0.0;
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        const double mass = tribo_matrix_get(&m->mass, j->col[k], j->col[k]);
+        alone += mass > 0.0 ? fabs(j->val[k]) / sqrt(mass) : 0.0;
+    }
+    return DBL_EPSILON * alone;
+}
+
+/* How mode phi [ndof] moves contact i, of which no more than least is nothing. */
+static double shape(const struct model *m, size_t i, const double *phi, double least)
 {
     const double sum = tribo_matrix_row_dot(&m->direction, i, phi);
-    return fabs(sum) > NO_SHAPE * tribo_matrix_row_size(&m->direction, i, phi) ? sum : 0.0;
+    return fabs(sum) > greater(NO_SHAPE * tribo_matrix_row_size(&m->direction, i, phi), least) ? sum : 0.0;
 }
 
 /* shapes [ncontact][count] = J phi. */
 static void find_shapes(const struct model *m, const struct reduced *r, double *shapes)
 {
-    for (size_t k = 0; k < r->count; k++) {
-        for (size_t i = 0; i < m->ncontact; i++) {
-            shapes[i * r->count + k] = shape(m, i, r->phi + k * m->ndof);
+    for (size_t i = 0; i < m->ncontact; i++) {
+        const double least = least_shape(m, i);
+        for (size_t k = 0; k < r->count; k++) {
+            shapes[i * r->count + k] = shape(m, i, r->phi + k * m->ndof, least);
         }
     }
 }

@@ -284,6 +284,24 @@ TEST(free_bodies)
     gsl_spmatrix_free(direction);
 }
 
+/* A body on a spring, and two that only inertia couples with it, which are free to drift together: the first one has no part in
+ * that, however little of it numerical modes leave, and a contact of it cannot stop them. */
+TEST(drift_beside_a_contact)
+{
+    const double mass[] = {2.6, 0.1, -0.1, 0.1, 0.4, 0.0, -0.1, 0.0, 1.6},
+                 stiffness[] = {0.7, 0.0, 0.0, 0.0, 0.7, -0.7, 0.0, -0.7, 0.7}, direction[] = {1.0, 0.0, 0.0};
+    const double y[] = {0.0, 0.0, 1.0, 0.0, 0.0};
+    char text[200] = "";
+    double omega[2], v;
+    tribo_system *sys;
+    require(!tribo_system_linear(&sys, 3, 1, mass, NULL, stiffness, direction, 2, text, sizeof text), "%s", text);
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    assert_exact(omega[0], 0.0);
+    assert_ok(tribo_system_contacts(sys, 0.0, y, &v, NULL, NULL));
+    assert_exact(v, 0.0);
+    tribo_system_destroy(sys);
+}
+
 /* A copy knows it, too. */
 TEST(copies_keep_truncation)
 {
@@ -297,5 +315,5 @@ TEST(copies_keep_truncation)
     tribo_system_destroy(copy);
 }
 
-TEST_MAIN("reduced", {beam_stuck, 4}, {beam_best, 8}, {truncation_bounds, 8}, {truncation_errors, 1},
+TEST_MAIN("reduced", {drift_beside_a_contact, 1}, {beam_stuck, 4}, {beam_best, 8}, {truncation_bounds, 8}, {truncation_errors, 1},
           {all_of_a_small_structure, 4}, {free_bodies, 1}, {copies_keep_truncation, 1})
