@@ -75,8 +75,8 @@ void tribo_modal_motion_bound(struct modal_motion *x, double tau);
 /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status. */
 int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to);
 
-/* modal_course.c: the course of c->output, a velocity or not, which is value at t0, where the motion still is; and where go() was;
- * and its bounds, from those of terms. */
+/* modal_course.c: the course of c->output, a velocity or not, which is value at t0, where the motion still is; and where go()
+ * was; and its bounds, from those of terms. */
 void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_velocity, double value);
 void tribo_course_look(const struct modal_motion *x, struct course *c);
 void tribo_course_bound(const struct modal_motion *x, struct course *c);

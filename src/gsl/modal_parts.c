@@ -6,8 +6,8 @@
 #include <string.h>
 
 /* Arrays are many and short: blocks hold several, the first one this many bytes, for which allocators need not search, the next
- * ones twice as many as those before. The first one is zeroed as a whole, which is little; of larger ones every array is when it is
- * taken. An emptied list keeps no block of more than LASTING. */
+ * ones twice as many as those before. The first one is zeroed as a whole, which is little; of larger ones every array is when
+ * it is taken. An emptied list keeps no block of more than LASTING. */
 #define BLOCK 992
 #define LASTING ((size_t)1 << 20)
 

@@ -42,8 +42,8 @@ static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
  * a mode moves both sides alike. A contact can hold nothing by such. */
 #define NO_SHAPE (100.0 * DBL_EPSILON)
 
-/* What of a mode may be rounding at contact i: modes have a norm of 1, and degrees of freedom that move alone one over the root of
- * their mass. */
+/* What of a mode may be rounding at contact i: modes have a norm of 1, and degrees of freedom that move alone one over the root
+ * of their mass. */
 static double least_shape(const struct model *m, size_t i)
 {
     const struct matrix *j = &m->direction;

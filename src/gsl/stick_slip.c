@@ -28,8 +28,8 @@ static void add_amplitudes(const tribo_system *sys, enum drives drives, int orde
     }
 }
 
-/* A time is known to its rounding. Where contacts that repeat each other may rest, what one holds follows its base, and the others
- * see the rounding of that. */
+/* A time is known to its rounding. Where contacts that repeat each other may rest, what one holds follows its base, and the
+ * others see the rounding of that. */
 static void find_base_sizes(struct stick_slip *m, const tribo_system *sys)
 {
     const double late = DBL_EPSILON * fabs(sys->time) / TRIBO_VELOCITY_NOISE;

@@ -81,7 +81,8 @@ struct stick_slip {
     unsigned char *last; /* [ncontact] and this */
 };
 
-/* stick_slip_create.c: TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed too. */
+/* stick_slip_create.c: TRIBO_OK or a failure with its message on the system's context. tribo_stick_slip_free takes what failed
+ * too. */
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 

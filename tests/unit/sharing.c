@@ -269,8 +269,8 @@ TEST(twins_share_beside_twins_at_limits)
     tribo_destroy(c);
 }
 
-/* Four contacts between two bodies, each of which may carry one way only, share nothing where nothing pulls, whatever they carried
- * before. */
+/* Four contacts between two bodies, each of which may carry one way only, share nothing where nothing pulls, whatever they
+ * carried before. */
 TEST(nothing_is_shared_of_nothing)
 {
     static const double sign[4] = {1.0, -1.0, -1.0, 1.0}, none[4] = {0.0, 0.0, 0.0, 0.0}, vfree[4] = {1.0, 2.0, -1.0, 0.5},

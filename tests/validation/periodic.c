@@ -373,7 +373,8 @@ static struct search strangers(const char *method, double lag)
     return s;
 }
 
-/* Nor where a block loses its static limit in the instant in which another one reverses: what of the jump is whose is not known. */
+/* Nor where a block loses its static limit in the instant in which another one reverses: what of the jump is whose is not
+ * known. */
 TEST(no_multipliers_of_strangers)
 {
     struct search s = strangers(methods[_i], 0.0);

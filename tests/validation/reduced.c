@@ -254,8 +254,8 @@ TEST(all_of_a_small_structure)
     gsl_spmatrix_free(direction);
 }
 
-/* Two bodies on a spring and a third one by itself, all free: the contacts at both ends of the spring feel one elastic motion, and
- * what they lack is lost beside the rigid-body motions. Then all of it may be missing. */
+/* Two bodies on a spring and a third one by itself, all free: the contacts at both ends of the spring feel one elastic motion,
+ * and what they lack is lost beside the rigid-body motions. Then all of it may be missing. */
 TEST(free_bodies)
 {
     gsl_spmatrix *mass = gsl_spmatrix_alloc(3, 3), *stiffness = gsl_spmatrix_alloc(3, 3), *direction = gsl_spmatrix_alloc(2, 3);

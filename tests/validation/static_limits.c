@@ -256,8 +256,8 @@ TEST(falls_and_swings)
     tribo_system_destroy(sys);
 }
 
-/* A body rests on a contact that holds 1.2 while another one drags at it on a belt that turns back: at that instant both rest, and
- * then the first one holds as before. */
+/* A body rests on a contact that holds 1.2 while another one drags at it on a belt that turns back: at that instant both rest,
+ * and then the first one holds as before. */
 TEST(turning_belt)
 {
     static const char *const each[] = {"exact", "event", "central/fixed", "moreau/fixed"};

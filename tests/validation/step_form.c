@@ -440,8 +440,8 @@ static int raise_static(double t, const double *y, int event, void *data)
     return 0;
 }
 
-/* Static limits that an observer sets count from the next step on, as they do from the next advance on: a block that slides to rest
- * does so by the limit to slide. */
+/* Static limits that an observer sets count from the next step on, as they do from the next advance on: a block that slides to
+ * rest does so by the limit to slide. */
 TEST(static_limits_by_an_observer)
 {
     const double one = 1.0, limit = 1.0;
