@@ -287,25 +287,57 @@ static struct search twins(const char *method, double with_mass, double with_dam
     return s;
 }
 
+/* The multipliers of the motion from y on, all contacts sliding there, have the trace of the map of a period, by differences. */
+static void check_trace(const struct search *s, const double *y)
+{
+    const size_t n = 2 * s->ndof;
+    const double apart = 1e-5;
+    double re[MOST_STATES], im[MOST_STATES], sum = 0.0, trace = 0.0;
+    assert_ok(tribo_driver_get_multipliers(s->drv, re, im));
+    for (size_t k = 0; k < n; k++) {
+        sum += re[k];
+        for (int side = -1; side <= 1; side += 2) {
+            double t = 0.0, z[MOST_STATES];
+            memcpy(z, y, (n + 1) * sizeof *z);
+            z[k] += side * apart;
+            driver_advance(s->drv, &t, s->period, z);
+            trace += side * z[k] / (2.0 * apart);
+        }
+    }
+    assert_close(sum, trace, 1e-6);
+}
+
 /* Both lose their static limits at one instant; motions next to it have each do so at its own time. */
 TEST(multipliers_of_twins)
 {
     struct search s = twins(methods[_i], 0.0, 0.0, 0.6);
-    double y[5] = {0}, re[4], im[4], trace = 0.0;
-    const double apart = 1e-5;
+    double y[5] = {0};
     find(&s, 0.0, y);
     require(fabs(y[2]) > 0.1, "at rest");
-    assert_ok(tribo_driver_get_multipliers(s.drv, re, im));
-    for (size_t k = 0; k < 4; k++) {
-        for (int side = -1; side <= 1; side += 2) {
-            double t = 0.0, z[5];
-            memcpy(z, y, sizeof z);
-            z[k] += side * apart;
-            driver_advance(s.drv, &t, s.period, z);
-            trace += side * z[k] / (2.0 * apart);
+    check_trace(&s, y);
+    search_free(&s);
+}
+
+/* A chain whose halves mirror each other: where the outer blocks reverse, that pulls loose what holds the inner ones to them. */
+TEST(multipliers_of_mirrored_halves)
+{
+    enum { N = 4 };
+    double mass[N * N] = {0}, stiffness[N * N] = {0}, damping[N * N], y[2 * N + 1] = {0};
+    const double direction[] = {1, -1, 0, 0, 0, 0, 1, -1, 1, 0, 0, 0, 0, 0, 0, 1}, force[] = {1, 1, -1, -1};
+    for (size_t i = 0; i < N; i++) {
+        mass[i * N + i] = 1.75;
+        stiffness[i * N + i] = i == 0 || i == N - 1 ? 2.5 : 3.63;
+        if (i > 0) {
+            stiffness[i * N + i - 1] = stiffness[(i - 1) * N + i] = -1.13;
         }
     }
-    assert_close(re[0] + re[1] + re[2] + re[3], trace, 1e-6);
+    for (size_t k = 0; k < N * N; k++) {
+        damping[k] = 0.05 * mass[k] + 0.02 * stiffness[k];
+    }
+    struct search s = search_create(methods[_i], N, 4, mass, damping, stiffness, direction, 2.24, force);
+    assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.25));
+    find(&s, 0.0, y);
+    check_trace(&s, y);
     search_free(&s);
 }
 
@@ -538,6 +570,6 @@ TEST(resonance)
 
 TEST_MAIN("periodic", {den_hartog, 6}, {stops, 6}, {multipliers, 2}, {family, 4}, {viscous_damping, 2}, {later, 2}, {multiple, 2},
           {stuck, 2}, {open, 2}, {times_of_extremes, 4}, {constant_load, 2}, {swinging_limits, 8},
-          {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {no_multipliers, 6}, {no_multipliers_of_pairs, 2},
-          {no_multipliers_of_strangers, 2}, {no_multipliers_by_a_third, 2}, {belt, 2}, {rigid_body, 2}, {undamped_structure, 2},
-          {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
+          {multipliers_of_swinging_limits, 2}, {multipliers_of_twins, 2}, {multipliers_of_mirrored_halves, 2},
+          {no_multipliers, 6}, {no_multipliers_of_pairs, 2}, {no_multipliers_of_strangers, 2}, {no_multipliers_by_a_third, 2},
+          {belt, 2}, {rigid_body, 2}, {undamped_structure, 2}, {tied, 2}, {redundant, 2}, {no_contacts, 2}, {resonance, 2})
