@@ -274,6 +274,17 @@ static void gather(struct variation *x, size_t i, size_t group)
     }
 }
 
+/* Those that stop, count of them, in groups with all to which they pass forces. */
+static void gather_all(struct variation *x, size_t count)
+{
+    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
+    for (size_t k = 0; k < count; k++) {
+        if (!x->group[x->stopped[k]]) {
+            gather(x, x->stopped[k], k + 1);
+        }
+    }
+}
+
 static void swap_stopped(struct variation *x, size_t i, size_t k)
 {
     const size_t contact = x->stopped[i];
@@ -313,8 +324,8 @@ static void jump_of_group(struct variation *x, size_t group, double slope, const
     }
 }
 
-/* Whether one of a group slides from there on: which of them stops first then changes when the
- * next one stops. If all rest, that takes away all that their order does. */
+/* Whether one of a group slides from there on: which of them stops first then changes when the next one stops. If all rest, that
+ * takes away all that their order does. */
 static void find_torn(struct variation *x, size_t group, const size_t *stopped)
 {
     for (size_t i = 0; i < x->sys->ncontact; i++) {
@@ -328,33 +339,23 @@ static void find_torn(struct variation *x, size_t group, const size_t *stopped)
 /* Contacts that stop by coincidence do so each at its own time: groups of them, between which no forces pass, one by one. */
 static void stop_by_groups(struct variation *x, size_t count)
 {
-    size_t next = 0;
-    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
-    for (size_t group = 1; next < count; group++) {
-        const size_t *stopped = x->stopped + next;
+    for (size_t next = 0, of_group; next < count; next += of_group) {
+        const size_t *stopped = x->stopped + next, group = x->group[stopped[0]];
         const double *rows = x->rows + next * x->columns;
-        gather(x, stopped[0], group);
-        const size_t of_group = bring_forward(x, next, count, group);
+        of_group = bring_forward(x, next, count, group);
         if (together(x, stopped, of_group, x->slope, rows)) {
             jump_of_group(x, group, x->slope[stopped[0]], rows);
         } else {
             find_torn(x, group, stopped);
         }
-        next += of_group;
     }
 }
 
 /* Whether a contact loses its static limit where others stop, but not because they do: that is a coincidence of jumps, whose
  * order counts. */
-static void find_apart(struct variation *x, size_t count)
+static void find_apart(struct variation *x)
 {
     const struct stick_slip *m = &x->events->stick_slip;
-    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
-    for (size_t k = 0; k < count; k++) {
-        if (!x->group[x->stopped[k]]) {
-            gather(x, x->stopped[k], k + 1);
-        }
-    }
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         const int goes = x->before[i] == 0 && (m->slip[i] == 1 || m->slip[i] == -1);
         if (goes && (x->side[i] || !x->group[i]) && tribo_breakaway_is_sudden(&m->breakaway, i)) {
@@ -367,10 +368,12 @@ static void find_apart(struct variation *x, size_t count)
 static void stop_earlier(struct variation *x)
 {
     const size_t count = find_stopped(x);
-    if (count) {
-        find_apart(x, count);
+    if (!count) {
+        return;
     }
-    if (count && together(x, x->stopped, count, x->slope, x->rows)) {
+    gather_all(x, count);
+    find_apart(x);
+    if (together(x, x->stopped, count, x->slope, x->rows)) {
         jump_earlier(x, x->slope[x->stopped[0]], x->rows);
     } else {
         stop_by_groups(x, count);
