@@ -165,13 +165,8 @@ TEST(after_huge_forces_of_redundant_contacts)
 {
     const double sign[] = {1.0, -1.0, -1.0}, huge[] = {1e300, -1e300, -1e300}, pull[] = {-0.5, 0.5, 0.5},
                  lower[] = {-1e9, 0.0, -1.5}, upper[] = {3e9, 1e300, 1.5}, want[] = {0.25, 0.0, -0.25};
-    double r[9], f[3];
-    tribo_context *c;
-    for (size_t i = 0; i < 9; i++) {
-        r[i] = sign[i / 3] * sign[i % 3];
-    }
-    assert_ok(tribo_create(&c, 3));
-    assert_ok(tribo_set_operator_dense(c, r));
+    tribo_context *c = problem_of_one_body(3, sign, 1.0);
+    double f[3];
     assert_ok(tribo_solve_box(c, huge, lower, upper, f));
     assert_ok(tribo_solve_box(c, pull, lower, upper, f));
     assert_all_close(f, want, 3, 1e-14);
@@ -185,13 +180,8 @@ TEST(one_unlimited_contact_holds)
     const double sign[] = {1.0, -1.0, 1.0, 1.0, -1.0}, a[] = {0.55, 2.0, 2.8, -0.07, -0.25},
                  lower[] = {-1.0, 0.0, -1.0, -1e300, -1.0}, upper[] = {3.0, 1e300, 1.0, 1e300, 3.0},
                  want[] = {-1.0, 0.0, -1.0, 5.07, 3.0};
-    double r[25], f[5];
-    tribo_context *c;
-    for (size_t i = 0; i < 25; i++) {
-        r[i] = sign[i / 5] * sign[i % 5];
-    }
-    assert_ok(tribo_create(&c, 5));
-    assert_ok(tribo_set_operator_dense(c, r));
+    tribo_context *c = problem_of_one_body(5, sign, 1.0);
+    double f[5];
     assert_ok(tribo_solve_box(c, a, lower, upper, f));
     assert_all_close(f, want, 5, 1e-13);
     tribo_destroy(c);

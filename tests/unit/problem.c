@@ -177,6 +177,19 @@ void problem_check_turned(size_t n, const double *turn, const double *f, const d
     }
 }
 
+tribo_context *problem_of_one_body(size_t n, const double *direction, double r)
+{
+    double *all = malloc(n * n * sizeof *all);
+    tribo_context *c;
+    for (size_t i = 0; i < n * n; i++) {
+        all[i] = r * direction[i / n] * direction[i % n];
+    }
+    assert_ok(tribo_create(&c, n));
+    assert_ok(tribo_set_operator_dense(c, all));
+    free(all);
+    return c;
+}
+
 tribo_context *problem_chain(size_t n, size_t islands, int coupling)
 {
     const size_t all = n * islands;

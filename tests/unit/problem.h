@@ -47,6 +47,9 @@ void problem_check_turned(size_t n, const double *turn, const double *f, const d
 /* A chain of n contacts between bodies of mass 1: tridiagonal R. */
 tribo_context *problem_chain(size_t n, size_t islands, int coupling);
 
+/* Contacts of one body that moves one way, of which each sees so much [n] of that: R = r direction direction'. */
+tribo_context *problem_of_one_body(size_t n, const double *direction, double r);
+
 /* (a + R f)_i; without its own force, f_eq of contact i; and what rounding may make of that. */
 long double acceleration(const struct problem *p, size_t i, const double *f);
 double balancing(const struct problem *p, size_t i, const double *f);

@@ -275,13 +275,8 @@ TEST(nothing_is_shared_of_nothing)
 {
     static const double sign[4] = {1.0, -1.0, -1.0, 1.0}, none[4] = {0.0, 0.0, 0.0, 0.0}, vfree[4] = {1.0, 2.0, -1.0, 0.5},
                         lower[4] = {-2.0, 0.0, -2.0, 0.0}, upper[4] = {0.0, 2.0, 0.0, 2.0};
-    double r[16], f[4];
-    tribo_context *c;
-    for (size_t i = 0; i < 16; i++) {
-        r[i] = 3.28380076 * sign[i / 4] * sign[i % 4];
-    }
-    assert_ok(tribo_create(&c, 4));
-    assert_ok(tribo_set_operator_dense(c, r));
+    tribo_context *c = problem_of_one_body(4, sign, 3.28380076);
+    double f[4];
     assert_ok(tribo_set_limit_all(c, 2.0));
     assert_ok(tribo_step_force(c, 1.0, vfree, f));
     assert_ok(tribo_solve_box(c, none, lower, upper, f));
@@ -295,13 +290,8 @@ TEST(rounding_takes_no_part)
 {
     const double sign[] = {1.0, -1.0, 1.0, -2.0, 1.0, 1.0}, vfree[] = {0.0, 0.0, 0.0, 0.0, -2.0, -1.6e-13},
                  want[] = {-0.125, 0.125, -0.125, 0.25, 1.0, -0.125};
-    double r[36], f[6];
-    tribo_context *c;
-    for (size_t i = 0; i < 36; i++) {
-        r[i] = sign[i / 6] * sign[i % 6];
-    }
-    assert_ok(tribo_create(&c, 6));
-    assert_ok(tribo_set_operator_dense(c, r));
+    tribo_context *c = problem_of_one_body(6, sign, 1.0);
+    double f[6];
     assert_ok(tribo_set_limit_all(c, 1.0));
     for (int k = 0; k < 2; k++) {
         assert_ok(tribo_step_force(c, 1.0, vfree, f));
