@@ -92,6 +92,7 @@ function(tribo_library target)
   list(TRANSFORM ARG_INCLUDES PREPEND "${CMAKE_INSTALL_INCLUDEDIR}/" OUTPUT_VARIABLE includes)
   target_include_directories(${target} PUBLIC
     "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR};${includes}>")
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/src")
   # Products and sums stay apart, so that every variant of a kernel gives the same bits.
   target_compile_options(${target} PRIVATE
     "$<$<COMPILE_LANG_AND_ID:C,GNU,Clang,AppleClang>:-ffp-contract=off;-fno-math-errno>")

@@ -3,7 +3,7 @@
  * Since outputs stay as they are where a call fails, all of v and a is read and found good before anything is written. Then come
  * the contacts chunk by chunk. Arrays of a large scene come from far away, and so nothing is read that leaves no choice: 1/R_ii
  * or limits that are the same for all, a where all contacts slide. */
-#include "../common/stream.h"
+#include "common/stream.h"
 #include "check.h"
 
 enum { FEW = 8 * TRIBO_CHUNK }; /* whose forces stay in the first-level cache */

@@ -9,14 +9,14 @@
 
 #include "tribo/tribo.h"
 
-#include "operator/operator.h"
-#include "law/law.h"
-#include "planar.h"
-#include "../common/layout.h"
-#include "../common/compiler.h"
-#include "../common/plural.h"
-#include "../common/real.h"
-#include "../common/simd.h"
+#include "core/operator/operator.h"
+#include "core/law/law.h"
+#include "core/planar/planar.h"
+#include "common/layout.h"
+#include "common/compiler.h"
+#include "common/plural.h"
+#include "common/real.h"
+#include "common/simd.h"
 
 struct message;
 

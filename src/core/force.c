@@ -1,7 +1,7 @@
 /* Forces of contacts whose f_eq is known. */
 #include <math.h>
 
-#include "../common/stream.h"
+#include "common/stream.h"
 #include "check.h"
 
 /* f_eq as laws read it: where it does not matter it need not be finite, nor even be set. */

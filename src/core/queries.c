@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "check.h"
-#include "../common/simd.h"
+#include "common/simd.h"
 
 int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 {

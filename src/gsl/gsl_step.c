@@ -1,6 +1,6 @@
 #include "gsl_step.h"
-#include "linalg.h"
-#include "../common/real.h"
+#include "numerics/linalg.h"
+#include "common/real.h"
 
 #include <fenv.h>
 #include <float.h>

@@ -4,7 +4,7 @@
 #ifndef TRIBO_GSL_STEP_H
 #define TRIBO_GSL_STEP_H
 
-#include "system.h"
+#include "dynamics/system/system.h"
 
 struct gsl_step_kind {
     const gsl_odeiv2_step_type *const *type;

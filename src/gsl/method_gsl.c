@@ -7,10 +7,10 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "driver.h"
+#include "dynamics/driver.h"
 #include "gsl_step.h"
-#include "spectrum.h"
-#include "../common/real.h"
+#include "dynamics/reduce/spectrum.h"
+#include "common/real.h"
 
 /* While all contacts rest, nothing moves, and an estimate sees no error however long the step: this long in terms of the
  * fastest motion of structure and loads it may be. */

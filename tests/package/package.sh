@@ -261,7 +261,7 @@ needs) # The core needs a C compiler, libc and libm.
         say "more than a C compiler was looked for"
         exit 1
     fi
-    if grep -rn 'include.*gsl' "$ROOT/src/core" "$ROOT/src/common" "$ROOT/include/tribo/tribo.h"; then
+    if grep -rn 'include.*gsl' "$ROOT/src/core" "$ROOT/src/numerics/box" "$ROOT/src/numerics/disc" "$ROOT/src/common" "$ROOT/include/tribo/tribo.h"; then
         say "the core includes GSL"
         exit 1
     fi

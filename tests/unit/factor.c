@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/box/box_qp.h"
-#include "common/csr.h"
+#include "numerics/box/box_qp.h"
+#include "numerics/csr.h"
 #include "support.h"
 
 /* A carpet of contacts that feel those next to them: `reach` to each side in a row, one in the rows before and behind. */

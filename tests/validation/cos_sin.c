@@ -5,8 +5,8 @@
 #include <stdint.h>
 
 #include "../support.h"
-#include "../../src/gsl/cos_sin.h"
-#include "../../src/gsl/system.h"
+#include "dynamics/system/cos_sin.h"
+#include "dynamics/system/system.h"
 
 enum { TIMES = 16 };
 

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "../support.h"
-#include "first_zero.h"
+#include "dynamics/events/first_zero.h"
 
 enum { MOST_GUARDS = 6, TERMS = 3, POINTS = 4000, CASES = 100 };
 

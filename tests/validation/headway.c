@@ -1,7 +1,7 @@
 /* Motions that get nowhere: by guards, or steps, that no system makes. The loop over events must find out after little work. */
 #include <math.h>
 
-#include "../../src/gsl/events.h"
+#include "dynamics/events/events.h"
 #include "../support.h"
 
 static int (*honest_begin)(void *motion, double t, const double *y, double *reach);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "linalg.h"
+#include "numerics/linalg.h"
 #include "support.h"
 
 /* a is freed: early, if there is a factor like it. */

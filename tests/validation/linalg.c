@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "constraint.h"
-#include "eigen.h"
-#include "normal_modes.h"
+#include "dynamics/decide/constraint.h"
+#include "numerics/eigen.h"
+#include "dynamics/reduce/normal_modes.h"
 #include "support.h"
 
 /* -------------------------------------------------------------------------------------------------------- constraints */

@@ -1,6 +1,6 @@
 /* What is known of a structure with contacts held: modes, forces of those that hold, and what cannot be. */
-#include "divided.h"
-#include "modal.h"
+#include "dynamics/exact/divided.h"
+#include "dynamics/exact/modal.h"
 #include "support.h"
 
 static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)

@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "../support.h"
-#include "quintic.h"
+#include "dynamics/events/quintic.h"
 
 enum { POINTS = 200, CASES = 20000 };
 

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stddef.h>
 
-#include "../../common/real.h"
-#include "../../common/simd.h"
+#include "common/real.h"
+#include "common/simd.h"
 
 /* What laws know of contacts, an array each. Everything but limits stays when limits change: a law finds epsilon, and slope =
  * 2 limit/epsilon, from width and rate.

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../context.h"
-#include "../../common/csr.h"
+#include "core/context.h"
+#include "numerics/csr.h"
 
 /* Entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
 #define ASYMMETRY 1e-10

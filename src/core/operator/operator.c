@@ -4,11 +4,11 @@
 #include <string.h>
 
 #include "operator.h"
-#include "../../common/layout.h"
-#include "../../common/csr.h"
-#include "../../common/simd.h"
-#include "../../common/twofold.h"
-#include "../../common/zeros.h"
+#include "common/layout.h"
+#include "numerics/csr.h"
+#include "common/simd.h"
+#include "numerics/twofold.h"
+#include "common/zeros.h"
 
 /* Smaller groups are dense, whatever their entries. */
 #define SPARSE_FROM 128

@@ -7,7 +7,7 @@
 
 #include "tribo/tribo.h"
 
-#include "../box/box_qp.h"
+#include "numerics/box/box_qp.h"
 
 #define TRIBO_ALONE SIZE_MAX
 

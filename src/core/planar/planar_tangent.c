@@ -1,0 +1,386 @@
+/* How the forces of a cluster follow velocities, accelerations and limits: the contacts near stick stay in their places, and
+ * Newton's equations along what these leave them say how they stay balanced. */
+#include "core/context.h"
+
+void tribo_planar_linearize(tribo_context *ctx, const double *v, const double *a)
+{
+    tribo_copy(ctx->plane.v, v, ctx->n);
+    tribo_copy(ctx->plane.a, a, ctx->n);
+}
+
+/* The problem of a cluster as the last balance left it. */
+static void resume(tribo_context *ctx, const struct cluster *g)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    if (tribo_planar_collect(ctx, g, ctx->plane.v)) {
+        tribo_planar_pose(ctx, g, ctx->plane.a);
+        tribo_disc_gains(p);
+        tribo_disc_gradients(p);
+        tribo_disc_places(p);
+        tribo_disc_linearize(p);
+    }
+}
+
+/* The direction [2] of a velocity v; at rest, where |v| has a kink, that in which a contact beyond its limits is about to slide:
+ * the one at e of the problem, if it is on the rim of its set. 0 if it stays. */
+static void heading(const struct disc_qp *p, size_t e, const double *bound, const double *v, double *along)
+{
+    const double speed = tribo_length(2, v);
+    const int about = !(speed > 0.0) && p && p->place[e] == LENS_ON_DISC;
+    for (size_t k = 0; k < 2; k++) {
+        along[k] = !about ? v[k] : bound[k] > 0.0 ? quotient(p->gradient[e + k], bound[k]) : 0.0;
+    }
+    const double length = tribo_length(2, along);
+    for (size_t k = 0; k < 2; k++) {
+        along[k] = length > 0.0 ? along[k] / length : 0.0;
+    }
+}
+
+/* By how much |v| of the planar contact at place k of a cluster, whose first direction is i, grows with dv. */
+static double faster_by(const tribo_context *ctx, const struct cluster *g, size_t i, const double *dv)
+{
+    const struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member;
+    double along[2];
+    size_t e = 0;
+    while (e < p->size && member[ctx->plane.near[e]] != i) {
+        e++;
+    }
+    heading(e < p->size ? p : NULL, e, ctx->follow.contacts.bound + i, ctx->plane.v + i, along);
+    return along[0] * tribo_entry(dv, i) + along[1] * tribo_entry(dv, i + 1);
+}
+
+/* What d makes of the limits of a cluster, where these fall with the speed: with v, in the plane by |v|. */
+static struct change with_limits(tribo_context *ctx, const struct cluster *g, const struct change *d)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    double *dlimit = ctx->plane.dlimit;
+    if (ctx->set.breaking != FALLS) {
+        return *d;
+    }
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = member[k], first = i - (ctx->planar->role[i] == ROLE_SECOND);
+        const int directions = ctx->planar->role[i] == ROLE_SCALAR ? 1 : 2;
+        const double speed = tribo_length(directions, ctx->plane.v + first), rate = tribo_limit_rate(ctx, i, speed);
+        const double alone = ctx->plane.v[i] < 0.0 ? -tribo_entry(d->v, i) : tribo_entry(d->v, i);
+        dlimit[i] = tribo_entry(d->limit, i) + product(rate, directions == 1 ? alone : faster_by(ctx, g, first, d->v));
+    }
+    return (struct change){d->v, d->a, dlimit};
+}
+
+/* What changes about one planar contact: velocity, limits, and epsilon, as a part of itself. */
+struct turn {
+    double v[2], limit[2], epsilon;
+};
+
+static struct turn turn_of(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    struct turn t = {{tribo_entry(d->v, i), tribo_entry(d->v, i + 1)},
+                     {tribo_limit_change(ctx, d, i), tribo_limit_change(ctx, d, i + 1)},
+                     0.0};
+    t.epsilon = s->open || !c->follows ? 0.0 : quotient(t.limit[s->far], c->limit[i + s->far]);
+    return t;
+}
+
+/* How x of a slide changes, and with it the parts of which it is made. */
+static void turn_slide(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dx)
+{
+    for (size_t k = 0; k < 2; k++) {
+        const double wider = t->limit[k] - product(s->part[k], t->limit[s->far]);
+        const double part = s->open || k == s->far ? 0.0 : quotient(wider, limit[s->far]);
+        dx[k] = product(s->part[k], t->v[k]) + product(part, v[k]);
+    }
+}
+
+/* df [2] of a planar contact that is not near stick. */
+static void turn_force(const struct law *law, const struct slide *s, const double *limit, const double *v, const struct turn *t,
+                       double *df)
+{
+    double slope, dx[2];
+    const double carried = tribo_planar_carried(law, s->speed, &slope);
+    turn_slide(s, limit, v, t, dx);
+    const double along = s->n[0] * dx[0] + s->n[1] * dx[1];
+    for (size_t k = 0; k < 2; k++) {
+        const double turn = s->length > 0.0 ? carried * quotient(dx[k] - s->n[k] * along, s->length) : 0.0;
+        const double faster = quotient(s->length > 0.0 ? s->n[k] * along : dx[k], s->epsilon);
+        const double grow = slope * (faster - product(product(s->speed, t->epsilon), s->n[k]));
+        const double own = product(carried * s->n[k], t->limit[k]);
+        df[k] = s->open ? 0.0 : product(limit[k], turn + grow) + own;
+    }
+}
+
+/* How the shift of a lens changes. */
+static void turn_shift(const struct slide *s, const double *limit, const double *v, const double *shift, const struct turn *t,
+                       double *dshift)
+{
+    double dx[2];
+    turn_slide(s, limit, v, t, dx);
+    for (size_t k = 0; k < 2; k++) {
+        dshift[k] = 2.0 * quotient(dx[k], s->epsilon) - product(shift[k], t->epsilon);
+    }
+}
+
+/* df of all contacts of a cluster that are not near stick, and of the others what their limits make of it. by_v: what limits
+ * that follow v make of d, which the derivatives of scalar contacts know. */
+static void products_of_slips(const tribo_context *ctx, const struct cluster *g, const struct change *d,
+                              const struct change *by_v, double *df)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    const struct disc_qp *p = &ctx->plane.problem;
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = member[k];
+        if (ctx->planar->role[i] == ROLE_FIRST) {
+            const struct contacts *c = &ctx->follow.contacts;
+            const struct slide s = tribo_planar_slide(c, i, ctx->plane.v + i);
+            const struct turn t = turn_of(ctx, i, &s, by_v);
+            turn_force(ctx->set.law, &s, c->limit + i, ctx->plane.v + i, &t, df + i);
+        } else if (ctx->planar->role[i] == ROLE_SCALAR) {
+            const struct tangent *law = &ctx->last.tangent[i];
+            df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i));
+        }
+    }
+    for (size_t e = 0; e < p->size; e++) {
+        const size_t i = member[ctx->plane.near[e]];
+        df[i] = product(p->y[e], tribo_limit_change(ctx, by_v, i));
+    }
+}
+
+/* Lenses that move faster with v have the derivatives of these. */
+#define STEEPEST 1e150
+
+/* How the shift of the contact at e of the problem changes. */
+static void shift_change(const tribo_context *ctx, const size_t *member, size_t e, const struct change *d, double *dshift)
+{
+    const struct contacts *c = &ctx->follow.contacts;
+    const struct disc_qp *p = &ctx->plane.problem;
+    const size_t i = member[ctx->plane.near[e]];
+    dshift[0] = dshift[p->wide[e] - 1] = 0.0;
+    if (ctx->set.law->relaxes && p->wide[e] == 2) {
+        const struct slide s = tribo_planar_slide(c, i, ctx->plane.v + i);
+        const struct turn t = turn_of(ctx, i, &s, d);
+        turn_shift(&s, c->limit + i, ctx->plane.v + i, p->shift + e, &t, dshift);
+    } else if (ctx->set.law->relaxes) {
+        const double epsilon = c->follows ? tribo_limit_growth(ctx, d, i) : 0.0;
+        dshift[0] = product(2.0 * quotient(1.0, tribo_epsilon_of(c, i)), tribo_entry(d->v, i)) - product(p->shift[e], epsilon);
+    }
+    for (size_t k = 0; k < p->wide[e]; k++) {
+        dshift[k] = clamp(dshift[k], -STEEPEST, STEEPEST);
+    }
+}
+
+/* y of the contacts near stick goes with their shift; dshift [size]. */
+static void drag_all(const struct disc_qp *p, const double *dshift, double *dy)
+{
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        tribo_disc_drag(p, e, dshift + e, dy + e);
+    }
+}
+
+/* What presses on direction e of the problem, as its limit and those that shifts are parts of change. */
+static double press_change(const tribo_context *ctx, const struct cluster *g, size_t e, const struct change *d)
+{
+    const struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    const size_t n = p->size, first = p->wide[e] ? e : e - 1, i = member[near[e]];
+    double sum = product(tribo_limit_growth(ctx, d, i), p->gradient[e]);
+    for (size_t j = first; j < first + p->wide[first]; j++) {
+        sum += product(p->s[e * n + j] * p->shift[j], tribo_limit_growth(ctx, d, member[near[j]]));
+    }
+    return sum;
+}
+
+/* rhs [size] = the gradient that df, changes and shifts leave to balance; dy: what shifts drag along. */
+static void find_rhs(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *df,
+                     const double *dshift, const double *dy, double *rhs)
+{
+    const struct disc_qp *p = &ctx->plane.problem;
+    const struct unit u = tribo_planar_units(ctx, g);
+    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near, n = p->size;
+    for (size_t e = 0; e < n; e++) {
+        const double *row = ctx->planar->r + g->r + near[e] * g->size;
+        double sum = cut(tribo_entry(d->a, member[near[e]]));
+        for (size_t j = 0; j < g->size; j++) {
+            sum += product(row[j], df[member[j]]);
+        }
+        rhs[e] = ctx->follow.contacts.bound[member[near[e]]] / u.force * quotient(quotient(cut(sum), u.r), u.force);
+        rhs[e] += d->limit ? press_change(ctx, g, e, d) : 0.0;
+        for (size_t j = 0; j < n; j++) {
+            rhs[e] += p->s[e * n + j] * dy[j];
+        }
+    }
+    for (size_t e = 0; e < n; e += p->wide[e]) {
+        for (size_t k = e; k < e + p->wide[e]; k++) {
+            for (size_t j = e; j < e + p->wide[e]; j++) {
+                rhs[k] += p->s[k * n + j] * dshift[j];
+            }
+        }
+    }
+}
+
+/* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit.
+ * before: the former, df: what becomes of them. */
+static void reverse(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *before, double *df)
+{
+    const size_t *member = ctx->planar->member + g->member;
+    for (size_t e = 0; ctx->set.law->remembers && e < ctx->plane.problem.size; e++) {
+        const size_t k = ctx->plane.near[e], i = member[k];
+        const double *row = ctx->planar->r + g->r + k * g->size;
+        const struct tangent *law = &ctx->last.tangent[i];
+        double sum = divisible(tribo_entry(d->a, i), row[k]);
+        for (size_t j = 0; j < g->size; j++) {
+            sum += j == k ? 0.0 : product(row[j], before[member[j]]);
+        }
+        if (ctx->planar->role[i] == ROLE_SCALAR) {
+            df[i] = product(law->dv, tribo_entry(d->v, i)) + product(law->dlimit, tribo_limit_change(ctx, d, i)) -
+                    product(law->dfeq, quotient(cut(sum), row[k]));
+        }
+    }
+}
+
+/* df [n] of a cluster that was resumed. */
+static void cluster_product(tribo_context *ctx, const struct cluster *g, const struct change *d, double *df)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    double *dshift = p->from, *dy = p->best, *rhs = p->noise, *move = p->aim;
+    const struct change by_v = with_limits(ctx, g, d);
+    products_of_slips(ctx, g, d, &by_v, df);
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        shift_change(ctx, member, e, &by_v, dshift + e);
+    }
+    drag_all(p, dshift, dy);
+    find_rhs(ctx, g, &by_v, df, dshift, dy, rhs);
+    if (p->size) {
+        tribo_disc_follow(p, rhs, move);
+    }
+    for (size_t e = 0; e < p->size; e++) {
+        df[member[near[e]]] += product(ctx->follow.contacts.bound[member[near[e]]], dy[e] + move[e]);
+    }
+    if (ctx->set.law->remembers) {
+        for (size_t k = 0; k < g->size; k++) {
+            ctx->plane.other[member[k]] = df[member[k]];
+        }
+        reverse(ctx, g, d, ctx->plane.other, df);
+    }
+}
+
+static void write_column(const tribo_context *ctx, const struct cluster *g, size_t column, const double *df, double *out)
+{
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = ctx->planar->member[g->member + k];
+        out[i * ctx->n + column] = df[i];
+    }
+}
+
+void tribo_planar_columns(tribo_context *ctx, double *df_dv, double *df_da)
+{
+    double *unit = ctx->plane.unit, *df = ctx->plane.df;
+    const struct change by_v = {unit, NULL, NULL}, by_a = {NULL, unit, NULL};
+    for (size_t q = 0; q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        resume(ctx, g);
+        for (size_t k = 0; k < g->size; k++) {
+            const size_t i = ctx->planar->member[g->member + k];
+            unit[i] = 1.0;
+            if (df_dv) {
+                cluster_product(ctx, g, &by_v, df);
+                write_column(ctx, g, i, df, df_dv);
+            }
+            if (df_da) {
+                cluster_product(ctx, g, &by_a, df);
+                write_column(ctx, g, i, df, df_da);
+            }
+            unit[i] = 0.0;
+        }
+    }
+}
+
+void tribo_planar_product(tribo_context *ctx, const struct change *d, double *df)
+{
+    for (size_t q = 0; q < ctx->planar->clusters; q++) {
+        const struct cluster *g = &ctx->planar->cluster[q];
+        resume(ctx, g);
+        cluster_product(ctx, g, d, df);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------ f_eq that is given */
+
+/* df [2] of a contact near stick, whose problem is solved and linearized, by t and a change of f_eq. */
+static void turn_near(struct disc_qp *p, const struct given *g, const double *v, int relaxes, const struct turn *t,
+                      const double *dfeq, double *df)
+{
+    const double *bound = g->c.bound;
+    double dshift[2] = {0.0, 0.0}, dy[2], off[2], growth[2], rhs[2], move[2];
+    if (relaxes) {
+        turn_shift(&g->s, g->c.limit, v, p->shift, t, dshift);
+    }
+    for (size_t k = 0; k < 2; k++) {
+        dshift[k] = clamp(dshift[k], -STEEPEST, STEEPEST);
+    }
+    tribo_disc_drag(p, 0, dshift, dy);
+    for (size_t k = 0; k < 2; k++) {
+        growth[k] = bound[k] > 0.0 ? quotient(t->limit[k], bound[k]) : 0.0;
+        off[k] = bound[k] > 0.0 ? (p->y[k] + p->shift[k]) * growth[k] - quotient(dfeq[k], bound[k]) + dshift[k] + dy[k] : 0.0;
+    }
+    for (size_t k = 0; k < 2; k++) {
+        rhs[k] = growth[k] * p->gradient[k] + p->s[2 * k] * off[0] + p->s[2 * k + 1] * off[1];
+    }
+    tribo_disc_follow(p, rhs, move);
+    for (size_t k = 0; k < 2; k++) {
+        df[k] = product(bound[k], dy[k] + move[k]) + p->y[k] * t->limit[k];
+    }
+}
+
+/* t with what limits that are static make of it, of the contact at i: they follow those that the caller set, and |v|. */
+static struct turn turn_static(const tribo_context *ctx, size_t i, const struct given *g, const struct disc_qp *p,
+                               const double *v, struct turn t)
+{
+    const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit, speed = tribo_length(2, v);
+    double along[2];
+    heading(p, 0, g->c.bound, v, along);
+    const double faster = along[0] * t.v[0] + along[1] * t.v[1];
+    t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
+    for (size_t k = 0; k < 2 && ctx->set.breaking; k++) {
+        const double part = set[k] > 0.0 ? quotient(g->c.limit[k], set[k]) : 0.0;
+        t.limit[k] = product(part, t.limit[k]) + product(tribo_limit_rate(ctx, i + k, speed), faster);
+    }
+    return t;
+}
+
+int tribo_planar_blocks(const tribo_context *ctx, const double *v, const double *feq, double *df_dv, double *df_dfeq,
+                        double *df_dlimit)
+{
+    double *const out[3] = {df_dv, df_dfeq, df_dlimit};
+    const double none[2] = {0.0, 0.0};
+    for (size_t q = 0; q < ctx->planar->count; q++) {
+        const size_t i = ctx->planar->first[q];
+        struct given g;
+        struct disc_alone x;
+        tribo_planar_given(ctx, q, v + i, feq ? feq + i : none, &g);
+        if (g.near && !tribo_planar_given_near(ctx, q, &g, feq + i, &x)) {
+            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
+        }
+        if (g.near) {
+            tribo_disc_gradients(&x.p);
+            tribo_disc_places(&x.p);
+            tribo_disc_linearize(&x.p);
+        }
+        for (size_t column = 0; column < 6; column++) {
+            double unit[6] = {0.0}, df[2] = {0.0, 0.0};
+            unit[column] = column < 4 || ctx->set.limit[i + column - 4] > 0.0;
+            const struct turn by = {{unit[0], unit[1]}, {unit[4], unit[5]}, 0.0};
+            const struct turn t = turn_static(ctx, i, &g, g.near ? &x.p : NULL, v + i, by);
+            if (g.near) {
+                turn_near(&x.p, &g, v + i, ctx->set.law->relaxes, &t, unit + 2, df);
+            } else {
+                turn_force(ctx->set.law, &g.s, g.c.limit, v + i, &t, df);
+            }
+            for (size_t k = 0; out[column / 2] && k < 2; k++) {
+                out[column / 2][2 * (i + k) + column % 2] = df[k];
+            }
+        }
+    }
+    return TRIBO_OK;
+}

@@ -1,0 +1,144 @@
+#include "breakaway.h"
+#include "common/zeros.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+int tribo_breakaway_create(struct breakaway *b, size_t contacts)
+{
+    const size_t c = contacts + 1;
+    memset(b, 0, sizeof *b);
+    b->revision = SIZE_MAX;
+    b->ratio = tribo_zeros(6 * c, sizeof *b->ratio);
+    if (!b->ratio) {
+        return 0;
+    }
+    b->velocity = b->ratio + c;
+    b->kinetic = b->ratio + 2 * c;
+    b->kinetic_rate = b->ratio + 3 * c;
+    b->stick = b->ratio + 4 * c;
+    b->stick_rate = b->ratio + 5 * c;
+    return 1;
+}
+
+void tribo_breakaway_free(struct breakaway *b)
+{
+    free(b->ratio);
+}
+
+size_t tribo_system_first_falling(const tribo_system *sys)
+{
+    double *x = sys->feq;
+    size_t i = 0;
+    tribo_get_static(sys->contacts, NULL, x);
+    if (!sys->ncontact || !(x[0] > 0.0)) {
+        return sys->ncontact;
+    }
+    tribo_get_static(sys->contacts, x, NULL);
+    while (i < sys->ncontact && !(x[i] > 1.0)) {
+        i++;
+    }
+    return i;
+}
+
+int tribo_system_falls(const tribo_system *sys)
+{
+    return tribo_system_first_falling(sys) < sys->ncontact;
+}
+
+/* The largest row sum of |J| |B| diag(slopes at rest, with the largest limits that there will be). */
+static double steepest(struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
+{
+    memset(dof, 0, sys->ndof * sizeof *dof);
+    tribo_system_most_limits(sys, b->kinetic);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        contact[i] = -tribo_breakaway_slope(b, i, 0.0);
+    }
+    tribo_matrix_add_sizes(&sys->response, contact, dof);
+    memset(contact, 0, sys->ncontact * sizeof *contact);
+    tribo_matrix_add_sizes(&sys->direction, dof, contact);
+    return tribo_largest(contact, sys->ncontact);
+}
+
+void tribo_breakaway_start(struct breakaway *b, tribo_system *sys, double *dof, double *contact)
+{
+    b->some = 0;
+    b->falls = tribo_system_falls(sys);
+    tribo_get_static(sys->contacts, b->ratio, b->velocity);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        b->some |= b->ratio[i] > 1.0;
+    }
+    if (b->revision != tribo_system_revision(sys)) {
+        b->steepest = b->falls ? steepest(b, sys, dof, contact) : 0.0;
+        b->revision = tribo_system_revision(sys);
+    }
+}
+
+/* exp(-|v|/velocity), or 0 where limits drop at once. */
+static double part_at(const struct breakaway *b, size_t i, double v)
+{
+    return b->falls ? exp(-quotient(fabs(v), b->velocity[i])) : 0.0;
+}
+
+void tribo_breakaway_take(struct breakaway *b, size_t contacts, const double *limit, const double *limit_rate)
+{
+    memcpy(b->kinetic, limit, contacts * sizeof *limit);
+    memcpy(b->kinetic_rate, limit_rate, contacts * sizeof *limit_rate);
+}
+
+void tribo_breakaway_limits(struct breakaway *b, size_t contacts, const signed char *slip, const double *v, double *limit,
+                            double *limit_rate)
+{
+    for (size_t i = 0; i < contacts; i++) {
+        const double more = (b->ratio[i] - 1.0) * part_at(b, i, slip[i] ? v[i] : 0.0);
+        limit[i] = product(1.0 + more, b->kinetic[i]);
+        limit_rate[i] = product(1.0 + more, b->kinetic_rate[i]);
+        b->stick[i] = tribo_breakaway_most(b, i);
+        b->stick_rate[i] = product(b->ratio[i], b->kinetic_rate[i]);
+    }
+}
+
+double tribo_breakaway_slope(const struct breakaway *b, size_t i, double v)
+{
+    return b->falls ? quotient(product(1.0 - b->ratio[i], b->kinetic[i]) * part_at(b, i, v), b->velocity[i]) : 0.0;
+}
+
+int tribo_breakaway_lets_go(struct breakaway *b, size_t i)
+{
+    if (b->falls || !(b->stick[i] > b->kinetic[i])) {
+        return 0;
+    }
+    b->stick[i] = b->kinetic[i];
+    b->stick_rate[i] = b->kinetic_rate[i];
+    return 1;
+}
+
+int tribo_breakaway_restore(struct breakaway *b, size_t i)
+{
+    const int less = b->stick[i] < tribo_breakaway_most(b, i);
+    b->stick[i] = tribo_breakaway_most(b, i);
+    b->stick_rate[i] = product(b->ratio[i], b->kinetic_rate[i]);
+    return less;
+}
+
+double tribo_breakaway_part(const struct breakaway *b, size_t i, int side, size_t k, size_t stride, const double *v,
+                            const double *part)
+{
+    double sum = 0.0;
+    for (size_t j = 1; j <= k; j++) {
+        sum += (double)j * v[j * stride] * part[(k - j) * stride];
+    }
+    return k ? -side * sum / ((double)k * b->velocity[i]) : part_at(b, i, v[0]);
+}
+
+double tribo_breakaway_series(const struct breakaway *b, size_t i, size_t k, size_t stride, size_t terms, const double *limit,
+                              const double *part)
+{
+    double sum = 0.0;
+    for (size_t j = 0; j <= k && j < terms; j++) {
+        sum += limit[j * stride] * part[(k - j) * stride];
+    }
+    return (k < terms ? limit[k * stride] : 0.0) + (b->ratio[i] - 1.0) * sum;
+}

@@ -1,0 +1,438 @@
+/* How it is decided, at an instant, where there are planar contacts:
+ *
+ *     contacts whose velocity is nothing beside the tolerance are at rest
+ *     find the forces of those at rest, others sliding as they do: min 1/2 f'Rf + a'f over intervals, discs, and ellipses
+ *     contacts at rest slide if their force is at its limit and they accelerate by more than rounding, against that force
+ *     of others that are at their limit: solve for a moment later, and those that accelerate then slide from here on
+ *     an independent set of those at rest holds
+ *
+ * The problem is convex, so that both solutions tell of all contacts together who slides. */
+#include "planar_slip.h"
+#include "stick_slip.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A contact is at rest whose velocity is this part of the tolerance. */
+#define NOTHING 0.1
+
+/* Velocities this far below those seen are rounding. */
+#define ROUNDING 1e-14
+
+/* Directions of sliding forces may turn by so much in the moment looked ahead. */
+#define TURN 0.02
+
+void tribo_planar_slip_free(struct planar_slip *p)
+{
+    if (p) {
+        tribo_destroy(p->disc);
+        free(p->contact);
+        free(p->in_plane);
+        free(p->rate);
+        free(p);
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------- contacts */
+
+/* slip [ncontact] = TRIBO_IN_PLANE for directions of planar contacts: what a context says of contacts that all slide. */
+static int find_planar(tribo_context *disc, size_t contacts, double *one, signed char *slip)
+{
+    for (size_t i = 0; i < contacts; i++) {
+        one[i] = 1.0;
+    }
+    int status = tribo_set_limit(disc, one);
+    status = status ? status : tribo_balance(disc, one, one, NULL, one);
+    return status ? status : tribo_get_slip(disc, slip);
+}
+
+/* Contacts with limits in both directions; those without are scalar, or open. Directions of planar contacts stand in pairs, so
+ * that the first one of a row of them is that of a contact. */
+static void take_contacts(struct planar_slip *p, const struct stick_slip *m, const signed char *slip)
+{
+    memset(p->in_plane, 0, m->contacts);
+    for (size_t i = 0; i + 1 < m->contacts; i++) {
+        if (slip[i] != TRIBO_IN_PLANE) {
+            continue;
+        }
+        if (m->limit[i] > 0.0 && m->limit[i + 1] > 0.0) {
+            p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {m->limit[i], m->limit[i + 1]}};
+            p->in_plane[i] = p->in_plane[i + 1] = 1;
+        }
+        i++;
+    }
+}
+
+/* All of it, or NULL. */
+static struct planar_slip *allocate(size_t contacts)
+{
+    struct planar_slip *p = calloc(1, sizeof *p);
+    if (!p) {
+        return NULL;
+    }
+    p->contact = malloc((contacts / 2) * sizeof *p->contact);
+    p->in_plane = malloc(contacts);
+    p->rate = malloc(3 * contacts * sizeof *p->rate);
+    if (!p->contact || !p->in_plane || !p->rate) {
+        tribo_planar_slip_free(p);
+        return NULL;
+    }
+    p->ahead = p->rate + contacts;
+    p->error = p->rate + 2 * contacts;
+    return p;
+}
+
+static int create(struct stick_slip *m, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    struct planar_slip *p = m->plane = m->plane ? m->plane : allocate(c);
+    signed char *slip = malloc(c);
+    if (p) {
+        tribo_destroy(p->disc);
+        p->disc = NULL;
+        p->count = 0;
+    }
+    int status = !p || !slip ? TRIBO_ERR_MEMORY : tribo_clone(sys->contacts, &p->disc);
+    if (!status) {
+        tribo_set_law(p->disc, TRIBO_COULOMB);
+        tribo_set_sharing(p->disc, TRIBO_SHARE_PREVIOUS);
+        status = find_planar(p->disc, c, p->rate, slip);
+    }
+    if (!status) {
+        take_contacts(p, m, slip);
+    }
+    free(slip);
+    return status ? tribo_system_fail(sys, status, "%s, of planar contacts", tribo_strerror(status)) : TRIBO_OK;
+}
+
+static void velocity(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *y,
+                     double *v)
+{
+    for (size_t d = 0; d < 2; d++) {
+        v[d] = tribo_stick_slip_velocity(m, sys, p->at + d, y);
+    }
+}
+
+static double length(const double *x)
+{
+    return hypot(x[0], x[1]);
+}
+
+/* A contact is at rest whose speed is nothing but rounding, or nothing beside the tolerance and not growing: one that begins to
+ * slide beside another one that creeps may be slow for many steps. */
+static int rests(const struct stick_slip *m, const struct planar_contact *p)
+{
+    const double noise = greater(m->doubt * (m->noise[p->at] + m->noise[p->at + 1]), ROUNDING * p->most);
+    return p->now <= noise || (p->now <= NOTHING * (m->abstol + m->reltol * p->most) && p->now <= p->before);
+}
+
+static void set_slip(struct stick_slip *m, const struct planar_contact *p, signed char slip)
+{
+    tribo_stick_slip_set(m, p->at, slip);
+    tribo_stick_slip_set(m, p->at + 1, slip);
+}
+
+/* The forces of contacts in a plane are followed by limits that are the same at all times and speeds, at rest and not. */
+static int check_limits(const struct stick_slip *m, const tribo_system *sys, size_t planar)
+{
+    size_t i = 0;
+    while (i < m->contacts && !(tribo_breakaway_ratio(&m->breakaway, i) > 1.0)) {
+        i++;
+    }
+    if (i < m->contacts) {
+        return tribo_system_fail(
+            sys, TRIBO_ERR_UNSUPPORTED,
+            "method event knows no static limits beside planar contacts: contact %zu has ratio[%zu] = %g: take "
+            "moreau/fixed",
+            i, i, m->breakaway.ratio[i]);
+    }
+    return !tribo_system_limits_vary(sys)
+               ? TRIBO_OK
+               : tribo_system_fail(
+                     sys, TRIBO_ERR_UNSUPPORTED,
+                     "method event knows no limits that change with time beside planar contacts, of which the system has %zu",
+                     planar);
+}
+
+int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int continues)
+{
+    const size_t planar = tribo_system_planar(sys);
+    if (!planar) {
+        tribo_planar_slip_free(m->plane);
+        m->plane = NULL;
+    }
+    if (!planar || continues) {
+        return TRIBO_OK;
+    }
+    int status = check_limits(m, sys, planar);
+    status = status ? status : create(m, sys);
+    for (size_t k = 0; !status && k < m->plane->count; k++) {
+        set_slip(m, &m->plane->contact[k], TRIBO_IN_PLANE); /* whether it is at rest is seen by its speed alone */
+        m->plane->contact[k].now = HUGE_VAL;
+    }
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------------------------------- at rest */
+
+/* Contacts without speed are at rest; returns how many more. */
+static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    size_t found = 0;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        struct planar_contact *p = &m->plane->contact[k];
+        double v[2];
+        for (size_t d = 0; d < 2; d++) {
+            v[d] = tribo_stick_slip_find_velocity(m, sys, p->at + d, y);
+        }
+        p->now = length(v);
+        p->most = greater(p->most, p->now);
+        p->begins = SLIDES_ON;
+        if (m->slip[p->at] == TRIBO_IN_PLANE && rests(m, p)) {
+            set_slip(m, p, 0);
+            m->plane->stopped = p->at;
+            found++;
+        }
+    }
+    return found;
+}
+
+/* Of contacts at rest some may rest by the others. How they share what they carry is not known then. */
+static int check_holds(const struct stick_slip *m, const tribo_system *sys)
+{
+    for (size_t i = 0; m->dependents && i < m->contacts; i++) {
+        if (m->slip[i] == 0 && !m->holds[i]) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "at t = %.17g contact %zu rests by what others hold: method event knows no redundant "
+                                     "contacts at rest where some are planar",
+                                     sys->time, i);
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int find_resting(struct stick_slip *m, const tribo_system *sys, double *y)
+{
+    int status = TRIBO_OK;
+    m->plane->stopped = m->contacts;
+    do {
+        stop(m, sys, y);
+        status = tribo_stick_slip_find_resting(m, sys, y);
+        status = status ? status : check_holds(m, sys);
+    } while (!status && stop(m, sys, y));
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ forces */
+
+/* Force of a contact that slides, and how it changes at the acceleration acc. Returns how fast its direction turns. */
+static double slide(const struct planar_contact *p, const double *v, const double *acc, double *force, double *rate)
+{
+    const double x[2] = {p->limit[0] * v[0], p->limit[1] * v[1]}, size = length(x), n[2] = {x[0] / size, x[1] / size};
+    const double turn = (n[0] * p->limit[1] * acc[1] - n[1] * p->limit[0] * acc[0]) / size;
+    force[0] = -p->limit[0] * n[0];
+    force[1] = -p->limit[1] * n[1];
+    rate[0] = p->limit[0] * n[1] * turn;
+    rate[1] = -p->limit[1] * n[0] * turn;
+    return fabs(turn);
+}
+
+/* m->lo, rate = forces of contacts that slide, 0 of others, and their rates, as contacts accelerate by acc; the same for all.
+ * Returns the fastest turn. */
+static double given_forces(struct stick_slip *m, const tribo_system *sys, const double *y, const double *acc)
+{
+    double fastest = 0.0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->lo[i] = m->slip[i] == 1 || m->slip[i] == -1 ? -m->slip[i] * m->limit[i] : 0.0;
+        m->plane->rate[i] = 0.0;
+    }
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        if (m->slip[p->at] == TRIBO_IN_PLANE && p->begins == SLIDES_ON) {
+            double v[2];
+            velocity(m, sys, p, y, v);
+            fastest = greater(fastest, slide(p, v, acc + p->at, m->lo + p->at, m->plane->rate + p->at));
+        }
+    }
+    return fastest;
+}
+
+/* f [ncontact] = all forces, for accelerations a of contacts without friction, those that slide having m->lo, and those that do
+ * not the limits m->hi; m->v = the accelerations of contacts. */
+static int solve(struct stick_slip *m, const tribo_system *sys, const double *a, double *f)
+{
+    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
+    memcpy(m->v, a, m->contacts * sizeof *a);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->lo, m->rate);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
+    int status = tribo_set_limit(m->plane->disc, m->hi);
+    status = status ? status : tribo_balance(m->plane->disc, m->still, m->v, NULL, f);
+    if (status) {
+        return tribo_system_fail(sys, status, "at t = %.17g: %s", sys->time, tribo_message(m->plane->disc));
+    }
+    tribo_add(f, 1.0, m->lo, m->contacts);
+    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
+    memcpy(m->v, a, m->contacts * sizeof *a);
+    tribo_matrix_multiply_add(&sys->response, 1.0, f, m->rate);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, m->rate, m->v);
+    return TRIBO_OK;
+}
+
+static int find_forces(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    given_forces(m, sys, y, m->still);
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->hi[i] = m->slip[i] == 0 ? m->limit[i] : 0.0;
+    }
+    return solve(m, sys, m->a, m->force);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- who slides */
+
+/* How near to its limit a planar contact's force is: |force/limit|, and in parts of the limit what of it may be noise. */
+static double share(const struct stick_slip *m, const struct planar_contact *p, const double *f, double *noise)
+{
+    const double part[2] = {f[p->at] / p->limit[0], f[p->at + 1] / p->limit[1]};
+    *noise = greater(m->allowance[p->at], m->allowance[p->at + 1]) / lesser(p->limit[0], p->limit[1]);
+    return length(part);
+}
+
+/* Whether a planar contact accelerates, by m->v, against force f by more than rounding. */
+static int leaves(const struct stick_slip *m, const struct planar_contact *p, const double *f)
+{
+    double against = 0.0, size = 0.0, noise = 0.0;
+    for (size_t d = 0; d < 2; d++) {
+        against -= f[p->at + d] * m->v[p->at + d];
+        noise += fabs(f[p->at + d]) * m->gain[p->at + d];
+        size += fabs(f[p->at + d]);
+    }
+    return size > 0.0 && against > noise;
+}
+
+/* The contact slides from here on, against the force that it has. */
+static void let_go(struct stick_slip *m, struct planar_contact *p, int begins)
+{
+    double part[2] = {m->force[p->at] / p->limit[0], m->force[p->at + 1] / p->limit[1]};
+    const double size = length(part);
+    set_slip(m, p, TRIBO_IN_PLANE);
+    p->begins = begins;
+    p->now = 0.0;
+    for (size_t d = 0; d < 2; d++) {
+        p->direction[d] = -part[d] / size;
+        m->force[p->at + d] = -p->limit[d] * p->direction[d];
+    }
+}
+
+/* The same of scalar contacts. */
+static int leaves_line(const struct stick_slip *m, size_t i, const double *f)
+{
+    return f[i] != 0.0 && (f[i] > 0.0 ? -m->v[i] : m->v[i]) > m->gain[i];
+}
+
+static void let_go_line(struct stick_slip *m, size_t i)
+{
+    tribo_stick_slip_set(m, i, m->force[i] > 0.0 ? -1 : 1);
+    m->force[i] = -m->slip[i] * m->limit[i];
+}
+
+static int on_line(const struct stick_slip *m, size_t i)
+{
+    return !m->plane->in_plane[i] && m->slip[i] == 0;
+}
+
+/* Contacts at rest whose force is at its limit: marks in m->tied such that do not accelerate. Returns how many these are. */
+static size_t break_away(struct stick_slip *m)
+{
+    size_t ties = 0;
+    for (size_t i = 0; i < m->contacts; i++) {
+        const double room = m->limit[i] - fabs(m->force[i]);
+        m->tied[i] = (signed char)(on_line(m, i) && (room <= m->allowance[i] || i == m->reached));
+        if (m->tied[i] && leaves_line(m, i, m->force)) {
+            m->tied[i] = 0;
+            let_go_line(m, i);
+        }
+        ties += (size_t)m->tied[i];
+    }
+    for (size_t k = 0; k < m->plane->count; k++) {
+        struct planar_contact *p = &m->plane->contact[k];
+        double noise;
+        const double part = share(m, p, m->force, &noise);
+        m->tied[p->at] = (signed char)(m->slip[p->at] == 0 && (part >= 1.0 - noise || p->at == m->reached));
+        if (m->tied[p->at] && leaves(m, p, m->force)) {
+            m->tied[p->at] = 0;
+            let_go(m, p, BY_ACCELERATION);
+        }
+        ties += (size_t)m->tied[p->at];
+    }
+    return ties;
+}
+
+/* Limits of a moment later: those that are tied are at them, whatever rounding says; and contacts that begin to slide have
+ * theirs. */
+static void set_limits_ahead(struct stick_slip *m)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->hi[i] = m->slip[i] != 0 ? 0.0 : m->tied[i] ? lesser(m->limit[i], fabs(m->force[i])) : m->limit[i];
+    }
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        double noise;
+        const double part = m->tied[p->at] ? lesser(share(m, p, m->force, &noise), 1.0) : 1.0;
+        for (size_t d = 0; d < 2 && (m->slip[p->at] == 0 || p->begins != SLIDES_ON); d++) {
+            m->hi[p->at + d] = part * p->limit[d];
+        }
+    }
+}
+
+/* Who of those that are tied slides by the forces of a moment later. */
+static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
+{
+    tribo_stick_slip_contact_accelerations(sys, tribo_stick_slip_find_acceleration(m, sys), 1, m->f);
+    const double turn = given_forces(m, sys, y, m->f), h = lesser(m->horizon, turn > 0.0 ? TURN / turn : m->horizon);
+    tribo_stick_slip_find_rate(m, sys, y);
+    tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
+    for (size_t i = 0; i < m->contacts; i++) {
+        m->plane->ahead[i] = m->a[i] + h * m->v[i];
+        m->lo[i] += h * m->plane->rate[i];
+    }
+    set_limits_ahead(m);
+    const int status = solve(m, sys, m->plane->ahead, m->f);
+    for (size_t i = 0; !status && i < m->contacts; i++) {
+        if (m->tied[i] && on_line(m, i) && leaves_line(m, i, m->f)) {
+            let_go_line(m, i);
+        }
+    }
+    for (size_t k = 0; !status && k < m->plane->count; k++) {
+        struct planar_contact *p = &m->plane->contact[k];
+        if (m->tied[p->at] && leaves(m, p, m->f)) {
+            let_go(m, p, BY_FORCE);
+        }
+    }
+    return status;
+}
+
+int tribo_planar_slip_decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    for (size_t k = 0; k < m->plane->count; k++) {
+        m->plane->contact[k].before = m->plane->contact[k].now;
+    }
+    tribo_stick_slip_begin_decision(m, sys, t, y);
+    int status = find_resting(m, sys, y);
+    if (!status) {
+        tribo_stick_slip_find_free(m, sys, t, y);
+        status = find_forces(m, sys, y);
+    }
+    if (status) {
+        return status;
+    }
+    tribo_stick_slip_forget_gains(m);
+    tribo_stick_slip_find_gains(m, sys, y);
+    const size_t ties = break_away(m);
+    status = ties ? look_ahead(m, sys, y) : TRIBO_OK;
+    m->reached = m->contacts;
+    memset(m->tied, 0, m->contacts);
+    status = status ? status : tribo_stick_slip_find_holds(m, sys);
+    return status ? status : check_holds(m, sys);
+}

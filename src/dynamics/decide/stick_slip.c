@@ -1,0 +1,165 @@
+/* What is known of contacts between decisions: velocities and accelerations, and how much of them may be rounding. Decisions are
+ * made in scalar_slip.c and planar_slip.c. */
+#include "stick_slip.h"
+#include "common/real.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Accelerations are known to this part of what they are the sum of. */
+#define NOISE 2e-14
+
+/* The moment later, in parts of one over the highest frequency. What has changed by then is far above noise, as a rule, and
+ * nearly linear in time. */
+#define LOOK_AHEAD 1e-4
+
+/* ---------------------------------------------------------------------------------------------------------- rounding */
+
+/* y += amplitudes of the order-th derivatives of loads, or of b. */
+static void add_amplitudes(const tribo_system *sys, enum drives drives, int order, double *y)
+{
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        const double rate = order ? fabs(w->omega) : 1.0;
+        for (size_t k = 0; w->drives == drives && k < w->count; k++) {
+            y[w->index[k]] += rate * (fabs(w->cosine[k]) + fabs(w->sine[k]));
+        }
+    }
+}
+
+/* A time is known to its rounding. Where contacts that repeat each other may rest, what one holds follows its base, and the
+ * others see the rounding of that. */
+static void find_base_sizes(struct stick_slip *m, const tribo_system *sys)
+{
+    const double late = DBL_EPSILON * fabs(sys->time) / TRIBO_VELOCITY_NOISE;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->base_size[i] += late * m->base_rate_size[i];
+    }
+    const double largest = m->independent ? 0.0 : tribo_largest(m->base_size, sys->ncontact);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->base_size[i] = greater(m->base_size[i], largest);
+    }
+}
+
+void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys)
+{
+    const double fastest = tribo_system_fastest(sys) + m->breakaway.steepest;
+    m->horizon = LOOK_AHEAD / (fastest > 0.0 ? fastest : 1.0);
+    memset(m->base_size, 0, sys->ncontact * sizeof *m->base_size);
+    memset(m->base_rate_size, 0, sys->ncontact * sizeof *m->base_rate_size);
+    memset(m->load_size, 0, sys->ndof * sizeof *m->load_size);
+    add_amplitudes(sys, DRIVES_BASE, 0, m->base_size);
+    add_amplitudes(sys, DRIVES_BASE, 1, m->base_rate_size);
+    add_amplitudes(sys, DRIVES_LOAD, 0, m->load_size);
+    find_base_sizes(m, sys);
+}
+
+void tribo_stick_slip_forget_gains(struct stick_slip *m)
+{
+    memset(m->found, 0, m->founds * sizeof *m->found);
+}
+
+/* The size of all that q'' of degree of freedom d is the sum of. */
+static double find_size(struct stick_slip *m, const tribo_system *sys, const double *y, size_t d)
+{
+    if (m->size[d] > 0.0) {
+        return m->size[d];
+    }
+    if (sys->tables) {
+        tribo_system_tables(sys, 0, 1.0, d, d + 1, m->size);
+    }
+    double size = m->load_size[d] + fabs(m->size[d]) + tribo_matrix_row_size(&sys->stiffness, d, y) +
+                  tribo_matrix_row_size(&sys->response, d, m->force);
+    size += sys->damping.rows ? tribo_matrix_row_size(&sys->damping, d, y + sys->ndof) : 0.0;
+    return m->size[d] = size;
+}
+
+void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
+{
+    const struct matrix *j = &sys->direction;
+    double size = 0.0, speed = 0.0;
+    if (m->gain[i] > 0.0) {
+        return;
+    }
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        const size_t d = j->col[k];
+        size += fabs(j->val[k] * find_size(m, sys, y, d));
+        speed += fabs(j->val[k] * y[sys->ndof + d]);
+    }
+    m->noise[i] = tribo_stick_slip_velocity_noise(m, i, speed);
+    m->gain[i] = NOISE * m->doubt * (m->base_rate_size[i] + size);
+    m->allowance[i] = TRIBO_ALLOWED * m->gain[i] * m->inertia[i];
+    if (m->swing[i] > 0.0) {
+        m->allowance[i] += TRIBO_LIMIT_NOISE * m->doubt * tribo_breakaway_ratio(&m->breakaway, i) * m->swing[i];
+    }
+    if (m->base_moves) {
+        m->parting[i] = greater(4.0 * m->doubt * m->noise[i], m->gain[i] * m->horizon / LOOK_AHEAD);
+    }
+}
+
+int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
+{
+    tribo_stick_slip_find_gain(m, sys, y, i);
+    return fabs(tribo_stick_slip_velocity(m, sys, i, y)) <= TRIBO_VELOCITY_NOISE * m->gain[i] * m->horizon / LOOK_AHEAD;
+}
+
+void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        tribo_stick_slip_find_gain(m, sys, y, i);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------- one contact, as decided */
+
+double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
+{
+    if (m->slip[i] == 0) {
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
+        return m->holds[i] || !m->tied[i] ? 0.0 : m->force[i] > 0.0 ? ratio : -ratio;
+    }
+    return m->slip[i] == 2 ? 0.0 : -m->slip[i];
+}
+
+double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)
+{
+    return tribo_breakaway_is_sudden(&m->breakaway, i) ? m->allowance[i] : 0.0;
+}
+
+/* ------------------------------------------------------------------------------------------------------------ motion */
+
+void tribo_stick_slip_find_free(struct stick_slip *m, tribo_system *sys, double t, const double *y)
+{
+    tribo_system_free_acceleration(sys, t, y, m->free);
+    m->a = m->free;
+    if (!sys->direction.identity || sys->base_harmonics) {
+        tribo_stick_slip_contact_accelerations(sys, m->free, 1, m->own_a);
+        m->a = m->own_a;
+    }
+}
+
+void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const double *acceleration, int order, double *to)
+{
+    tribo_matrix_multiply(&sys->direction, acceleration, to);
+    if (sys->base_harmonics) {
+        tribo_system_loads(sys, DRIVES_BASE, order, -1.0, to);
+    }
+}
+
+const double *tribo_stick_slip_find_acceleration(struct stick_slip *m, const tribo_system *sys)
+{
+    memcpy(m->acceleration, m->free, sys->ndof * sizeof *m->free);
+    tribo_matrix_multiply_add(&sys->response, 1.0, m->force, m->acceleration);
+    return m->acceleration;
+}
+
+void tribo_stick_slip_find_rate(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    memset(m->rate, 0, sys->ndof * sizeof *m->rate);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, m->rate);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, y + sys->ndof, m->rate);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, tribo_stick_slip_find_acceleration(m, sys), m->rate);
+    }
+}

@@ -1,0 +1,516 @@
+/* Integration in time: a method by name, and what is around it. */
+#include "driver.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dynamics/decide/breakaway.h"
+#include "common/real.h"
+#include "common/zeros.h"
+
+static const struct method automatic;
+
+static const struct method *const methods[] = {
+    &tribo_method_rk4_fixed,    &tribo_method_rk2,    &tribo_method_rk4,    &tribo_method_rkf45,  &tribo_method_rkck,
+    &tribo_method_rk8pd,        &tribo_method_rk1imp, &tribo_method_rk2imp, &tribo_method_rk4imp, &tribo_method_bsimp,
+    &tribo_method_msadams,      &tribo_method_msbdf,  &tribo_method_exact,  &tribo_method_event,  &tribo_method_central_fixed,
+    &tribo_method_moreau_fixed, &automatic,
+};
+
+int tribo_method_count(void)
+{
+    return (int)(sizeof methods / sizeof *methods);
+}
+
+const char *tribo_method_name(int method)
+{
+    return method >= 0 && method < tribo_method_count() ? methods[method]->name : NULL;
+}
+
+static int lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
+}
+
+static int same_name(const char *a, const char *b)
+{
+    while (*a && lower(*a) == lower(*b)) {
+        a++;
+        b++;
+    }
+    return lower(*a) == lower(*b);
+}
+
+static const struct method *find(const char *name)
+{
+    for (int i = 0; i < tribo_method_count(); i++) {
+        if (same_name(methods[i]->name, name)) {
+            return methods[i];
+        }
+    }
+    return NULL;
+}
+
+static int unknown(const tribo_system *sys, const char *name)
+{
+    char list[200] = "";
+    for (int i = 0; i < tribo_method_count(); i++) {
+        const size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
+    }
+    return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%.20s\" is unknown; there are %s", name, list);
+}
+
+static int check_parameters(const tribo_system *sys, const struct method *method, double dt, double abstol, double reltol)
+{
+    const struct {
+        const char *name;
+        double value;
+        int positive;
+    } all[] = {{"dt", dt, 1}, {"abstol", abstol, method->adaptive != 0}, {"reltol", reltol, 0}};
+    for (size_t i = 0; i < 3; i++) {
+        if (!isfinite(all[i].value)) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", all[i].name, all[i].value);
+        }
+        if (all[i].positive && all[i].value <= 0.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", all[i].name, all[i].value);
+        }
+        if (all[i].value < 0.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "%s = %g is negative", all[i].name, all[i].value);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* Motions in closed form are those of scalar contacts only; and contacts may become planar at any time. */
+static int check_planar(const tribo_system *sys, const struct method *m)
+{
+    const int scalar_only = m == &tribo_method_exact || sys->massless.count;
+    const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
+    return !planar ? TRIBO_OK
+                   : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                       "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
+                                       sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
+                                       sys->massless.count ? "" : ": take event");
+}
+
+/* What has no mass follows statically in methods that know the stiffness, and not only what it accelerates. */
+static int check_mass(const tribo_system *sys, const struct method *m)
+{
+    const int able = m == &tribo_method_exact || m == &tribo_method_event || m == &tribo_method_moreau_fixed || m == &automatic;
+    char who[40];
+    if (able || !sys->massless.count) {
+        return TRIBO_OK;
+    }
+    snprintf(who, sizeof who, "method %s", m->name);
+    return tribo_system_check_mass(sys, who);
+}
+
+/* Elastic contacts hold up to the limit by which they slide; and static limits may be set at any time. */
+static int check_static(const tribo_system *sys)
+{
+    double *ratio = sys->feq;
+    size_t i = 0;
+    tribo_get_static(sys->contacts, ratio, NULL);
+    while (i < sys->ncontact && !(tribo_massless_touches(&sys->massless, i) && ratio[i] > 1.0)) {
+        i++;
+    }
+    return i == sys->ncontact
+               ? TRIBO_OK
+               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
+}
+
+/* What the contacts are, which may change at any time. */
+static int check_contacts(const tribo_system *sys, const struct method *m)
+{
+    const int status = check_planar(sys, m);
+    return status || sys->massless.count == 0 ? status : check_static(sys);
+}
+
+static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
+{
+    int status = check_parameters(sys, m, dt, abstol, reltol);
+    status = status ? status : check_contacts(sys, m);
+    status = status ? status : check_mass(sys, m);
+    status = status || m == &tribo_method_moreau_fixed ? status : tribo_system_check_solved(sys, m->name);
+    if (status) {
+        return status;
+    }
+    const size_t dimension = tribo_system_dimension(sys);
+    tribo_driver *d = tribo_zeros(sizeof *d + 2 * dimension * sizeof *d->state, 1);
+    if (!d) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a driver of %zu equation%s", dimension,
+                                 plural(dimension));
+    }
+    d->sys = sys;
+    d->message = d->text;
+    d->method = d->at_work = m;
+    d->dt = dt;
+    d->abstol = abstol;
+    d->reltol = reltol;
+    d->state = (double *)(d + 1);
+    d->slope = d->state + dimension;
+    d->excess = d->backslip = NAN;
+    tribo_system_order_snaps(sys);
+    status = m->create(d);
+    if (status) {
+        tribo_driver_destroy(d);
+        return status;
+    }
+    *drv = d;
+    return TRIBO_OK;
+}
+
+int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol, double reltol)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!drv || !method) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
+    }
+    const struct method *m = find(method);
+    return m ? create(drv, sys, m, dt, abstol, reltol) : unknown(sys, method);
+}
+
+void tribo_driver_destroy(tribo_driver *drv)
+{
+    if (!drv) {
+        return;
+    }
+    if (drv->shooting && drv->free_shooting) {
+        drv->free_shooting(drv->shooting);
+    }
+    drv->method->destroy(drv);
+    free(drv);
+}
+
+const char *tribo_driver_method(const tribo_driver *drv)
+{
+    return drv ? drv->at_work->name : NULL;
+}
+
+const char *tribo_driver_message(const tribo_driver *drv)
+{
+    return drv ? drv->message : "drv is NULL";
+}
+
+int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(drv->message, sizeof drv->text, format, args);
+    va_end(args);
+    return status;
+}
+
+int tribo_driver_explain(tribo_driver *drv, double t, double h)
+{
+    return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_message(drv->sys->contacts));
+}
+
+int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data), void *data)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    drv->seen = seen;
+    drv->data = data;
+    return TRIBO_OK;
+}
+
+int tribo_driver_set_max_step(tribo_driver *drv, double h)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    if (drv->method->adaptive != WITH_LARGEST_STEP) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s has no largest step", drv->method->name);
+    }
+    if (isnan(h)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "h = %g is not a number", h);
+    }
+    if (h <= 0.0) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_POSITIVE, "h = %g is not positive", h);
+    }
+    drv->max_step = h;
+    return TRIBO_OK;
+}
+
+/* Of a query. */
+static int check_query(const tribo_driver *drv, const void *value)
+{
+    return drv && value ? TRIBO_OK : drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "value is NULL") : TRIBO_ERR_NULL;
+}
+
+int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
+{
+    const int status = check_query(drv, value);
+    if (status) {
+        return status;
+    }
+    switch (which) {
+    case TRIBO_COUNT_STEPS:
+        *value = drv->steps;
+        return TRIBO_OK;
+    case TRIBO_COUNT_REJECTED:
+        *value = drv->rejected;
+        return TRIBO_OK;
+    case TRIBO_COUNT_EVALUATIONS:
+        *value = drv->evaluations;
+        return TRIBO_OK;
+    case TRIBO_COUNT_JACOBIANS:
+        *value = drv->jacobians;
+        return TRIBO_OK;
+    case TRIBO_COUNT_EVENTS:
+        *value = drv->events;
+        return TRIBO_OK;
+    case TRIBO_COUNT_PERIODS:
+        *value = drv->periods;
+        return TRIBO_OK;
+    case TRIBO_COUNT_NEWTON:
+        *value = drv->newton;
+        return TRIBO_OK;
+    case TRIBO_COUNT_FREEDOM:
+        *value = drv->freedom;
+        return TRIBO_OK;
+    case TRIBO_COUNT_RESTED:
+        *value = drv->rested;
+        return TRIBO_OK;
+    default:
+        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no count of a driver", which);
+    }
+}
+
+int tribo_driver_real(const tribo_driver *drv, int which, double *value)
+{
+    const int status = check_query(drv, value);
+    if (status) {
+        return status;
+    }
+    if (which != TRIBO_REAL_EXCESS && which != TRIBO_REAL_BACKSLIP) {
+        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "which = %d is no real quantity of a driver", which);
+    }
+    const double found = which == TRIBO_REAL_EXCESS ? drv->excess : drv->backslip;
+    if (isnan(found)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s does not bound how far the motion strays",
+                                 drv->method->name);
+    }
+    *value = found;
+    return TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- states */
+
+int tribo_driver_check(tribo_driver *drv, const double *y)
+{
+    if (tribo_few_finite(y, 2 * drv->sys->ndof + 1)) {
+        return TRIBO_OK;
+    }
+    size_t i = 0;
+    while (isfinite(y[i])) {
+        i++;
+    }
+    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
+                             "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", i, y[i],
+                             drv->time, drv->dt);
+}
+
+int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
+{
+    const int status = tribo_driver_check(drv, y);
+    if (!status) {
+        drv->time = t;
+        memcpy(drv->state, y, (2 * drv->sys->ndof + 1) * sizeof *y);
+    }
+    return status;
+}
+
+int tribo_driver_show(tribo_driver *drv, double t, const double *y, int event)
+{
+    const int answer = drv->seen ? drv->seen(t, y, event, drv->data) : 0;
+    return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
+}
+
+int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
+{
+    const int status = tribo_driver_keep(drv, t, y);
+    return status ? status : tribo_driver_show(drv, t, y, event);
+}
+
+static int check_times(tribo_driver *drv, const double *t, double t1, const double *y)
+{
+    if (!t || !y) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
+    }
+    const int status = tribo_system_check_state(drv->sys, *t, y);
+    if (status) {
+        return tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts));
+    }
+    if (!isfinite(t1)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "t1 = %g is not finite", t1);
+    }
+    if (t1 < *t) {
+        return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
+    }
+    const int unfit = check_contacts(drv->sys, drv->method);
+    return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
+}
+
+int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_times(drv, t, t1, y);
+    if (status || t1 == *t) {
+        return status;
+    }
+    tribo_system *sys = drv->sys;
+    const size_t bytes = tribo_system_dimension(sys) * sizeof *y, evaluations = sys->evaluations, jacobians = sys->jacobians;
+    const int continues =
+        drv->knows && *t == drv->time && drv->revision == tribo_system_revision(sys) && memcmp(y, drv->state, bytes) == 0;
+    drv->time = *t;
+    memcpy(drv->state, y, bytes);
+    status = drv->method->advance(drv, t, t1, y, continues);
+    if (sys->foreseen) {
+        tribo_system_foresee(sys, 0, t);
+    }
+    status = status ? status : tribo_driver_keep(drv, *t, y);
+    *t = drv->time;
+    memcpy(y, drv->state, bytes);
+    drv->knows = status == TRIBO_OK || status == TRIBO_ERR_STOPPED;
+    drv->revision = tribo_system_revision(sys);
+    drv->evaluations += sys->evaluations - evaluations;
+    drv->jacobians += sys->jacobians - jacobians;
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------ method "auto" */
+
+enum { EVENT, EXACT };
+
+/* Two drivers, made when they are needed. */
+struct choice {
+    tribo_driver *inner[2];
+    int refused;     /* exact cannot do the system */
+    size_t revision; /* as it was then */
+};
+
+/* Exact pays while modes are found in no time. */
+static int choose(const tribo_driver *drv)
+{
+    const tribo_system *sys = drv->sys;
+    const struct choice *c = drv->own;
+    const int refused = c->refused && c->revision == tribo_system_revision(sys);
+    const int closed = !sys->tables && !sys->limits.knots && !tribo_system_falls(sys) && !tribo_system_planar(sys);
+    return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
+}
+
+/* Makes sure that there is the driver. The message of a failure is on the system's context. */
+static int provide(tribo_driver *drv, int which)
+{
+    static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
+    struct choice *c = drv->own;
+    drv->at_work = of[which];
+    return c->inner[which] ? TRIBO_OK : create(&c->inner[which], drv->sys, of[which], drv->dt, drv->abstol, drv->reltol);
+}
+
+static int create_choice(tribo_driver *drv)
+{
+    drv->own = tribo_zeros(1, sizeof(struct choice));
+    drv->excess = drv->backslip = 0.0;
+    return drv->own ? provide(drv, choose(drv)) : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
+}
+
+static void destroy_choice(tribo_driver *drv)
+{
+    struct choice *c = drv->own;
+    if (c) {
+        tribo_driver_destroy(c->inner[EXACT]);
+        tribo_driver_destroy(c->inner[EVENT]);
+        free(c);
+    }
+}
+
+/* What one of the two is to do: an advance to t1, or to find a periodic motion. */
+struct task {
+    double *t, t1, period, *y;
+    int finds;
+};
+
+static int carry_out(tribo_driver *inner, const struct task *x)
+{
+    return x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y)
+                    : tribo_driver_advance(inner, x->t, x->t1, x->y);
+}
+
+/* Adds what inner has counted since it was what before says. Evaluations in an advance are counted by the caller. */
+static void add_counts(tribo_driver *drv, const tribo_driver *inner, const tribo_driver *before, int finds)
+{
+    drv->steps += inner->steps - before->steps;
+    drv->rejected += inner->rejected - before->rejected;
+    drv->events += inner->events - before->events;
+    drv->periods += inner->periods - before->periods;
+    drv->newton += inner->newton - before->newton;
+    drv->evaluations += finds ? inner->evaluations - before->evaluations : 0;
+    drv->freedom = inner->freedom;
+    drv->excess = greater(drv->excess, inner->excess);
+    drv->backslip = greater(drv->backslip, inner->backslip);
+}
+
+/* A task for one of the two, which sees for itself whether an advance continues. */
+static int delegate(tribo_driver *drv, int which, const struct task *x)
+{
+    const struct choice *c = drv->own;
+    int status = provide(drv, which);
+    if (status) {
+        return tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_message(drv->sys->contacts));
+    }
+    tribo_driver *inner = c->inner[which];
+    const tribo_driver before = *inner;
+    inner->seen = drv->seen;
+    inner->data = drv->data;
+    status = carry_out(inner, x);
+    add_counts(drv, inner, &before, x->finds);
+    if (x->finds) {
+        drv->shooting = inner->shooting;
+    }
+    const int kept = x->finds ? TRIBO_OK : tribo_driver_keep(drv, *x->t, x->y);
+    if (status && !(which == EXACT && status == TRIBO_ERR_UNSUPPORTED)) {
+        tribo_driver_fail(drv, status, "%s", inner->message);
+    }
+    return status ? status : kept;
+}
+
+static int choose_and_delegate(tribo_driver *drv, const struct task *x)
+{
+    struct choice *c = drv->own;
+    if (choose(drv) == EXACT) {
+        const int status = delegate(drv, EXACT, x);
+        if (status != TRIBO_ERR_UNSUPPORTED) {
+            return status;
+        }
+        c->refused = 1;
+        c->revision = tribo_system_revision(drv->sys);
+    }
+    return delegate(drv, EVENT, x);
+}
+
+static int advance_choice(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    (void)continues;
+    return choose_and_delegate(drv, &(struct task){.t = t, .t1 = t1, .y = y});
+}
+
+static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
+{
+    return choose_and_delegate(drv, &(struct task){.t = &t, .period = period, .y = y, .finds = 1});
+}
+
+static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL,
+                                        NULL,   find_by_choice};

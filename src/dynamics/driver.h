@@ -1,0 +1,96 @@
+/* What a method of integration is, and what all of them share. */
+#ifndef TRIBO_DRIVER_H
+#define TRIBO_DRIVER_H
+
+#include "dynamics/system/system.h"
+
+/* What a method wants to be told: no tolerances, tolerances, or these and a largest step. */
+enum { WITHOUT_TOLERANCES, WITH_TOLERANCES, WITH_LARGEST_STEP };
+
+struct events;
+
+struct method {
+    const char *name;
+    int adaptive; /* one of these */
+    int (*create)(tribo_driver *drv);
+    void (*destroy)(tribo_driver *drv); /* also after a create that failed */
+    /* From *t to t1 > *t. continues: (t, y) is where the method's last advance ended well, and nothing has been changed since.
+     * Returns a status; if it fails, t and y may be anything, since the driver goes back to the state accepted last. */
+    int (*advance)(tribo_driver *drv, double *t, double t1, double *y, int continues);
+    const void *with; /* the method's own */
+    /* Methods that are a loop over events (events.h): makes it ready and hands it out. Others: NULL. */
+    int (*open)(tribo_driver *drv, struct events **events);
+    /* As tribo_driver_find_periodic, arguments being checked; NULL: the method cannot. */
+    int (*find_periodic)(tribo_driver *drv, double t, double period, double *y);
+};
+
+struct tribo_driver {
+    tribo_system *sys;
+    const struct method *method, *at_work; /* the latter is what tribo_driver_method names */
+    double dt, abstol, reltol;
+    double max_step;       /* 0: what the system suggests */
+    void *own;             /* the method's own */
+    double *state, *slope; /* [dimension] the state accepted last; workspace */
+    double time;           /* of the state accepted last */
+    size_t revision;       /* of the system when the last advance ended */
+    int knows;             /* what the method keeps is about time, state and revision */
+    size_t steps, rejected, evaluations, jacobians, events, periods, newton;
+    double excess, backslip; /* largest so far; NaN for methods that do not know them */
+    int (*seen)(double t, const double *y, int event, void *data);
+    void *data;
+    struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting; NULL: borrowed */
+    void (*free_shooting)(struct shooting *s);
+    size_t freedom; /* dimension of the family of the last one */
+    size_t rested;  /* degrees of freedom left out, step by step */
+    char *message;  /* is text, which a const driver keeps, too */
+    char text[240];
+};
+
+/* Keeps the message and returns status. */
+int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, ...)
+#if defined(__GNUC__)
+    __attribute__((format(printf, 3, 4)))
+#endif
+    ;
+
+/* The same for a step h from t in which an evaluation failed, with the system's status and message. */
+int tribo_driver_explain(tribo_driver *drv, double t, double h);
+
+/* TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
+int tribo_driver_check(tribo_driver *drv, const double *y);
+
+/* Every state that a method has found goes through this before anything is built on it: if a value of it is not finite, it fails
+ * with TRIBO_ERR_NOT_FINITE and nobody sees the state. Otherwise the state is kept as the last good one, to which
+ * tribo_driver_advance goes back on any failure, and the observer is told, who may end the run (TRIBO_ERR_STOPPED).
+ * event: 0 for a step, 1 for an event. */
+int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event);
+
+/* The two halves of that: the state is kept; the observer is told. */
+int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
+int tribo_driver_show(tribo_driver *drv, double t, const double *y, int event);
+
+/* A step from the state at t to that at next, y, all of which it writes and finds finite. */
+typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
+
+/* Steps between the times t [count + 1] at once, from the state y at t[0] to that which follows, in its place. Returns how many
+ * were taken: the next one is for tribo_fixed_step. */
+typedef size_t tribo_fixed_run(tribo_driver *drv, size_t count, const double *t, double *y);
+
+/* A method's step; a run of steps where nobody watches, or NULL; and the times that a step asks the system for: at so many
+ * parts of it. */
+struct fixed_method {
+    tribo_fixed_step *step;
+    tribo_fixed_run *run;
+    size_t times;
+    double part[2];
+};
+
+/* Steps of drv->dt from y, which is the last good state, to t1, the last one shorter where it must be. States are kept as by
+ * tribo_driver_accept, but not copied. */
+int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
+
+extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
+    tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck, tribo_method_rk8pd,
+    tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_bsimp, tribo_method_msadams, tribo_method_msbdf;
+
+#endif

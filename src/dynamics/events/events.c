@@ -1,0 +1,395 @@
+#include "events.h"
+#include "common/layout.h"
+#include "common/real.h"
+#include "numerics/twofold.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Where events are many, so many times as much is taken for rounding by one decision. */
+#define DOUBT 10.0
+
+/* Events that there may be before that at once, and again in every time of 1/(16 fastest): some contacts, and some of each. */
+static double most_credit(const struct events *e)
+{
+    return 32.0 + 8.0 * (double)e->stick_slip.contacts;
+}
+
+/* That they use up their credit in this part of such a time is no headway, and so many of them in a row are the end. Some hundred
+ * thousand happen where limits swing, and lead on. */
+#define HEADWAY 1e-2
+#define MOST_STUCK 1e6
+
+/* So many steps without events mean that there is no headway, if together they take less than such a time. Planar contacts that
+ * creep, and are too many for the longer steps of event_creep.h, take some ten thousand. */
+#define MOST_IDLE 100000
+
+/* By no more than this part of it do phases differ that are alike. */
+#define ALIKE 0.1
+
+/* Slips from -1 to 3. */
+#define SLIPS 5
+
+static void lay_out_events(struct events *e, struct layout *l, const tribo_system *sys)
+{
+    const size_t c = sys->ncontact;
+    e->lasted = tribo_layout_array(l, SLIPS * c, sizeof *e->lasted);
+    e->search.guard = tribo_layout_array(l, 3 * c, sizeof *e->search.guard);
+    e->search.watched = tribo_layout_array(l, 3 * c, sizeof *e->search.watched);
+}
+
+int tribo_events_create(struct events *e, tribo_driver *drv)
+{
+    tribo_system *sys = drv->sys;
+    const int status = tribo_stick_slip_create(&e->stick_slip, sys);
+    if (status) {
+        return status;
+    }
+    struct layout l = {0};
+    lay_out_events(e, &l, sys);
+    const int done = tribo_layout_create(&l);
+    lay_out_events(e, &l, sys);
+    if (!done) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the events of %zu contact%s", sys->ncontact,
+                                 plural(sys->ncontact));
+    }
+    memset(e->lasted, 0, SLIPS * sys->ncontact * sizeof *e->lasted);
+    e->stick_slip.abstol = drv->abstol;
+    e->stick_slip.reltol = drv->reltol;
+    drv->excess = drv->backslip = 0.0;
+    return TRIBO_OK;
+}
+
+void tribo_events_free(struct events *e)
+{
+    tribo_planar_slip_free(e->stick_slip.plane);
+    tribo_stick_slip_free(&e->stick_slip);
+    free(e->lasted);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- guards */
+
+void tribo_events_clear_guards(struct events *e)
+{
+    e->search.guards = 0;
+}
+
+void tribo_events_guard(struct events *e, const struct guard *guard)
+{
+    e->search.guard[e->search.guards++] = *guard;
+}
+
+/* A guard of contact i, one that slides or holds. Its samples are the search's to set. */
+static struct guard *append(struct events *e, size_t i, int slides, double side, double allowance, const struct watch *watch)
+{
+    struct guard *g = &e->search.guard[e->search.guards++];
+    g->contact = i;
+    g->slides = slides;
+    g->side = side;
+    g->output = watch->output;
+    g->offset = watch->offset;
+    g->limit = watch->limit;
+    g->allowance = allowance;
+    g->lowest = g->right.g = 0.0;
+    return g;
+}
+
+void tribo_events_guard_slip(struct events *e, size_t i, const struct watch *watch)
+{
+    const struct stick_slip *m = &e->stick_slip;
+    append(e, i, SLIDES, m->slip[i], m->doubt * m->noise[i], watch);
+}
+
+void tribo_events_guard_stick(struct events *e, size_t i, const struct watch *watch)
+{
+    append(e, i, HOLDS, -1.0, e->stick_slip.allowance[i], watch);
+    append(e, i, HOLDS, 1.0, e->stick_slip.allowance[i], watch);
+}
+
+void tribo_events_guard_part(struct events *e, size_t i, const struct watch *watch)
+{
+    append(e, i, SLIDES, -1.0, e->stick_slip.parting[i], watch);
+    append(e, i, SLIDES, 1.0, e->stick_slip.parting[i], watch);
+}
+
+void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch)
+{
+    const struct stick_slip *m = &e->stick_slip;
+    const int keeps = m->slip[i] == 0 && tribo_stick_slip_follows(m, i) == 0.0;
+    const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
+    const double allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
+    struct guard *g = append(e, i, HOLDS, 0.0, allowance, watch);
+    g->limit *= times;
+    g->offset = times * g->offset + (keeps ? tribo_stick_slip_slack(m, i) - fabs(m->force[i]) : 0.0);
+}
+
+/* -------------------------------------------------------------------------------------------------------------- events */
+
+static int give_up(struct events *e, tribo_driver *drv, double t)
+{
+    char text[TRIBO_SUSPECTS * 32] = "";
+    for (size_t k = 0, used = 0; k < e->suspects; k++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "%scontact %zu", k ? ", " : "", e->suspect[k]);
+    }
+    return tribo_driver_fail(
+        drv, TRIBO_ERR_CHATTER,
+        "events make no headway at t = %.17g (%s): take central/fixed or moreau/fixed, or limits that differ", t, text);
+}
+
+static void suspect(struct events *e, size_t contact)
+{
+    for (size_t k = 0; k < e->suspects; k++) {
+        if (e->suspect[k] == contact) {
+            return;
+        }
+    }
+    if (e->suspects < TRIBO_SUSPECTS) {
+        e->suspect[e->suspects++] = contact;
+    }
+}
+
+/* Gives events all their credit, from t on. */
+static void refill(struct events *e, double t)
+{
+    e->credit = most_credit(e);
+    e->since = t;
+}
+
+/* Counts an event against the credit that has gathered since the last one. */
+static int count_event(struct events *e, tribo_driver *drv, size_t contact, double t, double fastest)
+{
+    const double most = most_credit(e);
+    drv->events++;
+    e->credit += 16.0 * most * fastest * (t - e->paid);
+    e->paid = t;
+    e->stick_slip.doubt = 1.0;
+    if (e->credit >= most) {
+        refill(e, t);
+        e->suspects = 0;
+    }
+    suspect(e, contact);
+    e->credit -= 1.0;
+    if (e->credit < 0.0) {
+        e->stick_slip.doubt = DOUBT;
+        e->stuck = 16.0 * fastest * (t - e->since) < HEADWAY ? e->stuck + most : 0.0;
+        refill(e, t);
+    }
+    return e->stuck > MOST_STUCK ? give_up(e, drv, t) : TRIBO_OK;
+}
+
+/* Counts a step that no event ended. */
+static int count_step(struct events *e, tribo_driver *drv, double t, double tau, double fastest)
+{
+    if (16.0 * fastest * (t - e->rested) >= 1.0) {
+        e->rested = t;
+        e->idle = 0;
+    }
+    return ++e->idle <= MOST_IDLE
+               ? TRIBO_OK
+               : tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g, and %d such steps lead nowhere%s",
+                                   t, tau, MOST_IDLE, e->stick_slip.plane ? ": take moreau/fixed" : "");
+}
+
+/* Where phases that begin alike lasted alike, the next one is expected to. */
+static void expect(struct events *e, const struct guard *event, double when)
+{
+    if (e->begun && event) {
+        *e->begun = (struct lasted){when, fabs(when - e->begun->time)};
+    }
+    e->begun = event ? e->lasted + SLIPS * event->contact + (e->stick_slip.slip[event->contact] + 1) : NULL;
+    e->search.early = e->begun ? e->begun->change : 0.0;
+    e->search.expected = e->begun && e->search.early <= ALIKE * e->begun->time ? e->begun->time : 0.0;
+}
+
+/* A run that does not continue another one is not to depend on it, not even in its rounding. */
+static void forget(struct events *e, int continues)
+{
+    e->begun = NULL;
+    e->search.expected = 0.0;
+    e->anew = !continues;
+    if (!continues) {
+        memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
+    }
+}
+
+/* What the search has learnt of the size of velocities, and how far the phase strayed from the law. */
+static void learn(struct events *e, tribo_driver *drv)
+{
+    struct stick_slip *m = &e->stick_slip;
+    for (size_t k = 0; k < e->search.guards; k++) {
+        const struct guard *g = &e->search.guard[k];
+        if (g->slides == SLIDES) {
+            m->seen[g->contact] = g->size;
+            drv->backslip = greater(drv->backslip, g->lowest);
+        } else if (g->slides == HOLDS) {
+            drv->excess = greater(drv->excess, g->lowest + m->excess[g->contact]);
+        }
+    }
+}
+
+static int on_context(tribo_driver *drv, int status)
+{
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
+}
+
+/* Shows the observer the motion between t and t + tau at begin + k dt. */
+static int show_between(struct events *e, tribo_driver *drv, double begin, double *shown, double t, double tau, const double *y)
+{
+    int status = TRIBO_OK;
+    for (double at; e->shows_between && drv->seen && !status && (at = begin + *shown * drv->dt) < t + tau; *shown += 1.0) {
+        e->state(e->motion, greater((at - t) - drv->sys->low, 0.0), y, drv->slope);
+        status = tribo_driver_accept(drv, at, drv->slope, 0);
+    }
+    return status;
+}
+
+/* The time after another tau, and its low part; end if that is all there was. */
+static double go_on(tribo_system *sys, double t, double tau, double end)
+{
+    const struct twofold next = twofold_sum(t, sys->low + tau);
+    const int there = tau >= (end - t) - sys->low || next.hi > end || (next.hi == end && next.lo > 0.0);
+    tribo_system_set_low(sys, there ? 0.0 : next.lo);
+    return there ? end : next.hi;
+}
+
+/* Steps that no event ends do so at a number t, if they are long enough for that. */
+static double to_a_number(const tribo_system *sys, double t, double reach, double end)
+{
+    const double next = lesser(t + (sys->low + reach), end), there = (next - t) - sys->low;
+    return fabs(there - reach) <= 1e-3 * reach ? there : reach;
+}
+
+static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+{
+    const int status = m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
+    memset(m->seen, 0, m->contacts * sizeof *m->seen);
+    return status;
+}
+
+/* Says why the search for an event from (t, y) until reach later was given up: the state there, which y becomes, overflows, or is
+ * too far away. */
+static int cannot_follow(struct events *e, tribo_driver *drv, double t, double reach, double *y)
+{
+    e->state(e->motion, reach, y, y);
+    const int status = tribo_driver_check(drv, y);
+    return status ? status
+                  : tribo_driver_fail(drv, TRIBO_ERR_STEP,
+                                      "from t = %.17g on the motion is too fast to be followed: given up after %zu look%s", t,
+                                      e->search.looks, plural(e->search.looks));
+}
+
+/* Tells the decision that follows what the event was: a contact that stops, or one that may have reached its limit. */
+static void mark_event(struct stick_slip *m, const struct guard *event)
+{
+    if (event->slides == SLIDES) {
+        tribo_stick_slip_set(m, event->contact, 0);
+    } else {
+        m->reached = event->contact;
+    }
+}
+
+/* Counts a planar contact that the decision at t has stopped, and shows the observer the state after it, if that is seen. */
+static int show_decided(struct events *e, tribo_driver *drv, const struct guard *event, double t, double t1, const double *y,
+                        double fastest)
+{
+    const struct planar_slip *plane = e->stick_slip.plane;
+    const int stops = plane && plane->stopped < e->stick_slip.contacts;
+    const int status = stops ? count_event(e, drv, plane->stopped, t, fastest) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
+    const int seen = event || (t >= t1 && drv->sys->low == 0.0) || !e->shows_between;
+    return seen ? tribo_driver_accept(drv, t, y, event || stops) : tribo_driver_keep(drv, t, y);
+}
+
+/* One phase, from (t, y) to its end and the decision there. What y is after a failure is nobody's: the driver has kept the state
+ * that the phase began with. */
+static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
+                 double fastest)
+{
+    tribo_system *sys = drv->sys;
+    const double end = lesser(t1, tribo_system_next_kink(sys, *t));
+    const struct guard *event = NULL;
+    double reach = (end - *t) - sys->low, when = 0.0;
+    int status = on_context(drv, e->begin(e->motion, *t, y, &reach));
+    if (status) {
+        return status;
+    }
+    reach = to_a_number(sys, *t, reach, end);
+    e->search.resolution = DBL_EPSILON * DBL_EPSILON * greater(fabs(*t), reach);
+    if (!(reach > e->search.resolution)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, reach);
+    }
+    if (!tribo_first_zero(&e->search, reach, &event, &when)) {
+        return cannot_follow(e, drv, *t, reach, y);
+    }
+    when = event ? lesser(when, reach) : reach;
+    status = show_between(e, drv, begin, shown, *t, when, y);
+    if (status) {
+        return status;
+    }
+    e->state(e->motion, when, y, y);
+    status = tribo_driver_check(drv, y);
+    if (status) {
+        return status;
+    }
+    *t = go_on(sys, *t, when, end);
+    if (e->arrive) {
+        e->arrive(e->motion, *t);
+    }
+    e->met = event;
+    status = e->company ? on_context(drv, e->company->ends(e->company, when, *t, y)) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
+    drv->steps++;
+    learn(e, drv);
+    event = event && event->slides != SLOWS ? event : NULL;
+    sys->evaluations += e->shows_between ? e->search.looks : 0;
+    if (event) {
+        status = count_event(e, drv, event->contact, *t, fastest);
+        mark_event(&e->stick_slip, event);
+    } else if (*t < end) {
+        status = count_step(e, drv, *t, when, fastest);
+    }
+    status = status ? status : on_context(drv, decide(&e->stick_slip, sys, *t, y));
+    expect(e, event, when);
+    if (!status && event && e->company) {
+        e->company->decided(e->company);
+    }
+    return status ? status : show_decided(e, drv, event, *t, t1, y, fastest);
+}
+
+int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    const double begin = *t, fastest = greater(tribo_system_fastest(drv->sys), 1.0 / (t1 - begin));
+    double shown = 1.0;
+    if (e->shows_between && drv->seen && !(begin + drv->dt > begin && t1 - drv->dt < t1)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "dt = %g, in which an observer sees the motion, is lost beside t = %.17g",
+                                 drv->dt, t1);
+    }
+    tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues);
+    int status = tribo_planar_slip_start(&e->stick_slip, drv->sys, continues);
+    status = on_context(drv, status ? status : decide(&e->stick_slip, drv->sys, *t, y));
+    e->paid = e->rested = *t;
+    e->idle = e->suspects = 0;
+    e->stuck = 0.0;
+    refill(e, *t);
+    forget(e, continues);
+    while (!status && (*t < t1 || drv->sys->low < 0.0)) {
+        status = phase(e, drv, begin, &shown, t, t1, y, fastest);
+    }
+    tribo_system_set_low(drv->sys, 0.0);
+    tribo_system_forget_time(drv->sys); /* others find harmonics anew */
+    return status;
+}
+
+int tribo_events_method(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    struct events *e;
+    const int status = drv->method->open(drv, &e);
+    return status ? status : tribo_events_advance(e, drv, t, t1, y, continues);
+}

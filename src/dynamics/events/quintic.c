@@ -1,0 +1,135 @@
+#include "quintic.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <string.h>
+
+/* In Bernstein's basis, and in powers. */
+enum { COEFFICIENTS = 7, POWERS = 6 };
+
+/* So many roots at the start are divided out, after which that many coefficients are zero. */
+enum { ROOTS = 3 };
+
+/* So often is an interval halved to see that a function is positive. */
+#define HALVINGS 3
+
+/* A step this short, beside the whole, leaves an error of its square. */
+#define CLOSE 1e-8
+
+/* The coefficients of a function that is nowhere above one with these samples. That one differs from the quintic which has the
+ * samples' values and derivatives by at most bend h^6/6! s^3 (1-s)^3, in Bernstein's basis of degree 6 the middle element alone,
+ * 20 s^3 (1-s)^3: the quintic, raised to that degree, with the middle coefficient less by this much. */
+static void bernstein(const struct sample *a, const struct sample *b, double h, double bend, double *c)
+{
+    const double h_3 = h * h * h, doubt = bend * h_3 * h_3 * (1 / 14400.);
+    const double p0 = a->g, p1 = p0 + 0.2 * h * a->d, p2 = p1 + 0.2 * h * (a->d + 0.25 * h * a->e);
+    const double p5 = b->g, p4 = p5 - 0.2 * h * b->d, p3 = p4 - 0.2 * h * (b->d - 0.25 * h * b->e);
+    c[0] = p0;
+    c[1] = (p0 + 5.0 * p1) * (1 / 6.);
+    c[2] = (p1 + 2.0 * p2) * (1 / 3.);
+    c[3] = 0.5 * (p2 + p3) - doubt;
+    c[4] = (2.0 * p3 + p4) * (1 / 3.);
+    c[5] = (5.0 * p4 + p5) * (1 / 6.);
+    c[6] = p5;
+}
+
+/* The coefficients of the part before s (from), and after it (c). */
+static void split(double *c, double s, double *from)
+{
+    for (int left = COEFFICIENTS; left > 0; left--) {
+        from[COEFFICIENTS - left] = c[0];
+        for (int k = 0; k + 1 < left; k++) {
+            c[k] += s * (c[k + 1] - c[k]);
+        }
+    }
+}
+
+/* A function is nowhere below the least of its coefficients; of those of its halves if that does not do. */
+static double least(double *c, double enough, int halvings)
+{
+    const double ends = lesser(c[0], c[6]);
+    const double all = lesser(lesser(lesser(c[1], c[2]), lesser(c[4], c[5])), lesser(ends, c[3]));
+    if (all >= enough || !(ends >= enough) || halvings == 0) {
+        return all;
+    }
+    double from[COEFFICIENTS];
+    split(c, 0.5, from);
+    const double first = least(from, enough, halvings - 1);
+    return first >= enough ? lesser(first, least(c, enough, halvings - 1)) : first;
+}
+
+double tribo_quintic_least(const struct sample *a, const struct sample *b, double h, double bend, double until, double enough)
+{
+    double c[COEFFICIENTS], from[COEFFICIENTS];
+    bernstein(a, b, h, bend, c);
+    if (until < h) {
+        split(c, until / h, from);
+    }
+    return least(until < h ? from : c, enough, HALVINGS);
+}
+
+double tribo_quintic_error(double at, double h, double bend)
+{
+    const double x = at * (h - at);
+    return bend * x * x * x * (1 / 720.);
+}
+
+/* The quintic in powers of s = t/h. */
+static void powers(const struct sample *a, const struct sample *b, double h, double *p)
+{
+    const double d = h * a->d, e = h * h * a->e;
+    const double rise = b->g - a->g - d - 0.5 * e, tilt = h * b->d - d - e, curve = h * h * b->e - e;
+    p[0] = a->g;
+    p[1] = d;
+    p[2] = 0.5 * e;
+    p[3] = 10.0 * rise - 4.0 * tilt + 0.5 * curve;
+    p[4] = 7.0 * tilt - 15.0 * rise - curve;
+    p[5] = 6.0 * rise - 3.0 * tilt + 0.5 * curve;
+}
+
+/* Where that falls to zero, by Newton's method from s on, and by halves where it leaves the interval. Roots at the start are
+ * divided out. Sums are by pairs, so that no term waits for more than two others. */
+static double zero(const double *p, double s)
+{
+    int roots = 0;
+    while (roots < ROOTS && p[roots] <= 0.0) {
+        roots++;
+    }
+    const double *const c = p + roots;
+    const double c2 = 2.0 * c[2], c3 = 3.0 * c[3], c4 = 4.0 * c[4], c5 = 5.0 * c[5];
+    double lo = 0.0, hi = 1.0;
+    s = roots ? 0.5 : s;
+    for (int i = 0; i < 40; i++) {
+        const double s2 = s * s;
+        const double value = (c[0] + c[1] * s) + s2 * ((c[2] + c[3] * s) + s2 * (c[4] + c[5] * s));
+        const double slope = (c[1] + c2 * s) + s2 * ((c3 + c4 * s) + s2 * c5);
+        *(value > 0.0 ? &lo : &hi) = s;
+        const double next = s - value / slope;
+        if (slope < 0.0 && fabs(next - s) < CLOSE) {
+            return next;
+        }
+        s = next > lo && next < hi ? next : 0.5 * (lo + hi);
+    }
+    return s;
+}
+
+/* Near the end it is found from there, or rounding of what the other end tells would count. */
+double tribo_quintic_zero(const struct sample *a, const struct sample *b, double h)
+{
+    double p[POWERS + ROOTS] = {0.0};
+    powers(a, b, h, p);
+    const double s = zero(p, a->g / (a->g - b->g));
+    if (s <= 0.5 || !(b->g < 0.0)) {
+        return s * h;
+    }
+    const struct sample end = {-b->g, b->d, -b->e}, start = {-a->g, a->d, -a->e};
+    powers(&end, &start, h, p);
+    return h - zero(p, 1.0 - s) * h;
+}
+
+double tribo_taylor_zero(const double *p, double guess)
+{
+    double own[POWERS + ROOTS] = {0.0};
+    memcpy(own, p, POWERS * sizeof *own);
+    return zero(own, guess);
+}

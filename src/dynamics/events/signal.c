@@ -1,0 +1,239 @@
+#include "signal.h"
+#include "common/real.h"
+#include "first_zero.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Turning points that a phase may have; more are rounding. */
+#define MOST_TURNS 100000
+
+int tribo_signal_reserve(struct signal *s, size_t terms, size_t degree)
+{
+    if (terms > s->room[0] || degree + 1 > s->room[1]) {
+        double *more = malloc((4 * terms + degree + 1) * sizeof *more);
+        if (!more) {
+            return 0;
+        }
+        free(s->a);
+        s->a = more;
+        s->cr = more + degree + 1;
+        s->ci = s->cr + terms;
+        s->lr = s->ci + terms;
+        s->li = s->lr + terms;
+        s->room[0] = terms;
+        s->room[1] = degree + 1;
+    }
+    s->terms = 0;
+    s->degree = degree;
+    memset(s->a, 0, (degree + 1) * sizeof *s->a);
+    return 1;
+}
+
+void tribo_signal_free(struct signal *s)
+{
+    free(s->a);
+    memset(s, 0, sizeof *s);
+}
+
+void tribo_signal_add(struct signal *s, double cr, double ci, double lr, double li)
+{
+    const size_t p = s->terms++;
+    s->cr[p] = cr;
+    s->ci[p] = ci;
+    s->lr[p] = lr;
+    s->li[p] = li;
+}
+
+void tribo_signal_at(const struct signal *s, double at, double *to)
+{
+    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
+    for (size_t j = s->degree + 1; j-- > 0;) {
+        v2 = v2 * at + v1;
+        v1 = v1 * at + v0;
+        v0 = v0 * at + s->a[j];
+    }
+    v2 *= 2.0;
+    for (size_t p = 0; p < s->terms; p++) {
+        const double e = exp(s->lr[p] * at), c = e * cos(s->li[p] * at), d = e * sin(s->li[p] * at);
+        const double re = s->cr[p] * c - s->ci[p] * d, im = s->cr[p] * d + s->ci[p] * c;
+        const double re1 = s->lr[p] * re - s->li[p] * im, im1 = s->lr[p] * im + s->li[p] * re;
+        v0 += re;
+        v1 += re1;
+        v2 += s->lr[p] * re1 - s->li[p] * im1;
+    }
+    to[0] = v0;
+    to[1] = v1;
+    to[2] = v2;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- extremes */
+
+/* A signal from a time on, that must not fall below zero on one side. */
+struct course {
+    const struct signal *s;
+    double from, side;
+    struct first_zero *search;
+};
+
+static void look_at_slope(void *motion, double tau, size_t guards, struct guard *const *guard)
+{
+    const struct course *c = motion;
+    double v[3];
+    (void)guards;
+    tribo_signal_at(c->s, c->from + tau, v);
+    guard[0]->middle = (struct sample){c->side * v[0], c->side * v[1], c->side * v[2]};
+}
+
+static double sixth(double x)
+{
+    return x * x * x * x * x * x;
+}
+
+static double bound(void *motion, double tau)
+{
+    const struct course *c = motion;
+    const struct signal *s = c->s;
+    struct guard *g = c->search->guard;
+    double power = 1.0;
+    (void)tau;
+    g->size = g->bend = 0.0;
+    for (size_t p = 0; p < s->terms; p++) {
+        const double size = hypot(s->cr[p], s->ci[p]) * exp(s->lr[p] * (s->lr[p] > 0.0 ? s->tau : c->from));
+        g->size += size;
+        g->bend += size * sixth(hypot(s->lr[p], s->li[p]));
+    }
+    for (size_t j = 0; j <= s->degree; j++) {
+        const double size = fabs(s->a[j]) * power, k = (double)j;
+        g->size += size;
+        g->bend += j < 6 ? 0.0 : size * k * (k - 1) * (k - 2) * (k - 3) * (k - 4) * (k - 5) / sixth(s->tau);
+        power *= s->tau;
+    }
+    return HUGE_VAL;
+}
+
+static int differentiate(const struct signal *s, struct signal *to)
+{
+    if (!tribo_signal_reserve(to, s->terms, s->degree)) {
+        return 0;
+    }
+    to->tau = s->tau;
+    for (size_t j = 1; j <= s->degree; j++) {
+        to->a[j - 1] = (double)j * s->a[j];
+    }
+    for (size_t p = 0; p < s->terms; p++) {
+        tribo_signal_add(to, s->lr[p] * s->cr[p] - s->li[p] * s->ci[p], s->lr[p] * s->ci[p] + s->li[p] * s->cr[p], s->lr[p],
+                         s->li[p]);
+    }
+    return 1;
+}
+
+static void look(const struct signal *s, double at, double t, struct extremes *e)
+{
+    double v[3];
+    tribo_signal_at(s, at, v);
+    if (v[0] < e->least) {
+        e->least = v[0];
+        e->at_least = t + at;
+    }
+    if (v[0] > e->most) {
+        e->most = v[0];
+        e->at_most = t + at;
+    }
+}
+
+/* From one turning point to the next: where the slope leaves the side on which it is. */
+int tribo_signal_extremes(const struct signal *s, struct signal *slope, double t, struct extremes *e)
+{
+    if (!differentiate(s, slope)) {
+        return 0;
+    }
+    struct guard guard = {0}, *watched = &guard;
+    struct first_zero search = {.guards = 1, .guard = &guard, .watched = &watched, .look = look_at_slope, .bound = bound};
+    struct course course = {.s = slope, .search = &search};
+    const struct guard *met = &guard;
+    double v[3], when = 0.0;
+    search.motion = &course;
+    search.resolution = 1e-16 * s->tau;
+    look(s, 0.0, t, e);
+    look(s, s->tau, t, e);
+    tribo_signal_at(slope, 0.0, v);
+    course.side = v[0] > 0.0 || (v[0] == 0.0 && v[1] > 0.0) ? 1.0 : -1.0;
+    for (int k = 0; met && k < MOST_TURNS && course.from < s->tau; k++) {
+        guard = (struct guard){0};
+        if (!tribo_first_zero(&search, s->tau - course.from, &met, &when)) {
+            return 0;
+        }
+        course.from += met ? greater(when, search.resolution) : 0.0;
+        course.side = -course.side;
+        look(s, lesser(course.from, s->tau), t, e);
+    }
+    return 1;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- integrals */
+
+/* The integral of s^j e^{z s}/tau^j from 0 to tau, by the series of the exponential: |z| tau is small, or by parts. */
+static void moment(double zr, double zi, double tau, size_t j, double *re, double *im)
+{
+    double tr = tau, ti = 0.0;
+    *re = *im = 0.0;
+    for (size_t k = 0; k < 200; k++) {
+        *re += tr / (double)(j + k + 1);
+        *im += ti / (double)(j + k + 1);
+        const double f = tau / (double)(k + 1), nr = f * (tr * zr - ti * zi), ni = f * (tr * zi + ti * zr);
+        tr = nr;
+        ti = ni;
+        if (fabs(tr) + fabs(ti) <= 1e-18 * tau) {
+            break;
+        }
+    }
+}
+
+/* The integral of e^{z s} from 0 to tau. */
+static void exponential(double zr, double zi, double tau, double *re, double *im)
+{
+    if (hypot(zr, zi) * tau < 1.0) {
+        moment(zr, zi, tau, 0, re, im);
+        return;
+    }
+    const double e = exp(zr * tau), er = e * cos(zi * tau) - 1.0, ei = e * sin(zi * tau), square = zr * zr + zi * zi;
+    *re = (er * zr + ei * zi) / square;
+    *im = (ei * zr - er * zi) / square;
+}
+
+/* The same of s^j e^{-i omega s} for all powers: upwards by parts where that loses nothing, or by the series. */
+static void powers(const struct signal *s, double omega, double *re, double *im)
+{
+    const double tau = s->tau, turn = fabs(omega) * tau, er = cos(omega * tau), ei = -sin(omega * tau);
+    double power = 1.0, mr = 0.0, mi = 0.0;
+    for (size_t j = 0; j <= s->degree; j++) {
+        if (turn < 4.0 + (double)j) {
+            moment(0.0, -omega, tau, j, &mr, &mi);
+        } else {
+            /* M_j = (e^{-i omega tau} - j M_{j-1}/tau)/(-i omega), with M_{-1} j = 1 for j = 0 */
+            const double br = er - (j ? (double)j * mr / tau : 1.0), bi = ei - (j ? (double)j * mi / tau : 0.0);
+            mr = -bi / omega;
+            mi = br / omega;
+        }
+        *re += s->a[j] * power * mr;
+        *im += s->a[j] * power * mi;
+        power *= tau;
+    }
+}
+
+void tribo_signal_integrate(const struct signal *s, double omega, double *re, double *im)
+{
+    powers(s, omega, re, im);
+    for (size_t p = 0; p < s->terms; p++) {
+        /* half of c e^{lambda s} and half of its conjugate */
+        for (int side = -1; side <= 1; side += 2) {
+            double xr, xi;
+            const double cr = 0.5 * s->cr[p], ci = 0.5 * side * s->ci[p];
+            exponential(s->lr[p], side * s->li[p] - omega, s->tau, &xr, &xi);
+            *re += cr * xr - ci * xi;
+            *im += cr * xi + ci * xr;
+        }
+    }
+}

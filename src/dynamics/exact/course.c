@@ -1,0 +1,140 @@
+/* An output in a phase: sums over terms, TRIBO_TERMS at a time as in modal_terms.c, and a line. */
+#include "terms.h"
+#include "common/simd.h"
+
+#include <math.h>
+
+enum { T = TRIBO_TERMS };
+
+/* to = Re(a b) */
+static inline void real_parts(const double *restrict ar, const double *restrict ai, const double *restrict br,
+                              const double *restrict bi, double *restrict to)
+{
+    for (size_t k = 0; k < T; k++) {
+        to[k] = ar[k] * br[k] - ai[k] * bi[k];
+    }
+}
+
+/* to += Re(a b) */
+static inline void add_real_parts(const double *restrict ar, const double *restrict ai, const double *restrict br,
+                                  const double *restrict bi, double *restrict to)
+{
+    for (size_t k = 0; k < T; k++) {
+        to[k] += ar[k] * br[k] - ai[k] * bi[k];
+    }
+}
+
+/* to = a b */
+static inline void products(const double *restrict a, const double *restrict b, double *restrict to)
+{
+    for (size_t k = 0; k < T; k++) {
+        to[k] = a[k] * b[k];
+    }
+}
+
+/* to += a b */
+static inline void add_products(const double *restrict a, const double *restrict b, double *restrict to)
+{
+    for (size_t k = 0; k < T; k++) {
+        to[k] += a[k] * b[k];
+    }
+}
+
+/* Re(c w), Re(c w'), Re(c w'') into sum [3][T], which is not of this function, or compilers would take several lots of terms at
+ * once, and sort them first. */
+TRIBO_SIMD_OF_FOUR static void sum_terms(const struct modal_motion *x, const struct output *c, double *restrict sum)
+{
+    const size_t n = x->h->terms;
+    const struct lot *lot = x->lot;
+    real_parts(c->cr, c->ci, lot->wr, lot->wi, sum);
+    real_parts(c->cr, c->ci, lot->w1r, lot->w1i, sum + T);
+    real_parts(c->cr, c->ci, lot->w2r, lot->w2i, sum + 2 * T);
+    for (size_t p = T; p < n; p += T) {
+        lot++;
+        add_real_parts(c->cr + p, c->ci + p, lot->wr, lot->wi, sum);
+        add_real_parts(c->cr + p, c->ci + p, lot->w1r, lot->w1i, sum + T);
+        add_real_parts(c->cr + p, c->ci + p, lot->w2r, lot->w2i, sum + 2 * T);
+    }
+}
+
+/* Re(c lambda w), Re(c lambda^2 w), Re(c lambda^3 w) of a lot, added to sum [3][T], w being the second derivatives. */
+static inline void add_further(const double *restrict lr, const double *restrict li, const double *restrict cr,
+                               const double *restrict ci, const struct lot *restrict lot, double *restrict sum)
+{
+    for (size_t k = 0; k < T; k++) {
+        const double r3 = lr[k] * lot->w2r[k] - li[k] * lot->w2i[k], i3 = lr[k] * lot->w2i[k] + li[k] * lot->w2r[k];
+        const double r4 = lr[k] * r3 - li[k] * i3, i4 = lr[k] * i3 + li[k] * r3;
+        const double r5 = lr[k] * r4 - li[k] * i4, i5 = lr[k] * i4 + li[k] * r4;
+        sum[k] += cr[k] * r3 - ci[k] * i3;
+        sum[T + k] += cr[k] * r4 - ci[k] * i4;
+        sum[2 * T + k] += cr[k] * r5 - ci[k] * i5;
+    }
+}
+
+TRIBO_SIMD_OF_FOUR static void sum_further(const struct modal_motion *x, const struct output *c, double *restrict sum)
+{
+    const struct modal *h = x->h;
+    const struct lot *lot = x->lot;
+    for (size_t p = 0; p < h->terms; p += T) {
+        add_further(h->lr + p, h->li + p, c->cr + p, c->ci + p, lot++, sum);
+    }
+}
+
+/* |c| times the bounds of |w| and of its sixth derivative into sum [2][T]. */
+TRIBO_SIMD_OF_FOUR static void sum_bounds(const struct modal_motion *x, const struct output *c, double *restrict sum)
+{
+    const size_t n = x->h->terms;
+    products(c->size, x->growth, sum);
+    products(c->size, x->growth6, sum + T);
+    for (size_t p = T; p < n; p += T) {
+        add_products(c->size + p, x->growth + p, sum);
+        add_products(c->size + p, x->growth6 + p, sum + T);
+    }
+}
+
+static double total(const double *sum)
+{
+    return (sum[0] + sum[2]) + (sum[1] + sum[3]);
+}
+
+void tribo_course_look(const struct modal_motion *x, struct course *c)
+{
+    double sum[3 * T];
+    sum_terms(x, c->output, sum);
+    c->tau = x->tau;
+    c->at.g = total(sum) + (c->line.start + c->line.ramp * x->tau);
+    c->at.d = total(sum + T) + c->line.ramp;
+    c->at.e = total(sum + 2 * T);
+}
+
+int tribo_course_look_further(const struct modal_motion *x, const struct course *c, double *to)
+{
+    double sum[3 * T] = {0.0};
+    if (x->h->any_resonant) {
+        return 0;
+    }
+    sum_further(x, c->output, sum);
+    for (size_t k = 0; k < 3; k++) {
+        to[k] = total(sum + k * T);
+    }
+    return 1;
+}
+
+void tribo_course_bound(const struct modal_motion *x, struct course *c)
+{
+    double sum[2 * T];
+    sum_bounds(x, c->output, sum);
+    c->size = total(sum) + fabs(c->line.start) + fabs(c->line.ramp) * x->longest;
+    c->bend = total(sum + T);
+}
+
+void tribo_course_begin(const struct modal_motion *x, struct course *c, int of_velocity, double value)
+{
+    const struct output *w = c->output;
+    c->line.start = 0.0;
+    c->line.ramp = w->ramp + (x->runs ? tribo_dot(w->on_rate, of_velocity ? x->acc : x->vel, x->h->modes) : 0.0);
+    tribo_course_look(x, c);
+    c->line.start = value - c->at.g;
+    c->at.g = value;
+    tribo_course_bound(x, c);
+}

@@ -1,0 +1,401 @@
+/* Method "exact": Coulomb's law itself on a linear structure, without time steps. Between events the motion is known in closed
+ * form from the modes of the structure with its contacts at rest held (modal.h); no event can be skipped (first_zero.h), since
+ * the sixth derivative of a sum of exponentials is at most the sum of their amplitudes times |lambda|^6, which bounds how far it
+ * strays from a quintic; and at an event the contacts at rest are decided about anew (stick_slip.h). The energy integral is
+ * closed too (modal_energy.c). */
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dynamics/events/events.h"
+#include "motion.h"
+#include "terms.h"
+#include "transition.h"
+#include "common/real.h"
+#include "common/zeros.h"
+
+/* Decompositions are dropped when they take more than this. */
+#define CACHE_BYTES ((size_t)256 << 20)
+
+/* A structure with contacts held, and what its key makes of all its bytes: two that differ in that have other keys. */
+struct held {
+    struct modal *modal;
+    uint64_t print;
+};
+
+struct exact {
+    tribo_system *sys;
+    struct events events;
+    struct modal_whole whole; /* what these are decompositions of; zeros until there is one */
+    struct held *held;
+    size_t helds, room, bytes, revision;
+
+    struct modal_motion motion; /* of the phase, */
+    struct course *course;      /* [ncontact] and of the outputs that guards are of */
+    double *work;               /* of transitions, allocated when one is first asked for */
+    size_t columns;             /* for so many */
+};
+
+/* ---------------------------------------------------------------------------------------------- structures that are held */
+
+static void drop_helds(struct exact *x)
+{
+    for (size_t i = 0; i < x->helds; i++) {
+        tribo_modal_free(x->held[i].modal);
+    }
+    tribo_modal_whole_free(&x->whole);
+    x->helds = 0;
+    x->bytes = 0;
+}
+
+static int find_whole(struct exact *x)
+{
+    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys);
+    if (status) {
+        tribo_modal_whole_free(&x->whole);
+    }
+    return status;
+}
+
+/* What a key of n bytes, and zeros after them, comes down to. */
+static uint64_t print_of(size_t n, const signed char *key)
+{
+    uint64_t print = 0, part;
+    for (size_t i = 0; i < n; i += sizeof part) {
+        memcpy(&part, key + i, sizeof part);
+        print = (print ^ part) * 0x9e3779b97f4a7c15;
+    }
+    return print;
+}
+
+/* Few contacts have a print that no other key has. */
+static int has_key(struct held held, uint64_t print, size_t n, const signed char *key)
+{
+    return held.print == print && (n <= sizeof print || memcmp(held.modal->key, key, n) == 0);
+}
+
+/* *found = the structure with the contacts at rest held. Those used last are looked at first. */
+static int find_held(struct exact *x, const struct modal **found)
+{
+    tribo_system *sys = x->sys;
+    const struct stick_slip *m = &x->events.stick_slip;
+    const uint64_t print = print_of(m->contacts, m->key);
+    for (size_t i = x->helds; i-- > 0;) {
+        const struct held held = x->held[i];
+        if (has_key(held, print, m->contacts, m->key)) {
+            for (; i + 1 < x->helds; i++) {
+                x->held[i] = x->held[i + 1];
+            }
+            x->held[i] = held;
+            *found = held.modal;
+            return TRIBO_OK;
+        }
+    }
+    if (x->bytes + x->whole.known.bytes > CACHE_BYTES) {
+        drop_helds(x);
+    }
+    if (x->helds == x->room) {
+        const size_t room = 2 * x->room + 16;
+        struct held *more = realloc(x->held, room * sizeof *more);
+        if (!more) {
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu held structure%s", room, plural(room));
+        }
+        x->held = more;
+        x->room = room;
+    }
+    struct modal *h;
+    int status = find_whole(x);
+    status = status ? status : tribo_modal_create(&h, &x->whole, m->slip, m->holds);
+    if (status) {
+        return status;
+    }
+    x->held[x->helds++] = (struct held){h, print};
+    x->bytes += h->bytes;
+    *found = h;
+    return TRIBO_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------------------- guards */
+
+/* The two sides of an output are computed at once. */
+static void look_at(const struct modal_motion *x, struct guard *g, double tau)
+{
+    struct course *c = g->output;
+    if (c->tau != tau) {
+        tribo_course_look(x, c);
+    }
+    g->middle.g = g->offset + g->side * c->at.g;
+    g->middle.d = g->side * c->at.d;
+    g->middle.e = g->side * c->at.e;
+}
+
+/* Adds what harmonics make of the limit. */
+static void add_limit(const struct modal_motion *x, struct guard *g)
+{
+    const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+    g->middle.g += g->limit * limit.g;
+    g->middle.d += g->limit * limit.d;
+    g->middle.e += g->limit * limit.e;
+}
+
+static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
+{
+    struct modal_motion *x = &((struct exact *)motion)->motion;
+    tribo_modal_motion_go(x, tau);
+    for (size_t k = 0; k < guards; k++) {
+        struct guard *g = guard[k];
+        if (g->output) {
+            look_at(x, g, tau);
+        } else {
+            g->middle = (struct sample){g->offset, 0.0, 0.0};
+        }
+        if (g->limit != 0.0) {
+            add_limit(x, g);
+        }
+    }
+}
+
+/* Guards of limits that swing, and resonances, are left to two derivatives. */
+static int look_further(void *motion, double tau, const struct guard *g, double *to)
+{
+    struct modal_motion *x = &((struct exact *)motion)->motion;
+    const struct course *c = g->output;
+    if (!c || g->limit != 0.0) {
+        return 0;
+    }
+    tribo_modal_motion_go(x, tau);
+    if (!tribo_course_look_further(x, c, to)) {
+        return 0;
+    }
+    for (int k = 0; k < 3; k++) {
+        to[k] *= g->side;
+    }
+    return 1;
+}
+
+static void move_to(void *motion, double tau, const double *from, double *to)
+{
+    tribo_modal_motion_state(&((struct exact *)motion)->motion, tau, from, to);
+}
+
+/* The load at the end of a phase, where its terms are. */
+static void arrive(void *motion, double t)
+{
+    const struct modal_motion *x = &((struct exact *)motion)->motion;
+    tribo_system_set_time(x->sys, t);
+    for (size_t s = 0; s < x->h->given; s++) {
+        const struct number at = tribo_harmonic(x, s);
+        tribo_harmonic_take(x->sys, &x->sys->harmonic[x->h->forcing[s].harmonic], at.re, at.im);
+    }
+}
+
+/* Of a guard, its course being bounded. */
+static void bound_guard(const struct exact *x, struct guard *g)
+{
+    const struct course *c = g->output;
+    g->size = fabs(g->offset) + (c ? c->size : 0.0);
+    g->bend = c ? c->bend : 0.0;
+    if (g->limit != 0.0) {
+        g->size += fabs(g->limit) * x->events.stick_slip.swing[g->contact];
+        g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
+    }
+}
+
+/* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on.
+ * Those of courses from the start on come with them. */
+static double bound(void *motion, double tau)
+{
+    struct exact *x = motion;
+    const double decay = x->motion.h->decay;
+    if (tau > 0.0) {
+        tribo_modal_motion_bound(&x->motion, tau);
+        for (size_t k = 0; k < x->motion.h->outputs; k++) {
+            tribo_course_bound(&x->motion, &x->course[k]);
+        }
+    }
+    for (size_t k = 0; k < x->events.search.guards; k++) {
+        bound_guard(x, &x->events.search.guard[k]);
+    }
+    return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
+}
+
+/* The limit without harmonics. */
+static double steady_limit(const struct exact *x, size_t i)
+{
+    return x->events.stick_slip.swing[i] > 0.0 ? x->sys->given_limit[i] : x->events.stick_slip.limit[i];
+}
+
+/* Guards of a contact at rest, unless it is far from its limit for the whole phase. */
+static void add_stick_guards(struct exact *x, struct course *c)
+{
+    const size_t i = c->output->contact;
+    const struct stick_slip *m = &x->events.stick_slip;
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i), swing = ratio * m->swing[i];
+    const double offset = ratio * steady_limit(x, i) + tribo_stick_slip_slack(m, i);
+    const struct watch g = {.output = c, .limit = swing > 0.0 ? ratio : 0.0, .offset = offset};
+    if (c->size >= offset - swing) {
+        tribo_events_guard_stick(&x->events, i, &g);
+    }
+}
+
+/* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
+ * hold have guards of their forces. */
+static void add_limit_guard(struct exact *x, size_t i)
+{
+    const struct stick_slip *m = &x->events.stick_slip;
+    if (m->swing[i] > 0.0 && !m->holds[i]) {
+        const struct watch g = {.offset = x->sys->given_limit[i], .limit = 1.0};
+        tribo_events_guard_limit(&x->events, i, &g);
+    }
+}
+
+/* Of output k. The velocity of an open contact is not guarded, but when it touches down its rounding counts. */
+static void add_guards(struct exact *x, size_t k, const double *y)
+{
+    struct course *c = &x->course[k];
+    struct stick_slip *m = &x->events.stick_slip;
+    const int of_velocity = k < x->motion.h->sliding;
+    c->output = &x->motion.h->output[k];
+    const size_t i = c->output->contact;
+    const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+    tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->force[i]);
+    if (m->slip[i] == 2) {
+        m->seen[i] = c->size;
+    } else if (!of_velocity) {
+        add_stick_guards(x, c);
+    } else {
+        const struct watch g = {.output = c};
+        (m->slip[i] == 0 ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
+    }
+}
+
+static void set_guards(struct exact *x, const double *y)
+{
+    tribo_events_clear_guards(&x->events);
+    for (size_t k = 0; k < x->motion.h->outputs; k++) {
+        add_guards(x, k, y);
+    }
+    for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {
+        add_limit_guard(x, i);
+    }
+}
+
+static int begin(void *motion, double t, const double *y, double *reach)
+{
+    struct exact *x = motion;
+    const struct modal *h = NULL;
+    const int status = find_held(x, &h);
+    if (status) {
+        return status;
+    }
+    if (!tribo_modal_motion_reserve(&x->motion, h->terms)) {
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
+    }
+    *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
+    set_guards(x, y);
+    return TRIBO_OK;
+}
+
+static int transition(void *motion, double tau, size_t columns, double *v)
+{
+    struct exact *x = motion;
+    if (columns > x->columns) {
+        double *more = realloc(x->work, tribo_modal_transition_room(x->sys, columns) * sizeof *more);
+        if (!more) {
+            return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
+        }
+        x->work = more;
+        x->columns = columns;
+    }
+    tribo_modal_transition(x->motion.h, x->sys, tau, columns, v, x->work);
+    return TRIBO_OK;
+}
+
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+{
+    return tribo_modal_motion_signal(&((struct exact *)motion)->motion, c, tau, end, to);
+}
+
+/* --------------------------------------------------------------------------------------------------------- the driver */
+
+static void destroy(tribo_driver *drv)
+{
+    struct exact *x = drv->own;
+    if (x) {
+        drop_helds(x);
+        free(x->held);
+        tribo_events_free(&x->events);
+        tribo_modal_motion_free(&x->motion);
+        free(x->course);
+        free(x->work);
+        free(x);
+    }
+}
+
+/* What the system has become since a driver was created is looked at again by every advance. */
+static int check_system(const tribo_system *sys)
+{
+    if (sys->tables || sys->limits.knots) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "%s follow a table, and method exact takes harmonic ones only: take event or auto",
+                                 sys->tables ? "loads" : "limits");
+    }
+    const size_t i = tribo_system_first_falling(sys);
+    return i == sys->ncontact ? TRIBO_OK
+                              : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                                  "contact %zu has a static limit that falls with the speed, and method exact "
+                                                  "takes such that drop at once only: take event or auto",
+                                                  i);
+}
+
+static int create(tribo_driver *drv)
+{
+    const int unsupported = check_system(drv->sys);
+    if (unsupported) {
+        return unsupported;
+    }
+    struct exact *x = tribo_zeros(1, sizeof *x);
+    drv->own = x;
+    if (!x) {
+        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
+    }
+    x->sys = drv->sys;
+    x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
+    const int status = tribo_events_create(&x->events, drv);
+    if (status) {
+        return status;
+    }
+    x->events.search.look = look;
+    x->events.search.further = look_further;
+    x->events.search.bound = bound;
+    x->events.search.motion = x->events.motion = x;
+    x->events.begin = begin;
+    x->events.state = move_to;
+    x->events.arrive = arrive;
+    x->events.transition = transition;
+    x->events.signal = combine;
+    x->events.shows_between = 1;
+    if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
+        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
+    }
+    return TRIBO_OK;
+}
+
+static int open_events(tribo_driver *drv, struct events **events)
+{
+    struct exact *x = drv->own;
+    tribo_system *sys = drv->sys;
+    if (check_system(sys)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_message(sys->contacts));
+    }
+    if (x->revision != sys->revision) {
+        drop_helds(x);
+        x->revision = sys->revision;
+    }
+    *events = &x->events;
+    return TRIBO_OK;
+}
+
+const struct method tribo_method_exact = {"exact",     WITHOUT_TOLERANCES,        create, destroy, tribo_events_method, NULL,
+                                          open_events, tribo_events_find_periodic};

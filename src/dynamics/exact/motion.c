@@ -1,0 +1,485 @@
+#include "motion.h"
+#include "divided.h"
+#include "terms.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Over a time this short, in terms of its exponent, an exponential moves by a small part of itself: by how much is not found as a
+ * difference, which would lose digits. */
+#define LITTLE 0.1
+
+int tribo_modal_motion_create(struct modal_motion *x, tribo_system *sys, const struct stick_slip *contacts)
+{
+    const size_t n = sys->ndof;
+    double **const by_mode[] = {&x->vel, &x->acc, &x->drift, &x->drift_rate, &x->dq};
+    const size_t modes = sizeof by_mode / sizeof *by_mode;
+    double *work = malloc((modes * n + 2 * sys->ncontact + 1) * sizeof *work);
+    x->line = malloc((sys->ncontact + 1) * sizeof *x->line);
+    for (size_t k = 0; work && k < modes; k++) {
+        *by_mode[k] = work + k * n;
+    }
+    if (!work || !x->line) {
+        return 0;
+    }
+    x->sys = sys;
+    x->room_for_steady = work + modes * n;
+    x->push = x->room_for_steady + sys->ncontact;
+    x->contacts = contacts;
+    return 1;
+}
+
+void tribo_modal_motion_free(struct modal_motion *x)
+{
+    free(x->vel);
+    free(x->line);
+    free(x->lot);
+}
+
+int tribo_modal_motion_reserve(struct modal_motion *x, size_t terms)
+{
+    double **const by_term[] = {&x->far_r, &x->far_i, &x->er, &x->ei, &x->growth, &x->growth6, &x->side};
+    const size_t count = sizeof by_term / sizeof *by_term, room = 2 * terms;
+    if (terms <= x->room) {
+        return 1;
+    }
+    struct lot *lot = malloc(room / TRIBO_TERMS * sizeof *lot + count * room * sizeof **by_term[0]);
+    if (!lot) {
+        return 0;
+    }
+    free(x->lot);
+    x->lot = lot;
+    x->room = room;
+    for (size_t k = 0; k < count; k++) {
+        *by_term[k] = (double *)(lot + room / TRIBO_TERMS) + k * room;
+    }
+    return 1;
+}
+
+/* ------------------------------------------------------------------------------------------------------------------- later on */
+
+/* Adds what a resonant harmonic does to an exponent, from nothing at t0 on: z' = lambda z - (i/nu) Re(g e^{i Omega t}). */
+static void add_resonance(struct modal_motion *x, size_t p, size_t s, double tau)
+{
+    const struct modal *h = x->h;
+    const double omega = h->forcing[s].omega, nu = h->li[p];
+    const double c0 = tribo_harmonic_at_start(x, s).re, s0 = tribo_harmonic_at_start(x, s).im;
+    const double gr = h->gr[s * h->modes + h->owner[p]], gi = h->gi[s * h->modes + h->owner[p]];
+    const double e = exp(h->lr[p] * tau), er = e * cos(nu * tau), ei = e * sin(nu * tau);
+    double zr = 0.0, zi = 0.0;
+    for (int conjugate = 0; conjugate < 2; conjugate++) {
+        const double side = conjugate ? -1.0 : 1.0;
+        const double complex u = tau * tribo_exp_1(tau * (-h->lr[p] + (side * omega - nu) * I));
+        const double ur = creal(u), ui = cimag(u);
+        /* (g e^{i Omega t0})/2, or its conjugate, times e^{lambda tau} times u */
+        const double ar = 0.5 * (gr * c0 - gi * s0), ai = 0.5 * side * (gr * s0 + gi * c0);
+        const double br = ar * er - ai * ei, bi = ar * ei + ai * er;
+        zr += br * ur - bi * ui;
+        zi += br * ui + bi * ur;
+    }
+    const double ct = tribo_harmonic(x, s).re, st = tribo_harmonic(x, s).im, rate = omega * (gr * st + gi * ct) / nu;
+    const double complex lambda = h->lr[p] + h->li[p] * I, z = zi / nu - zr / nu * I;
+    const double complex z1 = lambda * z - (gr * ct - gi * st) / nu * I, z2 = lambda * z1 + rate * I;
+    struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    const size_t k = p % TRIBO_TERMS;
+    lot->wr[k] += creal(z);
+    lot->wi[k] += cimag(z);
+    lot->w1r[k] += creal(z1);
+    lot->w1i[k] += cimag(z1);
+    lot->w2r[k] += creal(z2);
+    lot->w2i[k] += cimag(z2);
+}
+
+static void add_resonances(struct modal_motion *x, double tau)
+{
+    const struct modal *h = x->h;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        for (size_t p = 0; p < h->exponents; p++) {
+            if (h->resonant[s * h->modes + h->owner[p]]) {
+                add_resonance(x, p, s, tau);
+            }
+        }
+    }
+}
+
+void tribo_modal_motion_go(struct modal_motion *x, double tau)
+{
+    if (tau != x->tau) {
+        tribo_modal_terms_go(x, tau);
+        if (x->h->any_resonant) {
+            add_resonances(x, tau);
+        }
+    }
+}
+
+struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i)
+{
+    struct sample sum = {0.0, 0.0, 0.0};
+    for (size_t s = 0; s < x->h->given; s++) {
+        const struct harmonic *w = &x->sys->harmonic[s];
+        if (w->drives == DRIVES_LIMIT) {
+            const struct number now = tribo_harmonic(x, s);
+            const double c = w->cosine[i], d = w->sine[i], value = c * now.re + d * now.im;
+            sum.g += value;
+            sum.d += w->omega * (d * now.re - c * now.im);
+            sum.e -= w->omega * w->omega * value;
+        }
+    }
+    return sum;
+}
+
+double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
+{
+    double sum = 0.0;
+    for (size_t s = 0; s < x->h->given; s++) {
+        const struct harmonic *w = &x->sys->harmonic[s];
+        sum += w->drives == DRIVES_LIMIT ? pow(w->omega, 6.0) * hypot(w->cosine[i], w->sine[i]) : 0.0;
+    }
+    return sum;
+}
+
+/* With a load far above the frequency of exponential p the little by which it moves is all of the motion: no difference. */
+static void find_little_move(struct modal_motion *x, size_t p)
+{
+    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
+    const struct number z = tribo_term_at_start(x, p);
+    const double complex move = (z.re + z.im * I) * lambda_tau * tribo_exp_1(lambda_tau);
+    x->er[p] = creal(move);
+    x->ei[p] = cimag(move);
+}
+
+/* By how much terms have moved from t0 to where go() was: into er, ei. */
+static void find_moves(struct modal_motion *x)
+{
+    const struct modal *h = x->h;
+    const size_t e = h->exponents, terms = e + h->harmonics;
+    for (size_t p = 0; p < terms; p++) {
+        const struct number then = tribo_term_at_start(x, p), now = tribo_term(x, p);
+        x->er[p] = now.re - then.re;
+        x->ei[p] = now.im - then.im;
+    }
+    for (size_t p = 0; p < e && !h->any_resonant; p++) {
+        if (x->tau * h->size[p] < LITTLE) {
+            find_little_move(x, p);
+        }
+    }
+}
+
+/* Of a mode: eta, or by how much it has changed, and eta'. */
+struct amplitude {
+    double place, rate;
+};
+
+/* What is linear in time, or quadratic, of mode k. */
+static struct amplitude linear_part(const struct modal_motion *x, size_t k)
+{
+    const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
+    return (struct amplitude){tau * (drift + 0.5 * acc * tau), drift + acc * tau};
+}
+
+/* Adds what term p, times r, has moved a mode by. */
+static inline void add_term(const struct modal_motion *x, size_t p, double rr, double ri, struct amplitude *a)
+{
+    const struct number rate = tribo_term_rate(x, p);
+    a->place += rr * x->er[p] - ri * x->ei[p];
+    a->rate += rr * rate.re - ri * rate.im;
+}
+
+/* Moves degrees of freedom by mode k. */
+static void add_mode(const struct modal_motion *x, size_t k, struct amplitude a, double *velocity)
+{
+    const struct modal *h = x->h;
+    const double *phi = h->phi + k * h->moving;
+    double *dq = x->dq;
+    for (size_t i = h->begin[k], end = h->end[k]; i < end; i++) {
+        const size_t d = h->dof[i];
+        dq[d] += phi[i] * a.place;
+        velocity[d] += phi[i] * a.rate;
+    }
+}
+
+static void add_modes(struct modal_motion *x, double *velocity)
+{
+    const struct modal *h = x->h;
+    const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes;
+    find_moves(x);
+    for (size_t k = 0, p = 0; k < modes; k++) {
+        struct amplitude a = {0.0, 0.0};
+        if (x->runs) {
+            a = linear_part(x, k);
+        }
+        for (; h->owner && p < e && h->owner[p] == k; p++) {
+            a.place += x->er[p];
+            a.rate += tribo_term_rate(x, p).re;
+        }
+        for (size_t l = 0; !h->owner && l < e; l++) {
+            add_term(x, l, h->rr[k * e + l], h->ri[k * e + l], &a);
+        }
+        for (size_t s = 0; s < harmonics; s++) {
+            add_term(x, e + s, h->xr[s * modes + k], h->xi[s * modes + k], &a);
+        }
+        add_mode(x, k, a, velocity);
+    }
+}
+
+/* What a harmonic of the base adds to velocities u, and has added to dq: the contacts that hold are carried along. */
+static void carry(struct modal_motion *x, size_t s, double *u)
+{
+    const struct modal *h = x->h;
+    const double omega = h->forcing[s].omega, by = omega != 0.0 ? 1.0 / omega : 0.0;
+    const struct number now = tribo_harmonic(x, s), then = tribo_harmonic_at_start(x, s);
+    const double c = now.re, d = now.im, dc = by * (c - then.re), dd = by * (d - then.im);
+    for (size_t i = 0; i < h->moving; i++) {
+        const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i];
+        u[h->dof[i]] += yr * c - yi * d;
+        x->dq[h->dof[i]] += yr * dd + yi * dc;
+    }
+}
+
+void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to)
+{
+    const tribo_system *sys = x->sys;
+    const struct modal *h = x->h;
+    const size_t n = sys->ndof;
+    double *velocity = to + n;
+    tribo_modal_motion_go(x, tau);
+    if (h->moving < n) {
+        memset(x->dq, 0, n * sizeof *x->dq);
+    }
+    if (to != from) {
+        memcpy(to, from, (2 * n + 1) * sizeof *to);
+    }
+    for (size_t i = 0; i < h->moving; i++) {
+        x->dq[h->dof[i]] = h->y0[i] * tau;
+        velocity[h->dof[i]] = h->y0[i];
+    }
+    for (size_t s = 0; sys->base_harmonics && s < h->given; s++) {
+        if (sys->harmonic[s].drives == DRIVES_BASE) {
+            carry(x, s, velocity);
+        }
+    }
+    add_modes(x, velocity);
+    for (size_t i = 0; i < h->moving; i++) {
+        to[h->dof[i]] += x->dq[h->dof[i]];
+    }
+    to[2 * n] += tribo_modal_motion_dissipated(x, tau);
+}
+
+/* ------------------------------------------------------------------------------------------------------- the start of a phase */
+
+/* J_i q, less what harmonics of the base have moved it by. */
+static double offset(const tribo_system *sys, size_t i, const double *q)
+{
+    double sum = tribo_matrix_row_dot(&sys->direction, i, q);
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        const struct harmonic *w = &sys->harmonic[s];
+        for (size_t e = 0; w->drives == DRIVES_BASE && w->omega != 0.0 && e < w->count; e++) {
+            sum -= w->index[e] == i ? (w->cosine[e] * w->sin_t - w->sine[e] * w->cos_t) / w->omega : 0.0;
+        }
+    }
+    return sum;
+}
+
+/* The forces of contacts but for harmonics of limits that they follow. */
+static const double *find_steady_forces(const struct modal_motion *x, const tribo_system *sys)
+{
+    double *steady = x->room_for_steady;
+    for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
+        double limit = sys->given_limit[i];
+        for (size_t s = 0; s < sys->harmonics; s++) {
+            const struct harmonic *w = &sys->harmonic[s];
+            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
+        }
+        steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
+    }
+    return sys->limit_harmonics ? steady : x->contacts->force;
+}
+
+/* The harmonics at t0, those of limits as many times as the force of their contact follows them; and the nothing after them. */
+static void start_harmonics(struct modal_motion *x, tribo_system *sys)
+{
+    const struct modal *h = x->h;
+    const size_t e = h->exponents;
+    tribo_modal_terms_clear(x);
+    tribo_system_set_time(sys, x->t0);
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const struct forcing *f = &h->forcing[s];
+        const double side = s < h->given ? 1.0 : tribo_stick_slip_follows(x->contacts, f->contact);
+        x->side[s] = side;
+        tribo_system_turn(sys, f->harmonic);
+        tribo_term_begin(x, e + s, side * sys->harmonic[f->harmonic].cos_t, side * sys->harmonic[f->harmonic].sin_t);
+        x->growth[e + s] = fabs(side);
+        x->growth6[e + s] = h->sixth[e + s] * fabs(side);
+    }
+}
+
+/* By what contacts push modes: forces that slide, places where contacts hold. */
+static void find_pushes(struct modal_motion *x, const tribo_system *sys, const double *y)
+{
+    const struct modal *h = x->h;
+    for (size_t o = 0; h->modes > 0 && o < h->outputs; o++) {
+        const size_t i = h->output[o].contact;
+        x->push[o] = o < h->sliding ? x->steady[i] : -offset(sys, i, y);
+    }
+}
+
+/* The constant part of the right-hand side of mode k: by contacts, by constant loads. The stiffness of the whole has no part in
+ * it: what it makes of a rigid-body displacement would be its rounding. */
+static double constant_force(const struct modal_motion *x, size_t k)
+{
+    const struct modal *h = x->h;
+    double force = h->constant[k];
+    for (size_t o = 0; o < h->outputs; o++) {
+        force += x->push[o] * h->output[o].on_rate[k];
+    }
+    return force;
+}
+
+/* Of mode k at t0: where it is and how fast; and that, less what the right-hand side makes of it: by a constant and what grows
+ * with time, and by harmonics. */
+static struct amplitude amplitude(const struct modal *h, size_t k, const double *q, const double *velocity)
+{
+    const double *psi = h->psi + k * h->moving;
+    struct amplitude a = {0.0, 0.0};
+    for (size_t i = h->begin[k]; i < h->end[k]; i++) {
+        a.place += psi[i] * q[h->dof[i]];
+        a.rate += psi[i] * velocity[h->dof[i]];
+    }
+    return a;
+}
+
+static struct amplitude without_linear_part(struct modal_motion *x, size_t k, struct amplitude a)
+{
+    const struct modal *h = x->h;
+    const double force = constant_force(x, k), stiffness = h->omega2[k];
+    double vel = 0.0, acc = 0.0;
+    if (h->drifts[k]) {
+        acc = force;
+    } else if (stiffness == 0.0) {
+        vel = force / h->damping[k];
+    } else {
+        vel = h->ramp[k] / stiffness;
+        a.place -= force / stiffness;
+    }
+    x->vel[k] = vel;
+    x->acc[k] = acc;
+    x->runs |= vel != 0.0 || acc != 0.0 || h->drifts[k];
+    a.rate -= vel;
+    return a;
+}
+
+static struct amplitude without_harmonics(const struct modal_motion *x, size_t k, struct amplitude a)
+{
+    const struct modal *h = x->h;
+    for (size_t s = 0, at = k; s < h->harmonics; s++, at += h->modes) {
+        const double xr = h->xr[at], xi = h->xi[at];
+        const struct number w = tribo_harmonic_at_start(x, s);
+        a.place -= xr * w.re - xi * w.im;
+        a.rate += h->forcing[s].omega * (xr * w.im + xi * w.re);
+    }
+    return a;
+}
+
+/* z of exponent p: of its own mode, or of all. */
+static void begin_exponent(struct modal_motion *x, size_t p)
+{
+    const struct modal *h = x->h;
+    if (h->owner) {
+        const double q = x->drift[h->owner[p]], u = x->drift_rate[h->owner[p]];
+        tribo_term_begin(x, p, h->ar[p] * q + h->br[p] * u, h->ai[p] * q + h->bi[p] * u);
+    } else {
+        const size_t m = h->modes;
+        tribo_term_begin(x, p, tribo_dot(h->ar + p * m, x->drift, m) + tribo_dot(h->br + p * m, x->drift_rate, m),
+                         tribo_dot(h->ai + p * m, x->drift, m) + tribo_dot(h->bi + p * m, x->drift_rate, m));
+    }
+}
+
+/* Splits the motion into what the right-hand side makes of it and exponentials. */
+static void split_motion(struct modal_motion *x, tribo_system *sys, const double *y)
+{
+    const struct modal *h = x->h;
+    start_harmonics(x, sys);
+    x->steady = find_steady_forces(x, sys);
+    find_pushes(x, sys, y);
+    x->runs = 0;
+    for (size_t k = 0; k < h->modes; k++) {
+        const struct amplitude a = without_harmonics(x, k, without_linear_part(x, k, amplitude(h, k, y, y + sys->ndof)));
+        x->drift[k] = a.place;
+        x->drift_rate[k] = a.rate;
+    }
+    for (size_t p = 0; p < h->exponents; p++) {
+        begin_exponent(x, p);
+    }
+}
+
+/* At t0 nothing has moved; but what resonates pulls already. */
+static void rest_at_start(struct modal_motion *x)
+{
+    tribo_modal_terms_rest(x);
+    if (x->h->any_resonant) {
+        add_resonances(x, 0.0);
+    }
+}
+
+/* The part of the velocities of sliding contacts that is linear in time. */
+static void find_lines(struct modal_motion *x, const double *y)
+{
+    const struct stick_slip *m = x->contacts;
+    for (size_t o = 0; o < x->h->sliding; o++) {
+        const size_t i = x->h->output[o].contact;
+        struct course c = {.output = &x->h->output[o]};
+        tribo_course_begin(x, &c, 1, m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
+        x->line[i] = c.line;
+    }
+}
+
+/* How long the bounds of a phase can hold: for good, unless something grows. */
+static double longest_phase(const struct modal *h, double longest)
+{
+    const double last = h->growth > 0.0 ? lesser(longest, 1.0 / h->growth) : longest;
+    return h->any_resonant ? lesser(last, 16.0 / h->fastest) : last;
+}
+
+/* What resonances add to the bounds of exponent p, whose frequency is within RESONANCE of theirs. */
+static void bound_resonances(struct modal_motion *x, size_t p)
+{
+    const struct modal *h = x->h;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const size_t at = s * h->modes + h->owner[p];
+        if (h->resonant[at]) {
+            const double force = hypot(h->gr[at], h->gi[at]) / h->li[p];
+            x->growth[p] += force * x->longest;
+            x->growth6[p] += h->sixth[p] * force * (x->longest + 6.1 / h->size[p]);
+        }
+    }
+}
+
+void tribo_modal_motion_bound(struct modal_motion *x, double tau)
+{
+    const struct modal *h = x->h;
+    for (size_t p = 0; p < h->exponents; p++) {
+        const struct number z = tribo_term_at_start(x, p);
+        const double rate = h->lr[p], growth = rate == 0.0 ? 1.0 : exp(rate * (rate > 0.0 ? x->longest : tau));
+        x->growth[p] = tribo_modal_magnitude(z.re, z.im) * growth;
+        x->growth6[p] = h->sixth[p] * x->growth[p];
+        if (h->any_resonant) {
+            bound_resonances(x, p);
+        }
+    }
+}
+
+double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, double t, const double *y, double longest)
+{
+    x->h = h;
+    x->t0 = t;
+    split_motion(x, x->sys, y);
+    rest_at_start(x);
+    x->longest = longest_phase(h, longest);
+    tribo_modal_motion_bound(x, 0.0);
+    if (x->sys->limit_harmonics) {
+        find_lines(x, y);
+    }
+    return x->longest;
+}

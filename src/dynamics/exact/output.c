@@ -1,0 +1,327 @@
+/* What the motion in the modes means for contacts. */
+#include "parts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "common/real.h"
+
+/* Bases that part from each other by no more than this part of their motion go together. */
+#define NO_MOTION 1e-14
+
+/* Adds what a contact gets from position (eta) and velocity (eta') amplitudes of mode k. */
+static void output_mode(const struct modal_build *b, struct output *w, size_t k, double position, double velocity)
+{
+    const struct modal *h = b->h;
+    const size_t m = h->modes;
+    for (size_t p = 0; p < h->exponents; p++) {
+        if (h->owner && h->owner[p] != k) {
+            continue;
+        }
+        const double rr = h->owner ? 1.0 : h->rr[k * h->exponents + p], ri = h->owner ? 0.0 : h->ri[k * h->exponents + p];
+        const double fr = position + velocity * h->lr[p], fi = velocity * h->li[p];
+        w->cr[p] += fr * rr - fi * ri;
+        w->ci[p] += fr * ri + fi * rr;
+    }
+    for (size_t s = 0; s < h->harmonics; s++) {
+        const double omega = h->forcing[s].omega, xr = h->xr[s * m + k], xi = h->xi[s * m + k];
+        w->rr[s] += position * xr - velocity * omega * xi;
+        w->ri[s] += position * xi + velocity * omega * xr;
+    }
+}
+
+int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact)
+{
+    const size_t terms = b->h->terms, p = b->h->exponents;
+    double *x = tribo_modal_keep(b, 3 * terms + b->h->modes);
+    if (!x) {
+        return 0;
+    }
+    double *cr = x, *ci = x + terms, *size = x + 2 * terms;
+    *w = (struct output){contact, cr, ci, size, cr + p, ci + p, size + p, x + 3 * terms, 0.0};
+    return 1;
+}
+
+void tribo_modal_finish_output(const struct modal *h, struct output *w)
+{
+    for (size_t p = 0; p < h->exponents + h->harmonics; p++) {
+        w->size[p] = tribo_modal_magnitude(w->cr[p], w->ci[p]);
+    }
+}
+
+/* The largest |x| + |y|. */
+static double largest(const double *x, const double *y, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = greater(most, fabs(x[i]) + fabs(y[i]));
+    }
+    return most;
+}
+
+/* What the belts make of v_i = J_i q' - b_i, in all harmonics; what is only rounding of their motion is left out. Returns whether
+ * there is anything. */
+static int output_belts(const struct modal_build *b, struct output *w, size_t i)
+{
+    const struct matrix *j = &b->sys->direction;
+    int any = 0;
+    for (size_t s = 0; s < b->h->given; s++) {
+        const struct harmonic *wave = &b->sys->harmonic[s];
+        const double *yr = b->yr + s * b->n, *yi = b->yi + s * b->n, most = largest(yr, yi, b->n);
+        double re = 0.0, im = 0.0, size = 0.0;
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            re += j->val[e] * yr[j->col[e]];
+            im += j->val[e] * yi[j->col[e]];
+            size += fabs(j->val[e]) * most;
+        }
+        for (size_t e = 0; wave->drives == DRIVES_BASE && wave->omega != 0.0 && e < wave->count; e++) {
+            re -= wave->index[e] == i ? wave->cosine[e] : 0.0;
+            im += wave->index[e] == i ? wave->sine[e] : 0.0;
+        }
+        if (fabs(re) + fabs(im) > NO_MOTION * size) {
+            w->rr[s] += re;
+            w->ri[s] += im;
+            any = 1;
+        }
+    }
+    return any;
+}
+
+/* v_i = J_i q' - b_i. */
+static int output_sliding(struct modal_build *b, struct output *w, size_t i)
+{
+    if (!tribo_modal_create_output(b, w, i)) {
+        return 0;
+    }
+    for (size_t k = 0; k < b->h->modes; k++) {
+        const double shape = tribo_modal_shape(b, i, k);
+        w->on_rate[k] = shape;
+        output_mode(b, w, k, 0.0, shape);
+    }
+    output_belts(b, w, i);
+    tribo_modal_finish_output(b->h, w);
+    return 1;
+}
+
+/* The same of a contact that rests by itself: the modes do not move it, but its base may part from those that hold. */
+static int output_parting(struct modal_build *b, struct output *all, size_t *used, size_t i)
+{
+    struct output *w = &all[*used];
+    if (!tribo_modal_create_output(b, w, i)) {
+        return 0;
+    }
+    *used += output_belts(b, w, i) != 0;
+    tribo_modal_finish_output(b->h, w);
+    return 1;
+}
+
+/* What the held contacts carry, J_I'f = K q + C q' + M q'' - M load: by modes, by harmonics, and per unit of time. */
+struct holding {
+    double *by_q, *by_u;     /* [modes][rest] */
+    double *wave_r, *wave_i; /* [harmonics][rest] */
+    double *ramp;            /* [rest] */
+    double *force[2], *load; /* [ndof] workspace */
+};
+
+/* Mode k, with K phi_k = omega_k^2 M phi_k + J_I'f, and so with damping. */
+static void hold_mode(const struct modal_build *b, struct holding *f, size_t k)
+{
+    const struct modal *h = b->h;
+    const size_t n = b->n, s = b->rests;
+    const double *psi = b->psi + k * n;
+    memcpy(f->load, b->k_phi + k * n, n * sizeof *f->load);
+    tribo_add(f->load, -h->omega2[k], psi, n);
+    tribo_constraints_react(&b->ties, f->load, f->by_q + k * s);
+    if (b->damping) {
+        memcpy(f->load, b->c_phi + k * n, n * sizeof *f->load);
+        for (size_t l = 0; h->coupling && l < h->modes; l++) {
+            tribo_add(f->load, -h->coupling[l * h->modes + k], b->psi + l * n, n);
+        }
+        tribo_add(f->load, h->coupling ? 0.0 : -h->damping[k], psi, n);
+        tribo_constraints_react(&b->ties, f->load, f->by_u + k * s);
+    }
+}
+
+/* A harmonic load. */
+static void hold_load(const struct modal_build *b, struct holding *f, const struct harmonic *wave)
+{
+    for (int part = 0; part < 2; part++) {
+        memset(f->load, 0, b->n * sizeof *f->load);
+        for (size_t e = 0; e < wave->count; e++) {
+            f->load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
+        }
+        tribo_system_add_mass(b->sys, 1.0, f->load, f->force[part]);
+    }
+}
+
+/* Belts that move y [2][ndof], displaced by y/(i Omega), accelerated by i Omega y. */
+static void hold_motion(const struct modal_build *b, struct holding *f, double omega, const double *const *y)
+{
+    for (int part = 0; part < 2; part++) {
+        const double turn = part ? 1.0 : -1.0;
+        if (b->damping) {
+            tribo_matrix_multiply_add(b->damping, 1.0, y[part], f->force[part]);
+        }
+        tribo_matrix_multiply_add(b->stiffness, turn / omega, y[part], f->force[1 - part]);
+        tribo_system_add_mass(b->sys, -turn * omega, y[part], f->force[1 - part]);
+    }
+}
+
+/* The force of another contact, which follows its limit. */
+static void hold_limit(const struct modal_build *b, struct holding *f, const struct harmonic *limit, size_t i)
+{
+    const struct matrix *j = &b->sys->direction;
+    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+        f->force[0][j->col[e]] = -j->val[e] * limit->cosine[i];
+        f->force[1][j->col[e]] = j->val[e] * limit->sine[i];
+    }
+}
+
+static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t w)
+{
+    const struct forcing *forcing = &b->h->forcing[w];
+    const struct harmonic *wave = &b->sys->harmonic[forcing->harmonic];
+    const size_t n = b->n, s = b->rests;
+    memset(f->force[0], 0, n * sizeof **f->force);
+    memset(f->force[1], 0, n * sizeof **f->force);
+    if (forcing->contact < b->sys->ncontact) {
+        hold_limit(b, f, wave, forcing->contact);
+    } else if (wave->drives == DRIVES_BASE) {
+        hold_motion(b, f, wave->omega, (const double *const[]){b->yr + w * n, b->yi + w * n});
+    } else if (wave->drives == DRIVES_LOAD) {
+        hold_load(b, f, wave);
+    }
+    tribo_modal_react(b, f->force[0], f->wave_r + w * s);
+    tribo_modal_react(b, f->force[1], f->wave_i + w * s);
+}
+
+static int find_holding(struct modal_build *b, struct holding *f)
+{
+    const struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes, s = b->rests;
+    double **const all[] = {&f->by_q, &f->by_u, &f->wave_r, &f->wave_i, &f->ramp, &f->force[0], &f->force[1], &f->load};
+    const size_t count[] = {m * s, m * s, h->harmonics * s, h->harmonics * s, s, n, n, n};
+    double *work = tribo_modal_scratch(b, (2 * (m + h->harmonics) + 1) * s + 3 * n);
+    if (!work) {
+        return 0;
+    }
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        *all[k] = work;
+        work += count[k];
+    }
+    for (size_t k = 0; k < m; k++) {
+        hold_mode(b, f, k);
+    }
+    for (size_t w = 0; w < h->harmonics; w++) {
+        if (h->forcing[w].omega != 0.0) {
+            hold_harmonic(b, f, w);
+        }
+    }
+    if (b->steady) {
+        memset(f->load, 0, n * sizeof *f->load);
+        tribo_matrix_multiply_add(b->stiffness, 1.0, b->y0, f->load);
+        tribo_modal_react(b, f->load, f->ramp);
+    }
+    return 1;
+}
+
+/* 1 if what contact p of those that hold carries, or its limit, changes at all. */
+static int changes(const struct modal_build *b, const struct holding *f, size_t p)
+{
+    const struct modal *h = b->h;
+    int found = f->ramp[p] != 0.0 || tribo_system_swing(b->sys, b->rest[p]) > 0.0;
+    for (size_t k = 0; k < h->modes; k++) {
+        found |= f->by_q[k * b->rests + p] != 0.0 || f->by_u[k * b->rests + p] != 0.0;
+    }
+    for (size_t w = 0; w < h->harmonics; w++) {
+        found |= f->wave_r[w * b->rests + p] != 0.0 || f->wave_i[w * b->rests + p] != 0.0;
+    }
+    return found;
+}
+
+/* Outputs of those contacts that hold and do not always carry the same part of their limit. */
+static int output_held(struct modal_build *b, struct output *all, size_t *used)
+{
+    struct modal *h = b->h;
+    struct holding f;
+    if (b->rests > 0 && !find_holding(b, &f)) {
+        return 0;
+    }
+    for (size_t p = 0; p < b->rests; p++) {
+        if (!changes(b, &f, p)) {
+            continue;
+        }
+        struct output *output = &all[(*used)++];
+        if (!tribo_modal_create_output(b, output, b->rest[p])) {
+            return 0;
+        }
+        output->ramp = f.ramp[p];
+        for (size_t k = 0; k < h->modes; k++) {
+            output->on_rate[k] = f.by_q[k * b->rests + p];
+            output_mode(b, output, k, f.by_q[k * b->rests + p], f.by_u[k * b->rests + p]);
+        }
+        for (size_t w = 0; w < h->harmonics; w++) {
+            output->rr[w] += f.wave_r[w * b->rests + p];
+            output->ri[w] += f.wave_i[w * b->rests + p];
+        }
+        tribo_modal_finish_output(b->h, output);
+    }
+    return 1;
+}
+
+static double sixth_power(double x)
+{
+    return x * x * x * x * x * x;
+}
+
+int tribo_modal_find_terms(struct modal_build *b)
+{
+    struct modal *h = b->h;
+    const size_t p = h->exponents;
+    const size_t count = p + h->harmonics > 0 ? p + h->harmonics : 1;
+    h->terms = (count + TRIBO_TERMS - 1) / TRIBO_TERMS * TRIBO_TERMS;
+    double *x = tribo_modal_keep(b, 4 * h->terms);
+    if (!x) {
+        return 0;
+    }
+    memcpy(x, h->lr, p * sizeof *x);
+    memcpy(x + h->terms, h->li, p * sizeof *x);
+    h->lr = x;
+    h->li = x + h->terms;
+    h->size = x + 2 * h->terms;
+    h->sixth = x + 3 * h->terms;
+    for (size_t s = 0; s < h->harmonics; s++) {
+        h->li[p + s] = h->forcing[s].omega;
+    }
+    h->swings = 1;
+    for (size_t k = 0; k < h->terms; k++) {
+        h->swings &= h->lr[k] == 0.0;
+        h->size[k] = tribo_modal_magnitude(h->lr[k], h->li[k]);
+        h->sixth[k] = sixth_power(h->size[k]);
+        h->fastest = greater(h->fastest, k < p ? h->size[k] : 0.0);
+        h->quickest = greater(h->quickest, h->size[k]);
+        h->decay = greater(h->decay, -h->lr[k]);
+        h->growth = greater(h->growth, h->lr[k]);
+    }
+    return 1;
+}
+
+int tribo_modal_outputs(struct modal_build *b)
+{
+    struct modal *h = b->h;
+    const size_t c = b->sys->ncontact;
+    h->output = tribo_modal_keep_outputs(b, c);
+    if (!h->output || !tribo_modal_find_terms(b)) {
+        return 0;
+    }
+    for (size_t i = 0; i < c; i++) {
+        const int done = b->key[i] == 0   ? output_sliding(b, &h->output[h->outputs++], i)
+                         : b->key[i] == 1 ? output_parting(b, h->output, &h->outputs, i)
+                                          : 1;
+        if (!done) {
+            return 0;
+        }
+    }
+    h->sliding = h->outputs;
+    return output_held(b, h->output, &h->outputs);
+}

@@ -1,0 +1,158 @@
+/* A linear combination of the state in a phase of method "exact". */
+#include "terms.h"
+
+#include <math.h>
+
+/* A resonance closer than this part of omega^2 costs more than half of the digits. */
+#define TOO_CLOSE 1e-7
+
+/* How the combination c [2 ndof] sees mode k: its amplitude, and the rate of that. */
+static void weights(const struct modal *h, size_t n, const double *c, size_t k, double *place, double *speed)
+{
+    *place = *speed = 0.0;
+    for (size_t i = 0; i < h->moving; i++) {
+        *place += h->phi[k * h->moving + i] * c[h->dof[i]];
+        *speed += h->phi[k * h->moving + i] * c[n + h->dof[i]];
+    }
+}
+
+/* The response of mode k to harmonic s. A motion that finds it without the small divisor of a resonance has it among its
+ * exponents. */
+static void response(const struct modal_motion *x, size_t s, size_t k, double *xr, double *xi)
+{
+    const struct modal *h = x->h;
+    const size_t at = s * h->modes + k;
+    *xr = h->xr[at];
+    *xi = h->xi[at];
+    if (h->resonant[at]) {
+        const double omega = h->forcing[s].omega, re = h->omega2[k] - omega * omega, im = omega * h->damping[k];
+        const double square = re * re + im * im;
+        *xr = (h->gr[at] * re + h->gi[at] * im) / square;
+        *xi = (h->gi[at] * re - h->gr[at] * im) / square;
+    }
+}
+
+/* z of exponent p at the start of the phase, without what resonant responses are there. */
+static void exponent(const struct modal_motion *x, size_t p, double *zr, double *zi)
+{
+    const struct modal *h = x->h;
+    const struct number z = tribo_term_at_start(x, p);
+    *zr = z.re;
+    *zi = z.im;
+    for (size_t s = 0; s < h->harmonics && h->any_resonant; s++) {
+        const size_t k = h->owner[p];
+        const double omega = h->forcing[s].omega;
+        double xr, xi;
+        if (h->resonant[s * h->modes + k]) {
+            response(x, s, k, &xr, &xi);
+            const struct number w = tribo_harmonic_at_start(x, s);
+            const double q = xr * w.re - xi * w.im, u = -omega * (xr * w.im + xi * w.re);
+            *zr -= h->ar[p] * q + h->br[p] * u;
+            *zi -= h->ai[p] * q + h->bi[p] * u;
+        }
+    }
+}
+
+/* 1 if a resonance leaves too few digits. */
+static int too_close(const struct modal_motion *x)
+{
+    const struct modal *h = x->h;
+    for (size_t at = 0; at < h->harmonics * h->modes && h->any_resonant; at++) {
+        const size_t k = at % h->modes;
+        const double omega = h->forcing[at / h->modes].omega, re = h->omega2[k] - omega * omega, im = omega * h->damping[k];
+        if (h->resonant[at] && hypot(re, im) < TOO_CLOSE * fabs(h->omega2[k])) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* An exponent p of mode k, of which the mode has r z. */
+static void add_exponent(const struct modal_motion *x, size_t p, double place, double speed, double rr, double ri, double *cr,
+                         double *ci)
+{
+    const struct modal *h = x->h;
+    const double fr = place + speed * h->lr[p], fi = speed * h->li[p];
+    double r, i;
+    exponent(x, p, &r, &i);
+    const double zr = rr * r - ri * i, zi = rr * i + ri * r;
+    *cr += fr * zr - fi * zi;
+    *ci += fr * zi + fi * zr;
+}
+
+static void add_exponents(const struct modal_motion *x, const double *c, struct signal *to)
+{
+    const struct modal *h = x->h;
+    for (size_t p = 0; p < h->exponents; p++) {
+        double cr = 0.0, ci = 0.0, place, speed;
+        for (size_t k = h->owner ? h->owner[p] : 0; k < (h->owner ? h->owner[p] + 1 : h->modes); k++) {
+            weights(h, x->sys->ndof, c, k, &place, &speed);
+            add_exponent(x, p, place, speed, h->owner ? 1.0 : h->rr[k * h->exponents + p],
+                         h->owner ? 0.0 : h->ri[k * h->exponents + p], &cr, &ci);
+        }
+        tribo_signal_add(to, cr, ci, h->lr[p], h->li[p]);
+    }
+}
+
+/* Harmonic s: what it makes of the modes, and of the contacts that hold. */
+static void add_harmonic(const struct modal_motion *x, const double *c, size_t s, struct signal *to)
+{
+    const struct modal *h = x->h;
+    const size_t n = x->sys->ndof;
+    const double omega = h->forcing[s].omega;
+    double re = 0.0, im = 0.0;
+    for (size_t k = 0; k < h->modes; k++) {
+        double place, speed, xr, xi;
+        response(x, s, k, &xr, &xi);
+        weights(h, n, c, k, &place, &speed);
+        re += place * xr - speed * omega * xi;
+        im += place * xi + speed * omega * xr;
+    }
+    for (size_t i = 0; s < h->given && i < h->moving; i++) {
+        const double yr = h->yr[s * h->moving + i], yi = h->yi[s * h->moving + i], place = c[h->dof[i]], speed = c[n + h->dof[i]];
+        re += speed * yr + (omega != 0.0 ? place * yi / omega : 0.0);
+        im += speed * yi - (omega != 0.0 ? place * yr / omega : 0.0);
+    }
+    const struct number w = tribo_harmonic_at_start(x, s);
+    tribo_signal_add(to, re * w.re - im * w.im, re * w.im + im * w.re, 0.0, omega);
+}
+
+static void add_powers(const struct modal_motion *x, const double *c, double *a)
+{
+    const struct modal *h = x->h;
+    const size_t n = x->sys->ndof;
+    for (size_t k = 0; k < h->modes; k++) {
+        double place, speed;
+        const double rate = x->vel[k] + (h->drifts[k] ? x->drift_rate[k] : 0.0);
+        weights(h, n, c, k, &place, &speed);
+        a[1] += place * rate + speed * x->acc[k];
+        a[2] += 0.5 * place * x->acc[k];
+    }
+    for (size_t i = 0; i < h->moving; i++) {
+        a[1] += c[h->dof[i]] * h->y0[i];
+    }
+}
+
+int tribo_modal_motion_signal(const struct modal_motion *x, const double *c, double tau, const double *end, struct signal *to)
+{
+    const struct modal *h = x->h;
+    double v[3];
+    if (too_close(x)) {
+        return tribo_system_fail(x->sys, TRIBO_ERR_UNSUPPORTED,
+                                 "method exact: a load is in resonance with an undamped mode; method event can do it");
+    }
+    if (!tribo_signal_reserve(to, h->exponents + h->harmonics, 2)) {
+        return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu exponent%s", h->exponents,
+                                 plural(h->exponents));
+    }
+    to->tau = tau;
+    add_exponents(x, c, to);
+    for (size_t s = 0; s < h->harmonics; s++) {
+        add_harmonic(x, c, s, to);
+    }
+    add_powers(x, c, to->a);
+    /* what is constant follows from where the phase ends */
+    tribo_signal_at(to, tau, v);
+    to->a[0] = tribo_dot(c, end, 2 * x->sys->ndof) - v[0];
+    return TRIBO_OK;
+}

@@ -1,0 +1,126 @@
+/* Terms are done TRIBO_TERMS at a time, since one sum would wait for itself; and in places that are known apart, or compilers
+ * would not do so. */
+#include "terms.h"
+#include "dynamics/system/cos_sin.h"
+#include "common/simd.h"
+
+#include <math.h>
+
+enum { T = TRIBO_TERMS };
+
+/* Over a time this short, in terms of the fastest term, four terms of a series are all of it. */
+#define CLOSE 1e-3
+
+/* Products a b. */
+static inline void multiply(const double *restrict ar, const double *restrict ai, const double *restrict br,
+                            const double *restrict bi, double *restrict re, double *restrict im)
+{
+    for (size_t k = 0; k < T; k++) {
+        re[k] = ar[k] * br[k] - ai[k] * bi[k];
+        im[k] = ar[k] * bi[k] + ai[k] * br[k];
+    }
+}
+
+/* w = e z, w' and w'' of a lot. */
+static inline void turn(struct lot *lot, const double *lr, const double *li, const double *er, const double *ei)
+{
+    multiply(er, ei, lot->zr, lot->zi, lot->wr, lot->wi);
+    multiply(lr, li, lot->wr, lot->wi, lot->w1r, lot->w1i);
+    multiply(lr, li, lot->w1r, lot->w1i, lot->w2r, lot->w2i);
+}
+
+/* e^{lambda delta}, lambda delta being small. */
+static inline void grow_little(const double *restrict lr, const double *restrict li, double delta, double *restrict re,
+                               double *restrict im)
+{
+    for (size_t k = 0; k < T; k++) {
+        const double x = lr[k] * delta, y = li[k] * delta, x2 = x * x - y * y, y2 = 2.0 * x * y;
+        const double r = 0.5 + (x * (1 / 6.) + x2 * (1 / 24.)), i = y * (1 / 6.) + y2 * (1 / 24.);
+        re[k] = 1.0 + (x + (x2 * r - y2 * i));
+        im[k] = y + (x2 * i + y2 * r);
+    }
+}
+
+/* All lots: where they begin; where e = e^{lambda far} is; and a little later than that. */
+TRIBO_SIMD_OF_FOUR static void move_nowhere(size_t n, const double *lr, const double *li, struct lot *lot)
+{
+    static const double one[T] = {1.0, 1.0, 1.0, 1.0}, nothing[T];
+    for (size_t p = 0; p < n; p += T) {
+        turn(lot++, lr + p, li + p, one, nothing);
+    }
+}
+
+TRIBO_SIMD_OF_FOUR static void move_far(size_t n, const double *lr, const double *li, const double *er, const double *ei,
+                                        struct lot *lot)
+{
+    for (size_t p = 0; p < n; p += T) {
+        turn(lot++, lr + p, li + p, er + p, ei + p);
+    }
+}
+
+TRIBO_SIMD_OF_FOUR static void move_little(const struct modal_motion *x, double delta)
+{
+    const size_t n = x->h->terms;
+    const double *lr = x->h->lr, *li = x->h->li;
+    struct lot *lot = x->lot;
+    for (size_t p = 0; p < n; p += T) {
+        double re[T], im[T], er[T], ei[T];
+        grow_little(lr + p, li + p, delta, re, im);
+        multiply(re, im, x->far_r + p, x->far_i + p, er, ei);
+        turn(lot++, lr + p, li + p, er, ei);
+    }
+}
+
+/* e^{lambda tau} of all terms. */
+static void grow(const struct modal *h, double tau, double *re, double *im)
+{
+    if (fabs(tau) * h->quickest <= COS_SIN_NEAR) {
+        tribo_cos_sin_near(tau, h->terms, h->li, re, im);
+    } else {
+        tribo_cos_sin_all(tau, h->terms, h->li, re, im);
+    }
+    for (size_t p = 0; !h->swings && p < h->exponents; p++) {
+        if (h->lr[p] != 0.0) {
+            const double size = exp(h->lr[p] * tau);
+            re[p] *= size;
+            im[p] *= size;
+        }
+    }
+}
+
+static inline void clear(double *re, double *im)
+{
+    for (size_t k = 0; k < T; k++) {
+        re[k] = im[k] = 0.0;
+    }
+}
+
+void tribo_modal_terms_clear(struct modal_motion *x)
+{
+    const size_t last = x->h->terms - T;
+    clear(x->lot[last / T].zr, x->lot[last / T].zi);
+    clear(x->growth + last, x->growth6 + last);
+}
+
+void tribo_modal_terms_rest(struct modal_motion *x)
+{
+    x->looked = 0;
+    x->tau = 0.0;
+    move_nowhere(x->h->terms, x->h->lr, x->h->li, x->lot);
+}
+
+/* From t0, or, if that is close, from where it was. Far ones from t0, since what rounding leaves of a late time must not tremble
+ * within a phase. */
+void tribo_modal_terms_go(struct modal_motion *x, double tau)
+{
+    const struct modal *h = x->h;
+    x->tau = tau;
+    if (x->looked && fabs(tau - x->far) * h->quickest < CLOSE) {
+        move_little(x, tau - x->far);
+    } else {
+        x->looked = 1;
+        x->far = tau;
+        grow(h, tau, x->far_r, x->far_i);
+        move_far(h->terms, h->lr, h->li, x->far_r, x->far_i, x->lot);
+    }
+}

@@ -1,0 +1,60 @@
+/* The terms of a modal motion: exponentials and harmonics, with two derivatives. */
+#ifndef TRIBO_MODAL_TERMS_H
+#define TRIBO_MODAL_TERMS_H
+
+#include "motion.h"
+
+/* So many terms side by side: z at t0, z, z' and z'' at tau. */
+struct lot {
+    double zr[TRIBO_TERMS], zi[TRIBO_TERMS];
+    double wr[TRIBO_TERMS], wi[TRIBO_TERMS], w1r[TRIBO_TERMS], w1i[TRIBO_TERMS], w2r[TRIBO_TERMS], w2i[TRIBO_TERMS];
+};
+
+/* Term p at t0, and where it is, and its derivative there: a complex number, of harmonics cosine and sine. */
+struct number {
+    double re, im;
+};
+
+static inline struct number tribo_term_at_start(const struct modal_motion *x, size_t p)
+{
+    const struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    return (struct number){lot->zr[p % TRIBO_TERMS], lot->zi[p % TRIBO_TERMS]};
+}
+
+static inline struct number tribo_term(const struct modal_motion *x, size_t p)
+{
+    const struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    return (struct number){lot->wr[p % TRIBO_TERMS], lot->wi[p % TRIBO_TERMS]};
+}
+
+static inline struct number tribo_term_rate(const struct modal_motion *x, size_t p)
+{
+    const struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    return (struct number){lot->w1r[p % TRIBO_TERMS], lot->w1i[p % TRIBO_TERMS]};
+}
+
+static inline struct number tribo_harmonic_at_start(const struct modal_motion *x, size_t s)
+{
+    return tribo_term_at_start(x, x->h->exponents + s);
+}
+
+static inline struct number tribo_harmonic(const struct modal_motion *x, size_t s)
+{
+    return tribo_term(x, x->h->exponents + s);
+}
+
+static inline void tribo_term_begin(struct modal_motion *x, size_t p, double re, double im)
+{
+    struct lot *lot = &x->lot[p / TRIBO_TERMS];
+    lot->zr[p % TRIBO_TERMS] = re;
+    lot->zi[p % TRIBO_TERMS] = im;
+}
+
+/* Zeros for what stands after the last term: in the last of those that are done side by side, before terms are set. */
+void tribo_modal_terms_clear(struct modal_motion *x);
+
+/* w = z at t0; or at t0 + tau, without resonances. */
+void tribo_modal_terms_rest(struct modal_motion *x);
+void tribo_modal_terms_go(struct modal_motion *x, double tau);
+
+#endif

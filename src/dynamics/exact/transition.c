@@ -1,0 +1,206 @@
+/* Sliding forces and loads do not depend on the state, so that amplitudes of the modes move as without them. What contacts at
+ * rest hold does: a perturbed place of theirs pulls at the modes with a constant force. */
+#include "transition.h"
+#include "dynamics/system/cos_sin.h"
+#include "dynamics/periodic/variation.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Rows [modes][columns] of amplitudes, of their rates, of the constant that pulls at them; and [exponents][columns] of z. */
+struct transition {
+    const struct modal *h;
+    const tribo_system *sys;
+    double tau;
+    size_t columns;
+    double *eta, *rate, *pull, *change, *zr, *zi, *row;
+};
+
+size_t tribo_modal_transition_room(const tribo_system *sys, size_t columns)
+{
+    return (8 * sys->ndof + 1) * columns;
+}
+
+/* amplitudes [modes][columns] += those of rows of v, displacements or velocities. */
+static void to_modes(const struct transition *x, const double *v, double *amplitudes)
+{
+    const struct modal *h = x->h;
+    double *rows = x->zr;
+    for (size_t i = 0; i < h->moving; i++) {
+        memcpy(rows + i * x->columns, v + h->dof[i] * x->columns, x->columns * sizeof *rows);
+    }
+    tribo_multiply_add(h->modes, h->moving, x->columns, 1.0, h->psi, rows, amplitudes);
+}
+
+/* Rows of v += those of amplitudes. */
+static void add_modes(const struct transition *x, const double *amplitudes, double *v)
+{
+    const struct modal *h = x->h;
+    double *rows = x->zr, *phi = x->zi;
+    tribo_transpose(h->modes, h->moving, h->phi, phi);
+    memset(rows, 0, h->moving * x->columns * sizeof *rows);
+    tribo_multiply_add(h->moving, h->modes, x->columns, 1.0, phi, amplitudes, rows);
+    for (size_t i = 0; i < h->moving; i++) {
+        tribo_add(v + h->dof[i] * x->columns, 1.0, rows + i * x->columns, x->columns);
+    }
+}
+
+/* Amplitudes that v has, and pulls of contacts that are held elsewhere. */
+static void split(const struct transition *x, const double *v)
+{
+    const struct modal *h = x->h;
+    const size_t n = x->sys->ndof, c = x->columns;
+    memset(x->eta, 0, 3 * n * c * sizeof *x->eta);
+    to_modes(x, v, x->eta);
+    to_modes(x, v + n * c, x->rate);
+    for (size_t o = h->sliding; o < h->outputs; o++) {
+        const struct output *out = &h->output[o];
+        tribo_contact_row(x->sys, out->contact, v, c, x->row);
+        for (size_t k = 0; k < h->modes; k++) {
+            tribo_add(x->pull + k * c, -out->on_rate[k], x->row, c);
+        }
+    }
+}
+
+/* e^{lambda tau} */
+static void growth_of(const struct transition *x, size_t p, double *re, double *im)
+{
+    const double size = exp(x->h->lr[p] * x->tau);
+    tribo_turn(x->h->li[p] * x->tau, re, im);
+    *re *= size;
+    *im *= size;
+}
+
+/* x' = [[aa, ab], [ba, bb]] x of an amplitude and its rate, by its exponents p to end - 1. */
+static void propagator(const struct transition *x, size_t p, size_t end, double *t)
+{
+    const struct modal *h = x->h;
+    memset(t, 0, 4 * sizeof *t);
+    for (; p < end; p++) {
+        double re, im;
+        growth_of(x, p, &re, &im);
+        const double fr = h->lr[p] * re - h->li[p] * im, fi = h->lr[p] * im + h->li[p] * re;
+        t[0] += re * h->ar[p] - im * h->ai[p];
+        t[1] += re * h->br[p] - im * h->bi[p];
+        t[2] += fr * h->ar[p] - fi * h->ai[p];
+        t[3] += fr * h->br[p] - fi * h->bi[p];
+    }
+}
+
+/* A mode of its own damping: eta, rate and pull of one row. */
+static void move_row(const struct transition *x, size_t k, const double *t)
+{
+    const struct modal *h = x->h;
+    double *eta = x->eta + k * x->columns, *rate = x->rate + k * x->columns;
+    const double *pull = x->pull + k * x->columns, tau = x->tau;
+    const double place = h->omega2[k] != 0.0 ? 1.0 / h->omega2[k] : 0.0;
+    const double speed = h->omega2[k] == 0.0 && !h->drifts[k] ? 1.0 / h->damping[k] : 0.0, push = h->drifts[k] ? tau : 0.0;
+    for (size_t j = 0; j < x->columns; j++) {
+        const double off = place * pull[j], vel = speed * pull[j], q = eta[j] - off, u = rate[j] - vel;
+        eta[j] = off + vel * tau + 0.5 * push * tau * pull[j] + t[0] * q + t[1] * u;
+        rate[j] = vel + push * pull[j] + t[2] * q + t[3] * u;
+    }
+}
+
+static void move_alone(const struct transition *x)
+{
+    const struct modal *h = x->h;
+    for (size_t k = 0, p = 0; k < h->modes; k++) {
+        double t[] = {1.0, x->tau, 0.0, 1.0};
+        size_t end = p;
+        while (end < h->exponents && h->owner[end] == k) {
+            end++;
+        }
+        if (!h->drifts[k]) {
+            propagator(x, p, end, t);
+        }
+        move_row(x, k, t);
+        p = end;
+    }
+}
+
+/* Takes away, or adds, where the amplitudes would rest. */
+static void add_rest(const struct transition *x, double factor)
+{
+    for (size_t k = 0; k < x->h->modes; k++) {
+        tribo_add(x->eta + k * x->columns, factor / x->h->omega2[k], x->pull + k * x->columns, x->columns);
+    }
+}
+
+/* z of the amplitudes, after tau: in zr, zi. */
+static void move_exponents(const struct transition *x)
+{
+    const struct modal *h = x->h;
+    const size_t m = h->modes, c = x->columns;
+    memset(x->zr, 0, h->exponents * c * sizeof *x->zr);
+    memset(x->zi, 0, h->exponents * c * sizeof *x->zi);
+    tribo_multiply_add(h->exponents, m, c, 1.0, h->ar, x->eta, x->zr);
+    tribo_multiply_add(h->exponents, m, c, 1.0, h->br, x->rate, x->zr);
+    tribo_multiply_add(h->exponents, m, c, 1.0, h->ai, x->eta, x->zi);
+    tribo_multiply_add(h->exponents, m, c, 1.0, h->bi, x->rate, x->zi);
+    for (size_t p = 0; p < h->exponents; p++) {
+        double re, im, *zr = x->zr + p * c, *zi = x->zi + p * c;
+        growth_of(x, p, &re, &im);
+        for (size_t j = 0; j < c; j++) {
+            const double old = zr[j];
+            zr[j] = re * old - im * zi[j];
+            zi[j] = im * old + re * zi[j];
+        }
+    }
+}
+
+/* rows [modes][columns] = Re(r z). */
+static void gather(const struct transition *x, double *rows)
+{
+    const struct modal *h = x->h;
+    memset(rows, 0, h->modes * x->columns * sizeof *rows);
+    tribo_multiply_add(h->modes, h->exponents, x->columns, 1.0, h->rr, x->zr, rows);
+    tribo_multiply_add(h->modes, h->exponents, x->columns, -1.0, h->ri, x->zi, rows);
+}
+
+/* Modes that damping couples: all of them have stiffness. */
+static void move_together(const struct transition *x)
+{
+    const struct modal *h = x->h;
+    const size_t c = x->columns;
+    add_rest(x, -1.0);
+    move_exponents(x);
+    gather(x, x->eta);
+    add_rest(x, 1.0);
+    for (size_t p = 0; p < h->exponents; p++) {
+        double *zr = x->zr + p * c, *zi = x->zi + p * c;
+        for (size_t j = 0; j < c; j++) {
+            const double old = zr[j];
+            zr[j] = h->lr[p] * old - h->li[p] * zi[j];
+            zi[j] = h->li[p] * old + h->lr[p] * zi[j];
+        }
+    }
+    gather(x, x->rate);
+}
+
+void tribo_modal_transition(const struct modal *h, const tribo_system *sys, double tau, size_t columns, double *v, double *work)
+{
+    const size_t n = sys->ndof, block = n * columns;
+    const struct transition x = {h,
+                                 sys,
+                                 tau,
+                                 columns,
+                                 work,
+                                 work + block,
+                                 work + 2 * block,
+                                 work + 3 * block,
+                                 work + 4 * block,
+                                 work + 6 * block,
+                                 work + 8 * block};
+    split(&x, v);
+    memcpy(x.change, x.eta, block * sizeof *x.change);
+    if (h->coupling) {
+        move_together(&x);
+    } else {
+        move_alone(&x);
+    }
+    memset(v + block, 0, block * sizeof *v);
+    tribo_add(x.eta, -1.0, x.change, h->modes * columns);
+    add_modes(&x, x.eta, v);
+    add_modes(&x, x.rate, v + block);
+}

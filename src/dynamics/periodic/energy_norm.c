@@ -1,0 +1,124 @@
+#include "energy_norm.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* k [n][n] = K, made as symmetric as it should be. */
+static int dense_stiffness(const tribo_system *sys, double *k)
+{
+    const size_t n = sys->ndof;
+    const int scaled = !sys->elastic.rows && sys->mass.rows;
+    double *entries = tribo_matrix_to_dense(sys->elastic.rows ? &sys->elastic : &sys->stiffness);
+    for (size_t i = 0; entries && i < n; i++) {
+        const double mass = scaled ? tribo_matrix_get(&sys->mass, i, i) : 1.0;
+        for (size_t j = 0; j < n; j++) {
+            entries[i * n + j] *= mass;
+        }
+    }
+    for (size_t i = 0; entries && i < n; i++) {
+        for (size_t j = 0; j < n; j++) {
+            k[i * n + j] = 0.5 * (entries[i * n + j] + entries[j * n + i]);
+        }
+    }
+    free(entries);
+    return entries != NULL;
+}
+
+/* rate = phi'M, and psi. */
+static void weigh(struct energy_norm *e, const tribo_system *sys)
+{
+    const size_t n = e->n;
+    double *mode = e->omega; /* not set yet */
+    tribo_transpose(n, n, e->phi, e->rate);
+    for (size_t k = 0; k < n; k++) {
+        memcpy(mode, e->rate + k * n, n * sizeof *mode);
+        memset(e->rate + k * n, 0, n * sizeof *mode);
+        tribo_system_add_mass(sys, 1.0, mode, e->rate + k * n);
+        for (size_t d = 0; sys->massless.count && d < n; d++) {
+            e->psi[k * n + d] = e->rate[k * n + d] + (sys->massless.is[d] ? mode[d] : 0.0);
+        }
+    }
+}
+
+/* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. */
+static int find(struct energy_norm *e, const tribo_system *sys, double *k, double *values, double least)
+{
+    const size_t n = e->n;
+    if (!dense_stiffness(sys, k)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    tribo_half_solve(&sys->factor, k, n);
+    tribo_transpose(n, n, k, e->psi);
+    tribo_half_solve(&sys->factor, e->psi, n);
+    if (!tribo_dense_finite(e->psi, n * n)) {
+        return TRIBO_ERR_NOT_FINITE;
+    }
+    if (!tribo_symmetric_eigen(e->psi, n, values, e->phi)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    tribo_half_solve_back(&sys->factor, e->phi, n);
+    weigh(e, sys);
+    for (size_t i = 0; i < n; i++) {
+        e->omega[i] = greater(sqrt(fabs(values[i])), least);
+    }
+    return TRIBO_OK;
+}
+
+int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys, double least)
+{
+    const size_t n = sys->ndof;
+    *e = (struct energy_norm){.n = n};
+    const size_t matrices = sys->massless.count ? 3 : 2;
+    e->phi = malloc((matrices * n * n + n + 1) * sizeof *e->phi);
+    double *work = malloc((n * n + n + 1) * sizeof *work);
+    int status = TRIBO_ERR_MEMORY;
+    if (e->phi && work) {
+        e->psi = e->phi + n * n;
+        e->rate = e->phi + (matrices - 1) * n * n;
+        e->omega = e->rate + n * n;
+        status = find(e, sys, work, work + n * n, least);
+    }
+    free(work);
+    return status ? tribo_system_fail(sys, status, "%s",
+                                      status == TRIBO_ERR_MEMORY ? "out of memory for the modes of the free structure"
+                                                                 : "stiffness over mass overflows")
+                  : TRIBO_OK;
+}
+
+void tribo_energy_norm_free(struct energy_norm *e)
+{
+    free(e->phi);
+    memset(e, 0, sizeof *e);
+}
+
+static void scale_rows(const struct energy_norm *e, size_t columns, int divide, double *rows)
+{
+    for (size_t k = 0; k < e->n; k++) {
+        const double factor = divide ? 1.0 / e->omega[k] : e->omega[k];
+        for (size_t j = 0; j < columns; j++) {
+            rows[k * columns + j] *= factor;
+        }
+    }
+}
+
+void tribo_energy_norm_of(const struct energy_norm *e, size_t columns, const double *y, double *x)
+{
+    const size_t n = e->n, half = n * columns;
+    memset(x, 0, 2 * half * sizeof *x);
+    tribo_multiply_add(n, n, columns, 1.0, e->psi, y, x);
+    tribo_multiply_add(n, n, columns, 1.0, e->rate, y + half, x + half);
+    scale_rows(e, columns, 0, x);
+}
+
+void tribo_energy_norm_state(const struct energy_norm *e, size_t columns, const double *x, double *y)
+{
+    const size_t n = e->n, half = n * columns;
+    memset(y, 0, 2 * half * sizeof *y);
+    memcpy(y + half, x, half * sizeof *y);
+    scale_rows(e, columns, 1, y + half);
+    tribo_multiply_add(n, n, columns, 1.0, e->phi, y + half, y);
+    memset(y + half, 0, half * sizeof *y);
+    tribo_multiply_add(n, n, columns, 1.0, e->phi, x + half, y + half);
+}

@@ -1,0 +1,342 @@
+#include "dynamics/system/elastic.h"
+#include "period_map.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Motions smaller than this part of what loads and bases would do at least are rounding of that. */
+#define LEAST_SIZE 1e-4
+
+/* Modes without stiffness count with this part of the frequency of the period. */
+#define LEAST_OMEGA 0.1
+
+/* Sizes between this and one over it have squares that are numbers, and so have those of what is far smaller or larger. */
+#define LARGE 1e100
+
+static double turn(void)
+{
+    return 2.0 * acos(-1.0);
+}
+
+static double length(const double *x, size_t n)
+{
+    return sqrt(tribo_dot(x, x, n));
+}
+
+static double distance(const double *a, const double *b, size_t n)
+{
+    double square = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        square += (a[i] - b[i]) * (a[i] - b[i]);
+    }
+    return sqrt(square);
+}
+
+void tribo_period_map_coordinates(const struct period_map *m, const double *y, double *x)
+{
+    tribo_energy_norm_of(&m->norm, 1, y, x);
+    for (size_t i = 0; i < m->n; i++) {
+        x[i] *= m->scale;
+    }
+}
+
+/* m->y = the state that has the coordinates x. */
+static void set_state(struct period_map *m, const double *x)
+{
+    tribo_energy_norm_state(&m->norm, 1, x, m->y);
+    for (size_t i = 0; i < m->n; i++) {
+        m->y[i] /= m->scale;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- integration */
+
+static struct period_map *of_company(struct company *company)
+{
+    return (struct period_map *)((char *)company - offsetof(struct period_map, company));
+}
+
+static int phase_ends(struct company *company, double tau, double t, const double *y)
+{
+    struct period_map *m = of_company(company);
+    tribo_period_map_coordinates(m, y, m->x);
+    m->size = greater(m->size, length(m->x, m->n));
+    return m->variation.company.ends(&m->variation.company, tau, t, y);
+}
+
+static void event_decided(struct company *company)
+{
+    struct period_map *m = of_company(company);
+    m->variation.company.decided(&m->variation.company);
+}
+
+/* m->y from t to end, unseen by the driver's observer, after which the driver begins anew. */
+static int integrate(struct period_map *m, double t, double end, struct company *company)
+{
+    tribo_driver *drv = m->drv;
+    int (*const seen)(double, const double *, int, void *) = drv->seen;
+    const size_t evaluations = m->sys->evaluations, halves = end - t < 0.75 * m->period ? 1 : 2;
+    m->y[m->n] = 0.0;
+    drv->time = t;
+    drv->knows = 0;
+    int status = tribo_driver_check(drv, m->y);
+    if (status) {
+        return status;
+    }
+    drv->seen = NULL;
+    memcpy(drv->state, m->y, (m->n + 1) * sizeof *m->y);
+    m->events->company = company;
+    m->events->sharp = 1;
+    status = tribo_events_advance(m->events, drv, &t, end, m->y, 0);
+    m->events->company = NULL;
+    m->events->sharp = 0;
+    drv->seen = seen;
+    drv->evaluations += m->sys->evaluations - evaluations;
+    m->halves += halves;
+    return status ? status : tribo_driver_check(drv, m->y);
+}
+
+int tribo_period_map_replay(struct period_map *m, const double *y, struct company *company)
+{
+    const int status = m->drv->method->open(m->drv, &m->events);
+    memcpy(m->y, y, m->n * sizeof *y);
+    return status ? status : integrate(m, m->t, m->t + m->period, company);
+}
+
+int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
+{
+    int status = TRIBO_OK;
+    set_state(m, x);
+    for (size_t k = 0; !status && k < periods; k++) {
+        status = integrate(m, m->t, m->t + m->period, NULL);
+    }
+    tribo_period_map_coordinates(m, m->y, x);
+    return status;
+}
+
+/* What rests where an integration ends does so where the next one begins: rounding is taken away. */
+static int hold_still(struct period_map *m)
+{
+    struct stick_slip *contacts = &m->events->stick_slip;
+    tribo_system_set_time(m->sys, m->t);
+    memset(contacts->base, 0, m->sys->ncontact * sizeof *contacts->base);
+    tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->base);
+    const int status = tribo_stick_slip_hold(contacts, m->sys, contacts->base, m->y + m->sys->ndof);
+    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts)) : TRIBO_OK;
+}
+
+/* Sliders that begin beyond their limits go back to them. */
+static void enter(struct period_map *m)
+{
+    if (m->sys->massless.count) {
+        tribo_get_limit(m->sys->contacts, m->limit);
+        tribo_elastic_enter(m->sys, m->limit, m->x, m->limit + m->sys->ncontact, m->y);
+    }
+}
+
+static void set_image(const struct period_map *m, size_t count, double *x)
+{
+    for (size_t i = 0; m->odd && i < count; i++) {
+        x[i] = -x[i];
+    }
+}
+
+int tribo_period_map_follow(struct period_map *m, struct point *p)
+{
+    const size_t n = m->n;
+    set_state(m, p->x);
+    int status = m->moved ? hold_still(m) : TRIBO_OK;
+    enter(m);
+    memcpy(p->y, m->y, n * sizeof *p->y);
+    tribo_period_map_coordinates(m, m->y, p->x);
+    tribo_variation_begin(&m->variation, m->unit);
+    m->size = greater(m->least, length(p->x, n));
+    status = status ? status : integrate(m, m->t, m->t + m->span, &m->company);
+    if (status) {
+        return status;
+    }
+    m->moved = 1;
+    memcpy(p->end, m->y, n * sizeof *p->end);
+    tribo_period_map_coordinates(m, m->y, p->image);
+    tribo_energy_norm_of(&m->norm, n, m->variation.v, p->derivative);
+    set_image(m, n, p->image);
+    set_image(m, n * n, p->derivative);
+    p->residual = distance(p->image, p->x, n);
+    p->size = m->size;
+    p->torn = m->variation.torn;
+    p->other = m->variation.other;
+    return TRIBO_OK;
+}
+
+int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual)
+{
+    for (size_t d = 0; m->sys->massless.count && d < m->sys->ndof; d++) {
+        const size_t i = m->sys->ndof + d;
+        p->y[i] = !m->sys->massless.is[d] ? p->y[i] : m->odd ? -p->end[i] : p->end[i];
+    }
+    *residual = p->residual;
+    if (!m->odd) {
+        return TRIBO_OK;
+    }
+    memcpy(m->y, p->end, m->n * sizeof *m->y);
+    const int status = integrate(m, m->t + m->span, m->t + m->period, NULL);
+    tribo_period_map_coordinates(m, m->y, m->x);
+    *residual = distance(m->x, p->x, m->n);
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- preparation */
+
+/* 1 if all that drives the system is minus itself half a period later, and limits are the same. */
+static int is_odd(const tribo_system *sys, double period)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *w = &sys->harmonic[k];
+        const double order = round(fabs(w->omega) * period / turn());
+        if (w->count > 0 && fmod(order, 2.0) != (w->drives == DRIVES_LIMIT ? 0.0 : 1.0)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* to [ndof] += amplitudes of a load, in the modes. */
+static void add_modal(const struct period_map *m, const struct harmonic *w, const double *amplitude, double *to)
+{
+    for (size_t d = 0; d < m->sys->ndof; d++) {
+        for (size_t k = 0; k < w->count; k++) {
+            to[d] += m->norm.psi[d * m->sys->ndof + w->index[k]] * amplitude[k];
+        }
+    }
+}
+
+/* How far a load moves the structure at least, against stiffness or inertia. */
+static double size_of_load(struct period_map *m, const struct harmonic *w, const double *amplitude)
+{
+    double size = 0.0;
+    memset(m->x, 0, m->n * sizeof *m->x);
+    add_modal(m, w, amplitude, m->x);
+    for (size_t d = 0; d < m->sys->ndof; d++) {
+        size = hypot(size, m->x[d] / greater(m->norm.omega[d], fabs(w->omega)));
+    }
+    return size;
+}
+
+/* The same of a base that takes along what its contacts touch, or stretches their springs. */
+static double size_of_base(const struct period_map *m, const struct harmonic *w, const double *amplitude)
+{
+    double size = 0.0;
+    for (size_t k = 0; k < w->count; k++) {
+        const double r = tribo_system_delassus(m->sys, w->index[k], w->index[k]);
+        const int elastic = tribo_massless_touches(&m->sys->massless, w->index[k]) && w->omega != 0.0;
+        size = r > 0.0 ? hypot(size, amplitude[k] / sqrt(r)) : size;
+        size = elastic ? hypot(size, amplitude[k] / (w->omega * sqrt(m->sys->massless.compliance[w->index[k]]))) : size;
+    }
+    return size;
+}
+
+/* How far loads and bases move the structure at least. */
+static double least_motion(struct period_map *m)
+{
+    double size = 0.0;
+    for (size_t k = 0; k < m->sys->harmonics; k++) {
+        const struct harmonic *w = &m->sys->harmonic[k];
+        if (w->drives == DRIVES_LOAD) {
+            size = hypot(size, hypot(size_of_load(m, w, w->cosine), size_of_load(m, w, w->sine)));
+        } else if (w->drives == DRIVES_BASE) {
+            size = hypot(size, hypot(size_of_base(m, w, w->cosine), size_of_base(m, w, w->sine)));
+        }
+    }
+    return size;
+}
+
+/* A power of two that makes very small or very large motions ordinary ones. */
+static double scale_of(double size)
+{
+    return size > 0.0 && !(size >= 1.0 / LARGE && size <= LARGE) ? ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0)) : 1.0;
+}
+
+/* Sizes of motions are those of what drives the system, and of the guess y. */
+static void prepare_sizes(struct period_map *m, const double *y)
+{
+    const double least = least_motion(m);
+    double size = least;
+    m->scale = 1.0;
+    tribo_period_map_coordinates(m, y, m->x);
+    for (size_t i = 0; i < m->n; i++) {
+        size = greater(size, fabs(m->x[i]));
+    }
+    m->scale = scale_of(size);
+    m->least = LEAST_SIZE * (m->scale * least);
+}
+
+static int prepare_norm(struct period_map *m, double period)
+{
+    const size_t n = m->n;
+    if (m->norm.phi && m->revision == m->sys->revision && m->period == period) {
+        return TRIBO_OK;
+    }
+    tribo_energy_norm_free(&m->norm);
+    const int status = tribo_energy_norm_create(&m->norm, m->sys, LEAST_OMEGA * turn() / period);
+    if (status) {
+        return tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts));
+    }
+    memset(m->work, 0, n * n * sizeof *m->work);
+    for (size_t i = 0; i < n; i++) {
+        m->work[i * n + i] = 1.0;
+    }
+    tribo_energy_norm_state(&m->norm, n, m->work, m->unit);
+    m->revision = m->sys->revision;
+    m->period = period;
+    return TRIBO_OK;
+}
+
+int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y)
+{
+    m->halves = 0;
+    m->moved = 0;
+    int status = m->drv->method->open(m->drv, &m->events);
+    status = status ? status : prepare_norm(m, period);
+    if (!status && !m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, m->n)) {
+        status = tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
+    }
+    if (!status) {
+        m->t = t;
+        tribo_period_map_choose(m, is_odd(m->sys, period));
+        prepare_sizes(m, y);
+    }
+    return status;
+}
+
+void tribo_period_map_choose(struct period_map *m, int odd)
+{
+    m->odd = odd;
+    m->span = odd ? 0.5 * m->period : m->period;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- life */
+
+int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
+{
+    const size_t n = 2 * drv->sys->ndof;
+    *m = (struct period_map){.drv = drv, .sys = drv->sys, .n = n, .company = {phase_ends, event_decided}};
+    m->y = malloc((2 * n * n + 2 * n + 2 * drv->sys->ncontact + 2) * sizeof *m->y);
+    if (m->y) {
+        m->x = m->y + n + 1;
+        m->unit = m->x + n + 1;
+        m->work = m->unit + n * n;
+        m->limit = m->work + n * n;
+    }
+    return m->y != NULL;
+}
+
+void tribo_period_map_free(struct period_map *m)
+{
+    tribo_energy_norm_free(&m->norm);
+    tribo_variation_free(&m->variation);
+    free(m->y);
+    memset(m, 0, sizeof *m);
+}

@@ -1,0 +1,474 @@
+#include "variation.h"
+#include "dynamics/system/elastic.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Times at which contacts stop are one time if they differ by no more than this part. */
+#define TOGETHER 1e-6
+
+void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row)
+{
+    const struct matrix *j = &sys->direction;
+    memset(row, 0, columns * sizeof *row);
+    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+        tribo_add(row, j->val[k], v + j->col[k] * columns, columns);
+    }
+}
+
+/* x->f = the change of the forces that hold contacts by that of q'' without them. Returns a status. */
+static int change_of_holds(struct variation *x, const double *acceleration, int order)
+{
+    memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+    if (order) {
+        tribo_system_loads(x->sys, DRIVES_BASE, order, -1.0, x->a);
+    }
+    tribo_matrix_multiply_add(&x->sys->direction, 1.0, acceleration, x->a);
+    const int status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
+    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.hold)) : TRIBO_OK;
+}
+
+/* to [ndof] += the change of q'' by one of the state, q and u. */
+static void add_change(const tribo_system *sys, const double *q, const double *u, double *to)
+{
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, q, to);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, u, to);
+    }
+}
+
+/* x->rise, while the forces of contacts that do not hold follow their limits. */
+static int find_rise(struct variation *x, const double *y)
+{
+    tribo_system *sys = x->sys;
+    const struct stick_slip *m = &x->events->stick_slip;
+    double *rate = x->column;
+    tribo_system_limits(sys, x->a, x->f);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        x->rise[i] = -x->f[i] * tribo_breakaway_ratio(&m->breakaway, i);
+        x->f[i] *= tribo_stick_slip_follows(m, i);
+    }
+    memset(rate, 0, sys->ndof * sizeof *rate);
+    tribo_system_loads(sys, DRIVES_LOAD, 1, 1.0, rate);
+    add_change(sys, y + sys->ndof, x->acceleration, rate);
+    tribo_matrix_multiply_add(&sys->response, 1.0, x->f, rate);
+    const int status = change_of_holds(x, rate, 2);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        x->rise[i] += x->side[i] * x->f[i];
+    }
+    return status;
+}
+
+/* x->pull, of side times the forces. */
+static int find_pull(struct variation *x)
+{
+    const size_t n = x->sys->ndof;
+    double *state = x->column, *change = state + 2 * n;
+    int status = TRIBO_OK;
+    for (size_t j = 0; !status && j < x->columns; j++) {
+        for (size_t d = 0; d < 2 * n; d++) {
+            state[d] = x->v[d * x->columns + j];
+        }
+        memset(change, 0, n * sizeof *change);
+        add_change(x->sys, state, state + n, change);
+        status = change_of_holds(x, change, 0);
+        for (size_t k = 0; k < x->count; k++) {
+            x->pull[k * x->columns + j] = x->side[x->met[k]] * x->f[x->met[k]];
+        }
+    }
+    return status;
+}
+
+/* Whether a static limit is what ends the phase. */
+static int breaks_away(const struct variation *x)
+{
+    const struct guard *g = x->events->met;
+    const struct stick_slip *m = &x->events->stick_slip;
+    return g && g->slides == HOLDS && !m->breakaway.falls && m->holds[g->contact] &&
+           tribo_breakaway_is_sudden(&m->breakaway, g->contact);
+}
+
+/* The contacts whose forces, just found to be m->f, meet their static limits. */
+static void find_met(struct variation *x)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    x->count = 0;
+    memset(x->side, 0, x->sys->ncontact);
+    if (!breaks_away(x)) {
+        return;
+    }
+    tribo_system_limits(x->sys, x->a, x->f);
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const double met = (1.0 - TOGETHER) * tribo_breakaway_ratio(&m->breakaway, i) * x->a[i];
+        const int may = m->holds[i] && tribo_breakaway_is_sudden(&m->breakaway, i);
+        if (may && (i == x->events->met->contact || fabs(m->f[i]) >= met)) {
+            x->side[i] = (signed char)(m->f[i] > 0.0 ? 1 : -1);
+            x->met[x->count++] = i;
+        }
+    }
+}
+
+/* Those of them that go beyond: the others only touch their limits. */
+static void keep_rising(struct variation *x)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < x->count; k++) {
+        const size_t i = x->met[k];
+        if (x->rise[i] > 0.0) {
+            x->met[count++] = i;
+        } else {
+            x->side[i] = 0;
+        }
+    }
+    x->count = count;
+}
+
+/* x->f = how letting contact i go changes the rates of forces that hold: damping hands on the jump of its acceleration. */
+static int change_of_rates(struct variation *x, size_t i)
+{
+    const struct breakaway *b = &x->events->stick_slip.breakaway;
+    const tribo_system *sys = x->sys;
+    double *jump = x->column, *rate = jump + sys->ndof;
+    memset(jump, 0, 2 * sys->ndof * sizeof *jump);
+    memset(x->f, 0, sys->ncontact * sizeof *x->f);
+    x->f[i] = tribo_breakaway_most(b, i) - b->kinetic[i];
+    tribo_matrix_multiply_add(&sys->response, 1.0, x->f, jump);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, jump, rate);
+    }
+    return change_of_holds(x, rate, 0);
+}
+
+/* Whether letting one of them go changes the force of another one, or how fast that rises: x->bond, one but the first, or
+ * ncontact. */
+static int find_bond(struct variation *x)
+{
+    int status = TRIBO_OK;
+    x->bond = x->sys->ncontact;
+    for (size_t k = 0; !status && x->count > 1 && k < x->count; k++) {
+        const size_t i = x->met[k];
+        memset(x->a, 0, x->sys->ncontact * sizeof *x->a);
+        x->a[i] = 1.0;
+        status = tribo_stick_slip_balance(&x->events->stick_slip, x->a, x->f);
+        for (size_t l = 0; l < k; l++) {
+            x->bond = fabs(x->f[x->met[l]]) > TOGETHER * fabs(x->f[i]) ? i : x->bond;
+        }
+        status = status ? status : change_of_rates(x, i);
+        for (size_t l = 0; l < x->count; l++) {
+            x->bond = l != k && fabs(x->f[x->met[l]]) > TOGETHER * x->rise[x->met[l]] ? x->met[k ? k : l] : x->bond;
+        }
+    }
+    return status ? tribo_system_fail(x->sys, status, "%s", tribo_message(x->events->stick_slip.hold)) : TRIBO_OK;
+}
+
+/* All that the decision leaves unknown of forces that meet static limits. */
+static int look_at_met(struct variation *x, const double *y)
+{
+    int status = find_rise(x, y);
+    keep_rising(x);
+    status = status ? status : find_pull(x);
+    return status ? status : find_bond(x);
+}
+
+static int phase_ends(struct company *company, double tau, double t, const double *y)
+{
+    struct variation *x = (struct variation *)company;
+    tribo_system *sys = x->sys;
+    memcpy(x->before, x->events->stick_slip.slip, sys->ncontact);
+    if (sys->massless.count) {
+        tribo_elastic_perturb(sys, x->before, x->columns, x->v, x->work);
+    }
+    int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration, x->force);
+    find_met(x);
+    memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
+    tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, x->acceleration, x->slope);
+    status = status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
+    return status || !x->count ? status : look_at_met(x, y);
+}
+
+/* 1 if contact i, which slid, comes to rest for an instant only, since the force of that pulls another one loose: accelerations
+ * jump where it stops, and it goes on. */
+static int pulls_loose(const struct variation *x, size_t i)
+{
+    const struct guard *met = x->events->met;
+    const signed char *now = x->events->stick_slip.slip;
+    int loose = 0;
+    for (size_t k = 0; k < x->sys->ncontact; k++) {
+        loose |= x->before[k] == 0 && (now[k] == 1 || now[k] == -1);
+    }
+    return loose && met && met->slides == SLIDES && met->contact == i;
+}
+
+/* 1 if contact i slid, and does not any more, or the other way. One that only touches v = 0 has no derivative there; an elastic
+ * one has the same force before and after. */
+static int stops(const struct variation *x, size_t i)
+{
+    const signed char before = x->before[i], now = x->events->stick_slip.slip[i];
+    const int slid = (before == 1 || before == -1) && !x->events->stick_slip.elastic[i];
+    return slid && now != 2 && before * x->slope[i] < 0.0 && (now != before || pulls_loose(x, i));
+}
+
+/* u += jump of accelerations, dt earlier: slope dt = row. */
+static void jump_earlier(struct variation *x, double slope, const double *row)
+{
+    const size_t n = x->sys->ndof;
+    const double *after = tribo_stick_slip_find_acceleration(&x->events->stick_slip, x->sys);
+    for (size_t d = 0; d < n; d++) {
+        tribo_add(x->v + (n + d) * x->columns, (after[d] - x->acceleration[d]) / slope, row, x->columns);
+    }
+}
+
+/* The contacts that stop, to x->stopped, and how much earlier perturbed motions have them do so, in rows. Returns how many. */
+static size_t find_stopped(struct variation *x)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        if (stops(x, i)) {
+            tribo_contact_row(x->sys, i, x->v + x->sys->ndof * x->columns, x->columns, x->rows + count * x->columns);
+            x->stopped[count++] = i;
+        }
+    }
+    return count;
+}
+
+/* 1 if perturbed motions, too, have these contacts stop, or break away, at one time: others that hold tie them together. What has
+ * to be zero then has slopes by contact, and changes by rows. */
+static int together(const struct variation *x, const size_t *contact, size_t count, const double *slope, const double *rows)
+{
+    const double first = slope[contact[0]], size = tribo_largest(rows, x->columns) / fabs(first);
+    for (size_t k = 1; k < count; k++) {
+        for (size_t j = 0; j < x->columns; j++) {
+            const double dt = rows[k * x->columns + j] / slope[contact[k]] - rows[j] / first;
+            if (fabs(dt) > TOGETHER * size) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+/* 1 if the force of contact i may have changed where others stop: it stops itself, or rests before or after. */
+static int takes_part(const struct variation *x, size_t i)
+{
+    const int rests = x->before[i] == 0 || x->events->stick_slip.slip[i] == 0;
+    return !x->events->stick_slip.elastic[i] && (rests || stops(x, i));
+}
+
+/* x->group = group, of contact i and all to which it passes forces, by shared bodies and through others that take part. */
+static void gather(struct variation *x, size_t i, size_t group)
+{
+    size_t count = 0;
+    x->queue[count++] = i;
+    x->group[i] = group;
+    for (size_t k = 0; k < count; k++) {
+        const size_t one = x->queue[k];
+        for (size_t j = 0; j < x->sys->ncontact; j++) {
+            const double coupling = x->group[j] ? 0.0 : fabs(tribo_system_delassus(x->sys, one, j));
+            if (coupling > TOGETHER * tribo_system_delassus(x->sys, one, one) && takes_part(x, j)) {
+                x->group[j] = group;
+                x->queue[count++] = j;
+            }
+        }
+    }
+}
+
+/* Those that stop, count of them, in groups with all to which they pass forces. */
+static void gather_all(struct variation *x, size_t count)
+{
+    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
+    for (size_t k = 0; k < count; k++) {
+        if (!x->group[x->stopped[k]]) {
+            gather(x, x->stopped[k], k + 1);
+        }
+    }
+}
+
+static void swap_stopped(struct variation *x, size_t i, size_t k)
+{
+    const size_t contact = x->stopped[i];
+    x->stopped[i] = x->stopped[k];
+    x->stopped[k] = contact;
+    for (size_t j = 0; i != k && j < x->columns; j++) {
+        const double change = x->rows[i * x->columns + j];
+        x->rows[i * x->columns + j] = x->rows[k * x->columns + j];
+        x->rows[k * x->columns + j] = change;
+    }
+}
+
+/* Moves those of a group, from contact first of those that stop on, to there. Returns how many. */
+static size_t bring_forward(struct variation *x, size_t first, size_t count, size_t group)
+{
+    size_t next = first;
+    for (size_t k = first; k < count; k++) {
+        if (x->group[x->stopped[k]] == group) {
+            swap_stopped(x, next++, k);
+        }
+    }
+    return next - first;
+}
+
+/* u += the part that a group has in the jump of accelerations, dt earlier: slope dt = row. */
+static void jump_of_group(struct variation *x, size_t group, double slope, const double *row)
+{
+    const size_t n = x->sys->ndof;
+    double *jump = x->column;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        x->f[i] = x->group[i] == group ? x->events->stick_slip.force[i] - x->force[i] : 0.0;
+    }
+    memset(jump, 0, n * sizeof *jump);
+    tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, jump);
+    for (size_t d = 0; d < n; d++) {
+        tribo_add(x->v + (n + d) * x->columns, jump[d] / slope, row, x->columns);
+    }
+}
+
+/* Whether one of a group slides from there on: which of them stops first then changes when the next one stops. If all rest, that
+ * takes away all that their order does. */
+static void find_torn(struct variation *x, size_t group, const size_t *stopped)
+{
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        if (x->group[i] == group && x->events->stick_slip.slip[i] != 0) {
+            x->torn = i;
+            x->other = stopped[i == stopped[0]];
+        }
+    }
+}
+
+/* Contacts that stop by coincidence do so each at its own time: groups of them, between which no forces pass, one by one. */
+static void stop_by_groups(struct variation *x, size_t count)
+{
+    for (size_t next = 0, of_group; next < count; next += of_group) {
+        const size_t *stopped = x->stopped + next, group = x->group[stopped[0]];
+        const double *rows = x->rows + next * x->columns;
+        of_group = bring_forward(x, next, count, group);
+        if (together(x, stopped, of_group, x->slope, rows)) {
+            jump_of_group(x, group, x->slope[stopped[0]], rows);
+        } else {
+            find_torn(x, group, stopped);
+        }
+    }
+}
+
+/* Whether a contact loses its static limit where others stop, but not because they do: that is a coincidence of jumps, whose
+ * order counts. */
+static void find_apart(struct variation *x)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const int goes = x->before[i] == 0 && (m->slip[i] == 1 || m->slip[i] == -1);
+        if (goes && (x->side[i] || !x->group[i]) && tribo_breakaway_is_sudden(&m->breakaway, i)) {
+            x->torn = i;
+            x->other = x->stopped[0];
+        }
+    }
+}
+
+static void stop_earlier(struct variation *x)
+{
+    const size_t count = find_stopped(x);
+    if (!count) {
+        return;
+    }
+    gather_all(x, count);
+    find_apart(x);
+    if (together(x, x->stopped, count, x->slope, x->rows)) {
+        jump_earlier(x, x->slope[x->stopped[0]], x->rows);
+    } else {
+        stop_by_groups(x, count);
+    }
+}
+
+/* Of several contacts that lose their static limits at once, i slides; what others hold is taken from that, too. */
+static void let_go(struct variation *x, size_t i, const double *row)
+{
+    const struct stick_slip *m = &x->events->stick_slip;
+    const double ratio = tribo_breakaway_ratio(&m->breakaway, i),
+                 jump = -(m->slip[i] + x->side[i] * ratio) * m->limit[i] / x->rise[i];
+    for (size_t d = 0; d < x->sys->ndof; d++) {
+        tribo_add(x->v + (x->sys->ndof + d) * x->columns, jump * tribo_matrix_get(&x->sys->response, d, i), row, x->columns);
+    }
+}
+
+/* A contact that bears upon those whose limits are met by coincidence, or is pulled loose by them; ncontact: none. */
+static size_t find_bound(const struct variation *x)
+{
+    size_t bound = x->bond;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const signed char now = x->events->stick_slip.slip[i];
+        bound = x->before[i] == 0 && (now == 1 || now == -1) && !x->side[i] ? i : bound;
+    }
+    return bound;
+}
+
+/* Contacts that lose their static limits by coincidence do so each at its own time, too. */
+static void break_away_earlier(struct variation *x)
+{
+    const signed char *now = x->events->stick_slip.slip;
+    size_t gone = 0;
+    for (size_t k = 0; k < x->count; k++) {
+        gone += now[x->met[k]] != 0;
+    }
+    if (gone && together(x, x->met, x->count, x->rise, x->pull)) {
+        jump_earlier(x, x->rise[x->met[0]], x->pull);
+    } else if (gone) {
+        const size_t bound = find_bound(x);
+        for (size_t k = 0; k < x->count; k++) {
+            if (now[x->met[k]] != 0) {
+                let_go(x, x->met[k], x->pull + k * x->columns);
+            }
+        }
+        if (bound < x->sys->ncontact) {
+            x->torn = x->met[0];
+            x->other = bound;
+        }
+    }
+}
+
+static void event_decided(struct company *company)
+{
+    struct variation *x = (struct variation *)company;
+    stop_earlier(x);
+    break_away_earlier(x);
+}
+
+void tribo_variation_begin(struct variation *x, const double *v)
+{
+    memcpy(x->v, v, 2 * x->sys->ndof * x->columns * sizeof *v);
+    x->torn = x->other = x->sys->ncontact;
+}
+
+int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
+{
+    *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
+    x->v = malloc((2 * (sys->ndof + sys->ncontact) * columns + 6 * sys->ncontact + 6 * sys->ndof + 1) * sizeof *x->v);
+    x->before = malloc(2 * sys->ncontact + 1);
+    x->stopped = malloc((4 * sys->ncontact + 1) * sizeof *x->stopped);
+    if (!x->v || !x->before || !x->stopped) {
+        return 0;
+    }
+    x->rows = x->v + 2 * sys->ndof * columns;
+    x->slope = x->rows + sys->ncontact * columns;
+    x->a = x->slope + sys->ncontact;
+    x->f = x->a + sys->ncontact;
+    x->acceleration = x->f + sys->ncontact;
+    x->column = x->acceleration + sys->ndof;
+    x->pull = x->column + 3 * sys->ndof;
+    x->work = x->pull + sys->ncontact * columns;
+    x->rise = x->work + 2 * sys->ndof + sys->ncontact;
+    x->side = x->before + sys->ncontact;
+    x->force = x->rise + sys->ncontact;
+    x->met = x->stopped + sys->ncontact;
+    x->group = x->met + sys->ncontact;
+    x->queue = x->group + sys->ncontact;
+    return 1;
+}
+
+void tribo_variation_free(struct variation *x)
+{
+    free(x->v);
+    free(x->before);
+    free(x->stopped);
+    memset(x, 0, sizeof *x);
+}

@@ -1,0 +1,467 @@
+/* The motions that a structure is reduced to: its lowest modes, found densely or by Lanczos' method, and what steady forces at
+ * its contacts add to them. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/real.h"
+#include "lanczos.h"
+#include "dynamics/system/model.h"
+#include "normal_modes.h"
+
+/* The shift beside the mean omega^2 of the degrees of freedom, weighted by their masses: far below what is elastic, and far above
+ * what rounding makes of rigid-body motions. Where it is not, larger ones follow. */
+#define SHIFT 1e-9
+#define MORE 1e3
+#define MOST_SHIFT 1e-3
+
+/* What a singular mass matrix is made definite with, in the same way. */
+#define SLIGHT 1e-12
+
+/* Modes must come out of the factor again, their omega^2 to this part of itself and to this part of the shift, beside which
+ * rounding of the factor is not nothing. */
+#define SAME 1e-5
+#define SAME_SHIFT 1e-3
+
+/* A static response that has no more of its own than this part is one of the others; and what is left of it beside the modes is
+ * nothing if it is no more than this part of the whole, rounding of what was taken out. */
+#define OWN 1e-7
+#define ROUNDING (16.0 * DBL_EPSILON)
+
+/* Contacts whose displacements depend on each other make a flexibility that is singular but for this part. */
+#define RIDGE 1e-12
+
+/* Contacts whose responses are solved for at a time, and modes that are checked at a time. */
+#define BATCH 16
+#define CHECKED 6
+
+/* K + shift M. */
+struct shifted {
+    double shift;
+    struct cholesky factor;
+};
+
+/* ------------------------------------------------------------------------------------------------------------------- messages */
+
+/* What to say of modes that were not found. */
+static int modes_failed(const struct model *m, int status, const struct doubt *doubt)
+{
+    switch (status) {
+    case TRIBO_OK:
+        return TRIBO_OK;
+    case TRIBO_ERR_MEMORY:
+        return tribo_model_no_memory(m);
+    case TRIBO_ERR_NOT_FINITE:
+        return tribo_model_fail(m, status, "stiffness over mass overflows");
+    case TRIBO_ERR_UNSUPPORTED:
+        return tribo_model_fail(
+            m, status,
+            "omega^2 = %g of mode %zu is hardly more than rounding of the stiffness, which comes to %g: make the stiffest "
+            "parts softer, or rigid",
+            doubt->omega2, doubt->mode, doubt->noise);
+    default:
+        return tribo_model_fail(m, status, "omega^2 = %g of mode %zu does not come out pure: reduce the system to fewer modes",
+                                doubt->omega2, doubt->mode);
+    }
+}
+
+static int search_failed(const struct model *m, int status, const struct low_modes *low)
+{
+    switch (status) {
+    case TRIBO_OK:
+        return TRIBO_OK;
+    case TRIBO_ERR_MEMORY:
+        return tribo_model_no_memory(m);
+    case TRIBO_ERR_SIZE:
+        return tribo_model_fail(m, status, "nmode = %zu, but the mass matrix lets the structure have %zu mode%s only", m->nmode,
+                                low->count, plural(low->count));
+    default:
+        return tribo_model_fail(
+            m, status, "nmode = %zu: these modes are not found, or not counted; reduce the system to fewer or more", m->nmode);
+    }
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- the factors */
+
+/* Of the diagonals, stiffness over mass; 0 if there is no mass. */
+static double mean_square_frequency(const struct model *m)
+{
+    double stiffness = 0.0, mass = 0.0;
+    for (size_t i = 0; i < m->ndof; i++) {
+        stiffness += fabs(tribo_matrix_get(&m->stiffness, i, i));
+        mass += fabs(tribo_matrix_get(&m->mass, i, i));
+    }
+    return mass > 0.0 ? greater(stiffness, mass * 1e-200) / mass : 0.0;
+}
+
+/* The factor of factor K + other M. */
+static int factorize_sum(const struct model *m, double factor, double other, struct cholesky *c, size_t *where)
+{
+    struct matrix sum;
+    double pivot;
+    memset(c, 0, sizeof *c);
+    if (!tribo_matrix_sum(&sum, factor, &m->stiffness, other, &m->mass)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    return tribo_cholesky_consume(c, &sum, where, &pivot);
+}
+
+static int factor_failed(const struct model *m, int status, const char *what, size_t where)
+{
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_model_fail(m, status, "%s is not positive semidefinite: it shows at degree of freedom %zu", what, where)
+           : status == TRIBO_ERR_SIZE ? tribo_model_too_large(m)
+           : status
+               ? tribo_model_fail(m, status, "out of memory for the factor of %zu degree%s of freedom", m->ndof, plural(m->ndof))
+               : TRIBO_OK;
+}
+
+static int factorize_shifted(const struct model *m, struct shifted *s)
+{
+    const double mean = mean_square_frequency(m);
+    size_t where = 0;
+    int status = TRIBO_ERR_INDEFINITE;
+    if (!(mean > 0.0)) {
+        return tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "mass is zero");
+    }
+    for (double part = SHIFT; status == TRIBO_ERR_INDEFINITE && part < MOST_SHIFT; part *= MORE) {
+        s->shift = part * mean;
+        status = factorize_sum(m, 1.0, s->shift, &s->factor, &where);
+    }
+    return factor_failed(m, status, "stiffness", where);
+}
+
+/* Whether |M_ij| <= sqrt(M_ii M_jj) for all entries, and where not. */
+static int check_minors(const struct matrix *mass, size_t *where)
+{
+    for (size_t i = 0; i < mass->rows; i++) {
+        const double own = tribo_matrix_get(mass, i, i);
+        *where = i;
+        for (size_t k = mass->first[i]; k < mass->first[i + 1]; k++) {
+            const double other = tribo_matrix_get(mass, mass->col[k], mass->col[k]);
+            if (own < 0.0 || fabs(mass->val[k]) > (1.0 + 1e-9) * sqrt(own) * sqrt(fabs(other))) {
+                return TRIBO_ERR_INDEFINITE;
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* TRIBO_ERR_INDEFINITE if the mass matrix is not semidefinite, and where it shows. Of large ones only the minors of two rows are
+ * looked at: positive definite stiffness makes the low modes right whatever the mass does to high ones. */
+static int check_mass(const struct model *m, size_t *where)
+{
+    struct cholesky c;
+    int status = check_minors(&m->mass, where);
+    if (!status && m->ndof <= DENSE_MOST && !tribo_matrix_is_diagonal(&m->mass)) {
+        status = factorize_sum(m, SLIGHT / mean_square_frequency(m), 1.0, &c, where);
+        tribo_cholesky_free(&c);
+    }
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ the modes */
+
+/* The lowest modes of motions that are combinations of x [count][ndof]. Of stiffer motions than these nothing is known here: what
+ * rounding of the largest entries does to omega^2 is kept out of it. */
+static int find_among(const struct model *m, size_t count, const double *x, size_t wanted, struct reduced *r)
+{
+    const size_t n = m->ndof;
+    struct matrix z = {0}, mass = {0};
+    struct cholesky c = {0};
+    struct doubt doubt = {0};
+    size_t where;
+    double pivot, *columns = malloc(count * n * sizeof *columns), *product = malloc(count * count * sizeof *product);
+    int done = columns && product;
+    if (done) {
+        tribo_transpose(count, n, x, columns);
+        done = tribo_matrix_from_dense(&z, n, count, columns) && tribo_matrix_congruent(&m->mass, &z, product) &&
+               tribo_matrix_from_dense(&mass, count, count, product);
+    }
+    free(columns);
+    free(product);
+    int status = done ? tribo_cholesky_create(&c, &mass, &where, &pivot) : TRIBO_ERR_MEMORY;
+    status = status ? status : tribo_normal_modes(&m->stiffness, &z, &c, wanted, r->omega2, r->phi, &doubt);
+    tribo_cholesky_free(&c);
+    tribo_matrix_free(&mass);
+    tribo_matrix_free(&z);
+    for (size_t k = 0; !status && k < wanted; k++) {
+        const double *phi = r->phi + k * n;
+        r->omega2[k] = r->omega2[k] != 0.0 ? tribo_matrix_form(&m->stiffness, phi, phi) : 0.0;
+    }
+    r->count = wanted;
+    return modes_failed(m, status, &doubt);
+}
+
+static int find_densely(const struct model *m, const struct cholesky *mass, struct reduced *r)
+{
+    const struct matrix whole = {0};
+    struct doubt doubt = {0};
+    const int status = tribo_normal_modes(&m->stiffness, &whole, mass, m->nmode, r->omega2, r->phi, &doubt);
+    r->count = m->nmode;
+    r->truncation.above = m->nmode < m->ndof ? r->omega2[m->nmode - 1] : HUGE_VAL;
+    return modes_failed(m, status, &doubt);
+}
+
+/* Norms in M of (omega^2 + shift) (K + shift M)^-1 M phi - phi, change [count], for modes from first on. work [2 count][ndof]. 0
+ * if out of memory. */
+static int find_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, size_t first, size_t count,
+                          double *work, double *change)
+{
+    const size_t n = m->ndof;
+    const double *phi = r->phi + first * n;
+    double *mass = work + count * n;
+    tribo_matrix_multiply_all(&m->mass, count, phi, work);
+    if (!tribo_cholesky_solve(&s->factor, count, work)) {
+        return 0;
+    }
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < n; i++) {
+            work[k * n + i] = (r->omega2[first + k] + s->shift) * work[k * n + i] - phi[k * n + i];
+        }
+    }
+    tribo_matrix_multiply_all(&m->mass, count, work, mass);
+    for (size_t k = 0; k < count; k++) {
+        change[k] = sqrt(fabs(tribo_dot(work + k * n, mass + k * n, n)));
+    }
+    return 1;
+}
+
+/* No mode lies where modes were counted. work [ndof]. */
+static int check_gap(const struct model *m, const struct low_modes *low, const struct reduced *r, double *work)
+{
+    const double *last = r->phi + (r->count - 1) * m->ndof;
+    tribo_matrix_roots(&m->stiffness, work);
+    const double noise = low->growth * tribo_matrix_noise(&m->stiffness, work, last, last);
+    return r->omega2[r->count - 1] + noise < low->above ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
+}
+
+/* Each mode is one. work [2 CHECKED][ndof]. */
+static int check_residuals(const struct model *m, const struct shifted *s, const struct reduced *r, double *work)
+{
+    for (size_t first = 0; first < r->count; first += CHECKED) {
+        const size_t count = r->count - first < CHECKED ? r->count - first : CHECKED;
+        double change[CHECKED];
+        if (!find_residuals(m, s, r, first, count, work, change)) {
+            return TRIBO_ERR_MEMORY;
+        }
+        for (size_t k = 0; k < count; k++) {
+            const double omega2 = r->omega2[first + k];
+            if (!(change[k] * (omega2 + s->shift) <= SAME * omega2 + SAME_SHIFT * s->shift)) {
+                return TRIBO_ERR_NO_CONVERGENCE;
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int check_modes(const struct model *m, const struct shifted *s, const struct low_modes *low, const struct reduced *r)
+{
+    double *work = malloc(2 * CHECKED * m->ndof * sizeof *work);
+    int status = work ? check_gap(m, low, r, work) : TRIBO_ERR_MEMORY;
+    status = status ? status : check_residuals(m, s, r, work);
+    free(work);
+    return search_failed(m, status, low);
+}
+
+static int find_sparsely(const struct model *m, const struct shifted *s, struct reduced *r)
+{
+    struct low_modes low;
+    int status = search_failed(m, tribo_low_modes(&m->stiffness, &m->mass, s->shift, &s->factor, m->nmode, &low), &low);
+    status = status ? status : find_among(m, low.count, low.phi, m->nmode, r);
+    free(low.phi);
+    r->truncation.above = low.above;
+    return status ? status : check_modes(m, s, &low, r);
+}
+
+/* --------------------------------------------------------------------------------------------------------------- contacts */
+
+/* mx [ndof] = M x. Returns the norm of x in M. */
+static double weigh(const struct model *m, const double *x, double *mx)
+{
+    memset(mx, 0, m->ndof * sizeof *mx);
+    tribo_matrix_multiply_add(&m->mass, 1.0, x, mx);
+    const double square = tribo_dot(x, mx, m->ndof);
+    return square > 0.0 ? sqrt(square) : 0.0;
+}
+
+/* x -= the part of it in each of count motions, orthonormal in M, twice. mx [ndof] is workspace. Returns the norm of the rest. */
+static double separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
+{
+    for (int pass = 0; pass < 2; pass++) {
+        weigh(m, x, mx);
+        for (size_t k = 0; k < count; k++) {
+            tribo_add(x, -tribo_dot(phi + k * m->ndof, mx, m->ndof), phi + k * m->ndof, m->ndof);
+        }
+    }
+    return weigh(m, x, mx);
+}
+
+/* x [ndof] is what a steady force at contact i does. Takes out of it what the modes have, enters what the rest does at the
+ * contacts into missing [ncontact][ncontact], and adds what is new in it to the motions. */
+static void add_static(const struct model *m, struct reduced *r, size_t i, double *x, double *mx, double *missing)
+{
+    const double whole = weigh(m, x, mx), before = separate(m, m->nmode, r->phi, x, mx);
+    for (size_t j = 0; j < m->ncontact; j++) {
+        missing[i * m->ncontact + j] = tribo_matrix_row_dot(&m->direction, j, x);
+    }
+    const double norm = m->statics ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
+    if (norm > greater(OWN * before, ROUNDING * whole)) {
+        for (size_t k = 0; k < m->ndof; k++) {
+            r->phi[r->count * m->ndof + k] = x[k] / norm;
+        }
+        r->count++;
+    }
+}
+
+static int add_statics(const struct model *m, const struct shifted *s, struct reduced *r, double *missing)
+{
+    const size_t n = m->ndof;
+    double *x = malloc((BATCH + 1) * n * sizeof *x);
+    int done = x != NULL;
+    for (size_t first = 0; done && first < m->ncontact; first += BATCH) {
+        const size_t count = m->ncontact - first < BATCH ? m->ncontact - first : BATCH;
+        memset(x, 0, count * n * sizeof *x);
+        for (size_t i = first; i < first + count; i++) {
+            for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
+                x[(i - first) * n + m->direction.col[k]] = m->direction.val[k];
+            }
+        }
+        done = tribo_cholesky_solve(&s->factor, count, x);
+        for (size_t i = first; done && i < first + count; i++) {
+            add_static(m, r, i, x + (i - first) * n, x + BATCH * n, missing);
+        }
+    }
+    free(x);
+    return done ? TRIBO_OK : tribo_model_no_memory(m);
+}
+
+/* The motions that add_statics has added become orthogonal in K. */
+static int finish_statics(const struct model *m, struct reduced *r)
+{
+    const size_t count = r->count;
+    double *x = malloc(count * m->ndof * sizeof *x);
+    if (!x) {
+        return tribo_model_no_memory(m);
+    }
+    memcpy(x, r->phi, count * m->ndof * sizeof *x);
+    const int status = find_among(m, count, x, count, r);
+    free(x);
+    return status;
+}
+
+/* whole = missing + the elastic displacements that steady forces at the contacts make by the modes. */
+static void add_modes(const struct model *m, const struct shifted *s, const struct reduced *r, double *whole)
+{
+    const size_t c = m->ncontact;
+    for (size_t k = 0; k < m->nmode; k++) {
+        for (size_t i = 0; i < c; i++) {
+            const double part = r->omega2[k] > 0.0
+                                    ? tribo_matrix_row_dot(&m->direction, i, r->phi + k * m->ndof) / (r->omega2[k] + s->shift)
+                                    : 0.0;
+            for (size_t j = 0; j < c; j++) {
+                whole[i * c + j] += part * tribo_matrix_row_dot(&m->direction, j, r->phi + k * m->ndof);
+            }
+        }
+    }
+}
+
+/* The largest x'Ax beside x'Bx, A [n][n] semidefinite, B, of which A is a part, to rounding of its diagonal: 1 where B is lost in
+ * the rounding of what was taken out, as beside rigid-body motions. Both are overwritten. */
+static int largest_part(size_t n, double *a, double *b, double *part)
+{
+    struct matrix whole = {0};
+    struct cholesky c = {0};
+    size_t where;
+    double pivot, *value = malloc((n + 1) * sizeof *value);
+    for (size_t i = 0; i < n; i++) {
+        b[i * n + i] += b[i * n + i] > 0.0 ? RIDGE * b[i * n + i] : 1.0;
+    }
+    int status =
+        value && tribo_matrix_from_dense(&whole, n, n, b) ? tribo_cholesky_create(&c, &whole, &where, &pivot) : TRIBO_ERR_MEMORY;
+    *part = 1.0;
+    if (!status) {
+        tribo_half_solve(&c, a, n);
+        tribo_transpose(n, n, a, b);
+        tribo_half_solve(&c, b, n);
+        status = tribo_symmetric_eigen(b, n, value, a) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+        *part = clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
+    }
+    tribo_cholesky_free(&c);
+    tribo_matrix_free(&whole);
+    free(value);
+    return status != TRIBO_ERR_MEMORY;
+}
+
+/* What the modes lack at the contacts, and the static motions beside them. */
+static int find_statics(const struct model *m, const struct shifted *s, struct reduced *r)
+{
+    const size_t c = m->ncontact;
+    double *missing = calloc(2 * c * c + 1, sizeof *missing), *whole = missing + c * c;
+    int status = missing ? add_statics(m, s, r, missing) : tribo_model_no_memory(m);
+    r->truncation.missing = c > m->nmode ? 1.0 : 0.0;
+    if (!status && c <= m->nmode) {
+        memcpy(whole, missing, c * c * sizeof *whole);
+        add_modes(m, s, r, whole);
+        status = largest_part(c, missing, whole, &r->truncation.missing) ? TRIBO_OK : tribo_model_no_memory(m);
+    }
+    free(missing);
+    return status || r->count == m->nmode ? status : finish_statics(m, r);
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ calls */
+
+void tribo_reduced_free(struct reduced *r)
+{
+    free(r->omega2);
+    free(r->phi);
+}
+
+static int find_lowest_densely(const struct model *m, struct shifted *s, struct reduced *r)
+{
+    struct cholesky mass;
+    int status = m->ndof > DENSE_MOST ? tribo_model_too_large(m) : tribo_model_factorize(m, &mass);
+    if (!status) {
+        status = find_densely(m, &mass, r);
+        tribo_cholesky_free(&mass);
+    }
+    return status || r->omega2[0] < 0.0 ? status : factorize_shifted(m, s);
+}
+
+/* Lanczos' method is for large structures, of which few modes are wanted, and for masses that are singular. */
+static int find_lowest(const struct model *m, struct shifted *s, struct reduced *r)
+{
+    const int large = m->ndof > DENSE_MOST || (m->ndof >= SPARSE_LEAST && 4 * m->nmode <= m->ndof);
+    size_t where;
+    if (!large || !tribo_sparse_available()) {
+        const int status = find_lowest_densely(m, s, r);
+        if (status != TRIBO_ERR_INDEFINITE || !tribo_sparse_available() || check_mass(m, &where) == TRIBO_ERR_INDEFINITE) {
+            return status;
+        }
+    }
+    int status = check_mass(m, &where);
+    status = factor_failed(m, status, "mass", where);
+    status = status ? status : factorize_shifted(m, s);
+    return status ? status : find_sparsely(m, s, r);
+}
+
+int tribo_model_find_modes(const struct model *m, struct reduced *r)
+{
+    const size_t n = m->ndof, most = m->nmode + (m->statics ? m->ncontact : 0);
+    struct shifted s = {0.0, {0}};
+    memset(r, 0, sizeof *r);
+    r->omega2 = malloc(most * sizeof *r->omega2);
+    r->phi = malloc(most * n * sizeof *r->phi);
+    r->truncation.statics = m->statics;
+    int status = r->omega2 && r->phi ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
+    if (!status && r->omega2[0] < 0.0) {
+        status = tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
+                                  r->omega2[0]);
+    }
+    status = status || m->nmode == n || !m->ncontact ? status : find_statics(m, &s, r);
+    r->truncation.shift = s.shift;
+    r->truncation.above += s.shift;
+    tribo_cholesky_free(&s.factor);
+    return status;
+}

@@ -1,0 +1,342 @@
+#include "normal_modes.h"
+#include "common/real.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tribo/tribo.h"
+
+/* Eigenvalues above this part of the largest are what the QR algorithm finds to a dozen digits. */
+#define FOUND 1e-4
+
+/* Modes whose omega^2 are closer than this, relative, are left as they are: what mixes them is rounding of either. */
+#define CLOSE 1e-6
+
+/* A turn is a small correction. What asks for more is between modes whose omega^2 are rounding, and would mix them at random. */
+#define SLIGHT 1e-5
+
+/* Modes that turn by less than this stay orthonormal to rounding, whatever is done about the square of it. */
+#define TINY 1e-8
+
+/* Of another mode a mode may have so much, in terms of the root of its energy. */
+#define SHARED 1e-6
+
+/* Displacements of a mode are known to this part of the largest, and the stiffest mode makes the square of that of it. */
+#define ROUNDING (4.0 * DBL_EPSILON)
+
+/* What is not more than so many times the rounding of its terms is nothing else; what is more than so many times has two digits
+ * at the very least. */
+#define NOTHING 2.0
+#define CERTAIN 100.0
+
+/* Rounding of an energy that two modes share comes to no more than so many times that of its terms. */
+#define EXPLAINED 8.0
+
+struct spectrum {
+    size_t n;             /* of the displacements y */
+    double *k;            /* [n][n] Z'KZ */
+    double *y, *value;    /* [n][n] modes, one a row, those to be found anew first; [n] what is known of their omega^2 */
+    double *ky;           /* [n][n] K y */
+    double *block, *turn; /* [n][n] workspace */
+    double most;          /* largest |omega^2| */
+};
+
+/* All modes, their omega^2 to rounding of the largest. */
+static int find_all(struct spectrum *s, const struct cholesky *mass)
+{
+    const size_t n = s->n;
+    memcpy(s->turn, s->k, n * n * sizeof *s->k);
+    tribo_half_solve(mass, s->turn, n);
+    tribo_transpose(n, n, s->turn, s->block);
+    tribo_half_solve(mass, s->block, n);
+    if (!tribo_dense_finite(s->block, n * n)) {
+        return TRIBO_ERR_NOT_FINITE;
+    }
+    if (!tribo_symmetric_eigen(s->block, n, s->value, s->turn)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    tribo_half_solve_back(mass, s->turn, n);
+    tribo_transpose(n, n, s->turn, s->y);
+    return TRIBO_OK;
+}
+
+static void exchange(double *x, double *y, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double t = x[i];
+        x[i] = y[i];
+        y[i] = t;
+    }
+}
+
+/* Brings those of the first `open` modes that are far below the largest of them to the front. Returns how many they are. */
+static size_t set_apart(struct spectrum *s, size_t open)
+{
+    double most = 0.0;
+    size_t low = 0;
+    for (size_t k = 0; k < open; k++) {
+        most = greater(most, fabs(s->value[k]));
+    }
+    for (size_t k = 0; k < open; k++) {
+        if (!(fabs(s->value[k]) >= FOUND * most)) {
+            exchange(&s->value[k], &s->value[low], 1);
+            exchange(s->y + k * s->n, s->y + low * s->n, s->n);
+            low++;
+        }
+    }
+    s->most = greater(s->most, most);
+    return low;
+}
+
+/* ky = K y for count modes from the first one on. */
+static void stress(struct spectrum *s, size_t first, size_t count)
+{
+    memset(s->ky + first * s->n, 0, count * s->n * sizeof *s->ky);
+    tribo_multiply_add(count, s->n, s->n, 1.0, s->y + first * s->n, s->k, s->ky + first * s->n);
+}
+
+/* block [low][count] = y_k'K y_j, for the first `low` modes k, of which ky is known, and `count` modes j from the first one on.
+ */
+static void share(struct spectrum *s, size_t low, size_t first, size_t count)
+{
+    tribo_transpose(count, s->n, s->y + first * s->n, s->turn);
+    memset(s->block, 0, low * count * sizeof *s->block);
+    tribo_multiply_add(low, s->n, count, 1.0, s->ky, s->turn, s->block);
+}
+
+/* block [low][others] = by how much the first `low` modes and the others turn towards each other, to first order, so that they
+ * share nothing: (y_j'K y_k)/(omega_j^2 - omega_k^2). Returns the largest. */
+static double find_turns(struct spectrum *s, size_t low)
+{
+    const size_t n = s->n, others = n - low;
+    double most = 0.0;
+    stress(s, 0, low);
+    share(s, low, low, others);
+    for (size_t k = 0; k < low; k++) {
+        const double value = tribo_dot(s->y + k * n, s->ky + k * n, n);
+        for (size_t j = 0; j < others; j++) {
+            const double gap = s->value[low + j] - value, least = CLOSE * greater(fabs(s->value[low + j]), fabs(value));
+            const double shared = s->block[k * others + j];
+            const double by = fabs(gap) > least && fabs(shared) <= SLIGHT * fabs(gap) ? shared / gap : 0.0;
+            s->block[k * others + j] = by;
+            most = greater(most, fabs(by));
+        }
+    }
+    return most;
+}
+
+/* Takes so much of the turns of the others out of the first `low` modes. */
+static void take_out(struct spectrum *s, size_t low, double part)
+{
+    tribo_multiply_add(low, s->n - low, s->n, -part, s->block, s->y + low * s->n, s->y);
+}
+
+/* Takes out of the first `low` modes what they have of the others, and what those have of them; half before and half after that
+ * leaves them orthonormal but for a quarter of the third power of turns. Leaves ky of the first. */
+static void separate(struct spectrum *s, size_t low)
+{
+    const size_t n = s->n, others = n - low;
+    const int halves = find_turns(s, low) > TINY, by_others = !halves && low >= others;
+    take_out(s, low, halves ? 0.5 : 1.0);
+    if (by_others) {
+        stress(s, low, others);
+        tribo_multiply_add(low, others, n, -1.0, s->block, s->ky + low * n, s->ky);
+    }
+    tribo_transpose(low, others, s->block, s->turn);
+    tribo_multiply_add(others, low, n, 1.0, s->turn, s->y, s->y + low * n);
+    if (halves) {
+        take_out(s, low, 0.5);
+    }
+    if (!by_others) {
+        stress(s, 0, low);
+    }
+}
+
+/* The first `low` modes anew, from the stiffness in the space of them alone. */
+static int find_low(struct spectrum *s, size_t low)
+{
+    const size_t n = s->n;
+    share(s, low, 0, low);
+    if (!tribo_symmetric_eigen(s->block, low, s->value, s->turn)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    tribo_transpose(low, low, s->turn, s->block);
+    memset(s->ky, 0, low * n * sizeof *s->ky);
+    tribo_multiply_add(low, low, n, 1.0, s->block, s->y, s->ky);
+    memcpy(s->y, s->ky, low * n * sizeof *s->y);
+    return TRIBO_OK;
+}
+
+static int find(struct spectrum *s, const struct cholesky *mass)
+{
+    int status = find_all(s, mass);
+    for (size_t open = s->n, low = 0; !status && (low = set_apart(s, open)) > 0; open = low) {
+        if (low == open) {
+            return TRIBO_ERR_NO_CONVERGENCE;
+        }
+        separate(s, low);
+        status = find_low(s, low);
+    }
+    return status;
+}
+
+/* phi [n] = Z y of mode k. */
+static void expand(const struct spectrum *s, const struct matrix *z, size_t k, double *phi)
+{
+    if (z->rows) {
+        memset(phi, 0, z->rows * sizeof *phi);
+        tribo_matrix_multiply_add(z, 1.0, s->y + k * s->n, phi);
+    } else {
+        memcpy(phi, s->y + k * s->n, s->n * sizeof *phi);
+    }
+}
+
+/* The stiffness, and what tells rounding of it. */
+struct entries {
+    const struct matrix *matrix;
+    double *root, *largest; /* [rows] roots of the diagonal, and of the largest entry of each row */
+    double *force;          /* [rows] workspace */
+};
+
+static void look_at_entries(struct entries *k)
+{
+    const struct matrix *a = k->matrix;
+    tribo_matrix_roots(a, k->root);
+    for (size_t i = 0; i < a->rows; i++) {
+        double most = 0.0;
+        for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
+            most = greater(most, fabs(a->val[e]));
+        }
+        k->largest[i] = sqrt(most);
+    }
+}
+
+/* At least what rounding of the entries may do to x'Kx. */
+static double noise_bound(const struct entries *k, const double *x)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < k->matrix->rows; i++) {
+        sum += k->largest[i] * fabs(x[i]);
+    }
+    return DBL_EPSILON * sum * sum;
+}
+
+/* What a mode has of the others: how much of phi'K phi is theirs, and whether that is more than rounding. */
+struct impurity {
+    double energy;
+    int unexplained;
+};
+
+static struct impurity find_impurity(struct spectrum *s, const struct entries *stiffness, const struct matrix *z, size_t k,
+                                     const double *phi)
+{
+    const size_t n = s->n;
+    struct impurity found = {0.0, 0};
+    stress(s, k, 1);
+    const double *ky = s->ky + k * n, own = fabs(tribo_dot(s->y + k * n, ky, n));
+    for (size_t j = 0; j < n; j++) {
+        const double part = j == k ? 0.0 : fabs(tribo_dot(s->y + j * n, ky, n)), least = greater(own, fabs(s->value[j]));
+        found.energy += part > 0.0 ? part * (part / least) : 0.0;
+        if (part > SHARED * sqrt(own) * sqrt(least)) {
+            expand(s, z, j, stiffness->force);
+            const double noise = tribo_matrix_noise(stiffness->matrix, stiffness->root, phi, stiffness->force);
+            found.unexplained |= !(part <= EXPLAINED * noise);
+        }
+    }
+    return found;
+}
+
+/* omega^2 = phi'K phi of mode k, if that is more than rounding. */
+static int judge(struct spectrum *s, const struct entries *stiffness, const struct matrix *z, size_t k, const double *phi,
+                 double *omega2, struct doubt *doubt)
+{
+    const size_t n = stiffness->matrix->rows;
+    memset(stiffness->force, 0, n * sizeof *stiffness->force);
+    tribo_matrix_multiply_add(stiffness->matrix, 1.0, phi, stiffness->force);
+    *omega2 = tribo_dot(phi, stiffness->force, n);
+    const double least = ROUNDING * ROUNDING * s->most;
+    if (fabs(*omega2) >= greater(FOUND * s->most, CERTAIN * (noise_bound(stiffness, phi) + least))) {
+        return TRIBO_OK;
+    }
+    const struct impurity impurity = find_impurity(s, stiffness, z, k, phi);
+    const double noise = impurity.energy + tribo_matrix_noise(stiffness->matrix, stiffness->root, phi, phi) + least;
+    *omega2 = tribo_matrix_form(stiffness->matrix, phi, phi);
+    *doubt = (struct doubt){k, *omega2, noise};
+    if (fabs(*omega2) <= NOTHING * noise) {
+        *omega2 = 0.0;
+        return TRIBO_OK;
+    }
+    if (!(fabs(*omega2) >= CERTAIN * noise)) {
+        return TRIBO_ERR_UNSUPPORTED;
+    }
+    return impurity.unexplained ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
+}
+
+/* The first of the largest displacements of a mode is positive: else its sign would be chance. */
+static void turn(double *phi, size_t n)
+{
+    double most = 0.0;
+    size_t first = 0;
+    for (size_t i = 0; i < n; i++) {
+        most = greater(most, fabs(phi[i]));
+    }
+    while (first < n && fabs(phi[first]) < 0.999 * most) {
+        first++;
+    }
+    const int turns = first < n && phi[first] < 0.0;
+    for (size_t i = 0; turns && i < n; i++) {
+        phi[i] = -phi[i];
+    }
+}
+
+/* The `wanted` lowest modes as displacements, ascending. */
+static int finish(struct spectrum *s, const struct entries *k, const struct matrix *z, size_t wanted, double *omega2, double *phi,
+                  struct doubt *doubt)
+{
+    const size_t n = k->matrix->rows, m = s->n;
+    for (size_t p = 0; p < wanted; p++) {
+        size_t lowest = p;
+        for (size_t q = p + 1; q < m; q++) {
+            lowest = s->value[q] < s->value[lowest] ? q : lowest;
+        }
+        exchange(&s->value[p], &s->value[lowest], 1);
+        exchange(s->y + p * m, s->y + lowest * m, m);
+        expand(s, z, p, phi + p * n);
+        turn(phi + p * n, n);
+        const int status = judge(s, k, z, p, phi + p * n, &omega2[p], doubt);
+        if (status) {
+            return status;
+        }
+        for (size_t q = p; q > 0 && omega2[q] < omega2[q - 1]; q--) {
+            exchange(&omega2[q], &omega2[q - 1], 1);
+            exchange(phi + q * n, phi + (q - 1) * n, n);
+        }
+    }
+    return TRIBO_OK;
+}
+
+int tribo_normal_modes(const struct matrix *k, const struct matrix *z, const struct cholesky *mass, size_t wanted, double *omega2,
+                       double *phi, struct doubt *doubt)
+{
+    const size_t n = k->rows, m = z->rows ? z->cols : n;
+    struct spectrum s = {.n = m};
+    double *memory = malloc((5 * m * m + m + 3 * n + 1) * sizeof *memory);
+    if (!memory) {
+        return TRIBO_ERR_MEMORY;
+    }
+    s.k = memory;
+    s.y = s.k + m * m;
+    s.ky = s.y + m * m;
+    s.block = s.ky + m * m;
+    s.turn = s.block + m * m;
+    s.value = s.turn + m * m;
+    struct entries entries = {k, s.value + m, s.value + m + n, s.value + m + 2 * n};
+    look_at_entries(&entries);
+    int status = tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    status = status || m == 0 ? status : find(&s, mass);
+    status = status ? status : finish(&s, &entries, z, wanted, omega2, phi, doubt);
+    free(memory);
+    return status;
+}

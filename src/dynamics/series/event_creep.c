@@ -1,0 +1,549 @@
+#include "event_series.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NODES TRIBO_CREEP_NODES
+
+/* Of more planar contacts that slide all follow their series: Newton's matrices are dense. */
+#define MOST_CONTACTS 128
+
+/* A step pays that is longer than this many times the time in which friction would stop a contact; and than more, as the cube of
+ * their number, where these matrices are most of the work. */
+#define PAYS 100.0
+#define FEW_CONTACTS 32.0
+
+#define MOST_ITERATIONS 10
+#define BISECTIONS 60
+
+/* Newton's method ends with steps of this part of what directions may be off, and velocities off at nodes by that part; and fails
+ * at steps of this angle, or if one is not less than this part of the one before. */
+#define ENOUGH 1e-2
+#define STRAY_ENOUGH 0.1
+#define TOO_FAR 1.5
+#define HEADWAY 0.5
+
+/* Structure and loads may turn directions as fast as this many times their highest frequency; what turns faster relaxes. */
+#define TURNS 2.0
+
+/* By how much directions of forces may be off, and those of velocities, however small these are. */
+#define MOST_OFF 1e-4
+#define MOST_STRAY 1e-3
+
+/* A step that was shorter than the one before leaves this part of what is astray where it begins, or it is not for its length. */
+#define LESS_STRAY 0.5
+
+/* Over a step speeds grow by this factor at most: what is small where it begins is not to be lost beside what comes. */
+#define FASTER 100.0
+
+/* Lengths of steps change by these factors. */
+#define GROWS 4.0
+#define SHRINKS 0.2
+
+/* Zeros of P_8 - P_7, Legendre's polynomials, on [0, 1]. */
+static const double node[NODES] = {0.022479386438712498, 0.11467905316090423, 0.26578982278458947, 0.45284637366944461,
+                                   0.64737528288683036,  0.81975930826310764, 0.94373743946307788, 1.0};
+
+void tribo_creep_free(struct creep *c)
+{
+    free(c->weight);
+    free(c->slip);
+    free(c->slides);
+    memset(c, 0, sizeof *c);
+}
+
+/* --------------------------------------------------------------------------------------------------------- what it takes */
+
+static void set_basis(struct creep *c)
+{
+    memset(c->basis, 0, sizeof c->basis);
+    for (size_t i = 0; i < NODES; i++) {
+        double *b = c->basis[i];
+        b[0] = 1.0;
+        for (size_t j = 0; j < NODES; j++) { /* times (x - node_j)/(node_i - node_j) */
+            for (size_t k = NODES - 1; j != i && k < NODES; k--) {
+                b[k] = ((k ? b[k - 1] : 0.0) - node[j] * b[k]) / (node[i] - node[j]);
+            }
+        }
+    }
+}
+
+/* What a constant force does with time^m, one that is time^k does with m! k!/(m + k)! time^(m + k). */
+static void set_weights(struct creep *c)
+{
+    for (size_t m = 0; m < c->terms; m++) {
+        for (size_t j = 0; j < NODES; j++) {
+            double *w = c->weight + (m * NODES + j) * NODES, part = pow(node[j], (double)m);
+            memset(w, 0, NODES * sizeof *w);
+            for (size_t k = 0; k < NODES; k++) {
+                for (size_t i = 0; i < NODES; i++) {
+                    w[i] += part * c->basis[i][k];
+                }
+                part *= node[j] * (double)(k + 1) / (double)(m + k + 1);
+            }
+        }
+    }
+}
+
+static int reserve(struct event *e, size_t slides)
+{
+    struct creep *c = &e->creep;
+    const size_t contacts = e->events.stick_slip.plane->count, terms = e->most_order + 1, unknowns = slides * NODES;
+    if (c->weight && c->contacts >= contacts && c->room >= slides) {
+        return TRIBO_OK;
+    }
+    tribo_creep_free(c);
+    const size_t response = 4 * slides * contacts * terms;
+    c->weight = malloc((terms * NODES * NODES + response + unknowns * (unknowns + 1) + contacts * NODES) * sizeof *c->weight);
+    c->slip = malloc(2 * e->sys->ncontact);
+    c->slides = malloc((contacts + unknowns) * sizeof *c->slides);
+    if (!c->weight || !c->slip || !c->slides) {
+        tribo_creep_free(c);
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s that creep", slides, plural(slides));
+    }
+    c->response = c->weight + terms * NODES * NODES;
+    c->matrix = c->response + response;
+    c->rest = c->matrix + unknowns * unknowns;
+    c->angle = c->rest + unknowns;
+    c->holds = (unsigned char *)c->slip + e->sys->ncontact;
+    c->pivot = c->slides + contacts;
+    c->contacts = contacts;
+    c->room = slides;
+    c->terms = terms;
+    set_basis(c);
+    set_weights(c);
+    return TRIBO_OK;
+}
+
+static int is_sliding(const struct stick_slip *m, size_t k)
+{
+    return m->slip[m->plane->contact[k].at] == TRIBO_IN_PLANE;
+}
+
+static size_t count_sliding(const struct stick_slip *m)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        count += (size_t)is_sliding(m, k);
+    }
+    return count;
+}
+
+/* Those that slide, to c->slides. */
+static void find_sliding(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t k = 0, count = 0; k < m->plane->count; k++) {
+        if (is_sliding(m, k)) {
+            e->creep.slides[count++] = k;
+        }
+    }
+}
+
+static int one_begins(const struct stick_slip *m)
+{
+    size_t k = 0;
+    while (k < m->plane->count && !(is_sliding(m, k) && m->plane->contact[k].begins != SLIDES_ON)) {
+        k++;
+    }
+    return k < m->plane->count;
+}
+
+double tribo_creep_least(const struct event *e, const double *y)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t count = count_sliding(m);
+    const double part = (double)count / FEW_CONTACTS;
+    return count == 0 || count > MOST_CONTACTS || one_begins(m)
+               ? HUGE_VAL
+               : PAYS * greater(1.0, part * part * part) * tribo_planar_series_first_stop(m, e->sys, y);
+}
+
+/* --------------------------------------------------------------------------------------------------------- directions */
+
+/* The directions of contact k as c->angle says. */
+static void fit(struct event *e, size_t k, double h)
+{
+    const struct creep *c = &e->creep;
+    struct planar_line *l = &e->planar.line[k];
+    double power = 1.0;
+    memset(l->un, 0, (e->order + 1) * sizeof *l->un);
+    memset(l->ut, 0, (e->order + 1) * sizeof *l->ut);
+    for (size_t p = 0; p < NODES; p++) {
+        for (size_t i = 0; i < NODES; i++) {
+            l->un[p] += power * c->basis[i][p] * cos(c->angle[k * NODES + i]);
+            l->ut[p] += power * c->basis[i][p] * sin(c->angle[k * NODES + i]);
+        }
+        power /= h;
+    }
+}
+
+/* How fast the direction of contact k turns where the last step ends. */
+static double turn_of(const struct event *e, size_t k)
+{
+    const struct planar_line *l = &e->planar.line[k];
+    double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0;
+    for (size_t p = e->order + 1; p-- > 0;) {
+        dn = dn * e->length + un;
+        dt = dt * e->length + ut;
+        un = un * e->length + l->un[p];
+        ut = ut * e->length + l->ut[p];
+    }
+    return un * dt - ut * dn;
+}
+
+double tribo_creep_settled(const struct event *e, const double *y, double error)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    double length = HUGE_VAL;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const double v =
+            hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
+        const double stop = tribo_planar_series_stop(m, e->sys, p, y);
+        const double turn = is_sliding(m, k) ? fabs(turn_of(e, k)) : 0.0;
+        const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v);
+        length = follows ? length : lesser(length, stop);
+    }
+    return length;
+}
+
+/* As directions turn they may go on. */
+static void guess(struct event *e, size_t k, double h)
+{
+    const double turn = turn_of(e, k);
+    for (size_t i = 0; i < NODES; i++) {
+        e->creep.angle[k * NODES + i] = fabs(turn * h) < 1.0 ? turn * h * node[i] : 0.0;
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ response */
+
+/* to [terms][2 contacts] += factor times the series of x. */
+static void add_series(const struct event *e, double factor, double *to)
+{
+    const struct planar_slip *plane = e->events.stick_slip.plane;
+    for (size_t k = 0; k <= e->order; k++) {
+        for (size_t i = 0; i < 2 * plane->count; i++) {
+            const struct planar_contact *p = &plane->contact[i / 2];
+            to[k * 2 * plane->count + i] += factor * p->limit[i % 2] * e->watch[k * e->sys->ncontact + p->at + i % 2];
+        }
+    }
+}
+
+/* c->response of all that slide, as a difference to the motion without their friction. */
+static int find_response(struct event *e, size_t slides)
+{
+    struct creep *c = &e->creep;
+    const size_t row = 2 * e->events.stick_slip.plane->count, bytes = (e->order + 1) * sizeof(double);
+    for (size_t s = 0; s < slides; s++) {
+        memset(e->planar.line[c->slides[s]].un, 0, bytes);
+        memset(e->planar.line[c->slides[s]].ut, 0, bytes);
+    }
+    int status = tribo_event_series(e);
+    memset(c->response, 0, 2 * slides * c->terms * row * sizeof *c->response);
+    for (size_t s = 0; !status && s < 2 * slides; s++) {
+        add_series(e, -1.0, c->response + s * c->terms * row);
+    }
+    for (size_t s = 0; !status && s < 2 * slides; s++) {
+        struct planar_line *l = &e->planar.line[c->slides[s / 2]];
+        l->un[0] = l->n[s % 2];
+        l->ut[0] = l->t[s % 2];
+        status = tribo_event_series(e);
+        l->un[0] = l->ut[0] = 0.0;
+        add_series(e, 1.0, c->response + s * c->terms * row);
+    }
+    return status;
+}
+
+/* The same, unless it is known. */
+static int learn_response(struct event *e, size_t slides)
+{
+    struct creep *c = &e->creep;
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t revision = tribo_system_revision(e->sys), contacts = e->sys->ncontact;
+    if (c->known && c->revision == revision && memcmp(c->slip, m->slip, contacts) == 0 &&
+        memcmp(c->holds, m->holds, contacts) == 0) {
+        return TRIBO_OK;
+    }
+    const int status = find_response(e, slides);
+    c->known = !status;
+    c->revision = revision;
+    memcpy(c->slip, m->slip, contacts);
+    memcpy(c->holds, m->holds, contacts);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- Newton */
+
+/* u turned by a quarter, along axes, at a node of the s-th one that slides. */
+static void across(const struct event *e, size_t s, size_t i, double *w)
+{
+    const size_t k = e->creep.slides[s];
+    const struct planar_line *l = &e->planar.line[k];
+    const double cosine = cos(e->creep.angle[k * NODES + i]), sine = sin(e->creep.angle[k * NODES + i]);
+    for (size_t d = 0; d < 2; d++) {
+        w[d] = cosine * l->t[d] - sine * l->n[d];
+    }
+}
+
+/* to [NODES][NODES] = what a force along axis `from` of those that slide does to x along `axis` of all. */
+static void add_response(const struct event *e, size_t from, size_t axis, double h, double (*to)[NODES])
+{
+    const struct creep *c = &e->creep;
+    const size_t row = 2 * e->events.stick_slip.plane->count;
+    double power = 1.0;
+    memset(to, 0, NODES * sizeof *to);
+    for (size_t m = 0; m <= e->order; m++) {
+        const double r = power * c->response[(from * c->terms + m) * row + axis];
+        for (size_t j = 0; r != 0.0 && j < NODES * NODES; j++) {
+            to[j / NODES][j % NODES] += r * c->weight[m * NODES * NODES + j];
+        }
+        power *= h;
+    }
+}
+
+/* Derivatives of what x of contact a has across u by the angles of contact b, a and b among those that slide. */
+static void set_block(struct event *e, size_t a, size_t b, double h, size_t unknowns)
+{
+    double from[NODES][2], to[NODES][2], part[NODES][NODES];
+    for (size_t i = 0; i < NODES; i++) {
+        across(e, b, i, from[i]);
+        across(e, a, i, to[i]);
+        memset(e->creep.matrix + (a * NODES + i) * unknowns + b * NODES, 0, NODES * sizeof *e->creep.matrix);
+    }
+    for (size_t d = 0; d < 4; d++) {
+        add_response(e, 2 * b + d / 2, 2 * e->creep.slides[a] + d % 2, h, part);
+        for (size_t j = 0; j < NODES; j++) {
+            double *row = e->creep.matrix + (a * NODES + j) * unknowns + b * NODES;
+            for (size_t i = 0; i < NODES; i++) {
+                row[i] += to[j][d % 2] * part[j][i] * from[i][d / 2];
+            }
+        }
+    }
+}
+
+/* c->rest = what x has across u; and by what of it along u the matrix is less. */
+static void set_rest(struct event *e, size_t s, double h, size_t unknowns)
+{
+    struct creep *c = &e->creep;
+    const struct planar_line *l = &e->planar.line[c->slides[s]];
+    for (size_t j = 0; j < NODES; j++) {
+        const size_t at = s * NODES + j;
+        const double angle = c->angle[c->slides[s] * NODES + j];
+        const double xn = tribo_planar_series_value(l->xn, e->order, node[j] * h);
+        const double xt = tribo_planar_series_value(l->xt, e->order, node[j] * h);
+        c->rest[at] = xt * cos(angle) - xn * sin(angle);
+        c->matrix[at * unknowns + at] -= xn * cos(angle) + xt * sin(angle);
+    }
+}
+
+/* One step of Newton's method; returns its size, HUGE_VAL if there is none. */
+static double improve(struct event *e, size_t slides, double h)
+{
+    struct creep *c = &e->creep;
+    const size_t unknowns = slides * NODES;
+    for (size_t s = 0; s < slides * slides; s++) {
+        set_block(e, s / slides, s % slides, h, unknowns);
+    }
+    for (size_t s = 0; s < slides; s++) {
+        set_rest(e, s, h, unknowns);
+    }
+    if (!(tribo_lu_create(c->matrix, unknowns, c->pivot) > 0.0)) {
+        return HUGE_VAL;
+    }
+    tribo_lu_solve(c->matrix, unknowns, c->pivot, c->rest, 1);
+    for (size_t s = 0; s < unknowns; s++) {
+        c->angle[c->slides[s / NODES] * NODES + s % NODES] -= c->rest[s];
+    }
+    return tribo_largest(c->rest, unknowns);
+}
+
+/* By how much directions may be off over a step: as little as keeps forces from making more than this error of velocities. */
+static double allowed(const struct event *e, size_t k, double h, double error)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const struct planar_contact *p = &m->plane->contact[k];
+    const double r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
+    return lesser(MOST_OFF, error * (double)(NODES + 1) / (r * h));
+}
+
+/* By how much they are: what the last power has between nodes. */
+static double find_off(const struct event *e, size_t k, double h)
+{
+    const struct planar_line *l = &e->planar.line[k];
+    return 2.0 * pow(0.25 * h, NODES - 1) * hypot(l->un[NODES - 1], l->ut[NODES - 1]);
+}
+
+/* A step may go on beyond a stop, where x is against u. It ends where x has become this part of what it was (method_event.c),
+ * and no smaller one has to have the direction of u. */
+#define LEFT 1e-2
+
+/* What x has along u, and across. */
+static void take_parts(const struct event *e, size_t k, double tau, double *along, double *across)
+{
+    const struct planar_line *l = &e->planar.line[k];
+    const double xn = tribo_planar_series_value(l->xn, e->order, tau), xt = tribo_planar_series_value(l->xt, e->order, tau);
+    const double un = tribo_planar_series_value(l->un, NODES - 1, tau), ut = tribo_planar_series_value(l->ut, NODES - 1, tau);
+    *along = un * xn + ut * xt;
+    *across = un * xt - ut * xn;
+}
+
+/* The time in which friction would stop contact k, |x| being size. */
+static double stop_of(const struct event *e, size_t k, double size)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const struct planar_contact *p = &m->plane->contact[k];
+    const double n = p->limit[0] * p->limit[0] * m->diagonal[p->at], t = p->limit[1] * p->limit[1] * m->diagonal[p->at + 1];
+    return size / greater(n, t);
+}
+
+/* The direction that the velocity has at tau in a step of length h is another one. That is gone at once, and the velocity with
+ * it, or as much of it as friction takes in such a step; in parts of what the velocity may be off. */
+static double find_stray(const struct event *e, size_t k, double h, double tau, double error)
+{
+    const struct planar_contact *p = &e->events.stick_slip.plane->contact[k];
+    double along, across;
+    take_parts(e, k, tau, &along, &across);
+    const double size = greater(hypot(along, across), LEFT * e->planar.line[k].xn[0]);
+    const double gone = fabs(across) / size * lesser(1.0, h / stop_of(e, k, size));
+    return gone / lesser(MOST_STRAY, error * lesser(p->limit[0], p->limit[1]) / size);
+}
+
+/* 1 if the contact slides along u; or stops on the way, so that the step ends before it does not. */
+static int is_with(const struct event *e, size_t k, double h)
+{
+    double along, across, from = 0.0, to = 0.0;
+    take_parts(e, k, 0.0, &along, &across);
+    if (!(along > 0.0)) {
+        return 0;
+    }
+    for (size_t i = 0; i < NODES && along > 0.0; i++) {
+        from = to;
+        to = node[i] * h;
+        take_parts(e, k, to, &along, &across);
+    }
+    for (int i = 0; i < BISECTIONS && along <= 0.0; i++) {
+        const double middle = 0.5 * (from + to);
+        take_parts(e, k, middle, &along, &across);
+        *(along > 0.0 ? &from : &to) = middle;
+        along = 0.0;
+    }
+    return along > 0.0 || fabs(across) < 0.5 * LEFT * e->planar.line[k].xn[0];
+}
+
+static double size_at(const struct event *e, size_t k, double tau)
+{
+    const struct planar_line *l = &e->planar.line[k];
+    return hypot(tribo_planar_series_value(l->xn, e->order, tau), tribo_planar_series_value(l->xt, e->order, tau));
+}
+
+/* How much of a step of length h has no more speed than FASTER times that which it begins with: h, or h halved some times. */
+static double find_slow_part(const struct event *e, size_t k, double h)
+{
+    const double most = FASTER * e->planar.line[k].xn[0];
+    double part = h;
+    for (size_t i = 0; i < NODES; i++) {
+        while (size_at(e, k, node[i] * part) > most) {
+            part *= 0.5;
+        }
+    }
+    return part;
+}
+
+/* By how much a step is not as it should be, 1 being what it may; looked at between nodes. */
+static double find_defect(const struct event *e, size_t k, double h, double error)
+{
+    double most = find_off(e, k, h) / allowed(e, k, h, error);
+    for (size_t i = 0; i < NODES; i++) {
+        most = greater(most, find_stray(e, k, h, 0.5 * h * (node[i] + (i ? node[i - 1] : 0.0)), error));
+    }
+    return is_with(e, k, h) ? most : HUGE_VAL;
+}
+
+/* How many times as long a step may be as one that has this defect, with some reserve. */
+static double change(double defect)
+{
+    return lesser(greater(0.8 * pow(defect, -1.0 / NODES), SHRINKS), GROWS);
+}
+
+/* Newton's method leaves something there. */
+static double stray_at_nodes(const struct event *e, size_t slides, double h, double error)
+{
+    double most = 0.0;
+    for (size_t j = 0; j < slides * NODES; j++) {
+        most = greater(most, find_stray(e, e->creep.slides[j / NODES], h, node[j % NODES] * h, error));
+    }
+    return most;
+}
+
+static int find_angles(struct event *e, size_t slides, double h, double error, int *found)
+{
+    struct creep *c = &e->creep;
+    double most = MOST_OFF, before = TOO_FAR;
+    for (size_t s = 0; s < slides; s++) {
+        most = lesser(most, allowed(e, c->slides[s], h, error));
+    }
+    for (int iteration = 0; iteration < MOST_ITERATIONS; iteration++) {
+        for (size_t s = 0; s < slides; s++) {
+            fit(e, c->slides[s], h);
+        }
+        const int status = tribo_event_series(e);
+        if (status) {
+            return status;
+        }
+        const double step = improve(e, slides, h);
+        *found = step <= ENOUGH * most && stray_at_nodes(e, slides, h, error) <= STRAY_ENOUGH;
+        if (*found || !(step < before)) {
+            return TRIBO_OK;
+        }
+        before = HEADWAY * step;
+    }
+    return TRIBO_OK;
+}
+
+/* Whether the step is good, and how long the next one may be. Where it begins a contact that creeps may have another direction
+ * than is asked of it, and has that in shorter steps, too. */
+static void judge(const struct event *e, size_t slides, double h, double error, struct creep_step *step)
+{
+    double defect = 0.0, slow = h, stray = 0.0;
+    for (size_t s = 0; s < slides; s++) {
+        const size_t k = e->creep.slides[s];
+        const double begins = find_stray(e, k, h, 0.0, error);
+        const int creeps = h > PAYS * stop_of(e, k, e->planar.line[k].xn[0]);
+        stray = creeps ? greater(stray, begins) : stray;
+        defect = greater(defect, greater(begins, find_defect(e, k, h, error)));
+        slow = lesser(slow, find_slow_part(e, k, h));
+    }
+    const int stays = stray > 1.0 && stray > LESS_STRAY * step->stray;
+    step->good = defect <= 1.0 && slow == h;
+    step->next = stays ? 0.0 : slow < h ? slow : h * change(defect);
+    step->stray = stray;
+}
+
+int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step)
+{
+    struct creep *c = &e->creep;
+    const size_t slides = count_sliding(&e->events.stick_slip);
+    int status = reserve(e, slides), found = 0;
+    if (status) {
+        return status;
+    }
+    find_sliding(e);
+    for (size_t s = 0; s < slides; s++) {
+        guess(e, c->slides[s], h);
+    }
+    e->planar.given = 1;
+    status = tribo_event_start(e, t, y);
+    status = status ? status : learn_response(e, slides);
+    status = status ? status : find_angles(e, slides, h, error, &found);
+    e->planar.given = 0;
+    step->good = 0;
+    step->next = SHRINKS * h;
+    if (!status && found) {
+        judge(e, slides, h, error, step);
+    }
+    return status;
+}

@@ -1,0 +1,287 @@
+#include "event_series.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "dynamics/system/elastic.h"
+
+static void expand_harmonics(struct event *e, double t)
+{
+    tribo_system *sys = e->sys;
+    const size_t h = sys->harmonics;
+    tribo_system_set_time(sys, t);
+    for (size_t s = 0; s < h; s++) {
+        tribo_system_turn(sys, s);
+        double c = sys->harmonic[s].cos_t, d = sys->harmonic[s].sin_t;
+        for (size_t k = 0; k < e->order + 2; k++) {
+            const double rate = sys->harmonic[s].omega / (double)(k + 1), next = -rate * d;
+            e->cosine[k * h + s] = c;
+            e->sine[k * h + s] = d;
+            d = rate * c;
+            c = next;
+        }
+    }
+}
+
+/* to += factor times the k-th coefficient of the harmonics that load the structure, or move the base. */
+static void add_harmonics(const struct event *e, enum drives drives, size_t k, double factor, double *to)
+{
+    for (size_t s = 0; s < e->sys->harmonics; s++) {
+        const struct harmonic *w = &e->sys->harmonic[s];
+        const double c = factor * e->cosine[k * e->sys->harmonics + s], d = factor * e->sine[k * e->sys->harmonics + s];
+        for (size_t i = 0; w->drives == drives && i < w->count; i++) {
+            to[w->index[i]] += c * w->cosine[i] + d * w->sine[i];
+        }
+    }
+}
+
+/* Coefficients of the limits, at the time that the harmonics have been expanded for. Of such that fall with the speed each
+ * coefficient has to wait for the velocity's. */
+static void expand_limits(struct event *e)
+{
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    const int falls = e->events.stick_slip.breakaway.falls;
+    e->slide = falls ? e->fall : e->limit;
+    e->slide_terms = falls || e->events.stick_slip.plane ? e->order + 1 : e->terms;
+    tribo_system_limits(sys, e->limit, e->limit + c);
+    for (size_t k = 2; k < e->slide_terms; k++) {
+        memset(e->limit + k * c, 0, c * sizeof *e->limit);
+        add_harmonics(e, DRIVES_LIMIT, k, 1.0, e->limit + k * c);
+    }
+}
+
+/* The k-th coefficients of limits that fall with the speed, for contacts that slide. */
+static void expand_falling(struct event *e, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    for (size_t i = 0; i < c; i++) {
+        double *part = e->part + i;
+        if (m->slip[i] == 1 || m->slip[i] == -1) {
+            part[k * c] = tribo_breakaway_part(&m->breakaway, i, m->slip[i], k, c, e->watch + i, part);
+            e->fall[k * c + i] = tribo_breakaway_series(&m->breakaway, i, k, c, e->terms, e->limit + i, part);
+        }
+    }
+}
+
+/* The k-th coefficient of f for rigid contacts that do not hold: those that slide follow their limit, and so do those that are
+ * just at it; others keep their force. */
+static void given_forces(struct event *e, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t i = 0; i < e->sys->ncontact; i++) {
+        const int keeps = k == 0 && m->slip[i] == 0 && !m->holds[i];
+        const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact, side = tribo_stick_slip_follows(m, i);
+        e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
+    }
+}
+
+/* The same of elastic contacts that hold, by the k-th coefficients of places. */
+static void spring_forces(struct event *e, size_t k)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_system *sys = e->sys;
+    tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (m->slip[i] == 0 && m->elastic[i]) {
+            e->given[i] = k == 0 ? m->force[i] : e->spring[i];
+        }
+    }
+}
+
+/* given, and whether any of it is not 0. */
+static int find_given(struct event *e, size_t k)
+{
+    const int springs = e->sys->massless.count > 0, some = k < e->slide_terms;
+    if (some) {
+        given_forces(e, k);
+    } else if (springs) {
+        memset(e->given, 0, e->sys->ncontact * sizeof *e->given);
+    }
+    if (springs) {
+        spring_forces(e, k);
+    }
+    return some || springs;
+}
+
+/* The k-th coefficients of the contacts' velocities. */
+static void find_velocities(const struct event *e, size_t k, double *v)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    memset(v, 0, c * sizeof *v);
+    add_harmonics(e, DRIVES_BASE, k, -1.0, v);
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->u + k * e->sys->ndof, v);
+    for (size_t i = 0; k == 0 && i < c; i++) {
+        v[i] = m->rested[i] ? 0.0 : v[i];
+    }
+}
+
+/* The k-th coefficients of accelerations by stiffness, damping and loads. */
+static void expand_free(struct event *e, size_t k)
+{
+    const tribo_system *sys = e->sys;
+    const size_t n = sys->ndof;
+    double *acc = e->acceleration;
+    memset(acc, 0, n * sizeof *acc);
+    add_harmonics(e, DRIVES_LOAD, k, 1.0, acc);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, e->q + k * n, acc);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, e->u + k * n, acc);
+    }
+    tribo_system_tables(sys, (int)k, 1.0, 0, n, acc);
+}
+
+/* base and a = the k-th coefficients of accelerations of the bases, and of the contacts against them. */
+static void expand_relative(struct event *e, size_t k)
+{
+    const size_t c = e->sys->ncontact;
+    memset(e->base, 0, c * sizeof *e->base);
+    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
+    for (size_t i = 0; i < c; i++) {
+        e->a[i] = -e->base[i];
+    }
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->acceleration, e->a);
+}
+
+/* What is watched of contacts at rest is their force. */
+static void watch_forces(const struct event *e, size_t k, int given, double *watch)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t i = 0; i < e->sys->ncontact; i++) {
+        if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
+            watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
+        }
+    }
+}
+
+/* The k-th coefficients of accelerations and of what is watched. Returns a status. */
+static int expand_forces(struct event *e, size_t k)
+{
+    struct stick_slip *m = &e->events.stick_slip;
+    tribo_system *sys = e->sys;
+    double *acc = e->acceleration, *watch = e->watch + k * sys->ncontact;
+    expand_free(e, k);
+    find_velocities(e, k, watch);
+    if (m->breakaway.falls) {
+        expand_falling(e, k);
+    }
+    const int given = find_given(e, k);
+    int status = given && m->plane ? tribo_planar_series_forces(&e->planar, m, sys, k, watch, e->given) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
+    if (given) {
+        tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
+    }
+    expand_relative(e, k);
+    status = tribo_stick_slip_balance(m, e->a, e->held);
+    if (status) {
+        return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, e->held, acc);
+    status = m->plane ? tribo_planar_series_finish(&e->planar, m, sys, k, e->base, acc, e->held) : TRIBO_OK;
+    if (status) {
+        return status;
+    }
+    watch_forces(e, k, given, watch);
+    /* contacts at rest must not creep by what rounding leaves in acc */
+    status = tribo_stick_slip_hold(m, sys, e->base, acc);
+    if (!status && sys->massless.count) {
+        tribo_elastic_move(sys, m->slip, e->base, acc, e->spring);
+    }
+    return status;
+}
+
+/* The power of the sliding contacts: limits times velocities. */
+static void expand_energy(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    for (size_t k = 0; k < e->order; k++) {
+        double power = 0.0;
+        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
+            for (size_t i = 0; i < c; i++) {
+                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
+            }
+        }
+        power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
+        e->d[k + 1] = power / (double)(k + 1);
+    }
+}
+
+int tribo_event_start(struct event *e, double t, const double *y)
+{
+    tribo_system *sys = e->sys;
+    const size_t n = sys->ndof;
+    struct stick_slip *m = &e->events.stick_slip;
+    memcpy(e->q, y, n * sizeof *y);
+    memcpy(e->u, y + n, n * sizeof *y);
+    e->d[0] = y[2 * n];
+    const int status = m->plane ? tribo_planar_series_begin(&e->planar, e->most_order, m, sys, y, e->a, e->given) : TRIBO_OK;
+    e->order = m->plane ? e->planar.order : e->most_order;
+    expand_harmonics(e, t);
+    expand_limits(e);
+    return status;
+}
+
+int tribo_event_series(struct event *e)
+{
+    const size_t n = e->sys->ndof;
+    for (size_t k = 0; k <= e->order; k++) {
+        const int status = expand_forces(e, k);
+        if (status) {
+            return status;
+        }
+        const double part = 1.0 / (double)(k + 1);
+        for (size_t i = 0; k < e->order && i < n; i++) {
+            e->q[(k + 1) * n + i] = part * e->u[k * n + i];
+            e->u[(k + 1) * n + i] = part * e->acceleration[i];
+        }
+    }
+    e->sys->evaluations += e->order + 1;
+    expand_energy(e);
+    return TRIBO_OK;
+}
+
+int tribo_event_expand(struct event *e, double t, const double *y)
+{
+    const int status = tribo_event_start(e, t, y);
+    return status ? status : tribo_event_series(e);
+}
+
+/* N falls from the limit at high speed by (ratio - 1) limit exp(-|v|/velocity), and so does the slope, over velocity. */
+void tribo_event_slopes(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t c = e->sys->ncontact;
+    for (size_t k = 0; k <= e->order; k++) {
+        for (size_t i = 0; i < c; i++) {
+            const double more = e->fall[k * c + i] - e->limit[k * c + i];
+            e->slope[k * c + i] = m->slip[i] == 1 || m->slip[i] == -1 ? more / m->breakaway.velocity[i] : 0.0;
+        }
+    }
+}
+
+/* The k-th coefficient of the power of contact i, which slides: its limit times its velocity. */
+static double power_of(const struct event *e, size_t i, size_t k)
+{
+    const size_t c = e->sys->ncontact;
+    double power = 0.0;
+    for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+        power += e->slide[j * c + i] * e->watch[(k - j) * c + i];
+    }
+    return e->events.stick_slip.slip[i] * power;
+}
+
+double tribo_event_work(const struct event *e, size_t i, double tau)
+{
+    double work = 0.0;
+    for (size_t k = e->order; k-- > 0;) {
+        work = work * tau + power_of(e, i, k) / (double)(k + 1);
+    }
+    return work * tau;
+}

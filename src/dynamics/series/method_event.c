@@ -1,0 +1,571 @@
+/* Method "event": Coulomb's law itself on any system. While the modes of the contacts last, the motion is smooth, and its Taylor
+ * series at the start of a step follows from the equations of motion, one product with the structure's matrices and one solve for
+ * the held contacts an order; velocities and forces of the contacts come out as polynomials too. Of planar contacts that slide
+ * the force turns with the velocity: its series goes along (planar_series.h).
+ *
+ * Why no event is missed: on a step of length h, at most (order + 1)/2 over the highest frequency that structure or loads can
+ * have, what the series leaves out is less than its last term, and that is below the tolerance; and the search on the polynomials
+ * cannot skip a zero (first_zero.h). */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "event_series.h"
+#include "common/real.h"
+#include "common/simd.h"
+#include "common/zeros.h"
+
+/* A motion that is to come back must not depend on where steps happen to end: followed so, their errors are this part of it. */
+#define SHARP 1e-13
+
+/* The largest value of a series, [order + 1][n], on a step of this length, by its terms. */
+static double size_on_step(const struct event *e, const double *series, size_t n, double length)
+{
+    double size = 0.0, power = 1.0;
+    for (size_t k = 0; k <= e->order; k++) {
+        size = greater(size, power * tribo_largest(series + k * n, n));
+        power = lesser(power * length, DBL_MAX);
+    }
+    return size;
+}
+
+/* The error that a step may have in a series, [order + 1][n]: not less than the rounding of its first term. */
+static double wanted(const struct event *e, const double *series, size_t n, double most)
+{
+    const tribo_driver *drv = e->drv;
+    const double size = tribo_largest(series, n), error = drv->abstol + drv->reltol * size;
+    const double sharp = e->events.sharp && most < HUGE_VAL ? SHARP * size_on_step(e, series, n, most) : 0.0;
+    return greater(sharp > 0.0 ? lesser(error, sharp) : error, DBL_EPSILON * size);
+}
+
+static double fastest(const struct event *e)
+{
+    return e->fastest + e->events.stick_slip.breakaway.steepest;
+}
+
+/* The step on which the last two terms of everything stay below the tolerance. */
+static double step_length(const struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const size_t n = e->sys->ndof, c = e->sys->ncontact;
+    const double most = fastest(e) > 0.0 ? 0.5 * (double)(e->order + 1) / fastest(e) : HUGE_VAL;
+    const double q = wanted(e, e->q, n, most), u = wanted(e, e->u, n, most), d = wanted(e, e->d, 1, most);
+    const double tolerance = e->events.sharp ? lesser(e->tolerance, SHARP) : e->tolerance;
+    double h = most;
+    for (size_t k = e->order - 1; k <= e->order; k++) {
+        double term = greater(tribo_largest(e->q + k * n, n) / q, greater(tribo_largest(e->u + k * n, n) / u, fabs(e->d[k]) / d));
+        for (size_t i = 0; i < c; i++) {
+            /* forces of contacts at rest to the same part of their limit, or of what it becomes; and this itself */
+            const double rise = e->terms > 1 ? fabs(e->limit[c + i]) * lesser(most, DBL_MAX) : 0.0;
+            const double force = tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
+            const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
+            const double speed = m->plane ? lesser(u, m->plane->error[i]) : u;
+            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : speed;
+            term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
+            term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
+        }
+        h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
+    }
+    return h;
+}
+
+/* --------------------------------------------------------------------------------------------------------- guards */
+
+/* Adds factor times a polynomial at s with so many terms, c apart, and its derivatives. */
+static void add_polynomial(struct sample *to, double factor, size_t terms, size_t c, const double *term, double s)
+{
+    double v0 = 0.0, v1 = 0.0, v2 = 0.0;
+    for (size_t k = terms; k-- > 0;) {
+        v2 = v2 * s + v1;
+        v1 = v1 * s + v0;
+        v0 = v0 * s + term[k * c];
+    }
+    to->g += factor * v0;
+    to->d += factor * v1;
+    to->e += 2.0 * factor * v2;
+}
+
+/* What a guard watches, at tau. */
+static struct sample watch(const struct event *e, const struct guard *g, double tau)
+{
+    const int plane = e->events.stick_slip.plane && e->events.stick_slip.plane->in_plane[g->contact];
+    const size_t terms = plane ? 2 * e->order + 1 : e->order + 1;
+    struct sample v = {0.0, 0.0, 0.0};
+    add_polynomial(&v, 1.0, terms, plane ? e->planar.room : e->sys->ncontact, g->output, tau);
+    return v;
+}
+
+/* The two sides of what is watched follow one another, and are computed once. */
+static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
+{
+    const struct event *e = motion;
+    const void *seen = NULL;
+    struct sample v = {0.0, 0.0, 0.0};
+    for (size_t k = 0; k < guards; k++) {
+        struct guard *g = guard[k];
+        if (g->side != 0.0 && seen != g->output) {
+            seen = g->output;
+            v = watch(e, g, tau);
+        }
+        g->middle = (struct sample){g->offset, 0.0, 0.0};
+        if (g->side != 0.0) {
+            g->middle = (struct sample){g->offset + g->side * v.g, g->side * v.d, g->side * v.e};
+        }
+        if (g->limit != 0.0) {
+            add_polynomial(&g->middle, g->limit, e->terms, e->sys->ncontact, e->limit + g->contact, tau);
+        }
+    }
+}
+
+/* Bounds of so many terms of all that is watched, or of limits, over [0, h]. */
+TRIBO_SIMD static void find_bounds(size_t c, size_t terms, double h, const double *restrict watch, double *restrict size,
+                                   double *restrict bend)
+{
+    double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
+    memset(size, 0, c * sizeof *size);
+    memset(bend, 0, c * sizeof *bend);
+    for (size_t k = 0; k < terms; k++) {
+        const double six = k < 6 ? 0.0 : (double)(k * (k - 1) * (k - 2)) * (double)((k - 3) * (k - 4) * (k - 5)) * sixth;
+        const double *restrict w = watch + k * c;
+        for (size_t i = 0; i < c; i++) {
+            size[i] += fabs(w[i]) * power;
+            bend[i] += fabs(w[i]) * six;
+        }
+        power = lesser(power * h, DBL_MAX);
+        sixth = k < 6 ? 1.0 : lesser(sixth * h, DBL_MAX);
+    }
+}
+
+static double bound(void *motion, double tau)
+{
+    struct event *e = motion;
+    struct first_zero *s = &e->events.search;
+    (void)tau;
+    for (size_t k = 0; k < s->guards; k++) {
+        struct guard *g = &s->guard[k];
+        const double side = fabs(g->side), limit = fabs(g->limit);
+        g->size = side * e->size[g->contact] + limit * e->limit_size[g->contact] + fabs(g->offset);
+        g->bend = side * e->bend[g->contact] + limit * e->limit_bend[g->contact];
+    }
+    return HUGE_VAL;
+}
+
+/* What the velocity of contact i, or of those that hold it, is the sum of, over [0, h]. */
+static double parts_of_velocity(const struct event *e, size_t i, double h)
+{
+    const struct matrix *j = &e->sys->direction;
+    double size = 0.0, power = 1.0, lever = 0.0;
+    for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
+        lever += fabs(j->val[d]);
+    }
+    for (size_t k = 0; k <= e->order; k++) {
+        size += lever * tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
+        power = lesser(power * h, DBL_MAX);
+    }
+    return size;
+}
+
+/* Whether the limit of contact i may fall to 0, or to the force that it keeps, while no other guard of it looks after that. A
+ * limit that only follows a table has its zeros at knots, where steps end. */
+static int limit_tells(const struct stick_slip *m, size_t i, int varies)
+{
+    const int keeps = m->slip[i] == 0 && !m->holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
+    return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
+}
+
+/* A step is at most so long that the speed of no planar contact falls to less than this part of what it began with. Where the
+ * speed is small the direction turns fast, and a stop is come to in ever shorter steps. */
+#define SLOWER 1e-2
+
+static void set_planar_guards(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    tribo_planar_series_squares(&e->planar, m, e->watch, e->length);
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        const struct planar_line *line = &e->planar.line[k];
+        const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
+        double *square = e->planar.square + k;
+        const double limit = greater(p->limit[0], p->limit[1]);
+        struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
+        g.offset = moves ? -SLOWER * SLOWER * square[0] : 0.5 * limit;
+        g.allowance = moves ? 0.0 : greater(m->allowance[p->at], m->allowance[p->at + 1]);
+        e->size[p->at] = line->size;
+        e->bend[p->at] = line->bend;
+        if (moves || line->size >= 0.5 * limit) {
+            tribo_events_guard(&e->events, &g);
+        }
+    }
+}
+
+static void set_guards(struct event *e)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const double h = e->length;
+    const int varies = e->terms > 1;
+    tribo_events_clear_guards(&e->events);
+    find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
+    find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
+    if (m->plane) {
+        set_planar_guards(e);
+    }
+    for (size_t i = 0; i < m->contacts; i++) {
+        const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
+        struct watch g = {.output = e->watch + i};
+        if (m->slip[i] == 2) { /* not guarded, but when it touches down, rounding of its velocity counts */
+            e->events.stick_slip.seen[i] = e->size[i];
+        }
+        if (m->plane && m->plane->in_plane[i]) {
+            continue;
+        }
+        if (m->slip[i] == 1 || m->slip[i] == -1) {
+            tribo_events_guard_slip(&e->events, i, &g);
+        } else if (tribo_stick_slip_may_part(m, i)) {
+            e->size[i] = parts_of_velocity(e, i, h);
+            tribo_events_guard_part(&e->events, i, &g);
+        }
+        g.limit = varies ? ratio : 0.0;
+        g.offset = (varies ? 0.0 : ratio * e->limit[i]) + tribo_stick_slip_slack(m, i);
+        if (m->holds[i] && e->size[i] >= ratio * (2.0 * e->limit[i] - e->limit_size[i])) {
+            tribo_events_guard_stick(&e->events, i, &g);
+        } else if (limit_tells(m, i, varies)) {
+            tribo_events_guard_limit(&e->events, i, &(struct watch){.limit = 1.0});
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- the driver */
+
+static void destroy(tribo_driver *drv)
+{
+    struct event *e = drv->own;
+    if (e) {
+        tribo_events_free(&e->events);
+        free(e->q);
+        free(e->cosine);
+        tribo_planar_series_free(&e->planar);
+        tribo_creep_free(&e->creep);
+        tribo_series_transition_free(&e->perturbed);
+        free(e);
+    }
+}
+
+static int begin(void *motion, double t, const double *y, double *reach);
+static int transition(void *motion, double tau, size_t columns, double *v);
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
+static double work(const void *motion, size_t i, double tau);
+static void state(void *motion, double tau, const double *from, double *to);
+
+/* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes, and half as many where squares of
+ * series are made, as in a plane; but so many terms there are. */
+#define MOST_DIGITS 240.0
+#define LEAST_ORDER 4.0
+
+/* The more digits are wanted, the more terms pay. */
+static size_t best_order(double tolerance, double fastest, double digits)
+{
+    const double wanted = 10.0 - 1.5 * log10(tolerance);
+    return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
+}
+
+static int create(tribo_driver *drv)
+{
+    tribo_system *sys = drv->sys;
+    const size_t n = sys->ndof, c = sys->ncontact;
+    struct event *e = tribo_zeros(1, sizeof *e);
+    drv->own = e;
+    if (!e) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+    }
+    const int status = tribo_events_create(&e->events, drv);
+    if (status) {
+        return status;
+    }
+    e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
+    e->order = e->most_order = best_order(e->tolerance, 0.0, MOST_DIGITS);
+    const size_t terms = e->order + 1;
+    double *all = malloc((terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
+    if (!all) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+    }
+    e->drv = drv;
+    e->sys = sys;
+    e->q = all;
+    e->u = e->q + terms * n;
+    e->watch = e->u + terms * n;
+    e->limit = e->watch + terms * c;
+    e->fall = e->limit + terms * c;
+    e->part = e->fall + terms * c;
+    e->slope = e->part + terms * c;
+    e->d = e->slope + terms * c;
+    e->acceleration = e->d + terms;
+    e->base = e->acceleration + n;
+    e->a = e->base + c;
+    e->given = e->a + c;
+    e->held = e->given + c;
+    e->size = e->held + c;
+    e->bend = e->size + c;
+    e->limit_size = e->bend + c;
+    e->limit_bend = e->limit_size + c;
+    e->spring = e->limit_bend + c;
+    e->work = e->spring + c;
+    e->events.search.look = look;
+    e->events.search.bound = bound;
+    e->events.search.motion = e->events.motion = e;
+    e->events.begin = begin;
+    e->events.state = state;
+    e->events.transition = transition;
+    e->events.signal = combine;
+    e->events.work = work;
+    return TRIBO_OK;
+}
+
+/* Series in a plane and of what creeps find room anew for as many terms. */
+static void set_order(struct event *e, size_t order)
+{
+    if (order != e->most_order) {
+        tribo_planar_series_free(&e->planar);
+        tribo_creep_free(&e->creep);
+    }
+    e->most_order = order;
+}
+
+/* Room for the harmonics, which may have become more, and the highest frequency. */
+static int prepare(struct event *e)
+{
+    const tribo_system *sys = e->sys;
+    if (e->cosine && e->revision == sys->revision) {
+        return TRIBO_OK;
+    }
+    e->fastest = tribo_system_fastest(sys);
+    set_order(e, best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS));
+    const size_t room = (e->most_order + 2) * sys->harmonics + 1;
+    double *more = realloc(e->cosine, 2 * room * sizeof *more);
+    if (!more) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for %zu harmonic%s", sys->harmonics,
+                                 plural(sys->harmonics));
+    }
+    e->cosine = more;
+    e->sine = more + room;
+    e->terms = sys->limit_harmonics ? e->most_order + 1 : sys->limits.knots ? 2 : 1;
+    e->revision = sys->revision;
+    return TRIBO_OK;
+}
+
+static void state(void *motion, double tau, const double *from, double *to)
+{
+    const struct event *e = motion;
+    const size_t n = e->sys->ndof;
+    (void)from;
+    memset(to, 0, tribo_system_dimension(e->sys) * sizeof *to);
+    for (size_t k = e->order + 1; k-- > 0;) {
+        for (size_t i = 0; i < n; i++) {
+            to[i] = to[i] * tau + e->q[k * n + i];
+            to[n + i] = to[n + i] * tau + e->u[k * n + i];
+        }
+        to[2 * n] = to[2 * n] * tau + e->d[k];
+    }
+}
+
+/* The same where contacts slide in the plane, whose series may end sooner than their last terms tell: shorter where the
+ * velocities and forces of contacts do not belong to each other any more, and so short that squares do not cancel. */
+#define LONGEST 3.0
+
+static double longest(const struct event *e, double most)
+{
+    return fastest(e) > 0.0 ? lesser(most, LONGEST / fastest(e)) : most;
+}
+
+/* Over a step the terms of no speed come to more than this many times what it begins with: else the squares of a small one, and
+ * that it falls to zero, are lost in the rounding of what comes later. */
+#define FASTER 1e4
+
+/* Of each of which terms they are. */
+static int speeds_tell(const struct event *e, double h)
+{
+    const struct planar_slip *plane = e->events.stick_slip.plane;
+    int tell = 1;
+    for (size_t c = 0; c < plane->count; c++) {
+        const struct planar_line *l = &e->planar.line[c];
+        const size_t last = e->order - (size_t)plane->contact[c].begins;
+        double sum = 0.0;
+        for (size_t k = last + 1; k-- > 0;) {
+            sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
+        }
+        tell &= e->events.stick_slip.slip[plane->contact[c].at] != TRIBO_IN_PLANE || sum <= FASTER * l->xn[0];
+    }
+    return tell;
+}
+
+static double planar_length(struct event *e, double most)
+{
+    const struct stick_slip *m = &e->events.stick_slip;
+    const double error = wanted(e, e->u, e->sys->ndof, HUGE_VAL);
+    tribo_planar_series_errors(&e->planar, m, m->plane->error);
+    double h = lesser(step_length(e), longest(e, most));
+    while ((!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) || !speeds_tell(e, h)) && h > 0.0) {
+        h *= 0.8;
+    }
+    return h;
+}
+
+/* Contacts have to creep for this many steps by series before longer ones are tried, a few times; and later for as many as take
+ * this many times the work of the trials that failed. */
+#define PATIENCE 16
+#define DEAR 8
+#define MOST_TRIALS 3
+
+/* A first step, in parts of the longest one. */
+#define FIRST 0.25
+
+/* Tries steps with directions by collocation, the first one of length h, all longer than least. *length is that of the one in
+ * which velocities are right to `error`, or 0. */
+static int try_creep(struct event *e, double t, const double *y, double h, double least, double error, double *length)
+{
+    struct stick_slip *m = &e->events.stick_slip;
+    struct creep_step step = {0, h, HUGE_VAL};
+    for (int trial = 0; *length == 0.0 && step.next > least && trial < MOST_TRIALS; trial++) {
+        h = step.next;
+        const int status = tribo_creep_expand(e, t, y, h, error, &step);
+        if (status) {
+            return status;
+        }
+        tribo_planar_series_errors(&e->planar, m, m->plane->error);
+        const double most = step_length(e);
+        *length = step.good && most >= h ? h : 0.0;
+        step.next = step.good && most < h ? 0.9 * most : step.next;
+    }
+    e->creep.length = *length > 0.0 ? step.next : 0.0;
+    e->creep.shorter = *length > 0.0 ? 0.0 : step.next;
+    return TRIBO_OK;
+}
+
+/* How long the first step to try is, 0 if none is to be: such that are worthwhile are longer than least, and most is the longest
+ * one. Contacts have to creep for a while before; but not where such steps just became shorter than that. */
+static double first_trial(struct event *e, const double *y, double least, double most, double error)
+{
+    struct creep *c = &e->creep;
+    if (c->length > least) {
+        return lesser(c->length, most);
+    }
+    c->wait = c->length > 0.0 ? 0 : c->wait;
+    c->length = 0.0;
+    if (c->waited++ < c->wait) {
+        return 0.0;
+    }
+    const double from = c->shorter > least ? lesser(c->shorter, most) : FIRST * most;
+    const double first = lesser(from, tribo_creep_settled(e, y, error));
+    return first > least ? first : 0.0;
+}
+
+/* The same if contacts creep, and have done so for a while; most is the longest step. */
+static int creep(struct event *e, double t, const double *y, double most, double *length)
+{
+    struct creep *c = &e->creep;
+    const double least = tribo_creep_least(e, y);
+    const size_t before = e->sys->evaluations;
+    c->wait = e->events.anew ? PATIENCE : c->wait;
+    if (e->events.anew || !(least < most)) {
+        c->length = c->shorter = 0.0;
+        c->waited = 0;
+    }
+    e->events.anew = 0;
+    *length = 0.0;
+    if (!(least < most)) {
+        return TRIBO_OK;
+    }
+    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    const double last = c->length, first = first_trial(e, y, least, most, error);
+    if (first == 0.0) {
+        return TRIBO_OK;
+    }
+    const int status = try_creep(e, t, y, first, least, error, length);
+    c->length = *length == most ? greater(c->length, last) : c->length;
+    c->wait = *length > 0.0 ? PATIENCE : DEAR * (e->sys->evaluations - before) / (e->most_order + 1);
+    c->waited = 0;
+    return status;
+}
+
+/* The series from (t, y) on, and how far it may serve. */
+static int expand(struct event *e, double t, const double *y, double most, double *length)
+{
+    if (!e->events.stick_slip.plane) {
+        const int status = tribo_event_expand(e, t, y);
+        *length = status ? 0.0 : step_length(e);
+        return status;
+    }
+    int status = creep(e, t, y, longest(e, most), length);
+    if (!status && *length == 0.0) {
+        status = tribo_event_expand(e, t, y);
+        *length = status ? 0.0 : planar_length(e, most);
+    }
+    return status;
+}
+
+/* Whether all steps that frequencies allow are lost beside `end`, which is never come to. */
+static int never_ends(const struct event *e, double end)
+{
+    return (double)(e->order + 1) < DBL_EPSILON * fabs(end) * e->fastest;
+}
+
+static int begin(void *motion, double t, const double *y, double *reach)
+{
+    struct event *e = motion;
+    double length;
+    const int status = expand(e, t, y, *reach, &length);
+    if (status) {
+        return status;
+    }
+    length = never_ends(e, t + *reach) ? 0.0 : length;
+    *reach = lesser(length, *reach);
+    /* bounds over a time of the structure's: what is rounding must not depend on where the run is to end */
+    e->length = fastest(e) > 0.0 ? greater(*reach, lesser(length, 1.0 / fastest(e))) : *reach;
+    set_guards(e);
+    return tribo_dense_finite(e->size, 2 * e->sys->ncontact)
+               ? TRIBO_OK
+               : tribo_system_fail(e->sys, TRIBO_ERR_NOT_FINITE,
+                                   "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
+}
+
+static int transition(void *motion, double tau, size_t columns, double *v)
+{
+    struct event *e = motion;
+    const int falls = e->events.stick_slip.breakaway.falls;
+    const struct slopes slopes = {falls ? e->order + 1 : 0, e->slope};
+    if (falls) {
+        tribo_event_slopes(e);
+    }
+    return tribo_series_transition(&e->perturbed, &e->events.stick_slip, e->sys, &slopes, tau, columns, v);
+}
+
+static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+{
+    const struct event *e = motion;
+    const size_t n = e->sys->ndof;
+    (void)end;
+    if (!tribo_signal_reserve(to, 0, e->order)) {
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for %zu power%s", e->order, plural(e->order));
+    }
+    to->tau = tau;
+    for (size_t k = 0; k <= e->order; k++) {
+        to->a[k] = tribo_dot(c, e->q + k * n, n) + tribo_dot(c + n, e->u + k * n, n);
+    }
+    return TRIBO_OK;
+}
+
+static double work(const void *motion, size_t i, double tau)
+{
+    return tribo_event_work(motion, i, tau);
+}
+
+static int open_events(tribo_driver *drv, struct events **events)
+{
+    struct event *e = drv->own;
+    const int status = prepare(e);
+    *events = &e->events;
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
+}
+
+const struct method tribo_method_event = {"event",     WITH_TOLERANCES,           create, destroy, tribo_events_method, NULL,
+                                          open_events, tribo_events_find_periodic};

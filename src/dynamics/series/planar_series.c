@@ -1,0 +1,382 @@
+#include "planar_series.h"
+#include "common/real.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Coefficients may become as large as ten to this, and those of squares as that squared. Where the speed is small time is short,
+ * and its powers are large. */
+#define MOST_DIGITS 100.0
+
+/* Velocities are found to this part of a contact's own, however small that is beside the tolerance: where it is, their direction
+ * is what counts. */
+#define PART 1e-4
+
+/* So many terms there are always. */
+#define LEAST_ORDER 4.0
+
+void tribo_planar_series_free(struct planar_series *s)
+{
+    free(s->line);
+    free(s->work);
+    free(s->begin);
+    free(s->s);
+    memset(s, 0, sizeof *s);
+}
+
+static int slides(const struct stick_slip *m, const struct planar_contact *p)
+{
+    return m->slip[p->at] == TRIBO_IN_PLANE;
+}
+
+static int reserve(struct planar_series *s, size_t terms, size_t contacts)
+{
+    if (s->line && s->room >= contacts) {
+        return 1;
+    }
+    tribo_planar_series_free(s);
+    s->line = malloc(contacts * sizeof *s->line);
+    s->work = malloc(7 * terms * contacts * sizeof *s->work);
+    s->square = s->work ? s->work + 5 * terms * contacts : NULL;
+    for (size_t k = 0; s->line && s->work && k < contacts; k++) {
+        struct planar_line *l = &s->line[k];
+        l->xn = s->work + 5 * terms * k;
+        l->xt = l->xn + terms;
+        l->un = l->xt + terms;
+        l->ut = l->un + terms;
+        l->speed = l->ut + terms;
+    }
+    s->room = s->line && s->work ? contacts : 0;
+    return s->room > 0;
+}
+
+static int reserve_begins(struct planar_series *s, const tribo_system *sys, size_t begins)
+{
+    if (s->s && s->begin_room >= begins) {
+        return 1;
+    }
+    free(s->begin);
+    free(s->s);
+    s->begin_room = 0;
+    s->begin = malloc(2 * begins * sizeof *s->begin);
+    s->s = malloc(begins * (2 * begins + 1 + sys->ndof + sys->ncontact) * sizeof *s->s);
+    if (!s->begin || !s->s) {
+        return 0;
+    }
+    s->pivot = s->begin + begins;
+    s->lu = s->s + begins * begins;
+    s->tau = s->lu + begins * begins;
+    s->answer = s->tau + begins;
+    s->held = s->answer + begins * sys->ndof;
+    s->begin_room = begins;
+    return 1;
+}
+
+/* limit t times J acc. */
+static double along(const struct planar_contact *p, const struct planar_line *l, const double *acc)
+{
+    return p->limit[0] * l->t[0] * acc[p->at] + p->limit[1] * l->t[1] * acc[p->at + 1];
+}
+
+/* What a t-part of 1 of contact q among those that begin does to q'', to the forces of contacts that hold, and to all t-parts. */
+static int answer(struct planar_series *s, size_t q, struct stick_slip *m, const tribo_system *sys, double *a, double *f)
+{
+    const size_t c = sys->ncontact, n = sys->ndof;
+    const struct planar_contact *all = m->plane->contact, *p = &all[s->begin[q]];
+    const struct planar_line *l = &s->line[s->begin[q]];
+    double *acc = s->answer + q * n, *held = s->held + q * c;
+    memset(acc, 0, n * sizeof *acc);
+    memset(f, 0, c * sizeof *f);
+    memset(a, 0, c * sizeof *a);
+    f[p->at] = -p->limit[0] * l->t[0];
+    f[p->at + 1] = -p->limit[1] * l->t[1];
+    tribo_matrix_multiply_add(&sys->response, 1.0, f, acc);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
+    const int status = tribo_stick_slip_balance(m, a, held);
+    if (status) {
+        return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
+    }
+    tribo_matrix_multiply_add(&sys->response, 1.0, held, acc);
+    memset(a, 0, c * sizeof *a);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
+    for (size_t r = 0; r < s->begins; r++) {
+        s->s[r * s->begins + q] = -along(&all[s->begin[r]], &s->line[s->begin[r]], a);
+    }
+    return TRIBO_OK;
+}
+
+double tribo_planar_series_stop(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p,
+                                const double *y)
+{
+    double time[2];
+    for (size_t d = 0; d < 2; d++) {
+        time[d] = fabs(tribo_stick_slip_velocity(m, sys, p->at + d, y)) / (p->limit[d] * m->diagonal[p->at + d]);
+    }
+    return greater(time[0], time[1]);
+}
+
+double tribo_planar_series_first_stop(const struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    double least = HUGE_VAL;
+    for (size_t k = 0; k < m->plane->count; k++) {
+        const struct planar_contact *p = &m->plane->contact[k];
+        least = slides(m, p) && p->begins == SLIDES_ON ? lesser(least, tribo_planar_series_stop(m, sys, p, y)) : least;
+    }
+    return least;
+}
+
+/* As many terms as numbers have room for, order at most: time counts in parts of that in which friction would stop a contact. */
+static size_t find_order(size_t order, const struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    const double most = MOST_DIGITS / greater(-log10(tribo_planar_series_first_stop(m, sys, y)), 1.0);
+    return (size_t)greater(lesser((double)order, most), LEAST_ORDER);
+}
+
+int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stick_slip *m, const tribo_system *sys,
+                              const double *y, double *a, double *f)
+{
+    const struct planar_slip *plane = m->plane;
+    size_t begins = 0;
+    for (size_t k = 0; k < plane->count; k++) {
+        begins += slides(m, &plane->contact[k]) && plane->contact[k].begins != SLIDES_ON;
+    }
+    if ((plane->count && !reserve(s, order + 1, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", plane->count,
+                                 plural(plane->count));
+    }
+    s->order = s->given ? order : find_order(order, m, sys, y);
+    s->begins = 0;
+    for (size_t k = 0; k < plane->count; k++) {
+        const struct planar_contact *p = &plane->contact[k];
+        struct planar_line *l = &s->line[k];
+        if (slides(m, p) && p->begins != SLIDES_ON) {
+            memcpy(l->n, p->direction, sizeof l->n);
+            l->t[0] = -l->n[1];
+            l->t[1] = l->n[0];
+            s->begin[s->begins++] = k;
+        }
+    }
+    int status = TRIBO_OK;
+    for (size_t q = 0; !status && q < s->begins; q++) {
+        status = answer(s, q, m, sys, a, f);
+    }
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------- coefficients */
+
+/* sum of x_j y_{k - j}, from <= j < to. */
+static double product_of(const double *x, const double *y, size_t k, size_t from, size_t to)
+{
+    double sum = 0.0;
+    for (size_t j = from; j < to; j++) {
+        sum += x[j] * y[k - j];
+    }
+    return sum;
+}
+
+/* Coefficient m of x from that of v; the first one says where n is, or has to be along it. Returns 0 where it is against it. */
+static int take_velocity(struct planar_line *l, const struct planar_contact *p, size_t m, const double *v)
+{
+    const double x[2] = {p->limit[0] * v[0], p->limit[1] * v[1]};
+    if (m == 0 && p->begins == SLIDES_ON) {
+        l->xn[0] = hypot(x[0], x[1]);
+        l->n[0] = x[0] / l->xn[0];
+        l->n[1] = x[1] / l->xn[0];
+        l->t[0] = -l->n[1];
+        l->t[1] = l->n[0];
+    } else {
+        l->xn[m] = l->n[0] * x[0] + l->n[1] * x[1];
+    }
+    l->xt[m] = m ? l->t[0] * x[0] + l->t[1] * x[1] : 0.0;
+    return m > 0 || l->xn[0] > 0.0;
+}
+
+/* What |x| u has along t at power k, but for the last coefficients of u and |x|. */
+static double before(const struct planar_line *l, size_t k)
+{
+    return k > 1 ? product_of(l->speed, l->ut, k, 1, k) : 0.0;
+}
+
+static void find_direction(struct planar_line *l, size_t k, int begins)
+{
+    const double both = k > 1 ? product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k) : 0.0;
+    l->un[k] = k ? -0.5 * both : 1.0;
+    l->ut[k] = k && begins == SLIDES_ON ? (l->xt[k] - before(l, k)) / l->xn[0] : 0.0;
+}
+
+int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
+                               const double *v, double *f)
+{
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        struct planar_line *l = &s->line[c];
+        const size_t shift = (size_t)p->begins;
+        if (!slides(m, p)) {
+            continue;
+        }
+        if (k >= shift && !take_velocity(l, p, k - shift, v + p->at)) {
+            return tribo_system_fail(sys, TRIBO_ERR_CHATTER,
+                                     "at t = %.17g it is not clear in which direction the planar contact %zu begins to slide",
+                                     sys->time, p->at);
+        }
+        if (!s->given) {
+            find_direction(l, k, p->begins);
+        }
+        if (!s->given && k >= shift) {
+            const size_t j = k - shift;
+            l->speed[j] = l->xn[j] - product_of(l->speed, l->un, j, 0, j);
+        }
+        for (size_t d = 0; d < 2; d++) {
+            f[p->at + d] = -p->limit[d] * (l->n[d] * l->un[k] + l->t[d] * l->ut[k]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* What tau_k has to be besides what accelerations make of it; and D_k. */
+static double asked(const struct planar_line *l, int begins, size_t k, double *shift)
+{
+    const double times = (double)(k + 1);
+    *shift = begins == BY_ACCELERATION ? times * l->xn[0] : 0.0;
+    if (begins == BY_ACCELERATION) {
+        return times * before(l, k);
+    }
+    return k > 1 ? times * (l->ut[k - 1] * l->xn[0] + before(l, k - 1)) : 0.0;
+}
+
+int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
+                               const double *base, double *acc, double *held)
+{
+    const size_t n = s->begins;
+    double *a = sys->a;
+    if (n == 0 || k == 0) {
+        return TRIBO_OK;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        a[i] = -base[i];
+    }
+    tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
+    memcpy(s->lu, s->s, n * n * sizeof *s->s);
+    for (size_t q = 0; q < n; q++) {
+        const struct planar_contact *p = &m->plane->contact[s->begin[q]];
+        const struct planar_line *l = &s->line[s->begin[q]];
+        double shift;
+        s->tau[q] = along(p, l, a) - asked(l, p->begins, k, &shift);
+        s->lu[q * n + q] += shift;
+    }
+    if (!(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "at t = %.17g friction cannot turn the planar contact %zu, which begins to slide", sys->time,
+                                 m->plane->contact[s->begin[0]].at);
+    }
+    tribo_lu_solve(s->lu, n, s->pivot, s->tau, 1);
+    for (size_t q = 0; q < n; q++) {
+        s->line[s->begin[q]].ut[k] = s->tau[q];
+        tribo_add(acc, s->tau[q], s->answer + q * sys->ndof, sys->ndof);
+        tribo_add(held, s->tau[q], s->held + q * sys->ncontact, sys->ncontact);
+    }
+    return TRIBO_OK;
+}
+
+double tribo_planar_series_power(const struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k)
+{
+    double power = 0.0;
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        const struct planar_line *l = &s->line[c];
+        const size_t shift = (size_t)p->begins;
+        if (slides(m, p) && k >= shift) {
+            const size_t j = k - shift;
+            power += sys->tally[p->at] * (product_of(l->un, l->xn, j, 0, j + 1) + product_of(l->ut, l->xt, j, 0, j + 1));
+        }
+    }
+    return power;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- guards */
+
+/* The parts of force/limit, from forces f [order + 1][ncontact], in the place of x. */
+static void take_forces(struct planar_line *l, const struct planar_contact *p, size_t order, size_t stride, const double *f)
+{
+    for (size_t k = 0; k <= order; k++) {
+        l->xn[k] = f[k * stride + p->at] / p->limit[0];
+        l->xt[k] = f[k * stride + p->at + 1] / p->limit[1];
+    }
+}
+
+/* The k-th coefficient of x x, x having `terms` coefficients. */
+static double square_of(const double *x, size_t terms, size_t k)
+{
+    return product_of(x, x, k, k < terms ? 0 : k - terms + 1, k < terms ? k + 1 : terms);
+}
+
+void tribo_planar_series_squares(struct planar_series *s, const struct stick_slip *m, const double *f, double h)
+{
+    const size_t stride = s->room;
+    for (size_t k = 0; k < (2 * s->order + 1) * stride; k++) {
+        s->square[k] = 0.0;
+    }
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        struct planar_line *l = &s->line[c];
+        const int moves = slides(m, p);
+        const size_t terms = s->order + 1 - (moves ? (size_t)p->begins : 0);
+        const double scale = moves ? 1.0 : 0.5 * greater(p->limit[0], p->limit[1]);
+        if (!moves) {
+            take_forces(l, p, s->order, m->contacts, f);
+        }
+        double power = 1.0;
+        l->size = l->bend = 0.0;
+        for (size_t k = 0; k < 2 * terms - 1; k++) {
+            const double w = scale * (square_of(l->xn, terms, k) + square_of(l->xt, terms, k)), x = (double)k;
+            s->square[k * stride + c] = w;
+            l->size += fabs(w) * power;
+            l->bend += k < 6 ? 0.0 : x * (x - 1.0) * (x - 2.0) * (x - 3.0) * (x - 4.0) * (x - 5.0) * fabs(w) * power;
+            power *= h;
+        }
+        l->bend /= h * h * h * h * h * h;
+    }
+}
+
+double tribo_planar_series_value(const double *x, size_t powers, double h)
+{
+    double sum = 0.0;
+    for (size_t k = powers + 1; k-- > 0;) {
+        sum = sum * h + x[k];
+    }
+    return sum;
+}
+
+void tribo_planar_series_errors(const struct planar_series *s, const struct stick_slip *m, double *error)
+{
+    for (size_t i = 0; i < m->contacts; i++) {
+        error[i] = HUGE_VAL;
+    }
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        if (slides(m, p) && p->begins == SLIDES_ON) {
+            error[p->at] = error[p->at + 1] = PART * s->line[c].xn[0] / greater(p->limit[0], p->limit[1]);
+        }
+    }
+}
+
+double tribo_planar_series_defect(const struct planar_series *s, const struct stick_slip *m, double h, double error)
+{
+    double most = 0.0;
+    for (size_t c = 0; c < m->plane->count; c++) {
+        const struct planar_contact *p = &m->plane->contact[c];
+        const struct planar_line *l = &s->line[c];
+        const size_t last = s->order - (size_t)p->begins;
+        if (slides(m, p)) {
+            const double xn = tribo_planar_series_value(l->xn, last, h), xt = tribo_planar_series_value(l->xt, last, h),
+                         size = hypot(xn, xt);
+            const double off = hypot(tribo_planar_series_value(l->un, s->order, h) - xn / size,
+                                     tribo_planar_series_value(l->ut, s->order, h) - xt / size);
+            const double most_r = greater(p->limit[0] * m->diagonal[p->at], p->limit[1] * m->diagonal[p->at + 1]);
+            const double defect = off * most_r * h / (double)(s->order + 1);
+            most = greater(most, defect / lesser(error, m->plane->error[p->at]));
+        }
+    }
+    return most;
+}

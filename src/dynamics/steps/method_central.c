@@ -1,0 +1,270 @@
+/* Method "central/fixed": central differences, velocities half a step apart from positions. Explicit; stable for dt below
+ * 2/omega_max. Damping acts on the velocity of half a step before. Steps of small systems are taken in runs by few_bodies.c,
+ * those of others where contacts share no body by bodies_alone.c. */
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bodies_alone.h"
+#include "few_bodies.h"
+#include "dynamics/reduce/spectrum.h"
+#include "step_form.h"
+#include "common/real.h"
+#include "common/zeros.h"
+
+struct central {
+    struct step_form common;
+    struct few_bodies few;
+    struct bodies_alone alone;
+    double *next;        /* [ndof] room for u of the next step */
+    double energy, last; /* dissipated up to u; the step before, 0: u is the velocity at t */
+    double stable;       /* a step found to be stable; 0: none */
+};
+
+static void destroy(tribo_driver *drv)
+{
+    struct central *x = drv->own;
+    if (x) {
+        tribo_step_form_free(&x->common);
+        tribo_bodies_free(&x->alone);
+        free(x->next);
+        free(x);
+    }
+}
+
+static int create(tribo_driver *drv)
+{
+    struct central *x = tribo_zeros(1, sizeof *x);
+    drv->own = x;
+    if (x) {
+        x->few.revision = SIZE_MAX;
+        x->next = tribo_zeros(drv->sys->ndof, sizeof *x->next);
+    }
+    if (!x || !x->next || !tribo_step_form_create(&x->common, drv->sys) || !tribo_bodies_create(&x->alone, drv->sys)) {
+        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
+    }
+    return TRIBO_OK;
+}
+
+/* What u, the velocity at the time from, becomes at the time to without friction: forces at t and q. */
+static void kick_freely(struct step_form *s, tribo_system *sys, const struct body_step *k)
+{
+    tribo_system_set_time(sys, k->t);
+    memset(s->a, 0, sys->ndof * sizeof *s->a);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
+    tribo_matrix_multiply_add(&sys->stiffness, -1.0, k->q, s->a);
+    if (sys->damping.rows) {
+        tribo_matrix_multiply_add(&sys->damping, -1.0, k->u, s->a);
+    }
+    for (size_t i = 0; i < sys->ndof; i++) {
+        k->u_to[i] = k->u[i] + k->time * s->a[i];
+    }
+}
+
+/* The same with friction. Adds to the energy. */
+static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    tribo_system *sys = drv->sys;
+    tribo_step_form_begin(s, sys, k->from, k->u);
+    kick_freely(s, sys, k);
+    sys->evaluations++;
+    tribo_step_form_find_base(s, sys, k->to);
+    tribo_step_form_relative(s, sys, k->u_to, s->end);
+    tribo_step_form_set_limits(sys, k->t);
+    const int status = tribo_step_form_force(s, sys, sys->contacts, k->time);
+    if (status == TRIBO_ERR_NOT_FINITE) {
+        return tribo_step_form_grew(drv, k->t);
+    }
+    if (status) {
+        return tribo_driver_fail(drv, status, "at t = %.17g: %s", k->t, tribo_message(sys->contacts));
+    }
+    tribo_matrix_multiply_add(&sys->response, k->time, s->f, k->u_to);
+    tribo_get_slip(sys->contacts, s->mode);
+    tribo_system_snap(sys, s->mode, s->base, k->u_to);
+    tribo_step_form_relative(s, sys, k->u_to, s->end);
+    *energy += k->time * tribo_step_form_power(sys, s->f, s->v, s->end);
+    return TRIBO_OK;
+}
+
+/* Velocities and energy of y, from half a step back to t: for those who look. The next step goes on from where it would have. */
+static int synchronise(tribo_driver *drv, double t, double *y)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    const size_t n = drv->sys->ndof;
+    const double half = 0.5 * x->last;
+    const struct body_step back = {.from = t - half, .t = t, .to = t, .time = half, .q = y, .u = s->u, .u_to = y + n};
+    y[2 * n] = x->energy;
+    const int status = kick(drv, &back, y + 2 * n);
+    if (s->goes_on) {
+        tribo_step_form_turn(s);
+    }
+    return status;
+}
+
+static void drift(size_t n, double h, const double *q, const double *u, double *q_to)
+{
+    for (size_t i = 0; i < n; i++) {
+        q_to[i] = q[i] + h * u[i];
+    }
+}
+
+/* A step of all contacts together. */
+static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    const size_t n = drv->sys->ndof;
+    const int status = kick(drv, k, &x->energy);
+    s->goes_on = 1;
+    if (!status) {
+        drift(n, k->h, k->q, k->u_to, k->q_to);
+        memcpy(y + n, k->u_to, n * sizeof *y);
+        y[2 * n] = x->energy;
+    }
+    return status ? status : tribo_driver_check(drv, y);
+}
+
+/* The same where each contact has a body of its own. y gets positions and energy; velocities are in u until somebody looks. */
+static int step_alone(tribo_driver *drv, const struct body_step *k, double *y)
+{
+    struct central *x = drv->own;
+    double energy = x->energy;
+    x->common.goes_on = 0;
+    drv->sys->evaluations++;
+    if (!tribo_bodies_step(&x->alone, drv->sys, k, &energy) || !isfinite(energy)) {
+        return tribo_step_form_grew(drv, k->t);
+    }
+    drv->rested = x->alone.skipped;
+    y[2 * drv->sys->ndof] = x->energy = energy;
+    return TRIBO_OK;
+}
+
+/* As many of the steps between the times t [count + 1] as can be taken at once, of the motion in y and u. */
+static size_t central_run(tribo_driver *drv, size_t count, const double *t, double *y)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    tribo_system *sys = drv->sys;
+    if (!x->few.fits) {
+        return 0;
+    }
+    if (!s->goes_on) {
+        tribo_step_form_find_base(s, sys, t[0] - 0.5 * x->last);
+        tribo_step_form_relative(s, sys, s->u, s->end);
+    }
+    struct few_motion m = {y, s->u, s->end, x->energy, x->last};
+    const size_t taken = tribo_few_run(&x->few, sys, count, t, &m);
+    s->goes_on = 1;
+    x->last = m.last;
+    y[2 * sys->ndof] = x->energy = m.energy;
+    sys->evaluations += taken;
+    return taken;
+}
+
+static void take_settings(struct central *x, tribo_system *sys)
+{
+    if (!tribo_few_take(&x->few, sys)) {
+        tribo_bodies_begin(&x->alone, sys);
+    }
+}
+
+/* A step of others than central_run. */
+static int step_many(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    const double h = next - t;
+    const struct body_step k = {t - 0.5 * x->last, t, t + 0.5 * h, 0.5 * (x->last + h), h, from, s->u, y, x->next};
+    const int status = x->few.fits || !x->alone.fits ? step_all(drv, &k, y) : step_alone(drv, &k, y);
+    if (!status) {
+        x->next = s->u;
+        s->u = k.u_to;
+        x->last = h;
+    }
+    return status;
+}
+
+/* A run of one. */
+static size_t step_few(tribo_driver *drv, const double *t, const double *from, double *y)
+{
+    const struct central *x = drv->own;
+    if (!x->few.fits) {
+        return 0;
+    }
+    memcpy(y, from, drv->sys->ndof * sizeof *y);
+    return central_run(drv, 1, t, y);
+}
+
+static int central_step(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    struct central *x = drv->own;
+    const double times[] = {t, next};
+    /* nobody but the observer changes anything meanwhile */
+    if (drv->seen && x->few.revision != tribo_system_revision(drv->sys)) {
+        take_settings(x, drv->sys);
+    }
+    const int status = step_few(drv, times, from, y) ? TRIBO_OK : step_many(drv, t, next, from, y);
+    return status || !drv->seen ? status : synchronise(drv, next, y);
+}
+
+/* Refuses steps with which the motion would grow without bound: steps of h are stable while h^2 AK + 2 h AC has no eigenvalue of
+ * 4 or more. */
+static int check_step(tribo_driver *drv, double h)
+{
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    const tribo_system *sys = drv->sys;
+    double value, limit = h;
+    x->stable = s->revision == sys->revision ? x->stable : 0.0;
+    s->revision = sys->revision;
+    if (h <= x->stable) {
+        return TRIBO_OK;
+    }
+    int status = tribo_system_highest(sys, 1.0, lesser(2.0 / h, DBL_MAX), &value);
+    if (!status && h * sqrt(value) < 2.0) {
+        x->stable = h;
+        return TRIBO_OK;
+    }
+    /* the eigenvalue over h^2 falls with h, so that this comes down to the largest step that is stable */
+    while (!status && 2.0 / sqrt(value) < 0.9999 * limit) {
+        limit = 2.0 / sqrt(value);
+        status = tribo_system_highest(sys, 1.0, 2.0 / limit, &value);
+    }
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts))
+                  : tribo_driver_fail(drv, TRIBO_ERR_STEP,
+                                      "central differences are unstable in steps of %g: dt must be below %.4g", h, limit);
+}
+
+static int central_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    static const struct fixed_method method = {central_step, central_run, 1, {0.0, 0.0}};
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    const size_t n = drv->sys->ndof;
+    const double begin = *t;
+    int status = check_step(drv, lesser(drv->dt, t1 - *t));
+    if (status) {
+        return status;
+    }
+    if (!continues) {
+        memcpy(s->u, y + n, n * sizeof *y);
+        x->energy = y[2 * n];
+        x->last = 0.0;
+        s->goes_on = 0;
+    }
+    take_settings(x, drv->sys);
+    tribo_step_form_start(s, drv->sys);
+    status = tribo_driver_fixed_steps(drv, t, t1, y, &method);
+    if (status && *t > begin && !drv->seen) {
+        memcpy(drv->state + n, s->u, n * sizeof *y);
+    }
+    return status || drv->seen ? status : synchronise(drv, t1, y);
+}
+
+const struct method tribo_method_central_fixed = {
+    "central/fixed", WITHOUT_TOLERANCES, create, destroy, central_advance, NULL, NULL, NULL};

@@ -1,0 +1,480 @@
+/* Method "moreau/fixed": the implicit midpoint rule for the structure, Coulomb's law over the step, the mean of the
+ * loads at both ends (Jean and Moreau 1992, theta = 1/2); the structure's part is factorized once for a step length. Stable for
+ * any dt. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dynamics/decide/breakaway.h"
+#include "dynamics/system/delassus.h"
+#include "dynamics/system/elastic.h"
+#include "dynamics/system/hidden.h"
+#include "step_band.h"
+#include "step_form.h"
+#include "step_matrix.h"
+
+/* For steps of length h: the matrix S = M + h/2 C + h^2/4 K, S^-1 J', and the contacts, whose operator is J S^-1 J'.
+ *
+ * What has no mass starts each step without velocity, and ends it with twice the mean. Elastic contacts have in every step the
+ * mean of their forces at both ends, of which the later is within the limit, and slides by what J moves over the step: half the
+ * later force is what the contacts find, within half the limit. */
+struct moreau {
+    struct step_form common;
+    double h;              /* 0: nothing is prepared */
+    struct step_band held; /* where the system allows it: then the rest is made when it is first needed */
+    int whole;             /* the rest is made */
+    struct step_matrix matrix;
+    double *response;         /* [ncontact][ndof], or NULL: then a step takes a second solve */
+    double *push;             /* [ndof] for that */
+    double *limit;            /* [ncontact] */
+    double *ratio, *velocity; /* [ncontact] of static limits */
+    int taken, tell, breaks;  /* these are known; contacts have not got them yet; some are static */
+    size_t settings_taken;    /* revision of the system's contacts that these came from */
+    double *load;             /* [ndof] at the end of the step before */
+    double *spring, *rate;    /* [ncontact] forces of elastic contacts at the end of the step before; workspace */
+    double *work;             /* [ndof] */
+    signed char *loose;       /* [ncontact] slip, but 1 of elastic contacts: what they hold has no velocity of its own */
+    tribo_context *contacts;
+    size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
+};
+
+static void destroy(tribo_driver *drv)
+{
+    struct moreau *m = drv->own;
+    if (m) {
+        tribo_destroy(m->contacts);
+        tribo_step_form_free(&m->common);
+        tribo_step_band_free(&m->held);
+        tribo_step_matrix_free(&m->matrix);
+        free(m->limit);
+        free(m->loose);
+        free(m->response);
+        free(m);
+    }
+}
+
+static int create(tribo_driver *drv)
+{
+    const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
+    struct moreau *m = calloc(1, sizeof *m);
+    drv->own = m;
+    if (m) {
+        m->limit = calloc(5 * c + 3 * n + 1, sizeof *m->limit);
+        m->loose = malloc(c + 1);
+    }
+    if (!m || !m->limit || !m->loose || !tribo_step_form_create(&m->common, drv->sys)) {
+        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
+    }
+    m->ratio = m->limit + c;
+    m->velocity = m->limit + 2 * c;
+    m->spring = m->limit + 3 * c;
+    m->rate = m->limit + 4 * c;
+    m->load = m->limit + 5 * c;
+    m->work = m->load + n;
+    m->push = m->work + n;
+    return TRIBO_OK;
+}
+
+/* S is diagonal: the operator is that of the bodies one by one. */
+static int set_bodies(struct moreau *m, const tribo_system *sys, const double *own)
+{
+    const struct matrix *j = &sys->direction;
+    double *inverse = calloc(sys->ndof, sizeof *inverse);
+    if (!inverse) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    }
+    for (size_t i = 0; i < j->rows; i++) {
+        for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+            const size_t d = j->col[k];
+            inverse[d] = j->val[k] != 0.0 ? own[k] / j->val[k] : inverse[d];
+        }
+    }
+    const int status = tribo_set_operator_mass(m->contacts, sys->ndof, inverse, j->first, j->col, j->val);
+    free(inverse);
+    return status ? tribo_system_fail(sys, status, "in a step, %s", tribo_message(m->contacts)) : TRIBO_OK;
+}
+
+/* The operator is r, unless that hides bodies; own as in hidden.h. */
+static int set_operator(struct moreau *m, const tribo_system *sys, const double *r, const double *own, double h)
+{
+    struct hidden where;
+    switch (tribo_hidden(&sys->direction, &sys->mass, own, r, &where)) {
+    case 0:
+        break;
+    case 1:
+        return !tribo_step_matrix_is_diagonal(&m->matrix)
+                   ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                       "contact %zu touches bodies of which one gives way %g times as much as the other in steps "
+                                       "of %g: %s",
+                                       where.contact, where.spread, h,
+                                       sys->unsolved ? "reduce the system" : "take central/fixed, event or exact")
+                   : set_bodies(m, sys, own);
+    default:
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    }
+    const int status = tribo_set_operator_dense(m->contacts, r);
+    return status ? tribo_system_fail(sys, status, "in steps of %g, %s", h, tribo_message(m->contacts)) : TRIBO_OK;
+}
+
+static size_t planar_of(const tribo_context *contacts)
+{
+    size_t planar = 0;
+    return contacts && !tribo_get_count(contacts, TRIBO_COUNT_PLANAR, &planar) ? planar : 0;
+}
+
+/* Whether the system's contacts may have become planar, or others than before. */
+static int planar_changed(const struct moreau *m, const tribo_system *sys)
+{
+    return m->settings != tribo_revision(sys->contacts) && (planar_of(sys->contacts) || planar_of(m->contacts));
+}
+
+/* Contacts of its own, planar where the system's are. */
+static int make_contacts(struct moreau *m, const tribo_system *sys)
+{
+    if (m->contacts && !planar_of(sys->contacts) && !planar_of(m->contacts)) {
+        return 1;
+    }
+    tribo_destroy(m->contacts);
+    m->contacts = NULL;
+    m->settings = tribo_revision(sys->contacts);
+    m->tell = 1;
+    const int status =
+        planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
+    m->contacts = status ? NULL : m->contacts;
+    return !status;
+}
+
+/* S^-1 J' is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
+static int keeps_response(const struct moreau *m, const tribo_system *sys)
+{
+    return !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
+}
+
+/* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] = S^-1 J'. */
+static void find_by_halves(const struct moreau *m, const tribo_system *sys, double *x, double *r, double *own)
+{
+    const size_t n = sys->ndof, c = sys->ncontact;
+    for (size_t i = 0; i < c; i++) {
+        tribo_delassus_put_row(&sys->direction, i, x + i * n);
+        tribo_step_matrix_half_solve(&m->matrix, x + i * n);
+        for (size_t k = 0; k <= i; k++) {
+            r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
+        }
+    }
+    for (size_t i = 0; i < c; i++) {
+        tribo_step_matrix_half_solve_back(&m->matrix, x + i * n);
+        tribo_delassus_note_own(&sys->direction, i, x + i * n, own);
+    }
+}
+
+static int solve_steps(const void *matrix, size_t count, double *x)
+{
+    return tribo_step_matrix_solve(matrix, count, x);
+}
+
+/* r [ncontact][ncontact] = J S^-1 J', and own as in hidden.h. 0 if out of memory. */
+static int find_operator(const struct moreau *m, const tribo_system *sys, double *r, double *own)
+{
+    const int symmetric = tribo_step_matrix_has_halves(&m->matrix);
+    if (symmetric && m->response) {
+        find_by_halves(m, sys, m->response, r, own);
+        return 1;
+    }
+    const int done = tribo_delassus_by_columns(&sys->direction, solve_steps, &m->matrix, m->response, r, own);
+    if (symmetric) {
+        tribo_even_out(sys->ncontact, r);
+    }
+    return done;
+}
+
+/* The factor, S^-1 J', and a context with the operator J S^-1 J'. */
+static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
+{
+    const size_t c = sys->ncontact;
+    int status = tribo_step_matrix_factorize(&m->matrix, sys, h);
+    if (status) {
+        return status;
+    }
+    const int keeps = keeps_response(m, sys);
+    free(m->response);
+    m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
+    double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
+    const int done = r && own && (m->response || !keeps) && make_contacts(m, sys) && find_operator(m, sys, r, own);
+    status = done ? set_operator(m, sys, r, own, h)
+                  : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the contacts of a step");
+    free(r);
+    free(own);
+    m->whole = !status;
+    return status;
+}
+
+/* u += h S^-1 J' f. */
+static void push(struct moreau *m, const tribo_system *sys, double h, const double *f, double *u)
+{
+    const size_t n = sys->ndof;
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; m->response && i < sys->ncontact; i++) {
+        for (size_t d = 0; d < n; d++) {
+            u[d] += h * f[i] * m->response[i * n + d];
+        }
+    }
+    if (!m->response) {
+        memset(m->push, 0, n * sizeof *m->push);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+                m->push[j->col[k]] += h * f[i] * j->val[k];
+            }
+        }
+        tribo_step_matrix_solve(&m->matrix, 1, m->push);
+        tribo_add(u, 1.0, m->push, n);
+    }
+}
+
+/* Prepares steps of length h. */
+static int prepare(struct moreau *m, const tribo_system *sys, double h)
+{
+    size_t where = 0;
+    m->h = 0.0;
+    m->whole = 0;
+    m->held.n = 0;
+    int status = planar_of(sys->contacts) ? TRIBO_OK : tribo_step_band_create(&m->held, sys, h, &where);
+    status = status == TRIBO_ERR_INDEFINITE ? tribo_step_matrix_indefinite(sys, h, where)
+             : status                       ? tribo_step_matrix_no_memory(sys)
+             : m->held.n                    ? TRIBO_OK
+                                            : prepare_whole(m, sys, h);
+    if (!status) {
+        m->h = h;
+        m->common.revision = sys->revision;
+    }
+    return status;
+}
+
+static void find_load(struct moreau *m, tribo_system *sys, double t)
+{
+    tribo_system_set_time(sys, t);
+    memset(m->load, 0, sys->ndof * sizeof *m->load);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, m->load);
+}
+
+/* Limits as the contacts of a step have them, and static ones, if they may be others than in the step before. */
+static void take_limits(struct moreau *m, const tribo_system *sys)
+{
+    const size_t revision = tribo_revision(sys->contacts);
+    if (m->taken && m->settings_taken == revision) {
+        return;
+    }
+    m->taken = m->tell = 1;
+    m->settings_taken = revision;
+    m->breaks = 0;
+    tribo_get_limit(sys->contacts, m->limit);
+    tribo_get_static(sys->contacts, m->ratio, m->velocity);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->limit[i] *= tribo_massless_touches(&sys->massless, i) ? 0.5 : 1.0;
+        m->breaks |= m->ratio[i] > 1.0;
+    }
+}
+
+static void give_limits(struct moreau *m, const tribo_system *sys)
+{
+    if (m->tell) {
+        tribo_set_limit(m->contacts, m->limit);
+        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
+        m->tell = 0;
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------- without mass */
+
+static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
+{
+    for (size_t d = 0; d < sys->ndof; d++) {
+        y[sys->ndof + d] = tribo_has_mass(&sys->massless, d) ? y[sys->ndof + d] : 0.0;
+    }
+    if (!m->common.goes_on) {
+        tribo_get_limit(sys->contacts, m->rate);
+        tribo_elastic_enter(sys, m->rate, m->work, m->spring, y);
+    }
+}
+
+/* Half of what elastic contacts had before acts all the step. */
+static void keep_half(const struct moreau *m, const tribo_system *sys, double h, double *u)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        if (tribo_massless_touches(&sys->massless, i)) {
+            tribo_add(u, 0.5 * h * m->spring[i], m->response + i * sys->ndof, sys->ndof);
+        }
+    }
+}
+
+/* What decides about elastic contacts is all that J moves over the step. */
+static void take_both_ends(struct step_form *s, const tribo_system *sys)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        s->end[i] += tribo_massless_touches(&sys->massless, i) ? s->v[i] : 0.0;
+    }
+}
+
+static void note_slip(struct moreau *m, const tribo_system *sys)
+{
+    tribo_get_slip(m->contacts, m->common.mode);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->loose[i] = (signed char)(tribo_massless_touches(&sys->massless, i) ? 1 : m->common.mode[i]);
+    }
+}
+
+/* Forces at the end of the step; what has no mass, there. */
+static void end_elastic(struct moreau *m, const tribo_system *sys, double *y)
+{
+    double *f = m->common.f;
+    if (sys->massless.count) {
+        memcpy(m->spring, f, sys->ncontact * sizeof *f);
+        tribo_elastic_give(sys, f, y);
+        tribo_elastic_move(sys, m->common.mode, m->common.base, y + sys->ndof, m->rate);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ a step */
+
+/* Of what M is to be multiplied with, or of the rest. */
+static void pull_back(const tribo_system *sys, int weighed, double h, const double *q, const double *u, double *p)
+{
+    const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
+    if (k.weighed == weighed) {
+        tribo_matrix_multiply_add(k.of, -h, q, p);
+    }
+    if (c.weighed == weighed && c.of->rows) {
+        tribo_matrix_multiply_add(c.of, -h, u, p);
+    }
+}
+
+/* The impulse p of loads and structure in a step; s->u is where half of a step leads to. */
+static void find_push(struct moreau *m, tribo_system *sys, double t, double next, const double *from, double *p)
+{
+    struct step_form *s = &m->common;
+    const size_t n = sys->ndof;
+    const double h = next - t, *u = from + n;
+    if (!s->goes_on) {
+        find_load(m, sys, t);
+    }
+    for (size_t i = 0; i < n; i++) {
+        s->u[i] = from[i] + 0.5 * h * u[i];
+        p[i] = 0.5 * h * m->load[i];
+    }
+    find_load(m, sys, next);
+    for (size_t i = 0; i < n; i++) {
+        p[i] += 0.5 * h * m->load[i];
+    }
+    pull_back(sys, 1, h, s->u, u, p);
+    if (sys->mass.rows && !sys->mass.identity && !sys->unsolved) {
+        tribo_matrix_multiply(&sys->mass, p, m->work);
+        memcpy(p, m->work, n * sizeof *p);
+    }
+    pull_back(sys, 0, h, s->u, u, p);
+    sys->evaluations++;
+}
+
+/* The forces of the step, which contacts slide, and the velocity s->u at its end: from the operator that contacts see. */
+static int respond_whole(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    struct step_form *s = &m->common;
+    const size_t n = sys->ndof;
+    tribo_step_matrix_solve(&m->matrix, 1, du);
+    for (size_t i = 0; i < n; i++) {
+        s->u[i] = u[i] + du[i];
+    }
+    keep_half(m, sys, h, s->u);
+    tribo_step_form_relative(s, sys, s->u, s->end);
+    take_both_ends(s, sys);
+    give_limits(m, sys);
+    const int status = tribo_step_form_force(s, sys, m->contacts, h);
+    if (status) {
+        return status;
+    }
+    push(m, sys, h, s->f, s->u);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        s->f[i] *= tribo_massless_touches(&sys->massless, i) ? 2.0 : 1.0;
+    }
+    note_slip(m, sys);
+    return TRIBO_OK;
+}
+
+/* The same in the band; 0 if that is not the way, or has not led to the end. */
+static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    struct step_form *s = &m->common;
+    if (!m->held.n || m->breaks || !tribo_step_band_solve(&m->held, h, m->limit, s->base, u, du, s->f)) {
+        return 0;
+    }
+    for (size_t i = 0; i < sys->ndof; i++) {
+        s->u[i] = u[i] + du[i];
+    }
+    memcpy(s->mode, m->held.at, sys->ncontact);
+    memcpy(m->loose, m->held.at, sys->ncontact);
+    return 1;
+}
+
+static int respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+{
+    if (respond_in_band(m, sys, h, u, du)) {
+        return tribo_dense_finite(m->common.f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
+    }
+    const int status = m->whole ? TRIBO_OK : prepare_whole(m, sys, h);
+    return status ? status : respond_whole(m, sys, h, u, du);
+}
+
+static int moreau_step(tribo_driver *drv, double t, double next, const double *from, double *y)
+{
+    struct moreau *m = drv->own;
+    struct step_form *s = &m->common;
+    tribo_system *sys = drv->sys;
+    const size_t n = sys->ndof;
+    const double h = next - t, *u = from + n;
+    /* steps of equal length differ by the rounding of time only */
+    if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
+        const int status = prepare(m, sys, h);
+        if (status) {
+            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+        }
+    }
+    if (sys->massless.count) {
+        memcpy(y, from, (2 * n + 1) * sizeof *y);
+        begin_elastic(m, sys, y);
+        from = y;
+        u = from + n;
+    }
+    tribo_step_form_begin(s, sys, t, u);
+    find_push(m, sys, t, next, from, s->a);
+    tribo_step_form_find_base(s, sys, next);
+    tribo_step_form_set_limits(sys, t + 0.5 * h);
+    take_limits(m, sys);
+    const int status = respond(m, sys, h, u, s->a);
+    if (status == TRIBO_ERR_NOT_FINITE) {
+        return tribo_step_form_grew(drv, t);
+    }
+    if (status) {
+        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(m->whole ? m->contacts : sys->contacts));
+    }
+    tribo_system_snap(sys, m->loose, s->base, s->u);
+    tribo_step_form_relative(s, sys, s->u, s->end);
+    s->goes_on = 1;
+    for (size_t i = 0; i < n; i++) {
+        y[i] = from[i] + 0.5 * h * (u[i] + s->u[i]);
+        y[n + i] = s->u[i];
+    }
+    y[2 * n] = from[2 * n] + h * tribo_step_form_power(sys, s->f, s->v, s->end);
+    end_elastic(m, sys, y);
+    return tribo_driver_check(drv, y);
+}
+
+static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
+{
+    struct moreau *m = drv->own;
+    struct step_form *s = &m->common;
+    static const struct fixed_method method = {moreau_step, NULL, 1, {1.0, 0.0}};
+    s->goes_on = continues && s->goes_on;
+    tribo_step_form_start(s, drv->sys);
+    return tribo_driver_fixed_steps(drv, t, t1, y, &method);
+}
+
+const struct method tribo_method_moreau_fixed = {
+    "moreau/fixed", WITHOUT_TOLERANCES, create, destroy, moreau_advance, NULL, NULL, NULL};

@@ -1,0 +1,329 @@
+/* The box-constrained problem of a step by the method of src/numerics/box/box.c, for bodies instead of contacts:
+ *
+ *     begin with the contacts that held in the last step
+ *     repeat  du = the solution with these held; who carries more than the limit slides, who is pushed by its force holds
+ *     until   no contact changes, or rounds end
+ *
+ * Where the band is stiff, a push goes on from body to body within the step, and each would find out only after the one before
+ * it. So as long as contacts only begin to slide, twice as many neighbours slide along from round to round; who did so too early
+ * is found to be pushed by its force, and holds again. */
+#include "step_band.h"
+#include "numerics/band.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/real.h"
+
+/* What a contact does to its body: nothing, holds it, or held it until others began to slide. */
+enum { FREE, HOLDS, FOLLOWS };
+
+/* A round costs as much as the band has entries, and a step hardly ever takes more than 10. */
+enum { ROUNDS = 100 };
+
+/* The first column of row i. */
+static size_t begin_of(const struct step_band *b, size_t i)
+{
+    return i > b->width ? i - b->width : 0;
+}
+
+void tribo_step_band_free(struct step_band *b)
+{
+    free(b->a);
+    free(b->body);
+    free(b->mass);
+    free(b->at);
+    *b = (struct step_band){0};
+}
+
+/* ---------------------------------------------------------------------------------------------------- whether it applies */
+
+static size_t width_of(const tribo_system *sys)
+{
+    size_t below = 0, above = 0;
+    tribo_matrix_widen(&sys->stiffness, &below, &above);
+    tribo_matrix_widen(&sys->damping, &below, &above);
+    return below > above ? below : above;
+}
+
+/* Each contact touches one body, and each body one contact at most. seen [ndof] is workspace, all zero. */
+static int each_its_own(const struct matrix *j, signed char *seen)
+{
+    for (size_t i = 0; i < j->rows; i++) {
+        const size_t k = j->first[i];
+        if (j->first[i + 1] - k != 1 || j->val[k] == 0.0 || seen[j->col[k]]) {
+            return 0;
+        }
+        seen[j->col[k]] = 1;
+    }
+    return 1;
+}
+
+/* A damping matrix may be what its caller likes. */
+static int symmetric(const struct matrix *a, const double *mass)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            const double x = mass[i] * a->val[k], mirror = mass[a->col[k]] * tribo_matrix_get(a, a->col[k], i);
+            if (!(fabs(x - mirror) <= 8.0 * DBL_EPSILON * fabs(x))) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+static int allocate(struct step_band *b, size_t n, size_t count)
+{
+    if (b->body) {
+        return 1;
+    }
+    b->body = malloc((count + n + 1) * sizeof *b->body);
+    b->mass = calloc(3 * n + 3 * count + 1, sizeof *b->mass);
+    b->at = calloc(count + n + 1, 1);
+    if (!b->body || !b->mass || !b->at) {
+        tribo_step_band_free(b);
+        return 0;
+    }
+    b->contact = b->body + count;
+    b->push = b->mass + n;
+    b->move = b->push + n;
+    b->lever = b->move + n;
+    b->inverse = b->lever + count;
+    b->noise = b->inverse + count;
+    b->held = b->at + count;
+    return 1;
+}
+
+/* A system whose masses are known one by one, with the narrow band that is worth it. */
+static int applies(struct step_band *b, const tribo_system *sys)
+{
+    const size_t n = sys->ndof;
+    if (!sys->ncontact || sys->massless.count || sys->elastic.rows || sys->modes || sys->mass.rows != n ||
+        !tribo_matrix_is_diagonal(&sys->mass)) {
+        return 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        b->mass[i] = tribo_matrix_get(&sys->mass, i, i);
+    }
+    b->width = width_of(sys);
+    memset(b->held, 0, n);
+    return 2 * b->width <= sys->ncontact && each_its_own(&sys->direction, b->held) && symmetric(&sys->stiffness, b->mass) &&
+           symmetric(&sys->damping, b->mass);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ the factor */
+
+/* Of A without who is held; the place of a pivot that is not positive, or n. */
+static size_t factorize(struct step_band *b)
+{
+    const size_t where = tribo_band_factorize(b->n, b->width, b->a, b->held, b->l);
+    b->factored = where == b->n;
+    return where;
+}
+
+int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double h, size_t *where)
+{
+    const size_t n = sys->ndof;
+    b->n = 0;
+    if (!allocate(b, n, sys->ncontact)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    if (!applies(b, sys)) {
+        return TRIBO_OK;
+    }
+    free(b->a);
+    b->a = calloc(2 * n * (b->width + 1), sizeof *b->a);
+    if (!b->a) {
+        return TRIBO_ERR_MEMORY;
+    }
+    b->l = b->a + n * (b->width + 1);
+    b->count = sys->ncontact;
+    for (size_t i = 0; i < n; i++) {
+        b->a[i * (b->width + 1) + b->width] = b->mass[i];
+    }
+    tribo_band_add(b->a, b->width, &sys->stiffness, 0.25 * h * h, b->mass);
+    tribo_band_add(b->a, b->width, &sys->damping, 0.5 * h, b->mass);
+    for (size_t d = 0; d < n; d++) {
+        b->contact[d] = b->count;
+    }
+    for (size_t i = 0; i < b->count; i++) {
+        b->body[i] = sys->direction.col[sys->direction.first[i]];
+        b->contact[b->body[i]] = i;
+        b->lever[i] = sys->direction.val[sys->direction.first[i]];
+        b->inverse[i] = 1.0 / b->lever[i];
+    }
+    b->n = n;
+    memset(b->held, 0, n);
+    b->factored = 0;
+    *where = factorize(b); /* with nobody held: A is definite if and only if all these pivots are */
+    return *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
+}
+
+/* --------------------------------------------------------------------------------------------------------------- the step */
+
+/* Row i of A times x, and the size of its terms. A is symmetric: right of the diagonal its rows are columns of what is stored. */
+static double row_dot(const struct step_band *b, size_t i, const double *x, double *size)
+{
+    const size_t w = b->width, end = i + w < b->n ? i + w : b->n - 1;
+    const double *row = b->a + i * (w + 1);
+    double sum = 0.0, sizes = 0.0;
+    for (size_t j = begin_of(b, i); j <= i; j++) {
+        const double term = x[j] * row[j + w - i];
+        sum += term;
+        sizes += fabs(term);
+    }
+    for (size_t j = i + 1, at = j * (w + 1) + w - 1; j <= end; j++, at += w) {
+        const double term = x[j] * b->a[at];
+        sum += term;
+        sizes += fabs(term);
+    }
+    *size = sizes;
+    return sum;
+}
+
+/* Marks the bodies that contacts hold; the factor is of no more use if these are others than before. */
+static void hold(struct step_band *b)
+{
+    for (size_t i = 0; i < b->count; i++) {
+        const signed char holds = b->at[i] ? FREE : HOLDS;
+        b->factored &= b->held[b->body[i]] == holds;
+        b->held[b->body[i]] = holds;
+    }
+}
+
+/* Moves by which held bodies stay with the base; whether there are any. */
+static int find_moves(struct step_band *b, const double *base, const double *u)
+{
+    int any = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i];
+        b->move[d] = b->at[i] ? 0.0 : base[i] / b->lever[i] - u[d];
+        any |= b->move[d] != 0.0;
+    }
+    return any;
+}
+
+/* What of x comes from the moves of held bodies, and those near them, goes to the other side. */
+static void take_moves(const struct step_band *b, double *x)
+{
+    const size_t w = b->width;
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i], end = d + w < b->n ? d + w : b->n - 1;
+        for (size_t j = begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
+            x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
+        }
+    }
+}
+
+/* x = du and the forces with the sets as they are. */
+static void solve_sets(struct step_band *b, double h, const double *limit, const double *base, const double *u, double *x,
+                       double *f)
+{
+    const double doubt = 8.0 * DBL_EPSILON;
+    hold(b);
+    if (!b->factored) {
+        factorize(b);
+    }
+    memcpy(x, b->push, b->n * sizeof *x);
+    for (size_t i = 0; i < b->count; i++) {
+        f[i] = b->at[i] * limit[i];
+        x[b->body[i]] += h * b->lever[i] * f[i];
+    }
+    if (find_moves(b, base, u)) {
+        take_moves(b, x);
+    }
+    for (size_t d = 0; d < b->n; d++) {
+        x[d] = b->held[d] ? 0.0 : x[d];
+    }
+    tribo_band_solve(b->n, b->width, b->l, x);
+    for (size_t i = 0; i < b->count; i++) {
+        x[b->body[i]] = b->at[i] ? x[b->body[i]] : b->move[b->body[i]];
+    }
+    const double rate = 1.0 / h;
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i];
+        double size;
+        const double sum = row_dot(b, d, x, &size), unit = rate * b->inverse[i];
+        b->noise[i] = doubt * fabs(unit) * (size + fabs(b->push[d]) + fabs(b->a[d * (b->width + 1) + b->width] * u[d]));
+        f[i] = b->at[i] ? f[i] : unit * (sum - b->push[d]);
+    }
+}
+
+/* Where a contact wants to be. */
+static signed char wants(const struct step_band *b, size_t i, double rate, double limit, double v, double f)
+{
+    if (b->at[i] == 0) {
+        return (signed char)((f > limit + b->noise[i]) - (f < -limit - b->noise[i]));
+    }
+    /* a velocity counts by the force that would take it away within the step */
+    const double pull = v * b->a[b->body[i] * (b->width + 1) + b->width] * (rate * b->inverse[i] * b->inverse[i]);
+    return pull * b->at[i] > b->noise[i] ? 0 : b->at[i];
+}
+
+/* Puts contacts where they want to be: *freed of them begin to slide, *caught of them hold. */
+static void revise(struct step_band *b, double h, const double *limit, const double *base, const double *u, const double *du,
+                   const double *f, size_t *freed, size_t *caught)
+{
+    const double rate = 1.0 / h;
+    *freed = *caught = 0;
+    for (size_t i = 0; i < b->count; i++) {
+        const size_t d = b->body[i];
+        const signed char to = wants(b, i, rate, limit[i], b->lever[i] * (u[d] + du[d]) - base[i], f[i]);
+        *freed += !b->at[i] && to;
+        *caught += b->at[i] && !to;
+        b->at[i] = to;
+    }
+}
+
+/* One body after the other, upwards or downwards: who held slides along if one of the last `reach` begins to. */
+static void sweep(struct step_band *b, size_t reach, int upwards)
+{
+    size_t left = 0;
+    double way = 0.0;
+    for (size_t k = 0; k < b->n; k++) {
+        const size_t d = upwards ? k : b->n - 1 - k, i = b->contact[d];
+        const int contact = i < b->count;
+        if (contact && b->held[d] == HOLDS && b->at[i]) {
+            left = reach;
+            way = b->lever[i] * b->at[i];
+        } else if (left > 0) {
+            left--;
+            if (contact && !b->at[i]) {
+                b->at[i] = b->lever[i] * way > 0.0 ? 1 : -1;
+                b->held[d] = FOLLOWS;
+            }
+        }
+    }
+}
+
+static void clamp_all(const struct step_band *b, const double *limit, double *f)
+{
+    for (size_t i = 0; i < b->count; i++) {
+        f[i] = clamp(f[i], -limit[i], limit[i]);
+    }
+}
+
+int tribo_step_band_solve(struct step_band *b, double h, const double *limit, const double *base, const double *u, double *du,
+                          double *f)
+{
+    size_t reach = 0, freed, caught;
+    memcpy(b->push, du, b->n * sizeof *du);
+    for (int round = 0; round < ROUNDS; round++) {
+        solve_sets(b, h, limit, base, u, du, f);
+        revise(b, h, limit, base, u, du, f, &freed, &caught);
+        if (freed + caught == 0) {
+            clamp_all(b, limit, f);
+            return 1;
+        }
+        reach = caught ? 0 : 2 * reach + 1;
+        if (reach > 1) {
+            sweep(b, reach, 1);
+            sweep(b, reach, 0);
+        }
+    }
+    memcpy(du, b->push, b->n * sizeof *du);
+    return 0;
+}

@@ -1,0 +1,44 @@
+/* The matrix S = M + h/2 C + h^2/4 K of a step of length h by the midpoint rule, factorized. It knows degrees of freedom without
+ * mass by what stiffness they have. */
+#ifndef TRIBO_STEP_MATRIX_H
+#define TRIBO_STEP_MATRIX_H
+
+#include "dynamics/system/system.h"
+
+/* K or C; or, weighed, what M has to be multiplied with for that. */
+struct step_part {
+    const struct matrix *of; /* no rows: zero */
+    int weighed;
+};
+
+struct step_part tribo_step_stiffness(const tribo_system *sys);
+struct step_part tribo_step_damping(const tribo_system *sys);
+
+/* A band, as in band.h, or a sparse factor; or a band in GSL's format, if damping is not symmetric. */
+struct step_matrix {
+    size_t n, below, above;
+    double *band;
+    unsigned int *pivot; /* NULL: the band is symmetric */
+    struct cholesky sparse;
+};
+
+/* A status, whose message the system keeps. tribo_step_matrix_free takes what failed, too. */
+int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h);
+void tribo_step_matrix_free(struct step_matrix *m);
+
+/* count vectors x [count][n] = S^-1 x. 1, or 0 if out of memory, which does not happen to a single one. */
+int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x);
+
+/* Whether S = H H' for an H that the next two know: x [n] = H^-1 x, and x = H'^-1 x. */
+int tribo_step_matrix_has_halves(const struct step_matrix *m);
+void tribo_step_matrix_half_solve(const struct step_matrix *m, double *x);
+void tribo_step_matrix_half_solve_back(const struct step_matrix *m, double *x);
+
+/* Whether S is diagonal. */
+int tribo_step_matrix_is_diagonal(const struct step_matrix *m);
+
+/* TRIBO_ERR_INDEFINITE and TRIBO_ERR_MEMORY, and what they say. */
+int tribo_step_matrix_indefinite(const tribo_system *sys, double h, size_t where);
+int tribo_step_matrix_no_memory(const tribo_system *sys);
+
+#endif

@@ -1,0 +1,115 @@
+/* For many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of a
+ * turn: there Taylor's series end soon. Nothing is chosen, so that loops over times become vectors. */
+#include "cos_sin.h"
+#include "common/simd.h"
+#include "numerics/twofold.h"
+
+#include <math.h>
+
+/* The whole number next to x, |x| < 2^51. */
+static inline double nearest(double x)
+{
+    const double lift = 6755399441055744.0; /* 1.5 2^52: the digits of a sum end before the point */
+    return (x + lift) - lift;
+}
+
+/* angle less so many quarter turns: of pi/2 three pieces, of which the first two have so few digits that multiples of them up to
+ * 2^20 are exact. */
+static inline struct twofold without_quarters(struct twofold angle, double quarters)
+{
+    const double first = 0x1.921fb544p+0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;
+    const struct twofold x = twofold_sum(angle.hi - quarters * first, -quarters * second);
+    return twofold_sum(x.hi, (x.lo - quarters * third) + angle.lo);
+}
+
+/* The sum of c[k] (-z)^k, by pairs, so that no term waits for more than three others. */
+static inline double alternating(double z, const double *c)
+{
+    const double z2 = z * z;
+    return ((c[0] - z * c[1]) + z2 * (c[2] - z * c[3])) + z2 * z2 * ((c[4] - z * c[5]) + z2 * (c[6] - z * c[7]));
+}
+
+static inline double cosine_near_0(struct twofold x)
+{
+    static const double c[] = {1 / 24.,        1 / 720.,         1 / 40320.,          1 / 3628800.,
+                               1 / 479001600., 1 / 87178291200., 1 / 20922789888000., 1 / 6402373705728000.};
+    const double z = x.hi * x.hi, half = 0.5 * z, w = 1.0 - half;
+    return w + (((1.0 - w) - half) + (z * z * alternating(z, c) - x.hi * x.lo));
+}
+
+static inline double sine_near_0(struct twofold x)
+{
+    static const double c[] = {1 / 6.,        1 / 120.,        1 / 5040.,          1 / 362880.,
+                               1 / 39916800., 1 / 6227020800., 1 / 1307674368000., 1 / 355687428096000.};
+    const double z = x.hi * x.hi;
+    return x.hi + (x.lo * (1.0 - 0.5 * z) - x.hi * z * alternating(z, c));
+}
+
+TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restrict t, double *restrict c, double *restrict s)
+{
+    for (size_t k = 0; k < n; k++) {
+        const struct twofold angle = twofold_product(omega, t[k]);
+        const double quarters = nearest(angle.hi * 0.63661977236758134);
+        const struct twofold x = without_quarters(angle, quarters);
+        const double cx = cosine_near_0(x), sx = sine_near_0(x);
+        const double left = quarters - 4.0 * nearest(0.25 * quarters); /* -2, -1, 0, 1 or 2 */
+        const double cq = 1.0 - fabs(left), sq = left * (2.0 - fabs(left));
+        c[k] = cq * cx - sq * sx;
+        s[k] = sq * cx + cq * sx;
+    }
+}
+
+TRIBO_SIMD static int any_far(double omega, size_t n, const double *t)
+{
+    int64_t any = 0; /* as wide as what is compared */
+    for (size_t k = 0; k < n; k++) {
+        any |= fabs(omega * t[k]) <= COS_SIN_NEAR ? 0 : -1;
+    }
+    return any != 0;
+}
+
+/* How many of the times, from the first on, are near. */
+static size_t near_run(double omega, size_t n, const double *t)
+{
+    size_t k = any_far(omega, n, t) ? 0 : n;
+    while (k < n && fabs(omega * t[k]) <= COS_SIN_NEAR) {
+        k++;
+    }
+    return k;
+}
+
+void tribo_turn(double angle, double *cosine, double *sine)
+{
+    const double c = cos(angle), s = sin(angle);
+    *cosine = c;
+    *sine = s;
+}
+
+void tribo_cos_sin_all(double omega, size_t n, const double *t, double *c, double *s)
+{
+    for (size_t k = 0, run; k < n; k += run) {
+        run = near_run(omega, n - k, t + k);
+        if (run) {
+            tribo_cos_sin_near(omega, run, t + k, c + k, s + k);
+        } else {
+            tribo_cos_sin(omega, t[k], 0.0, c + k, s + k);
+            run = 1;
+        }
+    }
+}
+
+/* An angle so small has the cosine 1 and is its own sine. */
+#define TINY_ANGLE 1e-8
+
+/* What rounding leaves of omega t is turned on: phases of late times would tremble by it. */
+void tribo_cos_sin(double omega, double t, double low, double *c, double *s)
+{
+    const double angle = omega * t, rest = (fabs(angle) < TWOFOLD_FAR ? twofold_product(omega, t).lo : 0.0) + omega * low;
+    double ca, sa, cr = 1.0, sr = rest;
+    tribo_turn(angle, &ca, &sa);
+    if (!(fabs(rest) < TINY_ANGLE)) {
+        tribo_turn(rest, &cr, &sr);
+    }
+    *c = ca * cr - sa * sr;
+    *s = sa * cr + ca * sr;
+}

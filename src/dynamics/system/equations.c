@@ -1,0 +1,325 @@
+/* The equations of motion of a system, and its life. */
+#include "elastic.h"
+#include "common/real.h"
+#include "common/simd.h"
+#include "common/zeros.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* y -= A x. */
+static inline void subtract(const struct matrix *a, const double *x, double *y)
+{
+    if (tribo_matrix_is_small(a)) {
+        tribo_matrix_add_few(a, -1.0, x, y);
+    } else {
+        tribo_matrix_multiply_add(a, -1.0, x, y);
+    }
+}
+
+void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration)
+{
+    const size_t n = sys->ndof;
+    if (!tribo_system_is_at(sys, t)) {
+        tribo_system_set_time(sys, t);
+    }
+    memset(acceleration, 0, n * sizeof *acceleration);
+    tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, acceleration);
+    subtract(&sys->stiffness, y, acceleration);
+    if (sys->damping.rows) {
+        subtract(&sys->damping, y + n, acceleration);
+    }
+}
+
+void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a)
+{
+    tribo_system_free_acceleration(sys, t, y, acceleration);
+    memset(v, 0, sys->ncontact * sizeof *v);
+    memset(a, 0, sys->ncontact * sizeof *a);
+    if (sys->base_harmonics) {
+        tribo_system_loads(sys, DRIVES_BASE, 0, -1.0, v);
+        tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, a);
+    }
+    tribo_matrix_multiply_add(&sys->direction, 1.0, y + sys->ndof, v);
+    tribo_matrix_multiply_add(&sys->direction, 1.0, acceleration, a);
+}
+
+/* v and a as contacts see the motion: vectors of the system, or, where nothing is between them, of the motion itself. */
+struct seen {
+    const double *v, *a;
+};
+
+static struct seen see(tribo_system *sys, double t, const double *y, double *acceleration)
+{
+    if (sys->base_harmonics) {
+        tribo_system_free_motion(sys, t, y, acceleration, sys->v, sys->a);
+        return (struct seen){sys->v, sys->a};
+    }
+    tribo_system_free_acceleration(sys, t, y, acceleration);
+    return (struct seen){tribo_matrix_image(&sys->direction, y + sys->ndof, sys->v),
+                         tribo_matrix_image(&sys->direction, acceleration, sys->a)};
+}
+
+enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
+
+TRIBO_SIMD static double power_of(size_t n, const double *restrict tally, const double *restrict f, const double *restrict v)
+{
+    double part[LANES] = {0.0}, sum = 0.0;
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[k] -= tally[i + k] * f[i + k] * v[i + k];
+        }
+    }
+    for (; i < n; i++) {
+        sum -= tally[i] * f[i] * v[i];
+    }
+    return sum + (((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7])));
+}
+
+static void add_forces(const tribo_system *sys, const double *v, double *acceleration, double *power)
+{
+    *power = power_of(sys->ncontact, sys->tally, sys->f, v);
+    tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, acceleration);
+}
+
+int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
+{
+    sys->evaluations++;
+    const struct seen seen = see(sys, t, y, acceleration);
+    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, NULL, sys->f);
+    if (!sys->status) {
+        add_forces(sys, seen.v, acceleration, power);
+    }
+    return sys->status;
+}
+
+int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
+{
+    int law;
+    tribo_get_law(sys->contacts, &law);
+    if (law != TRIBO_QUINN_REVERSAL) {
+        return tribo_system_rates(sys, t, y, acceleration, power);
+    }
+    sys->evaluations++;
+    const struct seen seen = see(sys, t, y, acceleration);
+    sys->status = tribo_balance(sys->contacts, seen.v, seen.a, sys->feq, sys->f);
+    if (!sys->status) {
+        /* the forces stay: where a mark changes, the law's two forms agree */
+        sys->status = tribo_accept(sys->contacts, seen.v, sys->feq);
+        add_forces(sys, seen.v, acceleration, power);
+    }
+    return sys->status;
+}
+
+/* What the steppers of GSL take besides accelerations and power; sys->v has the velocities for the driver. */
+static void complete(tribo_system *sys, const double *y, double *dydt)
+{
+    const double *u = y + sys->ndof;
+    memcpy(dydt, u, sys->ndof * sizeof *dydt);
+    if (sys->direction.identity && !sys->base_harmonics) {
+        memcpy(sys->v, u, sys->ncontact * sizeof *sys->v);
+    }
+}
+
+int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
+{
+    const size_t n = sys->ndof;
+    complete(sys, y, dydt);
+    return tribo_system_begin_rates(sys, t, y, dydt + n, dydt + 2 * n);
+}
+
+static int right_hand_side(double t, const double y[], double dydt[], void *params)
+{
+    tribo_system *sys = params;
+    const size_t n = sys->ndof;
+    sys->status = tribo_system_check_rates(sys, "the right-hand side");
+    if (sys->status) {
+        return GSL_EBADFUNC;
+    }
+    complete(sys, y, dydt);
+    if (tribo_system_rates(sys, t, y, dydt + n, dydt + 2 * n)) {
+        /* a step that is too long may overflow, and a shorter one not */
+        return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
+    }
+    return GSL_SUCCESS;
+}
+
+/* --------------------------------------------------------------------------------------------------------------------- states */
+
+/* v and a of a state, after checking it. */
+static int contacts_at(tribo_system *sys, double t, const double *y)
+{
+    int status = tribo_system_check_state(sys, t, y);
+    status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
+    if (!status) {
+        tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
+    }
+    return status;
+}
+
+/* The law knows nothing of springs: where elastic contacts touch mass themselves, it would answer what they do to others. */
+static int check_apart(const tribo_system *sys)
+{
+    for (size_t i = 0; sys->massless.count && i < sys->ncontact; i++) {
+        if (tribo_massless_touches(&sys->massless, i) && tribo_system_delassus(sys, i, i) > 0.0) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "contact %zu is elastic and touches mass, too: what contacts do is not told of this system",
+                                     i);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* to [ncontact], or NULL: forces of elastic contacts, by the state. */
+static void put_springs(tribo_system *sys, const double *y, double *to)
+{
+    if (sys->massless.count && to) {
+        tribo_elastic_forces(sys, y, sys->acceleration, to, NULL);
+        tribo_get_limit(sys->contacts, sys->a);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            to[i] = tribo_massless_touches(&sys->massless, i) ? clamp(to[i], -sys->a[i], sys->a[i]) : to[i];
+        }
+    }
+}
+
+int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f)
+{
+    int status = sys ? check_apart(sys) : TRIBO_ERR_NULL;
+    status = status ? status : contacts_at(sys, t, y);
+    if (!status) {
+        status = tribo_balance(sys->contacts, sys->v, sys->a, feq, f);
+    }
+    if (!status) {
+        put_springs(sys, y, feq);
+        put_springs(sys, y, f);
+    }
+    if (!status && v) {
+        memcpy(v, sys->v, sys->ncontact * sizeof *v);
+    }
+    return status;
+}
+
+int tribo_system_accept(tribo_system *sys, double t, const double *y)
+{
+    int status = sys ? tribo_system_check_mass(sys, "this call") : TRIBO_ERR_NULL;
+    status = status ? status : contacts_at(sys, t, y);
+    if (!status) {
+        status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL);
+    }
+    return status ? status : tribo_accept(sys->contacts, sys->v, sys->feq);
+}
+
+/* ----------------------------------------------------------------------------------------------------------------------- life */
+
+int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
+                       struct matrix *direction, struct matrix *response)
+{
+    tribo_system *s = tribo_zeros(1, sizeof *s);
+    int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
+    double *work = status ? NULL : tribo_zeros(8 * (ncontact + 1) + ndof, sizeof *work);
+    if (!work) {
+        tribo_system_destroy(s);
+        tribo_matrix_free(stiffness);
+        tribo_matrix_free(damping);
+        tribo_matrix_free(direction);
+        tribo_matrix_free(response);
+        return status ? status : TRIBO_ERR_MEMORY;
+    }
+    s->ndof = ndof;
+    s->ncontact = ncontact;
+    s->given = ndof;
+    s->stiffness = *stiffness;
+    s->damping = *damping;
+    s->direction = *direction;
+    s->response = *response;
+    s->time = NAN;
+    s->v = work;
+    s->a = work + (ncontact + 1);
+    s->f = work + 2 * (ncontact + 1);
+    s->feq = work + 3 * (ncontact + 1);
+    s->dv_dt = work + 4 * (ncontact + 1);
+    s->given_limit = work + 5 * (ncontact + 1);
+    s->put_limit = work + 6 * (ncontact + 1);
+    s->tally = work + 7 * (ncontact + 1);
+    s->acceleration = work + 8 * (ncontact + 1);
+    for (size_t i = 0; i < ncontact; i++) {
+        s->tally[i] = 1.0;
+    }
+    s->odeiv2 = (gsl_odeiv2_system){right_hand_side, tribo_jacobian, 2 * ndof + 1, s};
+    *sys = s;
+    return TRIBO_OK;
+}
+
+/* What tribo_system_build does not make. 1, or 0 if out of memory. */
+static int copy_rest(tribo_system *to, const tribo_system *sys)
+{
+    tribo_destroy(to->contacts);
+    to->contacts = NULL;
+    to->revision = sys->revision;
+    to->given = sys->given;
+    to->unsolved = sys->unsolved;
+    memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
+    memcpy(to->put_limit, sys->put_limit, sys->ncontact * sizeof *to->put_limit);
+    memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);
+    int done = 1;
+    to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);
+    to->omega = tribo_copy_of(sys->omega, sys->ndof, sizeof *to->omega, &done);
+    to->truncation = sys->truncation;
+    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
+           tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->mass, &sys->mass) &&
+           tribo_cholesky_copy(&to->factor, &sys->factor) &&
+           tribo_massless_copy(&to->massless, &sys->massless, sys->ndof, sys->ncontact) && tribo_loads_copy(to, sys);
+}
+
+int tribo_system_clone(const tribo_system *sys, tribo_system **copy)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!copy) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "copy is NULL");
+    }
+    tribo_system *to = NULL;
+    struct matrix a[4] = {{0}};
+    const struct matrix *from[] = {&sys->stiffness, &sys->damping, &sys->direction, &sys->response};
+    int done = 1;
+    for (size_t k = 0; done && k < 4; k++) {
+        done = tribo_matrix_copy(&a[k], from[k]);
+    }
+    for (size_t k = 0; !done && k < 4; k++) {
+        tribo_matrix_free(&a[k]);
+    }
+    done = done && tribo_system_build(&to, sys->ndof, sys->ncontact, &a[0], &a[1], &a[2], &a[3]) == TRIBO_OK;
+    if (!done || !copy_rest(to, sys)) {
+        tribo_system_destroy(to);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu degree%s of freedom", sys->ndof,
+                                 plural(sys->ndof));
+    }
+    *copy = to;
+    return TRIBO_OK;
+}
+
+void tribo_system_destroy(tribo_system *sys)
+{
+    if (!sys) {
+        return;
+    }
+    tribo_destroy(sys->contacts);
+    tribo_matrix_free(&sys->stiffness);
+    tribo_matrix_free(&sys->damping);
+    tribo_matrix_free(&sys->direction);
+    tribo_matrix_free(&sys->response);
+    tribo_loads_free(sys);
+    tribo_matrix_free(&sys->elastic);
+    tribo_matrix_free(&sys->viscous);
+    tribo_matrix_free(&sys->mass);
+    tribo_cholesky_free(&sys->factor);
+    tribo_massless_free(&sys->massless);
+    free(sys->modes);
+    free(sys->omega);
+    free(sys->v);
+    free(sys->dense);
+    free(sys);
+}

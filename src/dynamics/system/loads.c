@@ -1,0 +1,581 @@
+/* What comes from outside and changes with time: loads on the structure, motion of the bases, limits. */
+#include "system.h"
+#include "common/layout.h"
+#include "common/real.h"
+#include "common/zeros.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void free_harmonic(struct harmonic *h)
+{
+    free(h->index);
+}
+
+static void lay_out_harmonic(struct harmonic *h, struct layout *l, size_t n)
+{
+    h->index = tribo_layout_array(l, n, sizeof *h->index);
+    h->cosine = tribo_layout_array(l, n, sizeof *h->cosine);
+    h->sine = tribo_layout_array(l, n, sizeof *h->sine);
+}
+
+/* Room for so many entries; 0 if out of memory: then there is none. */
+static int create_harmonic(struct harmonic *h, size_t n)
+{
+    struct layout l = {0};
+    lay_out_harmonic(h, &l, n);
+    const int done = tribo_layout_create(&l);
+    if (done) {
+        lay_out_harmonic(h, &l, n);
+    }
+    return done;
+}
+
+static void free_table(struct table *t)
+{
+    free(t->time);
+    free(t->value);
+    free(t->pattern);
+}
+
+void tribo_loads_free(tribo_system *sys)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        free_harmonic(&sys->harmonic[k]);
+    }
+    free(sys->harmonic);
+    for (size_t k = 0; k < sys->tables; k++) {
+        free_table(&sys->table[k]);
+    }
+    free(sys->table);
+    free_table(&sys->limits);
+}
+
+/* ------------------------------------------------------------------------------------------------------------------- copies */
+
+/* A copy of the table; 0 if out of memory. */
+static int create_table(struct table *t, size_t knots, size_t columns, const double *time, const double *value)
+{
+    int done = 1;
+    t->knots = knots;
+    t->time = tribo_copy_of(time, knots, sizeof *t->time, &done);
+    t->value = tribo_copy_of(value, knots * columns, sizeof *t->value, &done);
+    return done;
+}
+
+static int copy_harmonic(struct harmonic *to, const struct harmonic *from)
+{
+    *to = *from;
+    to->time = NAN;
+    if (!create_harmonic(to, from->count)) {
+        return 0;
+    }
+    memcpy(to->index, from->index, from->count * sizeof *to->index);
+    memcpy(to->cosine, from->cosine, from->count * sizeof *to->cosine);
+    memcpy(to->sine, from->sine, from->count * sizeof *to->sine);
+    return 1;
+}
+
+/* A copy with its columns, and its pattern [ndof], if there is one. */
+static int copy_table(struct table *to, const struct table *from, size_t columns, size_t ndof)
+{
+    int done = 1;
+    *to = (struct table){0};
+    if (from->knots) {
+        done = create_table(to, from->knots, columns, from->time, from->value);
+        to->pattern = tribo_copy_of(from->pattern, ndof, sizeof *to->pattern, &done);
+    }
+    return done;
+}
+
+int tribo_loads_copy(tribo_system *sys, const tribo_system *from)
+{
+    sys->harmonic = malloc((from->harmonics + 1) * sizeof *sys->harmonic);
+    sys->table = malloc((from->tables + 1) * sizeof *sys->table);
+    int done = sys->harmonic && sys->table;
+    for (size_t k = 0; done && k < from->harmonics; k++) {
+        done = copy_harmonic(&sys->harmonic[sys->harmonics++], &from->harmonic[k]);
+    }
+    for (size_t k = 0; done && k < from->tables; k++) {
+        done = copy_table(&sys->table[sys->tables++], &from->table[k], 1, sys->ndof);
+    }
+    sys->base_harmonics = from->base_harmonics;
+    sys->limit_harmonics = from->limit_harmonics;
+    return done && copy_table(&sys->limits, &from->limits, sys->ncontact, 0);
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ at a time */
+
+/* The knot at or before t, the first one if there is none. */
+static size_t knot_at(const struct table *table, double t)
+{
+    size_t lo = 0, hi = table->knots;
+    while (hi - lo > 1) {
+        const size_t mid = lo + (hi - lo) / 2;
+        *(table->time[mid] <= t ? &lo : &hi) = mid;
+    }
+    return lo;
+}
+
+/* Value (order 0) or slope (1) of column i, of columns, of a table at the time set. */
+static double look_up(const tribo_system *sys, const struct table *table, size_t columns, size_t i, int order)
+{
+    const size_t k = table->at;
+    const double *v = table->value + k * columns + i;
+    if (k + 1 == table->knots || sys->time < table->time[0]) {
+        return order ? 0.0 : *v;
+    }
+    const double slope = (v[columns] - v[0]) / (table->time[k + 1] - table->time[k]);
+    return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
+}
+
+/* Finds out which limits are given in the context: those that it has before they vary, and those that it gets while harmonics,
+ * but no table, change them. */
+static void find_given_limits(tribo_system *sys)
+{
+    const size_t bytes = sys->ncontact * sizeof *sys->v;
+    const int vary = tribo_system_limits_vary(sys);
+    tribo_get_limit(sys->contacts, sys->v);
+    if (!vary || (!sys->limits.knots && memcmp(sys->v, sys->put_limit, bytes) != 0)) {
+        memcpy(sys->given_limit, sys->v, bytes);
+    }
+    memcpy(sys->put_limit, sys->v, bytes);
+}
+
+void tribo_system_put_limits(tribo_system *sys, double later)
+{
+    const size_t before = tribo_revision(sys->contacts);
+    tribo_system_limits(sys, sys->put_limit, sys->feq);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        sys->put_limit[i] = clamp(sys->put_limit[i] + later * sys->feq[i], 0.0, DBL_MAX);
+    }
+    tribo_set_limit(sys->contacts, sys->put_limit);
+    sys->seen = tribo_revision(sys->contacts);
+    sys->ours += sys->seen - before;
+}
+
+/* Makes the limits of the context those of the time set. */
+static void follow_limits(tribo_system *sys)
+{
+    if (sys->seen != tribo_revision(sys->contacts)) {
+        find_given_limits(sys);
+    }
+    sys->limits.at = knot_at(&sys->limits, sys->time);
+    tribo_system_put_limits(sys, 0.0);
+}
+
+void tribo_system_set_low(tribo_system *sys, double low)
+{
+    if (low != sys->low) {
+        sys->low = low;
+        tribo_system_forget_time(sys);
+    }
+}
+
+void tribo_system_set_time(tribo_system *sys, double t)
+{
+    const int moves = t != sys->time;
+    if (moves) {
+        sys->time = t;
+        for (size_t k = 0; k < sys->tables; k++) {
+            sys->table[k].at = knot_at(&sys->table[k], t);
+        }
+    }
+    if (tribo_system_limits_vary(sys) && (moves || sys->seen != tribo_revision(sys->contacts))) {
+        follow_limits(sys);
+    }
+}
+
+double tribo_system_next_kink(const tribo_system *sys, double t)
+{
+    double next = HUGE_VAL;
+    if (sys->tables == 0 && sys->limits.knots == 0) {
+        return next;
+    }
+    for (size_t k = 0; k <= sys->tables; k++) {
+        const struct table *table = k < sys->tables ? &sys->table[k] : &sys->limits;
+        for (size_t i = table->knots ? knot_at(table, t) : 0; i < table->knots; i++) {
+            if (table->time[i] > t || (table->time[i] == t && sys->low < 0.0)) {
+                next = lesser(next, table->time[i]);
+                break;
+            }
+        }
+    }
+    return next;
+}
+
+void tribo_system_tables(const tribo_system *sys, int order, double factor, size_t begin, size_t end, double *to)
+{
+    for (size_t k = 0; order < 2 && k < sys->tables; k++) {
+        const double value = factor * look_up(sys, &sys->table[k], 1, 0, order);
+        for (size_t i = begin; i < end; i++) {
+            to[i] += value * sys->table[k].pattern[i];
+        }
+    }
+}
+
+/* The order-th derivatives of cos(omega t) and sin(omega t) at the time set. */
+static inline void differentiate(const struct harmonic *h, int order, double *c, double *s)
+{
+    *c = h->cos_t;
+    *s = h->sin_t;
+    for (int d = 0; d < order; d++) {
+        const double dc = -h->omega * *s;
+        *s = h->omega * *c;
+        *c = dc;
+    }
+}
+
+void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to)
+{
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        struct harmonic *h = &sys->harmonic[k];
+        if (h->drives != drives) {
+            continue;
+        }
+        double c, s;
+        tribo_system_turn_to(sys, h);
+        differentiate(h, order, &c, &s);
+        for (size_t i = 0; i < h->count; i++) {
+            to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
+        }
+    }
+    if (drives == DRIVES_LOAD && sys->tables) {
+        tribo_system_tables(sys, order, factor, 0, sys->ndof, to);
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------------- limits */
+
+/* The order-th derivative of the limit of contact i without harmonics. */
+static double steady_limit(const tribo_system *sys, size_t i, int order)
+{
+    if (sys->limits.knots) {
+        return order < 2 ? look_up(sys, &sys->limits, sys->ncontact, i, order) : 0.0;
+    }
+    return order ? 0.0 : sys->given_limit[i];
+}
+
+void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
+{
+    if (!tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, limit);
+        memset(rate, 0, sys->ncontact * sizeof *rate);
+        return;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        limit[i] = steady_limit(sys, i, 0);
+        rate[i] = steady_limit(sys, i, 1);
+    }
+    tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
+    tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
+}
+
+double tribo_system_swing(const tribo_system *sys, size_t i)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        const struct harmonic *h = &sys->harmonic[k];
+        sum += h->drives == DRIVES_LIMIT ? hypot(h->cosine[i], h->sine[i]) : 0.0;
+    }
+    return sum;
+}
+
+void tribo_system_most_limits(const tribo_system *sys, double *most)
+{
+    if (!tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, most);
+        return;
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        most[i] = sys->limits.knots ? 0.0 : sys->given_limit[i];
+        for (size_t k = 0; k < sys->limits.knots; k++) {
+            most[i] = greater(most[i], sys->limits.value[k * sys->ncontact + i]);
+        }
+        most[i] += tribo_system_swing(sys, i);
+    }
+}
+
+/* A limit of which so many derivatives are nothing but rounding is 0. */
+#define DERIVATIVES 9
+
+int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
+{
+    for (int order = 0; order < DERIVATIVES; order++) {
+        double sum = steady_limit(sys, i, order), size = fabs(sum);
+        for (size_t k = 0; k < sys->harmonics; k++) {
+            const struct harmonic *h = &sys->harmonic[k];
+            double c, s;
+            if (h->drives == DRIVES_LIMIT) {
+                tribo_system_turn(sys, k);
+                differentiate(h, order, &c, &s);
+                sum += h->cosine[i] * c + h->sine[i] * s;
+                size += hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
+            }
+        }
+        if (fabs(sum) > TRIBO_LIMIT_NOISE * doubt * size) {
+            return sum > 0.0;
+        }
+    }
+    return 0;
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ harmonics */
+
+/* Keeps only entries in which cosine or sine is not zero, but all those of limits, which are looked up contact by contact. */
+static int compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
+{
+    if (!create_harmonic(h, n)) {
+        return 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        if (cosine[i] != 0.0 || sine[i] != 0.0 || h->drives == DRIVES_LIMIT) {
+            h->index[h->count] = i;
+            h->cosine[h->count] = cosine[i];
+            h->sine[h->count++] = sine[i];
+        }
+    }
+    return 1;
+}
+
+static int check_amplitudes(const tribo_system *sys, const char *name, const double *x, size_t n)
+{
+    for (size_t i = 0; x && i < n; i++) {
+        if (!isfinite(x[i])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s[%zu] = %g is not finite", name, i, x[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* What has no mass takes no load, and elastic contacts limits that are constant: else w would move by itself. */
+static int check_massless(const tribo_system *sys, enum drives drives, const char *name, const double *x)
+{
+    const struct massless *w = &sys->massless;
+    const size_t n = x && w->count ? (drives == DRIVES_LOAD ? sys->ndof : sys->ncontact) : 0;
+    for (size_t i = 0; i < n; i++) {
+        if (x[i] != 0.0 && drives == DRIVES_LOAD && w->is[i]) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
+        }
+        if (x[i] != 0.0 && drives == DRIVES_LIMIT && tribo_massless_touches(w, i)) {
+            return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                     "%s[%zu] = %g, but contact %zu is elastic, and its limit must be constant", name, i, x[i],
+                                     i);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* Limits, and what is computed from them, are to remain numbers. */
+#define MOST_LIMIT 1e300
+
+static int check_limits(const tribo_system *sys, const double *cosine, const double *sine)
+{
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const double most =
+            sys->given_limit[i] + tribo_system_swing(sys, i) + hypot(cosine ? cosine[i] : 0.0, sine ? sine[i] : 0.0);
+        if (!(most <= MOST_LIMIT)) {
+            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "limit of contact %zu comes to %g, and %g is the most", i, most,
+                                     MOST_LIMIT);
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    const int of_contacts = drives != DRIVES_LOAD;
+    const size_t given = of_contacts ? sys->ncontact : sys->given, n = of_contacts ? sys->ncontact : sys->ndof;
+    if (!isfinite(omega)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
+    }
+    int status = check_amplitudes(sys, "cosine", cosine, given);
+    status = status ? status : check_amplitudes(sys, "sine", sine, given);
+    status = status ? status : check_massless(sys, drives, "cosine", cosine);
+    status = status ? status : check_massless(sys, drives, "sine", sine);
+    status = status || drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);
+    if (status) {
+        return status;
+    }
+    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
+    double *parts = tribo_zeros(2 * n + 1, sizeof *parts);
+    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
+    sys->harmonic = all ? all : sys->harmonic;
+    int done = parts && all;
+    for (int part = 0; done && part < 2; part++) {
+        const double *from = part ? sine : cosine;
+        if (from && of_contacts) {
+            memcpy(parts + (size_t)part * n, from, n * sizeof *parts);
+        } else if (from) {
+            tribo_system_accelerate(sys, from, parts + (size_t)part * n);
+        }
+    }
+    done = done && compress(&h, n, parts, parts + n);
+    free(parts);
+    if (!done) {
+        free_harmonic(&h);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
+    }
+    sys->harmonic[sys->harmonics++] = h;
+    sys->base_harmonics += drives == DRIVES_BASE;
+    sys->limit_harmonics += drives == DRIVES_LIMIT;
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return TRIBO_OK;
+}
+
+int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
+}
+
+static void remove_harmonics(tribo_system *sys, enum drives drives)
+{
+    size_t kept = 0;
+    for (size_t k = 0; k < sys->harmonics; k++) {
+        if (sys->harmonic[k].drives != drives) {
+            sys->harmonic[kept++] = sys->harmonic[k];
+        } else {
+            free_harmonic(&sys->harmonic[k]);
+        }
+    }
+    sys->harmonics = kept;
+}
+
+int tribo_system_clear_loads(tribo_system *sys)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    remove_harmonics(sys, DRIVES_LOAD);
+    for (size_t k = 0; k < sys->tables; k++) {
+        free_table(&sys->table[k]);
+    }
+    sys->tables = 0;
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return TRIBO_OK;
+}
+
+int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    return add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
+}
+
+int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    find_given_limits(sys);
+    return add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
+}
+
+/* --------------------------------------------------------------------------------------------------------------------- tables */
+
+/* At the knots stands what is called name. */
+static int check_knots(const tribo_system *sys, size_t knots, const double *time, const char *name, const double *value)
+{
+    if (!time || !value) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", time ? name : "time");
+    }
+    for (size_t k = 0; k < knots; k++) {
+        if (!isfinite(time[k])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "time[%zu] = %g is not finite", k, time[k]);
+        }
+        if (k && time[k] <= time[k - 1]) {
+            return tribo_system_fail(sys, TRIBO_ERR_RANGE, "time[%zu] = %.17g is not after time[%zu] = %.17g", k, time[k], k - 1,
+                                     time[k - 1]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* The index is the knot's. */
+static int check_limit_table(const tribo_system *sys, size_t knots, const double *limit)
+{
+    const size_t n = sys->ncontact;
+    int status = TRIBO_OK;
+    for (size_t k = 0; !status && k < knots * n; k++) {
+        if (!isfinite(limit[k])) {
+            status = tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "limit[%zu] = %g of contact %zu is not finite", k / n, limit[k],
+                                       k % n);
+        } else if (limit[k] < 0.0) {
+            status =
+                tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "limit[%zu] = %g of contact %zu is negative", k / n, limit[k], k % n);
+        }
+    }
+    for (size_t k = 0; !status && k < knots; k++) {
+        status = check_massless(sys, DRIVES_LIMIT, "limit", limit + k * n);
+    }
+    return status;
+}
+
+int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value, const double *pattern)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (knots == 0 || !pattern) {
+        return knots ? tribo_system_fail(sys, TRIBO_ERR_NULL, "pattern is NULL")
+                     : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+    }
+    int status = check_knots(sys, knots, time, "value", value);
+    status = status ? status : check_amplitudes(sys, "value", value, knots);
+    status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
+    status = status ? status : check_massless(sys, DRIVES_LOAD, "pattern", pattern);
+    if (status) {
+        return status;
+    }
+    struct table t = {0};
+    struct table *all = realloc(sys->table, (sys->tables + 1) * sizeof *all);
+    sys->table = all ? all : sys->table;
+    if (all && create_table(&t, knots, 1, time, value)) {
+        t.pattern = malloc((sys->ndof + 1) * sizeof *t.pattern);
+    }
+    if (!t.pattern) {
+        free_table(&t);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
+    }
+    tribo_system_accelerate(sys, pattern, t.pattern);
+    sys->table[sys->tables++] = t;
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return TRIBO_OK;
+}
+
+int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    struct table t = {0};
+    if (knots) {
+        int status = check_knots(sys, knots, time, "limit", limit);
+        status = status ? status : check_limit_table(sys, knots, limit);
+        if (status) {
+            return status;
+        }
+        if (!create_table(&t, knots, sys->ncontact, time, limit)) {
+            free_table(&t);
+            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
+        }
+    }
+    find_given_limits(sys);
+    if (!knots && tribo_system_limits_vary(sys)) {
+        tribo_set_limit(sys->contacts, sys->given_limit);
+        remove_harmonics(sys, DRIVES_LIMIT);
+        sys->limit_harmonics = 0;
+    }
+    free_table(&sys->limits);
+    sys->limits = t;
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return TRIBO_OK;
+}

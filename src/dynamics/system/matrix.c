@@ -1,0 +1,483 @@
+#include "matrix.h"
+#include "common/layout.h"
+#include "common/real.h"
+#include "common/simd.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* As in the core: entries (i,j) and (j,i) may differ by rounding of whoever computed them. */
+#define ASYMMETRY 1e-10
+
+void tribo_matrix_free(struct matrix *a)
+{
+    if (a->first) {
+        free(a->first);
+        free(a->offset);
+        free(a->block);
+        free(a->fast);
+    }
+    *a = (struct matrix){0};
+}
+
+static void lay_out_matrix(struct matrix *a, struct layout *l, size_t entries)
+{
+    a->first = tribo_layout_array(l, a->rows + 2, sizeof *a->first);
+    a->col = tribo_layout_array(l, entries + 1, sizeof *a->col);
+    a->val = tribo_layout_array(l, entries + 1, sizeof *a->val);
+}
+
+static int create(struct matrix *a, size_t rows, size_t cols, size_t entries)
+{
+    struct layout l = {0};
+    *a = (struct matrix){.rows = rows, .cols = cols};
+    lay_out_matrix(a, &l, entries);
+    if (!tribo_layout_create(&l)) {
+        *a = (struct matrix){0};
+        return 0;
+    }
+    lay_out_matrix(a, &l, entries);
+    memset(a->first, 0, (rows + 2) * sizeof *a->first);
+    return 1;
+}
+
+/* Where the diagonal (j - i) of entry (i, j) is counted. */
+static size_t diagonal(const struct matrix *a, size_t i, size_t j)
+{
+    return j + a->rows - i;
+}
+
+static size_t blocks_of(const struct matrix *a)
+{
+    return (a->rows + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
+}
+
+/* to [diagonals][MATRIX_BLOCK] = block b of the diagonals. */
+static void take_block(const struct matrix *a, size_t b, double *to)
+{
+    const size_t begin = b * MATRIX_BLOCK, end = begin + MATRIX_BLOCK < a->rows ? begin + MATRIX_BLOCK : a->rows;
+    memset(to, 0, a->diagonals * MATRIX_BLOCK * sizeof *to);
+    for (size_t i = begin; i < end; i++) {
+        size_t d = 0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            while (a->offset[d] != (ptrdiff_t)a->col[k] - (ptrdiff_t)i) {
+                d++;
+            }
+            to[d * MATRIX_BLOCK + i - begin] = a->val[k];
+        }
+    }
+}
+
+/* A block that is like the one before it is not stored again: what is not stored is not read either. */
+static void take_diagonals(struct matrix *a)
+{
+    const size_t size = a->diagonals * MATRIX_BLOCK;
+    size_t used = (size_t)(tribo_aligned(a->fast) - a->fast);
+    for (size_t b = 0; b < blocks_of(a); b++) {
+        take_block(a, b, a->fast + used);
+        const int same = b > 0 && memcmp(a->fast + a->block[b - 1], a->fast + used, size * sizeof *a->fast) == 0;
+        a->block[b] = same ? a->block[b - 1] : used;
+        used += same ? 0 : size;
+    }
+}
+
+/* The diagonals that place numbers, from 1 on. 1, or 0 if out of memory. */
+static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *place)
+{
+    a->diagonals = diagonals;
+    if (a->rows <= MATRIX_FEW) {
+        return 1;
+    }
+    a->offset = malloc(diagonals * sizeof *a->offset);
+    if (!a->offset) {
+        return 0;
+    }
+    for (size_t d = 0; d < a->rows + a->cols + 1; d++) {
+        if (place[d]) {
+            a->offset[place[d] - 1] = (ptrdiff_t)d - (ptrdiff_t)a->rows;
+        }
+    }
+    a->block = malloc(blocks_of(a) * sizeof *a->block);
+    a->fast = malloc((blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
+    if (!a->block || !a->fast) {
+        return 0;
+    }
+    take_diagonals(a);
+    return 1;
+}
+
+/* Fills `fast` if that pays: with diagonals if half of their entries are not zero, with all entries if a third of them is not. */
+static int speed_up(struct matrix *a)
+{
+    enum { SHORT = 5 * MATRIX_FEW + 1 };
+    const size_t entries = a->first[a->rows], count = a->rows + a->cols + 1;
+    size_t few[SHORT] = {0}, *more = count > SHORT ? calloc(count, sizeof *more) : NULL, *place = more ? more : few;
+    if (count > SHORT && !more) {
+        tribo_matrix_free(a);
+        return 0;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            place[diagonal(a, i, a->col[k])] = 1;
+        }
+    }
+    size_t diagonals = 0;
+    for (size_t d = 0; d < count; d++) {
+        place[d] = place[d] ? ++diagonals : 0;
+    }
+    int done = 1;
+    if (entries && diagonals * a->rows <= 2 * entries && diagonals <= 16) {
+        done = create_diagonals(a, diagonals, place);
+    } else if (!tribo_matrix_is_small(a) && entries >= a->rows * a->cols / 3) {
+        a->fast = tribo_matrix_to_dense(a);
+        done = a->fast != NULL;
+    }
+    free(more);
+    if (!done) {
+        tribo_matrix_free(a);
+    }
+    return done;
+}
+
+/* With what speeds up products. */
+static int finish(struct matrix *a)
+{
+    if (!speed_up(a)) {
+        return 0;
+    }
+    a->identity = a->rows == a->cols && a->diagonals == 1;
+    for (size_t i = 0; a->identity && i < a->rows; i++) {
+        a->identity = a->first[i + 1] == i + 1 && a->col[i] == i && a->val[i] == 1.0;
+    }
+    return 1;
+}
+
+int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries)
+{
+    size_t count = 0;
+    for (size_t k = 0; k < rows * cols; k++) {
+        count += entries[k] != 0.0;
+    }
+    if (!create(a, rows, cols, count)) {
+        return 0;
+    }
+    size_t k = 0;
+    for (size_t i = 0; i < rows; i++) {
+        for (size_t j = 0; j < cols; j++) {
+            if (entries[i * cols + j] != 0.0) {
+                a->col[k] = j;
+                a->val[k++] = entries[i * cols + j];
+            }
+        }
+        a->first[i + 1] = k;
+    }
+    return finish(a);
+}
+
+int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
+{
+    if (!create(a, n, n, n)) {
+        return 0;
+    }
+    for (size_t i = 0; i < n; i++) {
+        a->first[i + 1] = i + 1;
+        a->col[i] = i;
+        a->val[i] = entries ? entries[i] : 1.0;
+    }
+    return finish(a);
+}
+
+void *tribo_copy_of(const void *from, size_t count, size_t size, int *done)
+{
+    void *to = from ? malloc(count * size + 1) : NULL;
+    if (to) {
+        memcpy(to, from, count * size);
+    }
+    *done &= to || !from;
+    return to;
+}
+
+int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
+{
+    if (!from->first) {
+        *a = (struct matrix){0};
+        return 1;
+    }
+    const size_t entries = from->first[from->rows];
+    if (!create(a, from->rows, from->cols, entries)) {
+        return 0;
+    }
+    memcpy(a->first, from->first, (from->rows + 1) * sizeof *a->first);
+    memcpy(a->col, from->col, entries * sizeof *a->col);
+    memcpy(a->val, from->val, entries * sizeof *a->val);
+    return finish(a);
+}
+
+int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b)
+{
+    if (!create(to, a->rows, a->cols, a->first[a->rows] + b->first[b->rows])) {
+        return 0;
+    }
+    size_t count = 0;
+    for (size_t i = 0; i < a->rows; i++) {
+        size_t k = a->first[i], l = b->first[i];
+        while (k < a->first[i + 1] || l < b->first[i + 1]) {
+            const size_t j = k < a->first[i + 1] ? a->col[k] : a->cols, m = l < b->first[i + 1] ? b->col[l] : b->cols;
+            const double x = j <= m ? factor * a->val[k++] : 0.0, y = m <= j ? other * b->val[l++] : 0.0;
+            to->col[count] = j < m ? j : m;
+            to->val[count++] = x + y;
+        }
+        to->first[i + 1] = count;
+    }
+    return finish(to);
+}
+
+/* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
+static void counting_sort(size_t keys, size_t n, const size_t *key, const size_t *order_in, size_t *order_out, size_t *start)
+{
+    memset(start, 0, (keys + 1) * sizeof *start);
+    for (size_t k = 0; k < n; k++) {
+        start[key[k] + 1]++;
+    }
+    for (size_t k = 0; k < keys; k++) {
+        start[k + 1] += start[k];
+    }
+    for (size_t k = 0; k < n; k++) {
+        const size_t from = order_in ? order_in[k] : k;
+        order_out[start[key[from]]++] = from;
+    }
+}
+
+int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
+                               const double *v)
+{
+    size_t *by_col = malloc((2 * n + (rows > cols ? rows : cols) + 1) * sizeof *by_col);
+    const int done = by_col && create(a, rows, cols, n);
+    if (done) {
+        size_t *by_row = by_col + n, *start = by_row + n;
+        counting_sort(cols, n, j, NULL, by_col, start);
+        counting_sort(rows, n, i, by_col, by_row, start);
+        for (size_t k = 0; k < n; k++) {
+            a->first[i[by_row[k]] + 1] = k + 1;
+            a->col[k] = j[by_row[k]];
+            a->val[k] = v[by_row[k]];
+        }
+        for (size_t r = 0; r < rows; r++) {
+            a->first[r + 1] = a->first[r + 1] ? a->first[r + 1] : a->first[r];
+        }
+    } else {
+        memset(a, 0, sizeof *a);
+    }
+    free(by_col);
+    return done && finish(a);
+}
+
+int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
+{
+    const size_t entries = from->first[from->rows];
+    if (!create(a, from->cols, from->rows, entries)) {
+        return 0;
+    }
+    size_t *next = a->first + 1; /* where the next entry of a row goes: at last, where the next row begins */
+    for (size_t k = 0; k < entries; k++) {
+        next[from->col[k] + 1]++;
+    }
+    for (size_t i = 0; i < a->rows; i++) {
+        next[i + 1] += next[i];
+    }
+    for (size_t i = 0; i < from->rows; i++) {
+        for (size_t k = from->first[i]; k < from->first[i + 1]; k++) {
+            a->col[next[from->col[k]]] = i;
+            a->val[next[from->col[k]]++] = from->val[k];
+        }
+    }
+    return finish(a);
+}
+
+int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
+{
+    const size_t n = m->nz;
+    size_t *i = malloc((n + 1) * sizeof *i), *j = malloc((n + 1) * sizeof *j);
+    int done = i && j;
+    if (done && GSL_SPMATRIX_ISCOO(m)) {
+        for (size_t k = 0; k < n; k++) {
+            i[k] = (size_t)m->i[k];
+            j[k] = (size_t)m->p[k];
+        }
+    } else if (done) {
+        /* compressed: p bounds the entries of each column (CSC) or row (CSR), i has the other index */
+        const int by_columns = GSL_SPMATRIX_ISCSC(m);
+        size_t *outer = by_columns ? j : i, *inner = by_columns ? i : j, at = 0;
+        for (size_t k = 0; k < n; k++) {
+            while ((size_t)m->p[at + 1] <= k) {
+                at++;
+            }
+            outer[k] = at;
+            inner[k] = (size_t)m->i[k];
+        }
+    }
+    done = done && tribo_matrix_from_triplets(a, m->size1, m->size2, n, i, j, m->data);
+    if (!done) {
+        memset(a, 0, sizeof *a);
+    }
+    free(i);
+    free(j);
+    return done;
+}
+
+void tribo_matrix_spread(const struct matrix *a, double *dense)
+{
+    memset(dense, 0, a->rows * a->cols * sizeof *dense);
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            dense[i * a->cols + a->col[k]] = a->val[k];
+        }
+    }
+}
+
+double *tribo_matrix_to_dense(const struct matrix *a)
+{
+    double *dense = malloc((a->rows * a->cols + 1) * sizeof *dense);
+    if (dense) {
+        tribo_matrix_spread(a, dense);
+    }
+    return dense;
+}
+
+double *tribo_matrix_transpose_to_dense(const struct matrix *a)
+{
+    double *dense = calloc(a->rows * a->cols + 1, sizeof *dense);
+    for (size_t i = 0; dense && i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            dense[a->col[k] * a->rows + i] = a->val[k];
+        }
+    }
+    return dense;
+}
+
+/* Gives back the memory of all but the first so many entries, if it can be had in a smaller piece. */
+static void shrink(struct matrix *a, size_t entries)
+{
+    const double *val = a->val;
+    struct layout l = {(char *)a->first, 0};
+    lay_out_matrix(a, &l, entries);
+    memmove(a->val, val, entries * sizeof *val);
+    char *less = realloc(l.memory, l.used + 1);
+    l = (struct layout){less ? less : l.memory, 0};
+    lay_out_matrix(a, &l, entries);
+}
+
+void tribo_matrix_keep_lower(struct matrix *a)
+{
+    size_t count = 0;
+    for (size_t i = 0, k = 0; i < a->rows; i++) {
+        for (; k < a->first[i + 1]; k++) {
+            if (a->col[k] <= i) {
+                a->col[count] = a->col[k];
+                a->val[count++] = a->val[k];
+            }
+        }
+        a->first[i + 1] = count;
+    }
+    shrink(a, count);
+    free(a->offset);
+    free(a->block);
+    free(a->fast);
+    a->offset = NULL;
+    a->block = NULL;
+    a->fast = NULL;
+    a->diagonals = 0;
+}
+
+void tribo_matrix_scale_rows(struct matrix *a, const double *factor)
+{
+    a->identity = 0;
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            a->val[k] *= factor[i];
+        }
+        for (size_t j = 0; a->fast && !a->diagonals && j < a->cols; j++) {
+            a->fast[i * a->cols + j] *= factor[i];
+        }
+    }
+    if (a->diagonals && a->fast) {
+        take_diagonals(a);
+    }
+}
+
+double tribo_matrix_get(const struct matrix *a, size_t i, size_t j)
+{
+    size_t lo = a->first[i], hi = a->first[i + 1];
+    while (lo < hi) {
+        const size_t mid = lo + (hi - lo) / 2;
+        if (a->col[mid] < j) {
+            lo = mid + 1;
+        } else {
+            hi = mid;
+        }
+    }
+    return lo < a->first[i + 1] && a->col[lo] == j ? a->val[lo] : 0.0;
+}
+
+/* What entry (i, j) is to be seen beside: its own size, or that of the diagonal. */
+static double size_at(const struct matrix *a, size_t i, size_t j, double own)
+{
+    return greater(own, sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j))));
+}
+
+int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t *column, double *value, double *mirror)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            const size_t j = a->col[k];
+            *row = i;
+            *column = j;
+            *value = a->val[k];
+            *mirror = symmetric ? tribo_matrix_get(a, j, i) : a->val[k];
+            if (!isfinite(*value)) {
+                return 1;
+            }
+            if (*value != *mirror &&
+                fabs(*value - *mirror) > ASYMMETRY * size_at(a, i, j, greater(fabs(*value), fabs(*mirror)))) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+void tribo_matrix_widen(const struct matrix *a, size_t *below, size_t *above)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            *below = i > a->col[k] && i - a->col[k] > *below ? i - a->col[k] : *below;
+            *above = a->col[k] > i && a->col[k] - i > *above ? a->col[k] - i : *above;
+        }
+    }
+}
+
+int tribo_matrix_is_diagonal(const struct matrix *a)
+{
+    for (size_t i = 0; i < a->rows; i++) {
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            if (a->col[k] != i && a->val[k] != 0.0) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
+double tribo_matrix_row_sum(const struct matrix *a)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < a->rows; i++) {
+        double sum = 0.0;
+        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+            sum += fabs(a->val[k]);
+        }
+        most = sum > most ? sum : most;
+    }
+    return most;
+}

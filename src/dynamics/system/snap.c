@@ -1,0 +1,186 @@
+/* Velocities of bodies whose contacts rest, without a last bit of rounding. A contact on one degree of freedom stops it; one that
+ * takes the difference of two, of which one is stopped, stops the other; and so on, so that none moves again what another one has
+ * stopped. Of bodies that hold each other and nothing else, the heaviest goes on as it does. */
+#include "system.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Velocities x of the degrees of freedom; or a list of what would be done to them. */
+struct snapping {
+    const tribo_system *sys;
+    const signed char *loose;
+    const double *base;
+    double *x, *known; /* known [ndof] 1: is not to change any more */
+    struct snap *list;
+    size_t listed;
+};
+
+/* How much degree of freedom d gives way to contact i. */
+static double yield_of(const tribo_system *sys, size_t d, size_t i)
+{
+    return sys->unsolved ? 1.0 / tribo_matrix_get(&sys->mass, d, d) : fabs(tribo_matrix_get(&sys->response, d, i));
+}
+
+/* Which of its two degrees of freedom a contact at rest moves by rounding of the other: the second, but no heavy one by a light
+ * one's. */
+static size_t follows(const tribo_system *sys, size_t i, size_t first)
+{
+    const size_t *dof = sys->direction.col + first;
+    return yield_of(sys, dof[1], i) >= 1e-3 * yield_of(sys, dof[0], i);
+}
+
+/* Whether contact i rests, and takes a difference, or a sum, of two degrees of freedom. */
+static inline int is_pair(const struct snapping *s, size_t i)
+{
+    const struct matrix *j = &s->sys->direction;
+    const size_t first = j->first[i];
+    return !s->loose[i] && j->first[i + 1] - first == 2 && fabs(j->val[first]) == fabs(j->val[first + 1]);
+}
+
+/* Entry `to` of row i follows entry `from`, if that is another one. */
+static void take(struct snapping *s, size_t i, size_t to, size_t from)
+{
+    const struct matrix *j = &s->sys->direction;
+    const struct snap one = {i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
+    if (s->list) {
+        s->list[s->listed++] = one;
+    } else {
+        tribo_snap(&one, s->base, s->x);
+    }
+}
+
+/* What one contact alone stops is known. */
+static void mark_single(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    memset(s->known, 0, s->sys->ndof * sizeof *s->known);
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = j->first[i];
+        if (!s->loose[i] && j->first[i + 1] - first == 1) {
+            s->known[j->col[first]] = 1.0;
+        }
+    }
+}
+
+/* Entry `to` of row i, a pair, follows the other one. */
+static void snap_pair(struct snapping *s, size_t i, size_t to)
+{
+    const struct matrix *j = &s->sys->direction;
+    const size_t from = 2 * j->first[i] + 1 - to;
+    take(s, i, to, from);
+    s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
+}
+
+static int knows(const struct snapping *s, size_t entry)
+{
+    return s->known[s->sys->direction.col[entry]] != 0.0;
+}
+
+/* What is known takes along what is not; returns how often. */
+static size_t snap_known(struct snapping *s)
+{
+    size_t found = 0;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = s->sys->direction.first[i];
+        if (is_pair(s, i) && knows(s, first) != knows(s, first + 1)) {
+            snap_pair(s, i, first + (size_t)knows(s, first));
+            found++;
+        }
+    }
+    return found;
+}
+
+/* Where nothing is known, the pair with the heaviest body makes a beginning; returns 0 if there is none. */
+static size_t snap_heaviest(struct snapping *s)
+{
+    const struct matrix *j = &s->sys->direction;
+    size_t found = s->sys->ncontact;
+    double least = HUGE_VAL;
+    for (size_t i = 0; i < s->sys->ncontact; i++) {
+        const size_t first = j->first[i];
+        if (is_pair(s, i) && !knows(s, first) && !knows(s, first + 1)) {
+            const double yield = lesser(yield_of(s->sys, j->col[first], i), yield_of(s->sys, j->col[first + 1], i));
+            found = yield < least ? i : found;
+            least = lesser(yield, least);
+        }
+    }
+    if (found < s->sys->ncontact) {
+        snap_pair(s, found, j->first[found] + follows(s->sys, found, j->first[found]));
+    }
+    return found < s->sys->ncontact;
+}
+
+static void snap_pairs(struct snapping *s)
+{
+    mark_single(s);
+    for (size_t done = 1; done;) {
+        done = snap_known(s);
+        done = done ? done : snap_heaviest(s);
+    }
+}
+
+/* No contact moves what an earlier one touches. */
+void tribo_system_order_snaps(tribo_system *sys)
+{
+    const struct matrix *j = &sys->direction;
+    const struct snapping s = {.sys = sys, .loose = NULL, .known = sys->acceleration};
+    memset(s.known, 0, sys->ndof * sizeof *s.known);
+    sys->snaps_in_order = 1;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        const size_t first = j->first[i], count = j->first[i + 1] - first;
+        const size_t moves = first + (count == 2 ? follows(sys, i, first) : 0);
+        sys->snaps_in_order &= count == 0 || count > 2 || !knows(&s, moves);
+        for (size_t k = first; count <= 2 && k < first + count; k++) {
+            s.known[j->col[k]] = 1.0;
+        }
+    }
+}
+
+/* The same for entry `to` alone, which each step asks for of many. */
+static inline void take_alone(struct snapping *s, size_t i, size_t to)
+{
+    if (s->list) {
+        take(s, i, to, to);
+    } else {
+        s->x[s->sys->direction.col[to]] = s->base[i] / s->sys->direction.val[to];
+    }
+}
+
+/* Whoever has one degree of freedom; in order, all. Returns whether any are left. */
+static int snap_first(struct snapping *s)
+{
+    const size_t *first = s->sys->direction.first;
+    int left = 0;
+    for (size_t i = 0, n = s->sys->ncontact; i < n; i++) {
+        if (!s->loose[i] && first[i + 1] - first[i] == 1) {
+            take_alone(s, i, first[i]);
+        } else if (s->sys->snaps_in_order && is_pair(s, i)) {
+            const size_t to = first[i] + follows(s->sys, i, first[i]);
+            take(s, i, to, 2 * first[i] + 1 - to);
+        } else {
+            left |= !s->loose[i];
+        }
+    }
+    return left;
+}
+
+static void snap(struct snapping *s)
+{
+    if (snap_first(s) && !s->sys->snaps_in_order) {
+        snap_pairs(s);
+    }
+}
+
+void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x)
+{
+    snap(&(struct snapping){sys, loose, base, x, sys->acceleration, NULL, 0});
+}
+
+size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list)
+{
+    struct snapping s = {sys, loose, NULL, NULL, sys->acceleration, list, 0};
+    snap(&s);
+    return s.listed;
+}

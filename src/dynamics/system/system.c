@@ -1,0 +1,163 @@
+#include "system.h"
+#include "common/real.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
+{
+    char text[200];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(text, sizeof text, format, args);
+    va_end(args);
+    return tribo_set_message(sys->contacts, status, text);
+}
+
+int tribo_system_check_mass(const tribo_system *sys, const char *who)
+{
+    size_t d = 0;
+    while (sys->massless.count && !sys->massless.is[d]) {
+        d++;
+    }
+    return sys->massless.count
+               ? tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                   "%s needs mass, and degree of freedom %zu has none: take exact, event or moreau/fixed", who, d)
+               : TRIBO_OK;
+}
+
+int tribo_system_check_solved(const tribo_system *sys, const char *what)
+{
+    return sys->unsolved ? tribo_system_fail(
+                               sys, TRIBO_ERR_UNSUPPORTED,
+                               "%s needs accelerations: %zu degree%s of freedom are more than the %d that are solved for with a "
+                               "mass matrix that is not diagonal; take moreau/fixed, or tribo_system_reduced",
+                               what, sys->ndof, plural(sys->ndof), DENSE_MOST)
+                         : TRIBO_OK;
+}
+
+int tribo_system_check_rates(const tribo_system *sys, const char *what)
+{
+    const int status = tribo_system_check_mass(sys, what);
+    return status ? status : tribo_system_check_solved(sys, what);
+}
+
+int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
+{
+    if (!isfinite(t)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
+    }
+    if (!y) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "y is NULL");
+    }
+    const size_t dimension = tribo_system_dimension(sys);
+    for (size_t i = 0; i < dimension; i++) {
+        if (!isfinite(y[i])) {
+            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g is not finite", i, y[i]);
+        }
+    }
+    return TRIBO_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------------------- queries */
+
+size_t tribo_system_revision(const tribo_system *sys)
+{
+    return sys->revision + tribo_revision(sys->contacts) - sys->ours;
+}
+
+size_t tribo_system_planar(const tribo_system *sys)
+{
+    size_t planar = 0;
+    tribo_get_count(sys->contacts, TRIBO_COUNT_PLANAR, &planar);
+    return planar;
+}
+
+size_t tribo_system_ndof(const tribo_system *sys)
+{
+    return sys ? sys->ndof : 0;
+}
+
+size_t tribo_system_ncontact(const tribo_system *sys)
+{
+    return sys ? sys->ncontact : 0;
+}
+
+size_t tribo_system_dimension(const tribo_system *sys)
+{
+    return sys ? 2 * sys->ndof + 1 : 0;
+}
+
+tribo_context *tribo_system_context(tribo_system *sys)
+{
+    if (sys) {
+        tribo_set_owner(sys->contacts, "a tribo_system");
+    }
+    return sys ? sys->contacts : NULL;
+}
+
+const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)
+{
+    return sys ? &sys->odeiv2 : NULL;
+}
+
+/* ------------------------------------------------------------------------------------------------------------------ structure */
+
+void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to)
+{
+    if (sys->mass.rows) {
+        tribo_matrix_multiply_add(&sys->mass, factor, x, to);
+    } else {
+        tribo_add(to, factor, x, sys->ndof);
+    }
+}
+
+void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to)
+{
+    if (sys->modes) {
+        for (size_t j = 0; j < sys->ndof; j++) {
+            to[j] = 0.0;
+        }
+        for (size_t i = 0; i < sys->given; i++) {
+            for (size_t j = 0; j < sys->ndof; j++) {
+                to[j] += sys->modes[i * sys->ndof + j] * force[i];
+            }
+        }
+        return;
+    }
+    memcpy(to, force, sys->ndof * sizeof *to);
+    if (sys->unsolved) {
+        return;
+    }
+    const int diagonal = !sys->factor.factor && !sys->factor.sparse;
+    if (!diagonal) {
+        tribo_cholesky_solve(&sys->factor, 1, to);
+    }
+    for (size_t i = 0; diagonal && i < sys->ndof; i++) {
+        const double mass = tribo_matrix_get(&sys->mass, i, i);
+        to[i] *= mass > 0.0 ? 1.0 / mass : 0.0;
+    }
+}
+
+double tribo_system_fastest(const tribo_system *sys)
+{
+    const double stiffest = sys->massless.count ? sys->massless.stiffest : tribo_matrix_row_sum(&sys->stiffness);
+    double most = greater(sqrt(stiffest), tribo_matrix_row_sum(&sys->damping));
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        most = greater(most, fabs(sys->harmonic[s].omega));
+    }
+    return most;
+}
+
+double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
+{
+    const struct matrix *a = &sys->direction;
+    double sum = 0.0;
+    for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+        sum += a->val[k] * tribo_matrix_get(&sys->response, a->col[k], j);
+    }
+    return sum;
+}

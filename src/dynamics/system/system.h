@@ -1,0 +1,263 @@
+/* A mechanical system with friction as the drivers see it: accelerations solved for,
+ *     q'' = load(t) - AK q - AC q' + B f,   v = J q' - b(t),   AK = M^-1 K, AC = M^-1 C, B = M^-1 J'. */
+#ifndef TRIBO_SYSTEM_H
+#define TRIBO_SYSTEM_H
+
+#include "tribo/tribo_gsl.h"
+
+#include "numerics/linalg.h"
+#include "massless.h"
+#include "common/plural.h"
+
+/* What a harmonic adds to: the load, b(t) of the contacts, or their limits. */
+enum drives { DRIVES_LOAD, DRIVES_BASE, DRIVES_LIMIT };
+
+/* So many times can be foreseen. */
+enum { FORESIGHT = 32 };
+
+/* cosine cos(omega t) + sine sin(omega t), for the entries in which either is not zero; for all of them in limits. */
+struct harmonic {
+    double omega, time, cos_t, sin_t;                  /* the latter are those of this time, */
+    size_t turns;                                      /* as found anew, and then turned on so often */
+    double cos_ahead[FORESIGHT], sin_ahead[FORESIGHT]; /* those of times foreseen */
+    size_t next;                                       /* which of them may be asked for next */
+    enum drives drives;
+    size_t count;
+    size_t *index;
+    double *cosine, *sine;
+};
+
+/* A function of time, linear between knots and constant outside: times pattern it adds to the load, or, with a row of limits to
+ * each knot, it is the limits of the contacts. */
+struct table {
+    size_t knots, at; /* at: the knot at or before sys->time */
+    double *time;
+    double *value;   /* [knots], or [knots][ncontact] */
+    double *pattern; /* [ndof] accelerations, or NULL */
+};
+
+/* What a reduced system does not have of the whole structure's motion. Modes left out have omega^2 + shift of `above` or more;
+ * of the work that steady forces at the contacts do on the elastic structure they take up to the part `missing`. */
+struct truncation {
+    double above, shift, missing;
+    int statics; /* the displacements by steady forces are among the reduced motions nevertheless */
+};
+
+struct tribo_system {
+    size_t ndof, ncontact;
+    struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
+    tribo_context *contacts;
+
+    size_t harmonics, base_harmonics, limit_harmonics; /* the latter are those of b(t) and of limits */
+    struct harmonic *harmonic;
+    size_t tables;
+    struct table *table;
+    struct table limits;         /* knots 0: the limits are those given in the context, and harmonics on top */
+    double *given_limit;         /* [ncontact] while limits vary: those given in the context, */
+    double *put_limit;           /* [ncontact] and those that it was told last, to see whether others have been given since */
+    size_t revision;             /* counts changes of loads, tables and damping */
+    size_t ours, seen;           /* of the context's revision: how much varying limits added, and where they left it */
+    double time, low;            /* that is set (NaN: none yet), and what rounding left of it (below) */
+    size_t foreseen;             /* times in foresight */
+    double foresight[FORESIGHT]; /* ascending */
+
+    /* K and C, where the mass matrix is not diagonal: M^-1 K has lost the low modes to rounding. Else no rows: M AK and M AC are
+     * K and C to rounding of every entry. */
+    struct matrix elastic, viscous;
+
+    /* The equations are M q'' = load - K q - C q' + J' f: stiffness, damping and response are K, C and J', loads are forces, and
+     * nobody has accelerations. */
+    int unsolved;
+
+    struct matrix mass;     /* no rows: the identity, of reduced systems */
+    struct cholesky factor; /* of it; degrees of freedom without mass count as if it were 1, and nothing accelerates them */
+    struct massless massless;
+
+    /* Forces on the given degrees of freedom become accelerations by the modes, or by the mass matrix. */
+    size_t given;
+    double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
+    struct truncation truncation;
+
+    gsl_odeiv2_system odeiv2;
+    size_t evaluations, jacobians;
+    int status;                      /* what the last evaluation returned */
+    double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
+    double *v, *a, *f, *feq, *dv_dt; /* [ncontact] workspace */
+    double *acceleration;            /* [ndof] workspace */
+    int snaps_in_order;              /* contacts at rest, whichever they are, can be snapped one after the other */
+    double *dense;                   /* workspace of the Jacobian, allocated when it is first asked for */
+};
+
+/* A system of ndof degrees of freedom whose matrices (which it takes, also on failure) and M = identity are these. damping may be
+ * all zeros: no rows. */
+int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
+                       struct matrix *direction, struct matrix *response);
+
+/* Counts all changes that a caller can make: of loads, tables and damping, and of the context's settings. */
+size_t tribo_system_revision(const tribo_system *sys);
+
+/* How many planar contacts there are. */
+size_t tribo_system_planar(const tribo_system *sys);
+
+/* ---- loads.c */
+
+void tribo_loads_free(tribo_system *sys);
+
+/* The loads, motions and tables of from for sys, which has none; 1, or 0 if out of memory. */
+int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
+
+/* Prepares the loads for time t, and sets the limits of the context if they vary. */
+void tribo_system_set_time(tribo_system *sys, double t);
+
+/* ---- foresight.c */
+
+/* Times t, at most FORESIGHT and ascending, that will probably be set next: the loads' harmonics are found side by side. From
+ * then on those of other times are found in the same way, until no times (0) are foreseen: so a motion is the same to the last
+ * bit whatever its steps were foreseen with. low is 0 meanwhile. */
+void tribo_system_foresee(tribo_system *sys, size_t count, const double *t);
+
+/* What is set, or foreseen, is of loads or times that are others now. */
+void tribo_system_forget_time(tribo_system *sys);
+
+/* Where time t stands among those foreseen; FORESIGHT if it is none of them. */
+size_t tribo_system_place(const tribo_system *sys, double t);
+
+/* Harmonic k becomes that of the time set, if it is not: whoever reads cos_t and sin_t asks for it first. */
+void tribo_harmonic_turn(const tribo_system *sys, struct harmonic *h);
+
+static inline void tribo_system_turn_to(const tribo_system *sys, struct harmonic *h)
+{
+    if (h->time != sys->time) {
+        tribo_harmonic_turn(sys, h);
+    }
+}
+
+static inline void tribo_system_turn(const tribo_system *sys, size_t k)
+{
+    tribo_system_turn_to(sys, &sys->harmonic[k]);
+}
+
+/* The same by what a motion has found them to be, c and s, going on from a time at which they were these; unless they have come
+ * that way often, or bases are moved. */
+void tribo_harmonic_take(const tribo_system *sys, struct harmonic *h, double c, double s);
+
+/* ---- loads.c */
+
+/* From here on every time means t + low, at which events happen between two numbers t. */
+void tribo_system_set_low(tribo_system *sys, double low);
+
+/* Adds factor times the order-th derivative of b(t), of the accelerations that the load makes, or of what harmonics add to the
+ * limits, to `to`, at the time set. */
+void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, double factor, double *to);
+
+/* The part of the load's that comes from tables, of the degrees of freedom from begin to end. */
+void tribo_system_tables(const tribo_system *sys, int order, double factor, size_t begin, size_t end, double *to);
+
+/* Whether limits change with time, by a table or harmonics. */
+static inline int tribo_system_limits_vary(const tribo_system *sys)
+{
+    return sys->limits.knots || sys->limit_harmonics;
+}
+
+/* Whether setting time t would change nothing. */
+static inline int tribo_system_is_at(const tribo_system *sys, double t)
+{
+    return t == sys->time && !tribo_system_limits_vary(sys);
+}
+
+/* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */
+void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
+
+/* Tells the context the limits of the time set, and what their rates make of them in a time so much later. */
+void tribo_system_put_limits(tribo_system *sys, double later);
+
+/* By how much harmonics change the limit of contact i at most; 0 for one that they leave alone. */
+double tribo_system_swing(const tribo_system *sys, size_t i);
+
+/* The largest limits that contacts ever have, most [ncontact]. */
+void tribo_system_most_limits(const tribo_system *sys, double *most);
+
+/* Limits are known to this part of what they are the sum of. */
+#define TRIBO_LIMIT_NOISE 4e-14
+
+/* Whether contact i is pressed from the time set on, by the first derivative of its limit that is more than rounding, or more
+ * than so many times that. */
+int tribo_system_presses(const tribo_system *sys, size_t i, double doubt);
+
+/* The next time after t at which a load or limit has a kink; HUGE_VAL if there is none. */
+double tribo_system_next_kink(const tribo_system *sys, double t);
+
+/* ---- system.c */
+
+/* A bound on the frequencies: neither an exponent of the structure, held or not, nor a load is faster. */
+double tribo_system_fastest(const tribo_system *sys);
+
+/* R_ij. */
+double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j);
+
+/* q'' without friction, [ndof]. */
+void tribo_system_free_acceleration(tribo_system *sys, double t, const double *y, double *acceleration);
+
+/* q'' without friction, and v and a of the contacts. Outputs v, a [ncontact], acceleration [ndof]. */
+void tribo_system_free_motion(tribo_system *sys, double t, const double *y, double *acceleration, double *v, double *a);
+
+/* q'' with friction, [ndof], and the power that friction dissipates. Returns a tribo status. */
+int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
+
+/* The same, and dydt, with the reversal memory brought up to date first: (t, y) is an accepted state. Returns a tribo status. */
+int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power);
+int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt);
+
+/* to [ndof] += factor M x. */
+void tribo_system_add_mass(const tribo_system *sys, double factor, const double *x, double *to);
+
+/* to [ndof] = M^-1 force, force [given]. */
+void tribo_system_accelerate(const tribo_system *sys, const double *force, double *to);
+
+/* ---- snap.c */
+
+/* Takes the last bits of rounding out of J_i x = base_i for contacts that are not loose (0), and have one degree of freedom or
+ * the difference of two. Uses the workspace of accelerations. */
+void tribo_system_snap(const tribo_system *sys, const signed char *loose, const double *base, double *x);
+
+/* Finds out whether that can be done one contact after the other: whoever makes use of it asks for this first. */
+void tribo_system_order_snaps(tribo_system *sys);
+
+/* What that does with a contact: x[to] = (base - other x[from])/value, where other may be 0, and x[from] anything. */
+struct snap {
+    size_t contact, to, from;
+    double value, other;
+};
+
+static inline void tribo_snap(const struct snap *s, const double *base, double *x)
+{
+    const double moved = s->other != 0.0 ? s->other * x[s->from] : 0.0;
+    x[s->to] = (base[s->contact] - moved) / s->value;
+}
+
+/* All that it does, in its order: none undoes another. list [ncontact] out; returns how many. */
+size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
+
+/* jacobian.c: of odeiv2. */
+int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params);
+
+/* Keeps the message on the system's context and returns status. */
+int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
+#if defined(__GNUC__)
+    __attribute__((format(printf, 3, 4)))
+#endif
+    ;
+
+/* TRIBO_ERR_UNSUPPORTED, and what it says: `who` takes only systems with mass everywhere. TRIBO_OK if this is one. */
+int tribo_system_check_mass(const tribo_system *sys, const char *who);
+
+/* TRIBO_ERR_UNSUPPORTED for an unsolved system, to which `what` cannot be done. */
+int tribo_system_check_solved(const tribo_system *sys, const char *what);
+
+/* Either of them: what makes rates of states takes neither kind. */
+int tribo_system_check_rates(const tribo_system *sys, const char *what);
+
+/* Checks that t and y are finite. */
+int tribo_system_check_state(const tribo_system *sys, double t, const double *y);
+
+#endif

@@ -1,0 +1,504 @@
+/* The factor of a large group with few entries: R = L D L' over the free contacts, for an order of elimination and with the
+ * entries of L that R as a whole asks for, both found once. Contacts that are not in the factor have zeros there. One that enters
+ * or leaves changes its row and column of L, and what lies behind it on the way to the root of the elimination tree (Davis and
+ * Hager 2005, SIAM J. Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
+ *
+ *     all anew     supernodes.c
+ *     k enters     row k so; column k from R and those rows; L D L' -= pivot times the square of column k, behind k
+ *     k leaves     L D L' += pivot times the square of column k, behind k; row and column k become zero
+ *     += a w w'    for j on the way from k to the root: a new pivot and column j, and w without what column j takes of it
+ *
+ * "Place" is where a contact stands in its group, "position" where it stands in the order of elimination. */
+#include "factor_sparse.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/real.h"
+
+/* A dense factor of this many contacts is affordable where a sparse one is not trusted. */
+#define DENSE_UP_TO 2048
+
+void tribo_sparse_free(struct sparse *s)
+{
+    if (s) {
+        tribo_csr_free(&s->r);
+        free(s->position);
+        free(s->column);
+        free(s->row_of);
+        free(s->supernode);
+        free(s);
+    }
+}
+
+/* What depends on the number of contacts, or of slots. */
+static int allocate_contacts(struct sparse *s, size_t size)
+{
+    s->position = malloc(2 * size * sizeof *s->position);
+    s->column = calloc(2 * (size + 1), sizeof *s->column);
+    s->supernode = malloc((2 * size + 1) * sizeof *s->supernode);
+    if (!s->position || !s->column || !s->supernode) {
+        return 0;
+    }
+    s->member_of = s->supernode + size + 1;
+    s->place = s->position + size;
+    s->row = s->column + size + 1;
+    return 1;
+}
+
+static int allocate_slots(struct sparse *s, size_t slots)
+{
+    s->row_of = malloc((3 * slots + 1) * sizeof *s->row_of);
+    if (!s->row_of) {
+        return 0;
+    }
+    s->column_of = s->row_of + slots;
+    s->slot = s->row_of + 2 * slots;
+    return 1;
+}
+
+size_t tribo_sparse_slots(const struct sparse *s)
+{
+    return s->column[s->r.n];
+}
+
+static int copy_rows(struct csr *to, const struct csr *from)
+{
+    const size_t entries = from->first[from->n];
+    if (!tribo_csr_create(to, from->n, entries)) {
+        return 0;
+    }
+    memcpy(to->first, from->first, (from->n + 1) * sizeof *to->first);
+    memcpy(to->col, from->col, entries * sizeof *to->col);
+    memcpy(to->val, from->val, entries * sizeof *to->val);
+    return 1;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- pattern of L */
+
+/* parent [size] of the elimination tree, NONE for roots (Liu 1990). ancestor [size] is workspace. */
+static void find_tree(const struct sparse *s, size_t *parent, size_t *ancestor)
+{
+    for (size_t k = 0; k < s->r.n; k++) {
+        const size_t i = s->place[k];
+        parent[k] = ancestor[k] = NONE;
+        for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
+            size_t j = s->position[s->r.col[e]];
+            while (j < k && ancestor[j] != k) {
+                const size_t next = ancestor[j];
+                ancestor[j] = k;
+                parent[j] = next == NONE ? k : parent[j];
+                j = next == NONE ? k : next;
+            }
+        }
+    }
+}
+
+/* Walks the entries of L row by row: counts those of every column in count [size] (added to what is there), or if fill puts them
+ * at these slots, and counts on. seen [size] is workspace. */
+static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, size_t *count, int fill)
+{
+    memset(seen, 0xff, s->r.n * sizeof *seen);
+    for (size_t k = 0; k < s->r.n; k++) {
+        const size_t i = s->place[k];
+        seen[k] = k;
+        for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
+            for (size_t j = s->position[s->r.col[e]]; j < k && seen[j] != k; j = parent[j]) {
+                seen[j] = k;
+                if (fill) {
+                    s->row_of[count[j]] = k;
+                }
+                count[j]++;
+            }
+        }
+    }
+}
+
+/* The same entries by rows. */
+static void fill_rows(struct sparse *s, size_t *count)
+{
+    const size_t size = s->r.n, slots = s->column[size];
+    for (size_t q = 0; q < slots; q++) {
+        s->row[s->row_of[q] + 1]++;
+    }
+    for (size_t k = 0; k < size; k++) {
+        s->row[k + 1] += s->row[k];
+        count[k] = s->row[k];
+    }
+    for (size_t j = 0; j < size; j++) {
+        for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
+            const size_t t = count[s->row_of[q]]++;
+            s->column_of[t] = j;
+            s->slot[t] = q;
+        }
+    }
+}
+
+/* What a change and a new factor cost, in nanoseconds, of which only the ratio counts: measured on carpets and chains of 400 to
+ * 100,000 contacts. A change goes from its column to the root. */
+static void sparse_estimate(struct sparse *s, const size_t *parent, double *path)
+{
+    for (size_t j = s->r.n; j-- > 0;) {
+        const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
+        path[j] = entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
+        s->change += path[j] / (double)s->r.n;
+        s->rebuild += (0.12 * entries + 11.0) * entries + 25.0;
+    }
+    s->change += 1000.0;
+}
+
+/* 1; 0 if a dense factor is better; -1 if out of memory. */
+static int find_pattern(struct sparse *s)
+{
+    const size_t size = s->r.n;
+    size_t *parent = malloc(3 * size * sizeof *parent);
+    double *path = malloc(size * sizeof *path);
+    if (!parent || !path) {
+        free(parent);
+        free(path);
+        return -1;
+    }
+    size_t *seen = parent + size, *count = parent + 2 * size;
+    find_tree(s, parent, seen);
+    memset(count, 0, size * sizeof *count);
+    sparse_walk(s, parent, seen, count, 0);
+    for (size_t j = 0; j < size; j++) {
+        s->column[j + 1] = s->column[j] + count[j];
+        count[j] = s->column[j];
+    }
+    const int good = s->column[size] > size * size / 8 ? 0 : allocate_slots(s, s->column[size]) ? 1 : -1;
+    if (good > 0) {
+        sparse_walk(s, parent, seen, count, 1);
+        fill_rows(s, count);
+        tribo_supernodes_find(s, parent);
+        sparse_estimate(s, parent, path);
+    }
+    free(parent);
+    free(path);
+    return good;
+}
+
+/* ------------------------------------------------------------------------------------------------------- rows of R */
+
+double tribo_sparse_dot(const struct box_qp *p, size_t i, const double *x, double *size)
+{
+    const struct csr *r = &p->group->sparse->r;
+    double sum = 0.0, all = 0.0;
+    for (size_t e = r->first[i]; e < r->first[i + 1]; e++) {
+        const double term = r->val[e] * x[r->col[e]];
+        sum += term;
+        all += fabs(term);
+    }
+    *size = all;
+    return sum;
+}
+
+void tribo_sparse_spread(const struct box_qp *p, size_t i, double factor, double *y)
+{
+    const struct csr *r = &p->group->sparse->r;
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        y[p->order[k]] = 0.0;
+    }
+    for (size_t e = r->first[i]; e < r->first[i + 1]; e++) {
+        if (p->at[r->col[e]] == FREE) {
+            y[r->col[e]] = factor * r->val[e];
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------- the factor */
+
+/* Row k of L, by elimination with the rows before it that are in the factor. Returns its pivot. Of the contacts that are free but
+ * not in the factor, *left gets the largest entry that elimination leaves. */
+static double sparse_eliminate(const struct box_qp *p, size_t k, double *left)
+{
+    const struct sparse *s = p->group->sparse;
+    const size_t i = s->place[k];
+    double pivot = 0.0;
+    for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
+        const size_t j = s->position[s->r.col[e]];
+        if (j <= k) {
+            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
+        }
+    }
+    for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
+        const size_t j = s->column_of[t];
+        const double y = p->sparse.w[j];
+        p->sparse.w[j] = 0.0;
+        p->sparse.l[s->slot[t]] = y * p->sparse.d[j];
+        if (p->sparse.d[j] == 0.0) {
+            *left = p->at[s->place[j]] == FREE ? greater(*left, fabs(y)) : *left;
+        } else if (y != 0.0) {
+            for (size_t q = s->column[j]; q < s->slot[t]; q++) {
+                p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * y;
+            }
+            pivot -= p->sparse.l[s->slot[t]] * y;
+        }
+    }
+    pivot += p->sparse.w[k];
+    p->sparse.w[k] = 0.0;
+    return pivot;
+}
+
+static void sparse_clear_row(const struct box_qp *p, size_t k)
+{
+    const struct sparse *s = p->group->sparse;
+    for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
+        p->sparse.l[s->slot[t]] = 0.0;
+    }
+}
+
+double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
+{
+    const struct group *g = p->group;
+    const struct sparse *s = g->sparse;
+    size_t waiting = g->size, who = 0; /* dependents gather at the end of order */
+    p->work.factorizations++;
+    const double left = tribo_supernodes_factorize(p, &who);
+    p->sets->rank = 0;
+    for (size_t k = 0; k < g->size; k++) {
+        const size_t i = s->place[k];
+        if (p->sparse.d[k] != 0.0) {
+            p->order[p->sets->rank++] = i;
+        } else if (p->at[i] == FREE) {
+            p->order[--waiting] = i;
+        }
+    }
+    p->sets->dependents = g->size - waiting;
+    memmove(p->order + p->sets->rank, p->order + waiting, p->sets->dependents * sizeof *p->order);
+    for (size_t d = 0; d < p->sets->dependents; d++) {
+        sparse_clear_row(p, s->position[p->order[p->sets->rank + d]]);
+    }
+    for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
+        p->sparse.index[p->order[k]] = k;
+    }
+    if (where && left > 0.0) {
+        *where = who;
+    }
+    return left;
+}
+
+void tribo_sparse_solve(const struct box_qp *p, double *step)
+{
+    const struct sparse *s = p->group->sparse;
+    const size_t size = p->group->size;
+    double *y = p->row;
+    for (size_t j = 0; j < size; j++) {
+        y[j] = p->sparse.d[j] == 0.0 ? 0.0 : y[j] + p->scale[s->place[j]] * step[s->place[j]];
+        for (size_t q = s->column[j]; y[j] != 0.0 && q < s->column[j + 1]; q++) {
+            y[s->row_of[q]] -= p->sparse.l[q] * y[j];
+        }
+    }
+    for (size_t j = size; j-- > 0;) {
+        if (p->sparse.d[j] != 0.0) {
+            double x = y[j] * p->sparse.d[j];
+            for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
+                x -= p->sparse.l[q] * y[s->row_of[q]];
+            }
+            y[j] = x;
+            step[s->place[j]] = p->scale[s->place[j]] * x;
+        }
+    }
+    memset(y, 0, size * sizeof *y);
+}
+
+/* L D L' += alpha w w' behind position k, w being in the workspace, with entries where column k of L may have some. Returns 0 if
+ * that would leave a pivot without sign. */
+static int sparse_modify(const struct box_qp *p, size_t k, double alpha)
+{
+    const struct sparse *s = p->group->sparse;
+    int good = 1;
+    for (size_t j = k; s->column[j] < s->column[j + 1];) {
+        j = s->row_of[s->column[j]]; /* the parent in the elimination tree */
+        const double x = p->sparse.w[j];
+        p->sparse.w[j] = 0.0;
+        if (x == 0.0 || p->sparse.d[j] == 0.0 || !good) {
+            continue;
+        }
+        const double before = 1.0 / p->sparse.d[j], after = before + alpha * x * x;
+        good = after > TRIBO_SPARSE_ZERO;
+        if (!good) {
+            continue;
+        }
+        const double beta = alpha * x / after;
+        alpha *= before / after;
+        p->sparse.d[j] = 1.0 / after;
+        for (size_t q = s->column[j]; q < s->column[j + 1]; q++) {
+            p->sparse.w[s->row_of[q]] -= x * p->sparse.l[q];
+            p->sparse.l[q] += beta * p->sparse.w[s->row_of[q]];
+        }
+    }
+    return good;
+}
+
+/* Row and column k of L, for a contact that enters; its own pivot is positive. */
+static int sparse_enter(struct box_qp *p, size_t k)
+{
+    const struct sparse *s = p->group->sparse;
+    const size_t i = s->place[k];
+    double ignored = 0.0;
+    const double pivot = sparse_eliminate(p, k, &ignored);
+    if (!(pivot > TRIBO_SPARSE_ZERO)) {
+        return 0;
+    }
+    p->sparse.d[k] = 1.0 / pivot;
+    for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
+        const size_t j = s->position[s->r.col[e]];
+        if (j > k) {
+            p->sparse.w[j] = p->scale[i] * s->r.val[e] * p->scale[s->r.col[e]];
+        }
+    }
+    for (size_t t = s->row[k]; t < s->row[k + 1]; t++) {
+        const size_t j = s->column_of[t], slot = s->slot[t];
+        const double x = p->sparse.l[slot] / (p->sparse.d[j] == 0.0 ? 1.0 : p->sparse.d[j]); /* where d is 0 l is, too */
+        for (size_t q = slot + 1; x != 0.0 && q < s->column[j + 1]; q++) {
+            p->sparse.w[s->row_of[q]] -= p->sparse.l[q] * x;
+        }
+    }
+    for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
+        const size_t j = s->row_of[q];
+        p->sparse.l[q] = p->sparse.d[j] == 0.0 ? 0.0 : p->sparse.w[j] * p->sparse.d[k];
+        p->sparse.w[j] = p->sparse.l[q];
+    }
+    return sparse_modify(p, k, -pivot);
+}
+
+static void sparse_put(struct box_qp *p, size_t at, size_t i)
+{
+    p->order[at] = i;
+    p->sparse.index[i] = at;
+}
+
+/* Whether contact i depends on those in the factor: by the pivot that it would have as the last one. */
+static int sparse_depends(struct box_qp *p, size_t i)
+{
+    const struct sparse *s = p->group->sparse;
+    const size_t row = s->r.first[i], end = s->r.first[i + 1];
+    double own = 0.0, pivot = 0.0, size = 0.0;
+    tribo_sparse_spread(p, i, 1.0, p->step);
+    tribo_sparse_solve(p, p->step);
+    for (size_t e = row; e < end; e++) {
+        const size_t j = s->r.col[e];
+        const double x = s->r.val[e];
+        if (j == i) {
+            own = x;
+        } else if (p->sparse.d[s->position[j]] != 0.0) {
+            pivot -= x * p->step[j];
+            size += fabs(x * p->step[j]);
+        }
+    }
+    return own + pivot <= 2.0 * TRIBO_SPARSE_ZERO * (own + size);
+}
+
+void tribo_sparse_add(struct box_qp *p, size_t i)
+{
+    const struct group *g = p->group;
+    if (g->nullity && sparse_depends(p, i)) {
+        sparse_put(p, p->sets->rank + p->sets->dependents++, i);
+    } else if (sparse_enter(p, g->sparse->position[i])) {
+        /* the first dependent makes room at the end of the independent ones */
+        if (p->sets->dependents) {
+            sparse_put(p, p->sets->rank + p->sets->dependents, p->order[p->sets->rank]);
+        }
+        sparse_put(p, p->sets->rank++, i);
+    } else {
+        tribo_sparse_rebuild(p, NULL);
+    }
+}
+
+void tribo_sparse_remove(struct box_qp *p, size_t i)
+{
+    const struct group *g = p->group;
+    const struct sparse *s = g->sparse;
+    const size_t k = s->position[i], at = p->sparse.index[i], waiting = p->sets->dependents, work = p->work.factorizations;
+    if (at >= p->sets->rank) {
+        p->sets->dependents--;
+        sparse_put(p, at, p->order[p->sets->rank + p->sets->dependents]);
+        return;
+    }
+    p->sets->rank--;
+    sparse_put(p, at, p->order[p->sets->rank]);
+    if (waiting) {
+        sparse_put(p, p->sets->rank, p->order[p->sets->rank + waiting]);
+    }
+    sparse_clear_row(p, k);
+    for (size_t q = s->column[k]; q < s->column[k + 1]; q++) {
+        p->sparse.w[s->row_of[q]] = p->sparse.l[q];
+        p->sparse.l[q] = 0.0;
+    }
+    const double pivot = 1.0 / p->sparse.d[k];
+    p->sparse.d[k] = 0.0;
+    sparse_modify(p, k, pivot);
+    /* what depended on it may be independent now */
+    p->sets->dependents = 0;
+    for (size_t d = 0; d < waiting && p->work.factorizations == work; d++) {
+        tribo_sparse_add(p, p->order[p->sets->rank + p->sets->dependents]);
+    }
+}
+
+int tribo_sparse_many(const struct box_qp *p, size_t changes)
+{
+    const struct sparse *s = p->group->sparse;
+    const double search = p->group->nullity ? 2.0 * (double)s->column[s->r.n] : 0.0;
+    return (double)changes * (s->change + search) > s->rebuild;
+}
+
+/* ---------------------------------------------------------------------------------------------------------- creation */
+
+/* Whether all pivots of R are well above zero: 1 or 0, or -1 if out of memory. */
+static int well_conditioned(struct sparse *s)
+{
+    const size_t size = s->r.n;
+    const struct group group = {.size = size, .sparse = s};
+    struct sets sets = {0};
+    double least = 1.0, most = 1.0; /* of 1/pivot, which is 0 where there is none */
+    double *values = calloc(tribo_sparse_slots(s) + 3 * size, sizeof *values);
+    size_t *places = malloc(6 * size * sizeof *places);
+    signed char *at = calloc(size, 1);
+    const int memory = values && places && at;
+    if (memory) {
+        double *scale = values + 2 * size;
+        const struct sparse_factor factor = {
+            .l = values + 3 * size, .d = values, .w = values + size, .index = places, .work = places + 2 * size};
+        struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .at = at, .order = places + size, .sparse = factor};
+        for (size_t i = 0; i < size; i++) {
+            const double *diagonal = tribo_csr_entry(&s->r, i, i);
+            scale[i] = tribo_scale(diagonal ? *diagonal : 0.0);
+        }
+        tribo_sparse_rebuild(&p, NULL);
+        for (size_t k = 0; k < size; k++) {
+            least = lesser(least, factor.d[k]);
+            most = greater(most, factor.d[k]);
+        }
+    }
+    free(values);
+    free(places);
+    free(at);
+    return memory ? least > 0.0 && most * TRIBO_DOUBTFUL < 1.0 : -1;
+}
+
+int tribo_sparse_create(struct sparse **s, const struct csr *r)
+{
+    const size_t size = r->n;
+    *s = NULL;
+    if (r->first[size] > size * size / 8) {
+        return 1;
+    }
+    struct sparse *c = calloc(1, sizeof *c);
+    int good = c && copy_rows(&c->r, r) && allocate_contacts(c, size) && tribo_nested_dissection(r, c->place) ? 1 : -1;
+    for (size_t k = 0; good > 0 && k < size; k++) {
+        c->position[c->place[k]] = k;
+    }
+    good = good > 0 ? find_pattern(c) : good;
+    if (good > 0) {
+        const int well = well_conditioned(c);
+        good = well < 0 ? well : well || size > DENSE_UP_TO;
+    }
+    if (good > 0) {
+        *s = c;
+    } else {
+        tribo_sparse_free(c);
+    }
+    return good >= 0;
+}

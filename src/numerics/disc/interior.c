@@ -1,0 +1,170 @@
+/* A primal-dual interior-point method (Boyd and Vandenberghe 2004, Convex Optimization, section 11.7): it begins in the middle of
+ * all lenses, needs a few dozen factorizations whatever the problem is like, and ends so near the solution that the place of each
+ * contact can be told. Each disc is a constraint |y + o|^2 <= 1, o being 0 or c; room is (1 - |y + o|^2)/2, and press its
+ * multiplier. */
+#include "disc_qp.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "common/real.h"
+
+enum { DISCS = 2, ROUNDS = 100 };
+
+/* Each round aims at a part of what room times press is on average: a small one while steps are long. */
+static double shrink(double length)
+{
+    return length > 0.9 ? 0.1 : length > 0.2 ? 0.5 : 1.0;
+}
+
+/* By so much press and aim/room may differ. */
+#define FAR_OFF 100.0
+
+/* With so much, in parts of the largest stiffness, it ends. */
+#define NEXT_TO_NOTHING 1e-13
+
+/* Steps go as far as this part of the way to the first rim. */
+#define NEARLY 0.99
+
+/* Of disc d of the contact at i. */
+static double offset(const struct disc_qp *p, size_t i, size_t k, int d)
+{
+    return p->y[i + k] + (d ? p->shift[i + k] : 0.0);
+}
+
+/* What rounding may take for none. */
+#define NO_ROOM 1e-20
+
+/* Without cancellation where y is near the rim in one direction only: 1 - |x|^2 = (1 - |x|)(1 + |x|). */
+static double room_of(const struct disc_qp *p, size_t i, int d)
+{
+    double x[2];
+    for (size_t k = 0; k < p->wide[i]; k++) {
+        x[k] = offset(p, i, k, d);
+    }
+    const double length = tribo_length(p->wide[i], x);
+    return greater(0.5 * (1.0 - length) * (1.0 + length), NO_ROOM);
+}
+
+/* Average of room times press. */
+static double average(const struct disc_qp *p)
+{
+    double sum = 0.0, count = 0.0;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (int d = 0; d < DISCS; d++) {
+            sum += room_of(p, i, d) * p->press[DISCS * i + (size_t)d];
+            count += 1.0;
+        }
+    }
+    return sum / count;
+}
+
+/* Returns what is next to nothing of room times press. */
+static double begin(struct disc_qp *p)
+{
+    double most = 0.0, stiffest = 0.0;
+    for (size_t i = 0; i < p->size; i++) {
+        p->y[i] = -0.5 * p->shift[i];
+    }
+    tribo_disc_gradients(p);
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        stiffest = greater(stiffest, 1.0 / p->gain[i]);
+        most = greater(most, greater(stiffest, tribo_length(p->wide[i], p->gradient + i)));
+    }
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (int d = 0; d < DISCS; d++) {
+            p->press[DISCS * i + (size_t)d] = most / room_of(p, i, d);
+        }
+    }
+    return NEXT_TO_NOTHING * stiffest;
+}
+
+/* step = the move towards room times press = aim. */
+static void find_step(struct disc_qp *p, double aim)
+{
+    const size_t n = p->size;
+    tribo_disc_gradients(p);
+    memcpy(p->matrix, p->s, n * n * sizeof *p->matrix);
+    for (size_t i = 0; i < n; i += p->wide[i]) {
+        for (int d = 0; d < DISCS; d++) {
+            const double press = p->press[DISCS * i + (size_t)d], room = room_of(p, i, d);
+            for (size_t k = 0; k < p->wide[i]; k++) {
+                p->gradient[i + k] += aim / room * offset(p, i, k, d);
+                p->matrix[(i + k) * (n + 1)] += press;
+                for (size_t j = 0; j < p->wide[i]; j++) {
+                    p->matrix[(i + k) * n + i + j] += press / room * offset(p, i, k, d) * offset(p, i, j, d);
+                }
+            }
+        }
+    }
+    tribo_disc_factorize(p, n);
+    for (size_t i = 0; i < n; i++) {
+        p->step[i] = -p->gradient[i];
+    }
+    tribo_disc_backsolve(p);
+}
+
+/* The change of the press of disc d. */
+static double press_step(const struct disc_qp *p, size_t i, int d, double aim)
+{
+    const double press = p->press[DISCS * i + (size_t)d], room = room_of(p, i, d);
+    double turn = 0.0;
+    for (size_t k = 0; k < p->wide[i]; k++) {
+        turn += offset(p, i, k, d) * p->step[i + k];
+    }
+    return aim / room - press + product(press / room, turn);
+}
+
+static double longest_step(const struct disc_qp *p, double aim)
+{
+    double length = 1.0 / NEARLY;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (int d = 0; d < DISCS; d++) {
+            const double change = press_step(p, i, d, aim);
+            double x[2];
+            for (size_t k = 0; k < p->wide[i]; k++) {
+                x[k] = offset(p, i, k, d);
+            }
+            length = lesser(length, tribo_way_to_rim(p->wide[i], x, p->step + i));
+            length = change < 0.0 ? lesser(length, quotient(p->press[DISCS * i + (size_t)d], -change)) : length;
+        }
+    }
+    return NEARLY * length;
+}
+
+/* y and press go by length along their steps. A press that is far from what its room asks for would let y cross the disc again
+ * and again where nothing else holds it. */
+static void advance(struct disc_qp *p, double length, double aim)
+{
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (int d = 0; d < DISCS; d++) {
+            p->press[DISCS * i + (size_t)d] += length * press_step(p, i, d, aim);
+        }
+        for (size_t k = i; k < i + p->wide[i]; k++) {
+            p->y[k] += length * p->step[k];
+        }
+        for (int d = 0; d < DISCS; d++) {
+            const double press = aim / room_of(p, i, d);
+            p->press[DISCS * i + (size_t)d] = clamp(p->press[DISCS * i + (size_t)d], press / FAR_OFF, FAR_OFF * press);
+        }
+    }
+}
+
+void tribo_disc_interior(struct disc_qp *p)
+{
+    const double enough = begin(p);
+    double length = 1.0;
+    for (int round = 0; round < ROUNDS; round++) {
+        const double product = average(p), aim = shrink(length) * product;
+        if (!(product > enough)) {
+            break;
+        }
+        find_step(p, aim);
+        length = longest_step(p, aim);
+        if (!(length > 1e-12)) {
+            break;
+        }
+        advance(p, length, aim);
+    }
+}

@@ -1,0 +1,85 @@
+/* Projection onto lenses. Where the nearest point of one disc lies in the other one it is that of the lens; where neither does,
+ * a corner is. Nothing here subtracts from 1 what is nearly 1, so that thin lenses are as good as others. */
+#include "lens.h"
+
+#include <float.h>
+#include <math.h>
+
+#include "common/real.h"
+
+double tribo_length(int directions, const double *x)
+{
+    if (directions == 1) {
+        return fabs(x[0]);
+    }
+    const double most = greater(fabs(x[0]), fabs(x[1]));
+    if (!(most > 0.0)) {
+        return 0.0;
+    }
+    const double u = x[0] / most, w = x[1] / most;
+    return most * sqrt(u * u + w * w);
+}
+
+/* Without cancellation where x is near the rim: 1 - |x|^2 = (1 - |x|)(1 + |x|). */
+double tribo_way_to_rim(int directions, const double *x, const double *step)
+{
+    const double from = tribo_length(directions, x), c = (1.0 - from) * (1.0 + from), size = tribo_length(directions, step);
+    double b = 0.0;
+    for (int k = 0; k < directions; k++) {
+        b += size > 0.0 ? x[k] * (step[k] / size) : 0.0;
+    }
+    const double root = sqrt(greater(b * b + c, 0.0));
+    return quotient(b > 0.0 ? c / greater(b + root, DBL_MIN) : root - b, greater(size, DBL_MIN));
+}
+
+struct corner tribo_lens_corner(const double *c, const double *z)
+{
+    const double length = tribo_length(2, c), along[2] = {c[0] / length, c[1] / length}, half = 0.5 * length;
+    const double across = along[0] * z[1] - along[1] * z[0];
+    return (struct corner){
+        {along[0], along[1]}, half, sqrt(greater((1.0 - half) * (1.0 + half), 0.0)), across < 0.0 ? -1.0 : 1.0};
+}
+
+static int project_interval(double c, double z, double *y)
+{
+    const double lo = greater(-1.0, -1.0 - c), hi = lesser(1.0, 1.0 - c);
+    *y = clamp(z, lo, hi);
+    if (z > hi) {
+        return c > 0.0 ? LENS_ON_SHIFTED : LENS_ON_DISC;
+    }
+    return z >= lo ? LENS_INSIDE : c < 0.0 ? LENS_ON_SHIFTED : LENS_ON_DISC;
+}
+
+int tribo_lens_project(int directions, const double *c, const double *z, double *y)
+{
+    if (directions == 1) {
+        return project_interval(c[0], z[0], y);
+    }
+    const double w[2] = {z[0] + c[0], z[1] + c[1]}, square = c[0] * c[0] + c[1] * c[1];
+    const double from_disc = tribo_length(2, z), from_shifted = tribo_length(2, w);
+    if (from_disc <= 1.0 && from_shifted <= 1.0) {
+        y[0] = z[0];
+        y[1] = z[1];
+        return LENS_INSIDE;
+    }
+    if (from_disc > 1.0) {
+        const double n[2] = {z[0] / from_disc, z[1] / from_disc};
+        if (2.0 * (n[0] * c[0] + n[1] * c[1]) + square <= 0.0) { /* |n + c| <= 1 */
+            y[0] = n[0];
+            y[1] = n[1];
+            return LENS_ON_DISC;
+        }
+    }
+    if (from_shifted > 1.0) {
+        const double n[2] = {w[0] / from_shifted, w[1] / from_shifted};
+        if (square <= 2.0 * (n[0] * c[0] + n[1] * c[1])) { /* |n - c| <= 1 */
+            y[0] = n[0] - c[0];
+            y[1] = n[1] - c[1];
+            return LENS_ON_SHIFTED;
+        }
+    }
+    const struct corner k = tribo_lens_corner(c, z);
+    y[0] = -k.half * k.along[0] - k.side * k.height * k.along[1];
+    y[1] = -k.half * k.along[1] + k.side * k.height * k.along[0];
+    return LENS_AT_CORNER;
+}

@@ -1,0 +1,244 @@
+/* Newton's method on the projection equations y = P(y - gain gradient), P being the projection onto the lenses. The projection
+ * tells the place of each contact, and its derivative there what is left to move: all of it inside; along the rim on a rim, as
+ * if on a spring, since what presses outwards turns with it; nothing at a corner. Along what is left the equations are
+ * symmetric. */
+#include "disc_qp.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "common/real.h"
+
+/* Of a set of redundant contacts this counts as balanced, in parts of limits: the rounding of whoever computed what pulls. */
+#define DISAGREEMENT 5e-13
+
+/* Diagonal entries of Newton's matrix that are less than this part of the largest: null vectors have squares all the same. */
+#define NEXT_TO_NOTHING 1e-200
+
+/* No two points of a set are so far apart, in parts of limits. */
+#define BEYOND_ALL 4.0
+
+void tribo_disc_gains(struct disc_qp *p)
+{
+    const size_t n = p->size;
+    for (size_t i = 0; i < n; i += p->wide[i]) {
+        const double a = p->s[i * n + i], d = p->wide[i] == 2 ? p->s[(i + 1) * n + i + 1] : a;
+        const double turned[2] = {0.5 * (a - d), p->wide[i] == 2 ? p->s[i * n + i + 1] : 0.0};
+        const double largest = greater(0.5 * (a + d) + tribo_length(2, turned), DBL_MIN);
+        for (size_t k = i; k < i + p->wide[i]; k++) {
+            p->gain[k] = 1.0 / largest;
+        }
+    }
+}
+
+void tribo_disc_gradients(struct disc_qp *p)
+{
+    const size_t n = p->size;
+    for (size_t i = 0; i < n; i++) {
+        const double *s = p->s + i * n;
+        double sum = p->pull[i], size = fabs(p->pull[i]);
+        for (size_t k = 0; k < n; k++) {
+            const double term = s[k] * p->y[k];
+            sum += term;
+            size += fabs(term);
+        }
+        p->gradient[i] = sum;
+        p->noise[i] = tribo_resolution(n) * size;
+    }
+}
+
+/* z = y - gain gradient, or as far in its direction as has squares. */
+static void find_target(const struct disc_qp *p, size_t i, double *z)
+{
+    const double most = 1e150, length = tribo_length(p->wide[i], p->gradient + i);
+    const int far = product(p->gain[i], length) > most;
+    for (size_t k = 0; k < p->wide[i]; k++) {
+        const double g = p->gradient[i + k];
+        z[k] = p->y[i + k] - (far ? g / length * most : p->gain[i] * g);
+    }
+}
+
+/* What presses a contact against the rim that it is on: of y - gain gradient the part beyond the rim, over gain. */
+static double press_of(const struct disc_qp *p, size_t i)
+{
+    double sum = 0.0;
+    for (size_t k = i; k < i + p->wide[i]; k++) {
+        sum += p->outward[k] * ((p->y[k] - p->to[k]) / p->gain[i] - p->gradient[k]);
+    }
+    return greater(sum, 0.0);
+}
+
+double tribo_disc_places(struct disc_qp *p)
+{
+    double worst = 0.0;
+    p->residual = 0.0;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        double z[2], off[2] = {0.0, 0.0}, noise[2] = {0.0, 0.0};
+        find_target(p, i, z);
+        p->place[i] = (unsigned char)tribo_lens_project(p->wide[i], p->shift + i, z, p->to + i);
+        for (size_t k = 0; k < p->wide[i]; k++) {
+            p->outward[i + k] = p->to[i + k] + (p->place[i] == LENS_ON_SHIFTED ? p->shift[i + k] : 0.0);
+            off[k] = p->to[i + k] - p->y[i + k];
+            noise[k] = product(p->gain[i], p->noise[i + k]);
+        }
+        p->curvature[i] = press_of(p, i);
+        const double distance = tribo_length(p->wide[i], off);
+        const double rounding = p->sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON;
+        p->residual = greater(p->residual, distance);
+        worst = greater(worst, quotient(distance, greater(rounding, tribo_length(p->wide[i], noise))));
+    }
+    return worst;
+}
+
+static void add_freedom(struct disc_qp *p, size_t at, double x, double y, double curvature)
+{
+    p->freedom[p->freedoms++] = (struct freedom){at, {x, y}, curvature};
+}
+
+static void find_freedoms(struct disc_qp *p)
+{
+    p->freedoms = 0;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        const int rim = p->place[i] == LENS_ON_DISC || p->place[i] == LENS_ON_SHIFTED;
+        for (size_t k = i; p->place[i] == LENS_INSIDE && k < i + p->wide[i]; k++) {
+            add_freedom(p, k, 1.0, 0.0, 0.0);
+        }
+        if (rim && p->wide[i] == 2) {
+            add_freedom(p, i, -p->outward[i + 1], p->outward[i], p->curvature[i]);
+        }
+    }
+}
+
+/* x [size] along a freedom. */
+static double along(const struct freedom *e, const double *x)
+{
+    return e->tangent[0] * x[e->at] + (e->tangent[1] != 0.0 ? e->tangent[1] * x[e->at + 1] : 0.0);
+}
+
+void tribo_disc_factorize(struct disc_qp *p, size_t size)
+{
+    struct box_qp *f = &p->factor;
+    double *scale = f->q, largest = 0.0;
+    p->group = (struct group){.size = size};
+    f->group = &p->group;
+    f->sets = &p->sets;
+    f->r = p->matrix;
+    f->scale = scale;
+    f->count = size;
+    for (size_t k = 0; k < size; k++) {
+        largest = greater(largest, p->matrix[k * size + k]);
+    }
+    for (size_t k = 0; k < size; k++) {
+        p->matrix[k * size + k] = greater(p->matrix[k * size + k], NEXT_TO_NOTHING * largest);
+        scale[k] = tribo_scale(p->matrix[k * size + k]);
+        f->near[k] = k;
+        f->at[k] = FREE;
+    }
+    tribo_dense_rebuild(f, NULL);
+    f->redundant = size;
+    p->redundant = tribo_null_basis(f);
+}
+
+/* What a factor with pivots next to nothing makes of numbers of this size are numbers. */
+#define ROOM 200
+
+void tribo_disc_backsolve(struct disc_qp *p)
+{
+    double most = 0.0;
+    int e;
+    for (size_t k = 0; k < p->group.size; k++) {
+        most = greater(most, fabs(p->step[k]));
+    }
+    frexp(most, &e);
+    for (size_t k = 0; k < p->group.size; k++) {
+        p->step[k] = ldexp(p->step[k], -e - ROOM);
+    }
+    tribo_null_project(&p->factor, p->redundant, p->step);
+    tribo_dense_solve(&p->factor, p->step);
+    for (size_t d = 0; d < p->sets.dependents; d++) {
+        p->step[p->factor.order[p->sets.rank + d]] = 0.0;
+    }
+    tribo_null_project(&p->factor, p->redundant, p->step);
+    for (size_t k = 0; k < p->group.size; k++) {
+        p->step[k] = product(product(p->step[k], ldexp(1.0, ROOM)), ldexp(1.0, e));
+    }
+}
+
+void tribo_disc_linearize(struct disc_qp *p)
+{
+    const size_t n = p->size;
+    find_freedoms(p);
+    for (size_t k = 0; k < p->freedoms; k++) {
+        const struct freedom *e = &p->freedom[k];
+        const double *row = p->s + e->at * n;
+        for (size_t j = 0; j < n; j++) {
+            p->spare[j] = e->tangent[0] * row[j] + (e->tangent[1] != 0.0 ? e->tangent[1] * row[n + j] : 0.0);
+        }
+        for (size_t j = 0; j < p->freedoms; j++) {
+            p->matrix[k * p->freedoms + j] = along(&p->freedom[j], p->spare);
+        }
+        p->matrix[k * p->freedoms + k] += e->curvature;
+    }
+    tribo_disc_factorize(p, p->freedoms);
+}
+
+/* move [size] = the steps of freedoms. */
+static void spread(const struct disc_qp *p, const double *step, double *move)
+{
+    memset(move, 0, p->size * sizeof *move);
+    for (size_t k = 0; k < p->freedoms; k++) {
+        const struct freedom *e = &p->freedom[k];
+        move[e->at] += e->tangent[0] * step[k];
+        if (e->tangent[1] != 0.0) {
+            move[e->at + 1] += e->tangent[1] * step[k];
+        }
+    }
+}
+
+void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move)
+{
+    for (size_t k = 0; k < p->freedoms; k++) {
+        p->step[k] = -along(&p->freedom[k], rhs);
+    }
+    tribo_disc_backsolve(p);
+    spread(p, p->step, move);
+}
+
+void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
+{
+    double *pull = p->spare, *balanced = p->press, most = 0.0, distance = 0.0;
+    for (size_t k = 0; k < p->freedoms; k++) {
+        pull[k] = balanced[k] = -along(&p->freedom[k], rhs);
+    }
+    tribo_null_project(&p->factor, p->redundant, balanced);
+    for (size_t k = 0; k < p->freedoms; k++) {
+        pull[k] -= balanced[k];
+        most = greater(most, fabs(pull[k]));
+        distance = greater(distance, product(p->gain[p->freedom[k].at], fabs(pull[k])));
+    }
+    for (size_t k = 0; k < p->freedoms; k++) {
+        pull[k] = distance > DISAGREEMENT ? BEYOND_ALL * (pull[k] / most) : 0.0;
+    }
+    spread(p, pull, move);
+}
+
+/* d(corner) = -dc/2 + d(side height across), across = (-c_2, c_1)/|c|: the height falls as |c| grows, and across turns with c. */
+static void drag_corner(const struct disc_qp *p, size_t i, const double *dshift, double *dy)
+{
+    const struct corner k = tribo_lens_corner(p->shift + i, p->to + i);
+    const double *e = k.along, grows = e[0] * dshift[0] + e[1] * dshift[1], turns = e[0] * dshift[1] - e[1] * dshift[0];
+    const double falls = -0.5 * quotient(k.half, greater(k.height, DBL_MIN)) * grows, turn = k.height * turns / (2.0 * k.half);
+    dy[0] = -0.5 * dshift[0] - k.side * (falls * e[1] + turn * e[0]);
+    dy[1] = -0.5 * dshift[1] + k.side * (falls * e[0] - turn * e[1]);
+}
+
+void tribo_disc_drag(const struct disc_qp *p, size_t i, const double *dshift, double *dy)
+{
+    for (size_t k = 0; k < p->wide[i]; k++) {
+        dy[k] = p->place[i] == LENS_ON_SHIFTED ? -dshift[k] : 0.0;
+    }
+    if (p->place[i] == LENS_AT_CORNER) {
+        drag_corner(p, i, dshift, dy);
+    }
+}
