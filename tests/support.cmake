@@ -9,9 +9,10 @@ set(CMAKE_REQUIRED_LIBRARIES m)
 check_symbol_exists(feenableexcept fenv.h TRIBO_HAVE_FEENABLEEXCEPT)
 cmake_pop_check_state()
 
-# tribo_test(<label> <name> [<file or library>...]): a suite, from <name>.c and what else it needs.
+# tribo_test(<label> <room>/<suite> [<file or library>...]): the suite <label>/<suite>, from <room>/<suite>.c and other parts.
 function(tribo_test label name)
-  set(target test_${label}_${name})
+  get_filename_component(suite "${name}" NAME)
+  set(target test_${label}_${suite})
   add_executable(${target} ${name}.c "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/support.c")
   foreach(part IN LISTS ARGN)
     if(part MATCHES "\\.c$|TARGET_OBJECTS")
@@ -23,11 +24,12 @@ function(tribo_test label name)
       target_link_libraries(${target} PRIVATE "${part}")
     endif()
   endforeach()
-  target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}" "${PROJECT_SOURCE_DIR}/include")
+  target_include_directories(${target} PRIVATE "${CMAKE_CURRENT_SOURCE_DIR}" "${CMAKE_CURRENT_FUNCTION_LIST_DIR}"
+    "${PROJECT_SOURCE_DIR}/include")
   target_link_libraries(${target} PRIVATE PkgConfig::CHECK ${TRIBO_LIBM})
   tribo_warnings(${target})
-  add_test(NAME ${label}/${name} COMMAND ${target})
-  set_tests_properties(${label}/${name} PROPERTIES LABELS ${label})
+  add_test(NAME ${label}/${suite} COMMAND ${target})
+  set_tests_properties(${label}/${suite} PROPERTIES LABELS ${label})
 endfunction()
 
 # tribo_test_memory(<label> <name> <library> [...]): the same with the library's objects linked in, and its allocations counted
@@ -36,8 +38,9 @@ check_linker_flag(C "LINKER:--wrap=tribo_nothing" TRIBO_HAVE_WRAP)
 function(tribo_test_memory label name library)
   if(TRIBO_HAVE_WRAP)
     tribo_test(${label} ${name} "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/unit/memory.c" "$<TARGET_OBJECTS:${library}>" ${ARGN})
-    target_include_directories(test_${label}_${name} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/unit")
-    target_link_options(test_${label}_${name} PRIVATE
+    get_filename_component(suite "${name}" NAME)
+    target_include_directories(test_${label}_${suite} PRIVATE "${CMAKE_CURRENT_FUNCTION_LIST_DIR}/unit")
+    target_link_options(test_${label}_${suite} PRIVATE
       "LINKER:--wrap=malloc" "LINKER:--wrap=calloc" "LINKER:--wrap=realloc" "LINKER:--wrap=free")
   endif()
 endfunction()

@@ -4,7 +4,7 @@
 
 #include "tribo/tribo_gsl.h"
 
-#include "../traps.h"
+#include "traps.h"
 
 enum { OSCILLATOR, CHAIN, BELT, IMMOVABLE, SYSTEMS };
 

@@ -2,7 +2,7 @@
  * point by point. Each is looked for without and with derivatives beyond the second, and with whatever is expected. */
 #include <math.h>
 
-#include "../support.h"
+#include "support.h"
 #include "dynamics/events/first_zero.h"
 
 enum { MOST_GUARDS = 6, TERMS = 3, POINTS = 4000, CASES = 100 };

@@ -1,7 +1,7 @@
 /* Bounds and zeros of functions by samples at the ends of an interval, or by a Taylor series at one end. */
 #include <math.h>
 
-#include "../support.h"
+#include "support.h"
 #include "dynamics/events/quintic.h"
 
 enum { POINTS = 200, CASES = 20000 };

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdint.h>
 
-#include "../support.h"
+#include "support.h"
 #include "dynamics/system/cos_sin.h"
 #include "dynamics/system/system.h"
 

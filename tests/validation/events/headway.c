@@ -2,7 +2,7 @@
 #include <math.h>
 
 #include "dynamics/events/events.h"
-#include "../support.h"
+#include "support.h"
 
 static int (*honest_begin)(void *motion, double t, const double *y, double *reach);
 static struct events *spoilt;
