@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dynamics/decide/breakaway.h"
 #include "common/real.h"
 #include "common/zeros.h"
 

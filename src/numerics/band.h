@@ -3,7 +3,7 @@
 #ifndef TRIBO_BAND_H
 #define TRIBO_BAND_H
 
-#include "dynamics/system/matrix.h"
+#include "matrix.h"
 
 /* Adds factor [rows] (NULL: ones) times the rows of the lower triangle of a to the band. */
 void tribo_band_add(double *band, size_t width, const struct matrix *a, double factor, const double *row);

@@ -2,7 +2,7 @@
 #ifndef TRIBO_LINALG_H
 #define TRIBO_LINALG_H
 
-#include "dynamics/system/matrix.h"
+#include "matrix.h"
 #include "sparse_factor.h"
 
 /* x'y; the largest |x_i|; to += factor x; 1 if no x is an infinity or a NaN. All [n]. */

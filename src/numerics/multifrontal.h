@@ -4,7 +4,7 @@
 #ifndef TRIBO_MULTIFRONTAL_H
 #define TRIBO_MULTIFRONTAL_H
 
-#include "dynamics/system/matrix.h"
+#include "matrix.h"
 #include "sparse_factor.h"
 
 /* Groups of columns of a factor L, as CHOLMOD finds them; a group comes after all whose rows are its columns. */

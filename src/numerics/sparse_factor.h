@@ -4,7 +4,7 @@
 #ifndef TRIBO_SPARSE_FACTOR_H
 #define TRIBO_SPARSE_FACTOR_H
 
-#include "dynamics/system/matrix.h"
+#include "matrix.h"
 
 /* A = P' L L' P. */
 struct sparse_factor;

@@ -28,26 +28,6 @@ void tribo_breakaway_free(struct breakaway *b)
     free(b->ratio);
 }
 
-size_t tribo_system_first_falling(const tribo_system *sys)
-{
-    double *x = sys->feq;
-    size_t i = 0;
-    tribo_get_static(sys->contacts, NULL, x);
-    if (!sys->ncontact || !(x[0] > 0.0)) {
-        return sys->ncontact;
-    }
-    tribo_get_static(sys->contacts, x, NULL);
-    while (i < sys->ncontact && !(x[i] > 1.0)) {
-        i++;
-    }
-    return i;
-}
-
-int tribo_system_falls(const tribo_system *sys)
-{
-    return tribo_system_first_falling(sys) < sys->ncontact;
-}
-
 /* The largest row sum of |J| |B| diag(slopes at rest, with the largest limits that there will be). */
 static double steepest(struct breakaway *b, const tribo_system *sys, double *dof, double *contact)
 {

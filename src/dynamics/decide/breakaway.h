@@ -9,10 +9,6 @@
 #include "dynamics/system/system.h"
 #include "common/real.h"
 
-/* The first contact whose limit falls with the speed, or their number if none does; and whether there is one. */
-size_t tribo_system_first_falling(const tribo_system *sys);
-int tribo_system_falls(const tribo_system *sys);
-
 struct breakaway {
     int some, falls;                /* there are static limits; with velocities by which they fall */
     double *ratio, *velocity;       /* [ncontact] */

@@ -1,5 +1,5 @@
 /* Which of the contacts at rest hold: an independent set of them keeps all of them where they are. */
-#include "constraint.h"
+#include "numerics/constraint.h"
 #include "stick_slip.h"
 
 #include <float.h>

@@ -9,7 +9,6 @@
 
 #include "dynamics/driver.h"
 #include "breakaway.h"
-#include "dynamics/events/first_zero.h"
 #include "planar_slip.h"
 
 /* Forces may go beyond their limits by so many times their noise, before that is an event: by then it is no noise. */

@@ -1,5 +1,5 @@
 /* What is known of contacts whatever they do, and the memory for what they do. */
-#include "constraint.h"
+#include "numerics/constraint.h"
 #include "stick_slip.h"
 #include "common/layout.h"
 #include "common/real.h"

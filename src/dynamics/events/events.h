@@ -3,6 +3,7 @@
 #ifndef TRIBO_EVENTS_H
 #define TRIBO_EVENTS_H
 
+#include "first_zero.h"
 #include "signal.h"
 #include "dynamics/decide/stick_slip.h"
 

@@ -2,7 +2,7 @@
 #ifndef TRIBO_MODAL_PARTS_H
 #define TRIBO_MODAL_PARTS_H
 
-#include "dynamics/decide/constraint.h"
+#include "numerics/constraint.h"
 #include "modal.h"
 #include "whole.h"
 

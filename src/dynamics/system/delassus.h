@@ -2,7 +2,7 @@
 #ifndef TRIBO_DELASSUS_H
 #define TRIBO_DELASSUS_H
 
-#include "matrix.h"
+#include "numerics/matrix.h"
 
 /* x [j->cols] = row i of J; what x has where that row has entries goes into own, as in hidden.h. */
 void tribo_delassus_put_row(const struct matrix *j, size_t i, double *x);

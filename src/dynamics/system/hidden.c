@@ -1,6 +1,6 @@
 /* A contact on a light and a heavy body makes an entry 1/m + 1/M of R, of which rounding leaves little of 1/M. That counts where
  * other contacts hold the light body: then a pivot of R is as small as m/M, though rows of J are independent. */
-#include "dynamics/decide/constraint.h"
+#include "numerics/constraint.h"
 #include "hidden.h"
 #include "common/real.h"
 

@@ -2,7 +2,7 @@
 #ifndef TRIBO_HIDDEN_H
 #define TRIBO_HIDDEN_H
 
-#include "matrix.h"
+#include "numerics/matrix.h"
 
 struct hidden {
     size_t contact; /* touches bodies */

@@ -6,7 +6,7 @@
 #ifndef TRIBO_MASSLESS_H
 #define TRIBO_MASSLESS_H
 
-#include "matrix.h"
+#include "numerics/matrix.h"
 
 struct massless {
     size_t count;               /* 0: there are none, and the rest is empty */

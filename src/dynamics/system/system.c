@@ -161,3 +161,23 @@ double tribo_system_delassus(const tribo_system *sys, size_t i, size_t j)
     }
     return sum;
 }
+
+size_t tribo_system_first_falling(const tribo_system *sys)
+{
+    double *x = sys->feq;
+    size_t i = 0;
+    tribo_get_static(sys->contacts, NULL, x);
+    if (!sys->ncontact || !(x[0] > 0.0)) {
+        return sys->ncontact;
+    }
+    tribo_get_static(sys->contacts, x, NULL);
+    while (i < sys->ncontact && !(x[i] > 1.0)) {
+        i++;
+    }
+    return i;
+}
+
+int tribo_system_falls(const tribo_system *sys)
+{
+    return tribo_system_first_falling(sys) < sys->ncontact;
+}

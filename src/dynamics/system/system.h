@@ -99,6 +99,10 @@ size_t tribo_system_revision(const tribo_system *sys);
 /* How many planar contacts there are. */
 size_t tribo_system_planar(const tribo_system *sys);
 
+/* The first contact whose limit falls with the speed (a velocity of tribo_set_static), or ncontact; 1 if there is such a contact. */
+size_t tribo_system_first_falling(const tribo_system *sys);
+int tribo_system_falls(const tribo_system *sys);
+
 /* ---- loads.c */
 
 void tribo_loads_free(tribo_system *sys);

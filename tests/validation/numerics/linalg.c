@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dynamics/decide/constraint.h"
+#include "numerics/constraint.h"
 #include "numerics/eigen.h"
 #include "dynamics/reduce/normal_modes.h"
 #include "support.h"

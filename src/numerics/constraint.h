@@ -8,7 +8,7 @@
 #ifndef TRIBO_CONSTRAINT_H
 #define TRIBO_CONSTRAINT_H
 
-#include "dynamics/system/matrix.h"
+#include "matrix.h"
 
 /* Rows that share degrees of freedom with each other, and with no other row. */
 struct tie {
