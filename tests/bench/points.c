@@ -1,0 +1,175 @@
+/* What a steady motion costs over the number of modes of the structure and of its contacts.
+ *   bench_points [mass stiffness dofs contacts modes [statics]]
+ * Without arguments: the beam of the examples on three contacts, driven at frequencies about three times its first one, in 12, 24,
+ * 48 and 96 modes, alone and with static responses of the contacts. Otherwise a structure whose contacts are spread over the
+ * degrees of freedom in direction z, the last of which has the load, driven about its first frequency.
+ * POINTS motions at several frequencies and limits, by one driver, each from the motion before. Prints a row a system: times in
+ * milliseconds and beside those of the first row; spans followed, events and decompositions a point; power at the first point. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "../../examples/common/output.h"
+#include "../../examples/damper/structure.h"
+#include "harness.h"
+#include "tribo/tribo_gsl.h"
+
+#define PI 3.14159265358979323846
+#define DAMPING 0.002
+
+enum { FREQUENCIES = 4, LIMITS = 5, POINTS = FREQUENCIES * LIMITS };
+
+struct scene {
+    struct structure s;
+    gsl_spmatrix *direction;
+    size_t contacts, load;
+    double force, omega, limit; /* of the first point */
+};
+
+struct cost {
+    double seconds, power;
+    size_t found, periods, events;
+};
+
+static void place_beam(struct scene *x)
+{
+    static const struct place place[] = {{{200.0, 0.0, 5.0}, 3, "contact 1"},
+                                         {{300.0, 0.0, 5.0}, 3, "contact 2"},
+                                         {{400.0, 0.0, 5.0}, 3, "contact 3"},
+                                         {{400.0, 20.0, 5.0}, 3, "load"}};
+    x->s = read_structure(BEAM_FILES "/M.mtx", BEAM_FILES "/K.mtx", BEAM_FILES "/dofs.txt");
+    x->contacts = 3;
+    x->direction = gsl_spmatrix_alloc(x->contacts, x->s.ndof);
+    for (size_t i = 0; i < x->contacts; i++) {
+        gsl_spmatrix_set(x->direction, i, find_degree(&x->s, &place[i]), 1.0);
+    }
+    x->load = find_degree(&x->s, &place[3]);
+    x->force = 0.1;
+    x->omega = 3.0;
+    x->limit = 0.1;
+}
+
+static void spread_contacts(struct scene *x)
+{
+    size_t vertical = 0, at = 0, placed = 0;
+    for (size_t i = 0; i < x->s.ndof; i++) {
+        vertical += x->s.dof[i].direction == 3;
+    }
+    if (x->contacts == 0 || x->contacts >= vertical) {
+        die("%zu contacts among %zu degrees of freedom in direction z", x->contacts, vertical);
+    }
+    x->direction = gsl_spmatrix_alloc(x->contacts, x->s.ndof);
+    for (size_t i = 0; i < x->s.ndof; i++) {
+        if (x->s.dof[i].direction == 3) {
+            x->load = i;
+            if (placed < x->contacts && at++ * x->contacts >= placed * vertical) {
+                gsl_spmatrix_set(x->direction, placed++, i, 1.0);
+            }
+        }
+    }
+    x->force = 1.0;
+    x->omega = 1.0;
+    x->limit = 1.0 / (double)x->contacts;
+}
+
+static tribo_system *create(const struct scene *x, size_t modes, int statics, double *first)
+{
+    tribo_system *sys;
+    char message[200] = "";
+    need(tribo_system_reduced(&sys, x->s.mass, x->s.stiffness, x->direction, modes, statics, message, sizeof message), message);
+    double *frequency = need_memory(tribo_system_dimension(sys), sizeof *frequency);
+    need(tribo_system_get_frequencies(sys, frequency), NULL);
+    need(tribo_system_set_damping_ratio(sys, DAMPING), NULL);
+    *first = frequency[0];
+    free(frequency);
+    return sys;
+}
+
+static double find_power(tribo_driver *drv, size_t contacts, double period)
+{
+    double *energy = need_memory(contacts, sizeof *energy), power = 0.0;
+    need(tribo_driver_period_dissipation(drv, energy), tribo_driver_message(drv));
+    for (size_t i = 0; i < contacts; i++) {
+        power += energy[i] / period;
+    }
+    free(energy);
+    return power;
+}
+
+/* The first point is the scene's; others have higher frequencies, and limits down to a hundredth. */
+static struct cost run(const struct scene *x, tribo_system *sys, double first)
+{
+    struct cost cost = {0};
+    tribo_context *c = tribo_system_context(sys);
+    double *y = need_memory(tribo_system_dimension(sys), sizeof *y), *load = need_memory(x->s.ndof, sizeof *load);
+    memset(y, 0, tribo_system_dimension(sys) * sizeof *y);
+    memset(load, 0, x->s.ndof * sizeof *load);
+    load[x->load] = x->force;
+    tribo_driver *drv;
+    need(tribo_driver_create(&drv, sys, "exact", 1.0, 0.0, 0.0), NULL);
+    for (size_t k = 0; k < POINTS; k++) {
+        const double omega = x->omega * first * (1.0 + 0.05 * (double)(k / LIMITS)), period = 2.0 * PI / omega;
+        need(tribo_system_clear_loads(sys), tribo_message(c));
+        need(tribo_system_add_load(sys, omega, NULL, load), tribo_message(c));
+        need(tribo_set_limit_all(c, x->limit * pow(0.01, (double)(k % LIMITS) / (LIMITS - 1))), tribo_message(c));
+        const double begin = cpu_seconds();
+        const int status = tribo_driver_find_periodic(drv, 0.0, period, y);
+        cost.seconds += (cpu_seconds() - begin) / POINTS;
+        cost.found += !status;
+        if (status) {
+            fprintf(stderr, "%s\n", tribo_driver_message(drv));
+        } else if (k == 0) {
+            cost.power = find_power(drv, x->contacts, period);
+        }
+    }
+    need(tribo_driver_count(drv, TRIBO_COUNT_PERIODS, &cost.periods), NULL);
+    need(tribo_driver_count(drv, TRIBO_COUNT_EVENTS, &cost.events), NULL);
+    tribo_driver_destroy(drv);
+    free(y);
+    free(load);
+    return cost;
+}
+
+/* Returns the seconds of a point. */
+static double measure(const struct scene *x, size_t modes, int statics, double unit)
+{
+    double first;
+    tribo_system *sys = create(x, modes, statics, &first);
+    const struct cost cost = run(x, sys, first);
+    printf("%5zu %7s %6zu %10.2f %8.1f %9.1f %9.1f %14.6g\n", modes, statics ? "yes" : "no", cost.found, 1e3 * cost.seconds,
+           unit > 0.0 ? cost.seconds / unit : 1.0, (double)cost.periods / POINTS, (double)cost.events / POINTS, cost.power);
+    fflush(stdout);
+    tribo_system_destroy(sys);
+    return cost.seconds;
+}
+
+int main(int argc, char **argv)
+{
+    program = "bench_points";
+    gsl_set_error_handler_off(); /* as read_structure expects */
+    if (argc != 1 && argc != 6 && argc != 7) {
+        die("usage: bench_points [mass stiffness dofs contacts modes [statics]]");
+    }
+    struct scene x = {.force = 0.1};
+    printf("%5s %7s %6s %10s %8s %9s %9s %14s\n", "modes", "statics", "found", "ms a point", "ratio", "periods", "events", "power");
+    if (argc == 1) {
+        static const size_t modes[] = {12, 24, 48, 96};
+        double unit = 0.0;
+        place_beam(&x);
+        for (size_t k = 0; k < 8; k++) {
+            const double seconds = measure(&x, modes[k % 4], k >= 4, unit);
+            unit = k ? unit : seconds;
+        }
+    } else {
+        x.s = read_structure(argv[1], argv[2], argv[3]);
+        x.contacts = strtoul(argv[4], NULL, 10);
+        spread_contacts(&x);
+        measure(&x, strtoul(argv[5], NULL, 10), argc == 7, 0.0);
+    }
+    gsl_spmatrix_free(x.direction);
+    free_structure(&x.s);
+    return EXIT_SUCCESS;
+}
