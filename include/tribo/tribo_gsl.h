@@ -63,7 +63,8 @@ TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1,
  * stiffness holds them, K_ww definite. They follow statically, K_ww w = J_w'f - K_wq q. A contact on one is elastic, a spring in
  * series with a slider (Jenkins, Masing): with a row [k -k; -k k] of stiffness between a mass and w, and a contact on w, it holds
  * with the stiffness k, and slides at its limit. Its force follows from the state; one that starts beyond the limit goes back to
- * it at once, and dissipates limit times the way of the slider. No two contacts may share compliance J_w K_ww^-1 J_w'.
+ * it at once, and dissipates limit times the way of the slider. Contacts may share compliance: J_w K_ww^-1 J_w' must be positive
+ * definite over elastic contacts.
  * Methods "exact" and "event" (and "auto", by them) take such systems, and "moreau/fixed", to second order. What else needs mass
  * says so, TRIBO_ERR_UNSUPPORTED: other methods, loads on what has none, limits of elastic contacts that change with time, or
  * static ones (tribo_set_static), planar contacts, tribo_system_contacts where elastic contacts touch mass themselves,

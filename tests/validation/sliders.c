@@ -30,7 +30,7 @@ const double masses[MASSES] = {1.0, 2.0, 1.5}, springs[SLIDERS] = {3.0, 1.5, 0.8
 const double grounded[MASSES][MASSES] = {{3.0, -1.0, 0.0}, {-1.0, 2.5, -1.5}, {0.0, -1.5, 1.7}};
 const double base_speed = 0.3, base_omega = 0.6, load_omega = 0.9, rigid_limit = 0.3;
 
-tribo_system *structure(void)
+tribo_system *structure(double between)
 {
     double mass[DOFS * DOFS] = {0.0}, damping[DOFS * DOFS] = {0.0}, stiffness[DOFS * DOFS] = {0.0};
     double direction[(SLIDERS + 1) * DOFS] = {0.0}, base[SLIDERS + 1] = {0.0}, sine[DOFS] = {0.0, 0.9}, cosine[DOFS] = {0.0};
@@ -48,6 +48,11 @@ tribo_system *structure(void)
         stiffness[w * DOFS + w] = springs[i];
         stiffness[q * DOFS + w] = stiffness[w * DOFS + q] = -springs[i];
         direction[i * DOFS + w] = 1.0;
+    }
+    for (size_t w = MASSES; w + 1 < DOFS; w++) {
+        stiffness[w * DOFS + w] += between;
+        stiffness[(w + 1) * DOFS + w + 1] += between;
+        stiffness[w * DOFS + w + 1] = stiffness[(w + 1) * DOFS + w] = -between;
     }
     direction[1 * DOFS + 1] = -1.0;
     direction[SLIDERS * DOFS + 2] = 1.0;

@@ -22,7 +22,8 @@ int see_most(double t, const double *y, int event, void *most);
 extern const double masses[MASSES], springs[SLIDERS], limits[SLIDERS], grounded[MASSES][MASSES];
 extern const double base_speed, base_omega, load_omega, rigid_limit;
 
-/* Its limits are still to be set: [SLIDERS + 1], the last that of the rigid contact. */
-tribo_system *structure(void);
+/* Springs of this stiffness between slider 0, 1 and 2. Its limits are still to be set: [SLIDERS + 1], the last that of the rigid
+ * contact. */
+tribo_system *structure(double between);
 
 #endif

@@ -1,7 +1,8 @@
 /* Elastic contacts: a slider without mass on a spring. The state says what its force is, compliance f = J w - J follow q, and
- * J u - b with w' = follow q' is the velocity v that it slides with, if it slides. So an instant decides about each by itself:
+ * J u - b with w' = follow q' is the velocity v that it slides with, if all slide: rates of forces f' add C f' to these. A contact
+ * with a diagonal C is decided about by itself, and shared compliance makes a box problem of f', min 1/2 f''C f' + v'f':
  *
- *     inside the limit: it holds, and f' = -v/compliance
+ *     inside the limit: it holds, and v + C f' = 0
  *     at the limit: it slides if v goes against the force, and holds if v takes the force back inside
  *     at the limit, without velocity: it holds; if v comes to go against the force, that leaves the limit, which is an event
  */
@@ -43,27 +44,56 @@ void tribo_elastic_release(const tribo_system *sys, double *y)
     }
 }
 
-/* Force and slip of contact i, whose velocity is v if it slides. */
-static void place(struct stick_slip *m, size_t i, double v)
+/* What an instant knows of contact i before its velocity. */
+enum stand { OPEN, INSIDE, AT_LIMIT, STOPPED };
+
+static enum stand stand_of(const struct stick_slip *m, size_t i)
 {
     const signed char before = m->slip[i];
-    const int stopped = before == 0 && (m->slid[i] == 1 || m->slid[i] == -1);
-    const int slides = before == 1 || before == -1;
-    const double limit = m->limit[i];
-    if (before == 2) {
+    const int slid = m->slid[i] == 1 || m->slid[i] == -1;
+    const int slides = (before == 1 || before == -1) && m->slid[i] == before;
+    return before == 2                                                                    ? OPEN
+           : before == 0 && slid                                                          ? STOPPED
+           : slides || i == m->reached || fabs(m->spring[i]) >= m->limit[i] - m->slack[i] ? AT_LIMIT
+                                                                                          : INSIDE;
+}
+
+/* Where contact i, at its limit, slides to if it slides: against its force. */
+static signed char against(const struct stick_slip *m, size_t i)
+{
+    const signed char before = m->slip[i];
+    return before != 0 && m->slid[i] == before ? before : (signed char)(m->spring[i] > 0.0 ? -1 : 1);
+}
+
+/* Force and slip of contact i, whose velocity is v if it slides. */
+static void place_elastic(struct stick_slip *m, size_t i, double v)
+{
+    const enum stand stand = stand_of(m, i);
+    const signed char direction = against(m, i);
+    const int slides = stand == AT_LIMIT && fabs(v) > m->doubt * m->noise[i] && direction * v > 0.0;
+    if (stand == OPEN) {
         m->spring[i] = 0.0;
         return;
     }
-    if (slides && m->slid[i] == before) {
-        m->spring[i] = -before * limit;
-    } else if (i != m->reached && !stopped && fabs(m->spring[i]) < limit - m->slack[i]) {
-        tribo_stick_slip_set(m, i, 0);
-        return;
+    m->spring[i] = stand == INSIDE ? m->spring[i] : -direction * m->limit[i];
+    tribo_stick_slip_set(m, i, (signed char)(slides ? direction : 0));
+}
+
+/* Velocities v [ncontact] become those with the rates of forces that shared compliance makes of them; 0 of contacts that hold. */
+static void share_rates(struct stick_slip *m, struct definite *c, double *v)
+{
+    for (size_t i = 0; i < c->n; i++) {
+        const enum stand stand = m->elastic[i] ? stand_of(m, i) : OPEN;
+        const signed char direction = against(m, i);
+        c->q[i] = m->elastic[i] ? v[i] : 0.0;
+        c->lo[i] = stand == OPEN || (stand == AT_LIMIT && direction > 0) ? 0.0 : -HUGE_VAL;
+        c->hi[i] = stand == OPEN || (stand == AT_LIMIT && direction < 0) ? 0.0 : HUGE_VAL;
     }
-    const signed char against = (signed char)(m->spring[i] > 0.0 ? -1 : 1);
-    const int still = stopped || fabs(v) <= m->doubt * m->noise[i];
-    m->spring[i] = -against * limit;
-    tribo_stick_slip_set(m, i, (signed char)(!still && against * v > 0.0 ? against : 0));
+    tribo_definite_box(c);
+    tribo_multiply_add(c->n, c->n, 1, 1.0, c->matrix, c->f, v);
+    for (size_t i = 0; i < c->n; i++) {
+        v[i] = c->f[i] != 0.0 ? 0.0 : v[i];
+    }
 }
 
 void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *y)
@@ -73,8 +103,14 @@ void tribo_elastic_place(struct stick_slip *m, const tribo_system *sys, double *
     }
     tribo_elastic_find(m, sys, y);
     for (size_t i = 0; i < sys->ncontact; i++) {
+        m->v[i] = m->elastic[i] ? tribo_stick_slip_find_velocity(m, sys, i, y) : 0.0;
+    }
+    if (sys->massless.shared) {
+        share_rates(m, sys->massless.shared, m->v);
+    }
+    for (size_t i = 0; i < sys->ncontact; i++) {
         if (m->elastic[i]) {
-            place(m, i, tribo_stick_slip_find_velocity(m, sys, i, y));
+            place_elastic(m, i, m->v[i]);
         }
     }
     tribo_elastic_give(sys, m->spring, y);

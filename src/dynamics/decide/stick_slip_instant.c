@@ -92,6 +92,7 @@ int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys,
     for (size_t found = 1; !status && found;) {
         status = tribo_stick_slip_knows_holds(m) ? TRIBO_OK : tribo_stick_slip_find_holds(m, sys);
         status = status ? status : tribo_stick_slip_hold(m, sys, m->base, y + sys->ndof);
+        tribo_elastic_hold(m, sys, y);
         found = status ? 0 : stop(m, sys, y);
     }
     if (!status && m->dependents && m->base_moves) {

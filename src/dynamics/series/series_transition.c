@@ -54,12 +54,8 @@ static void add_springs(struct stick_slip *m, const tribo_system *sys, size_t j,
 {
     double *unit = m->size, *force = m->own_a;
     memset(unit, 0, sys->ndof * sizeof *unit);
-    memset(force, 0, sys->ncontact * sizeof *force);
     unit[j] = 1.0;
-    tribo_elastic_forces(sys, unit, m->rate, force, NULL);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        force[i] = m->holds[i] ? force[i] : 0.0;
-    }
+    tribo_elastic_answer(sys, m->slip, unit, m->rate, force);
     tribo_matrix_multiply_add(&sys->response, -1.0, force, x);
 }
 

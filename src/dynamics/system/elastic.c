@@ -21,21 +21,62 @@ static double displaced(const tribo_system *sys, size_t i, const double *x, doub
     return sum;
 }
 
-void tribo_elastic_forces(const tribo_system *sys, const double *q, double *work, double *force, double *size)
+/* x [ncontact] = C_HH^-1 x over the elastic contacts H with slip 0 (all elastic contacts: NULL); 0 for the others. */
+static void solve_compliance(const tribo_system *sys, const signed char *slip, double *x)
 {
     const struct massless *w = &sys->massless;
-    memcpy(work, q, sys->ndof * sizeof *work);
-    tribo_massless_follow(w, work);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (is_elastic(sys, i)) {
-            double terms = 0.0;
-            const double way = displaced(sys, i, q, &terms) - displaced(sys, i, work, &terms);
-            force[i] = way / w->compliance[i];
-            if (size) {
-                size[i] = terms / w->compliance[i];
-            }
+        const int holds = is_elastic(sys, i) && (!slip || slip[i] == 0);
+        x[i] = !holds ? 0.0 : w->shared ? x[i] : x[i] / w->compliance[i];
+    }
+    if (w->shared) {
+        tribo_definite_solve(w->shared, slip, x);
+    }
+}
+
+/* way [ncontact] = J (x - w), w following; of elastic contacts only. size as tribo_elastic_forces, not divided by C. */
+static void stretch_springs(const tribo_system *sys, const double *x, double *work, double *way, double *size)
+{
+    memcpy(work, x, sys->ndof * sizeof *work);
+    tribo_massless_follow(&sys->massless, work);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        double terms = 0.0;
+        way[i] = is_elastic(sys, i) ? displaced(sys, i, x, &terms) - displaced(sys, i, work, &terms) : 0.0;
+        if (size) {
+            size[i] = terms;
         }
     }
+}
+
+void tribo_elastic_forces(const tribo_system *sys, const double *q, double *work, double *force, double *size)
+{
+    stretch_springs(sys, q, work, force, size);
+    solve_compliance(sys, NULL, force);
+    if (size) {
+        tribo_elastic_sizes(sys, size);
+    }
+}
+
+void tribo_elastic_sizes(const tribo_system *sys, double *force)
+{
+    struct definite *c = sys->massless.shared;
+    if (!c) {
+        solve_compliance(sys, NULL, force);
+        return;
+    }
+    memcpy(c->x, force, c->n * sizeof *force);
+    for (size_t i = 0; i < c->n; i++) {
+        force[i] = 0.0;
+        for (size_t k = 0; k < c->n; k++) {
+            force[i] += fabs(c->inverse[i * c->n + k]) * c->x[k];
+        }
+    }
+}
+
+void tribo_elastic_answer(const tribo_system *sys, const signed char *slip, const double *q, double *work, double *force)
+{
+    stretch_springs(sys, q, work, force, NULL);
+    solve_compliance(sys, slip, force);
 }
 
 void tribo_elastic_give(const tribo_system *sys, const double *f, double *x)
@@ -49,22 +90,54 @@ void tribo_elastic_move(const tribo_system *sys, const signed char *slip, const 
     const struct massless *w = &sys->massless;
     tribo_massless_follow(w, u);
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const int holds = is_elastic(sys, i) && slip[i] == 0;
-        rate[i] = holds ? (base[i] - tribo_matrix_row_dot(&sys->direction, i, u)) / w->compliance[i] : 0.0;
+        rate[i] = is_elastic(sys, i) ? base[i] - tribo_matrix_row_dot(&sys->direction, i, u) : 0.0;
     }
+    solve_compliance(sys, slip, rate);
     tribo_matrix_multiply_add(&w->give, 1.0, rate, u);
 }
 
-void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *work, double *force, double *y)
+/* q = factor C f. */
+static void multiply_compliance(struct definite *c, double factor, const double *f, double *q)
 {
-    tribo_elastic_forces(sys, y, work, force, NULL);
+    memset(q, 0, c->n * sizeof *q);
+    tribo_multiply_add(c->n, c->n, 1, factor, c->matrix, f, q);
+}
+
+double tribo_elastic_bound(const tribo_system *sys, const double *limit, double *force)
+{
+    struct definite *c = sys->massless.shared;
+    double energy = 0.0;
+    int beyond = 0;
     for (size_t i = 0; i < sys->ncontact; i++) {
-        if (is_elastic(sys, i)) {
-            const double within = clamp(force[i], -limit[i], limit[i]);
-            y[2 * sys->ndof] += sys->tally[i] * within * (force[i] - within) * sys->massless.compliance[i];
+        const double most = is_elastic(sys, i) ? limit[i] : 0.0, within = clamp(force[i], -most, most);
+        beyond |= is_elastic(sys, i) && within != force[i];
+        if (c) {
+            c->lo[i] = -most;
+            c->hi[i] = most;
+        } else if (is_elastic(sys, i)) {
+            energy += sys->tally[i] * within * (force[i] - within) * sys->massless.compliance[i];
             force[i] = within;
         }
     }
+    if (!c || !beyond) {
+        return energy;
+    }
+    multiply_compliance(c, -1.0, force, c->q);
+    tribo_definite_box(c);
+    for (size_t i = 0; i < c->n; i++) {
+        force[i] = is_elastic(sys, i) ? force[i] - c->f[i] : 0.0;
+    }
+    multiply_compliance(c, 1.0, force, c->q);
+    for (size_t i = 0; i < c->n; i++) {
+        energy += sys->tally[i] * c->f[i] * c->q[i];
+        force[i] = c->f[i];
+    }
+    return energy;
+}
+void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *work, double *force, double *y)
+{
+    tribo_elastic_forces(sys, y, work, force, NULL);
+    y[2 * sys->ndof] += tribo_elastic_bound(sys, limit, force);
     tribo_elastic_give(sys, force, y);
 }
 
@@ -72,15 +145,11 @@ void tribo_elastic_perturb(const tribo_system *sys, const signed char *slip, siz
 {
     const size_t n = sys->ndof;
     double *x = work, *force = work + 2 * n;
-    memset(force, 0, sys->ncontact * sizeof *force);
     for (size_t j = 0; j < columns; j++) {
         for (size_t d = 0; d < n; d++) {
             x[d] = v[d * columns + j];
         }
-        tribo_elastic_forces(sys, x, work + n, force, NULL);
-        for (size_t i = 0; i < sys->ncontact; i++) {
-            force[i] = slip[i] == 0 ? force[i] : 0.0;
-        }
+        tribo_elastic_answer(sys, slip, x, work + n, force);
         tribo_elastic_give(sys, force, x);
         for (size_t d = 0; d < n; d++) {
             v[d * columns + j] = x[d];

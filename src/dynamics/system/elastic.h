@@ -1,14 +1,25 @@
-/* Elastic contacts, as the state tells of them. With w for what has no mass and q for the others, the force of one is
- *     f = (J w - J follow q)/compliance,
- * and w' = follow q' + give f' as w = follow q + give f: where it slides f' = 0, and where it holds J w' + J q' = b. */
+/* Elastic contacts, as the state determines them. With w for what has no mass and q for the others, their forces are
+ *     f = C^-1 (J w - J follow q),
+ * and w' = follow q' + give f' as w = follow q + give f: f' = 0 of sliding contacts, and J w' + J q' = b of those that hold. */
 #ifndef TRIBO_ELASTIC_H
 #define TRIBO_ELASTIC_H
 
 #include "system.h"
 
-/* force [ncontact] of the elastic contacts in places q [ndof], and size [ncontact] of the terms that these come from, or NULL.
- * Those of the others stay as they are. work [ndof]. */
+/* force [ncontact] of the elastic contacts in places q [ndof], 0 of the others, and size [ncontact] of the terms that these come
+ * from, or NULL. work [ndof]. */
 void tribo_elastic_forces(const tribo_system *sys, const double *q, double *work, double *force, double *size);
+
+/* force [ncontact], way in, bounds of the sizes of forces out: |C^-1| way of the elastic contacts, 0 of the others. */
+void tribo_elastic_sizes(const tribo_system *sys, double *force);
+
+/* force [ncontact] by which elastic contacts with slip 0 answer displacements q [ndof], the forces of the others being constant: 0
+ * for these. work [ndof]. */
+void tribo_elastic_answer(const tribo_system *sys, const signed char *slip, const double *q, double *work, double *force);
+
+/* Takes force [ncontact] of elastic contacts back within limits [ncontact], as their sliders slide back. Returns what that
+ * dissipates. */
+double tribo_elastic_bound(const tribo_system *sys, const double *limit, double *force);
 
 /* w = follow q + give f, in x [ndof]; of f [ncontact] only those of elastic contacts count. */
 void tribo_elastic_give(const tribo_system *sys, const double *f, double *x);

@@ -176,10 +176,11 @@ static int check_apart(const tribo_system *sys)
 static void put_springs(tribo_system *sys, const double *y, double *to)
 {
     if (sys->massless.count && to) {
-        tribo_elastic_forces(sys, y, sys->acceleration, to, NULL);
+        tribo_elastic_forces(sys, y, sys->acceleration, sys->feq, NULL);
         tribo_get_limit(sys->contacts, sys->a);
+        tribo_elastic_bound(sys, sys->a, sys->feq);
         for (size_t i = 0; i < sys->ncontact; i++) {
-            to[i] = tribo_massless_touches(&sys->massless, i) ? clamp(to[i], -sys->a[i], sys->a[i]) : to[i];
+            to[i] = tribo_massless_touches(&sys->massless, i) ? sys->feq[i] : to[i];
         }
     }
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "elastic.h"
 #include "model.h"
 
 /* A pivot that is not more than this part of the diagonal entry is rounding; and so is compliance that contacts share. */
@@ -17,16 +18,29 @@ void tribo_massless_free(struct massless *m)
     tribo_matrix_free(&m->give);
     free(m->is);
     free(m->compliance);
+    if (m->shared) {
+        tribo_definite_free(m->shared);
+    }
+    free(m->shared);
     memset(m, 0, sizeof *m);
+}
+
+/* w->shared = C [ncontact][ncontact]. Returns the status of tribo_definite_create. */
+static int create_shared(struct massless *w, size_t ncontact, const double *c, size_t *where)
+{
+    w->shared = calloc(1, sizeof *w->shared);
+    return w->shared ? tribo_definite_create(w->shared, ncontact, c, where) : TRIBO_ERR_MEMORY;
 }
 
 int tribo_massless_copy(struct massless *to, const struct massless *from, size_t ndof, size_t ncontact)
 {
+    size_t where;
     int done = 1;
     if (from->count) {
         to->is = tribo_copy_of(from->is, ndof, 1, &done);
         to->compliance = tribo_copy_of(from->compliance, ncontact, sizeof *to->compliance, &done);
         done = done && tribo_matrix_copy(&to->follow, &from->follow) && tribo_matrix_copy(&to->give, &from->give);
+        done = done && (!from->shared || create_shared(to, ncontact, from->shared->matrix, &where) == TRIBO_OK);
         to->count = from->count;
         to->stiffest = from->stiffest;
     }
@@ -250,27 +264,48 @@ static double way_of(const struct massless *w, const struct statics *s, const st
     return way;
 }
 
-/* Compliance of contacts, each of which gives way by its own force only. */
+/* A dense C is shared. Returns a status. */
+static int share_compliance(const struct model *m, struct massless *w, const double *c)
+{
+    size_t where = 0;
+    const int status = create_shared(w, m->ncontact, c, &where);
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                                  "contact %zu moves degrees of freedom without mass only as other contacts do: give these mass",
+                                  where)
+           : status ? tribo_model_no_memory(m)
+                    : TRIBO_OK;
+}
+
+/* C, which is diagonal if entries beside the diagonal are rounding. */
 static int find_compliance(const struct model *m, struct massless *w, struct statics *s)
 {
     const struct matrix *j = &m->direction;
-    for (size_t i = 0; i < m->ncontact; i++) {
+    const size_t n = m->ncontact;
+    double *c = NULL;
+    int status = TRIBO_OK;
+    for (size_t i = 0; !status && i < n; i++) {
         if (!solve_row(w, s, j, i)) {
             continue;
         }
         w->compliance[i] = way_of(w, s, j, i);
-        for (size_t k = 0; k < i; k++) {
+        for (size_t k = 0; !status && k < i; k++) {
             const double shared = way_of(w, s, j, k);
             if (fabs(shared) > ROUNDING * sqrt(w->compliance[i] * w->compliance[k])) {
-                return tribo_model_fail(
-                    m, TRIBO_ERR_UNSUPPORTED,
-                    "contact %zu and contact %zu share degrees of freedom without mass: the force of one moves the "
-                    "other by %g; give these mass",
-                    k, i, shared);
+                c = c ? c : calloc(n * n, sizeof *c);
+                status = c ? TRIBO_OK : tribo_model_no_memory(m);
+            }
+            if (c) {
+                c[i * n + k] = c[k * n + i] = shared;
             }
         }
     }
-    return TRIBO_OK;
+    for (size_t i = 0; c && i < n; i++) {
+        c[i * n + i] = w->compliance[i];
+    }
+    status = status || !c ? status : share_compliance(m, w, c);
+    free(c);
+    return status;
 }
 
 static int find_statics(const struct model *m, struct massless *w)
@@ -342,9 +377,7 @@ static int find_stiffest(tribo_system *s)
     }
     tribo_matrix_add_sizes(&w->follow, q, places);
     tribo_matrix_add_sizes(&s->direction, places, force);
-    for (size_t i = 0; i < c; i++) {
-        force[i] = tribo_massless_touches(w, i) ? force[i] / w->compliance[i] : 0.0;
-    }
+    tribo_elastic_sizes(s, force);
     tribo_matrix_add_sizes(&w->give, force, places);
     tribo_matrix_add_sizes(&s->stiffness, places, rate);
     tribo_matrix_add_sizes(&s->response, force, rate);

@@ -1,18 +1,20 @@
 /* Degrees of freedom without mass, which the stiffness holds: sliders of elastic contacts, and whatever a model leaves without
  * mass. With w for these and q for the others, they follow by K_ww w = J_w'f - K_wq q:
  *     w = follow q + give f.
- * A contact that touches any gives way by compliance f, J_w K_ww^-1 J_w' of it, and no contact gives way by another one's force:
- * so that its force follows from the state alone, and so does the velocity that it would slide with. */
+ * Contacts that touch any are elastic, and give way by C f, C = J_w K_ww^-1 J_w' positive definite over the elastic contacts: the
+ * forces follow from the state alone. */
 #ifndef TRIBO_MASSLESS_H
 #define TRIBO_MASSLESS_H
 
+#include "numerics/definite.h"
 #include "numerics/matrix.h"
 
 struct massless {
     size_t count;               /* 0: there are none, and the rest is empty */
     unsigned char *is;          /* [ndof] */
     struct matrix follow, give; /* [ndof][ndof] and [ndof][ncontact], of which only rows of w have entries */
-    double *compliance;         /* [ncontact] 0: a rigid contact */
+    double *compliance;         /* [ncontact] C_ii, 0: a rigid contact */
+    struct definite *shared;    /* C, if it is not diagonal; else NULL */
     double stiffest;            /* omega^2 is no larger, whichever contacts hold */
 };
 

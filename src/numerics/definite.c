@@ -1,0 +1,184 @@
+#include "definite.h"
+#include "common/layout.h"
+#include "common/real.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "tribo/tribo.h"
+
+/* A pivot below this part of the diagonal entry is rounding. */
+#define ROUNDING (64.0 * DBL_EPSILON)
+
+/* Sets of the box problem that are tried while the number of wrong rows does not fall, before rows change one at a time; and
+ * changes in all, for each row. */
+enum { PATIENCE = 8, CHANGES = 32 };
+
+static void lay_out_definite(struct definite *d, struct layout *l)
+{
+    d->memory = tribo_layout_array(l, 0, 1);
+    d->matrix = tribo_layout_array(l, d->n * d->n, sizeof *d->matrix);
+    d->inverse = tribo_layout_array(l, d->n * d->n, sizeof *d->inverse);
+    d->factor = tribo_layout_array(l, d->n * d->n, sizeof *d->factor);
+    d->x = tribo_layout_array(l, 5 * d->n + 1, sizeof *d->x);
+    d->q = d->x ? d->x + d->n : NULL;
+    d->lo = d->x ? d->q + d->n : NULL;
+    d->hi = d->x ? d->lo + d->n : NULL;
+    d->f = d->x ? d->hi + d->n : NULL;
+    d->index = tribo_layout_array(l, d->n + 1, sizeof *d->index);
+    d->at = tribo_layout_array(l, d->n + 1, sizeof *d->at);
+    d->to = tribo_layout_array(l, d->n + 1, sizeof *d->to);
+}
+
+/* Factor over index. Returns the place in index of a pivot that is rounding, or held. */
+static size_t factorize_set(struct definite *d)
+{
+    const size_t m = d->held;
+    for (size_t i = 0; i < m; i++) {
+        const double *row = d->matrix + d->index[i] * d->n;
+        double *l = d->factor + i * m;
+        for (size_t j = 0; j <= i; j++) {
+            const double *other = d->factor + j * m;
+            double sum = row[d->index[j]];
+            for (size_t k = 0; k < j; k++) {
+                sum -= l[k] * other[k];
+            }
+            if (i == j && !(sum > ROUNDING * row[d->index[i]])) {
+                return i;
+            }
+            l[j] = i == j ? sqrt(sum) : sum / other[j];
+        }
+    }
+    return m;
+}
+
+/* Makes the factor that of the set. Returns what factorize_set does. */
+static size_t choose_set(struct definite *d, const signed char *skip)
+{
+    size_t held = 0;
+    int same = 1;
+    for (size_t i = 0; i < d->n; i++) {
+        if (d->matrix[i * d->n + i] > 0.0 && (!skip || skip[i] == 0)) {
+            same &= held < d->held && d->index[held] == i;
+            d->index[held++] = i;
+        }
+    }
+    same &= held == d->held;
+    d->held = held;
+    return same ? held : factorize_set(d);
+}
+
+void tribo_definite_solve(struct definite *d, const signed char *skip, double *x)
+{
+    double *y = d->x;
+    choose_set(d, skip);
+    const size_t m = d->held;
+    for (size_t i = 0; i < m; i++) {
+        double sum = x[d->index[i]];
+        for (size_t k = 0; k < i; k++) {
+            sum -= d->factor[i * m + k] * y[k];
+        }
+        y[i] = sum / d->factor[i * m + i];
+    }
+    for (size_t i = m; i-- > 0;) {
+        double sum = y[i];
+        for (size_t k = i + 1; k < m; k++) {
+            sum -= d->factor[k * m + i] * y[k];
+        }
+        y[i] = sum / d->factor[i * m + i];
+    }
+    memset(x, 0, d->n * sizeof *x);
+    for (size_t i = 0; i < m; i++) {
+        x[d->index[i]] = y[i];
+    }
+}
+
+int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t *where)
+{
+    struct layout l = {0};
+    *d = (struct definite){.n = n};
+    lay_out_definite(d, &l);
+    if (!tribo_layout_zeros(&l)) {
+        return TRIBO_ERR_MEMORY;
+    }
+    lay_out_definite(d, &l);
+    memcpy(d->matrix, a, n * n * sizeof *a);
+    const size_t at = choose_set(d, NULL);
+    if (at < d->held) {
+        *where = d->index[at];
+        return TRIBO_ERR_INDEFINITE;
+    }
+    for (size_t i = 0; i < n; i++) {
+        d->inverse[i * n + i] = 1.0;
+        tribo_definite_solve(d, NULL, d->inverse + i * n);
+    }
+    return TRIBO_OK;
+}
+
+void tribo_definite_free(struct definite *d)
+{
+    free(d->memory);
+    *d = (struct definite){0};
+}
+
+/* Where row i belongs: at 0 inside, -1 and 1 at lo and hi. */
+static signed char place_of_row(const struct definite *d, size_t i)
+{
+    const double *row = d->matrix + i * d->n, *f = d->f;
+    if (!(d->lo[i] < d->hi[i])) {
+        return -1;
+    }
+    if (d->at[i] == 0) {
+        return (signed char)(f[i] < d->lo[i] ? -1 : f[i] > d->hi[i] ? 1 : 0);
+    }
+    double sum = d->q[i], size = fabs(d->q[i]);
+    for (size_t k = 0; k < d->n; k++) {
+        sum += row[k] * f[k];
+        size += fabs(row[k] * f[k]);
+    }
+    return (signed char)(d->at[i] * sum > ROUNDING * size ? 0 : d->at[i]);
+}
+
+/* f of the set marked in at. */
+static void solve_set(struct definite *d)
+{
+    const size_t n = d->n;
+    double *f = d->f;
+    for (size_t i = 0; i < n; i++) {
+        f[i] = -d->q[i];
+        for (size_t k = 0; k < n; k++) {
+            f[i] -= d->at[k] ? d->matrix[i * n + k] * (d->at[k] < 0 ? d->lo[k] : d->hi[k]) : 0.0;
+        }
+    }
+    tribo_definite_solve(d, d->at, f);
+    for (size_t i = 0; i < n; i++) {
+        f[i] = d->at[i] ? (d->at[i] < 0 ? d->lo[i] : d->hi[i]) : f[i];
+    }
+}
+
+/* Block principal pivoting: all wrong rows change at once while their number falls, and else the last one only, which is finite
+ * for definite matrices. */
+void tribo_definite_box(struct definite *d)
+{
+    const size_t n = d->n;
+    size_t fewest = n + 1, patience = PATIENCE;
+    for (size_t i = 0; i < n; i++) {
+        d->at[i] = (signed char)(d->lo[i] < d->hi[i] ? 0 : -1);
+    }
+    for (size_t change = 0; change < CHANGES * (n + 1); change++) {
+        size_t wrong = 0, last = 0;
+        solve_set(d);
+        for (size_t i = 0; i < n; i++) {
+            d->to[i] = place_of_row(d, i);
+            last = d->to[i] != d->at[i] ? i : last;
+            wrong += d->to[i] != d->at[i];
+        }
+        if (!wrong) {
+            return;
+        }
+        patience = wrong < fewest ? PATIENCE : patience ? patience - 1 : 0;
+        fewest = wrong < fewest ? wrong : fewest;
+        memcpy(d->at + (patience ? 0 : last), d->to + (patience ? 0 : last), patience ? n : 1);
+    }
+}

@@ -1,0 +1,29 @@
+/* A dense symmetric matrix A, positive definite over the rows with a_ii > 0; all other rows are zero, and belong to no set. */
+#ifndef TRIBO_DEFINITE_H
+#define TRIBO_DEFINITE_H
+
+#include <stddef.h>
+
+struct definite {
+    size_t n;
+    double *matrix, *inverse; /* [n][n] A, and A^-1 over the rows with a_ii > 0 */
+    double *factor;           /* [held][held] lower Cholesky factor of A over index */
+    size_t held, *index;      /* [held] rows of the set that was solved for last */
+    double *x;                /* [n] workspace */
+    double *q, *lo, *hi, *f;  /* [n] of tribo_definite_box */
+    signed char *at, *to;     /* [n] workspace */
+    void *memory;             /* of all arrays */
+};
+
+/* Takes A = a [n][n]. Returns TRIBO_OK, TRIBO_ERR_MEMORY, or TRIBO_ERR_INDEFINITE with the row of a pivot that is rounding.
+ * tribo_definite_free takes a zeroed d, too. */
+int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t *where);
+void tribo_definite_free(struct definite *d);
+
+/* x_S = A_SS^-1 x_S over the set S of rows with skip 0 (all rows: NULL); x = 0 outside S. x, skip [n]. */
+void tribo_definite_solve(struct definite *d, const signed char *skip, double *x);
+
+/* f = the minimum of 1/2 f'Af + q'f, lo <= f <= hi, arrays of d. Bounds may be infinite, and are 0 where a_ii = 0. */
+void tribo_definite_box(struct definite *d);
+
+#endif

@@ -1,0 +1,104 @@
+/* Definite matrices: solutions for sets of rows, and the box problem, by what makes them solutions. */
+#include "numerics/definite.h"
+#include "support.h"
+
+#include <math.h>
+#include <string.h>
+
+#define MOST 12
+
+/* A = B B' + a little, with rows of zeros; graded: rows of sizes from 1e-4 to 1e4. */
+static size_t random_matrix(struct random *r, double *a)
+{
+    const size_t n = 1 + below(r, MOST), rank = 1 + below(r, n);
+    double b[MOST][MOST], scale[MOST];
+    for (size_t i = 0; i < n; i++) {
+        scale[i] = below(r, 4) == 0 ? 0.0 : pow(10.0, uniform(r, -4.0, 4.0));
+        for (size_t k = 0; k < rank; k++) {
+            b[i][k] = uniform(r, -1.0, 1.0);
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        for (size_t k = 0; k < n; k++) {
+            a[i * n + k] = i == k ? 0.05 : 0.0;
+            for (size_t j = 0; j < rank; j++) {
+                a[i * n + k] += b[i][j] * b[k][j];
+            }
+            a[i * n + k] *= scale[i] * scale[k];
+        }
+    }
+    return n;
+}
+
+/* What of row i is left of A f + q, in parts of its terms. */
+static double left(const struct definite *d, size_t i, const double *q, const double *f)
+{
+    double sum = q[i], size = fabs(q[i]);
+    for (size_t k = 0; k < d->n; k++) {
+        sum += d->matrix[i * d->n + k] * f[k];
+        size += fabs(d->matrix[i * d->n + k] * f[k]);
+    }
+    return size > 0.0 ? sum / size : 0.0;
+}
+
+TEST(sets)
+{
+    struct random r = random_of(_i);
+    struct definite d;
+    double a[MOST * MOST], q[MOST], x[MOST];
+    signed char skip[MOST];
+    size_t where;
+    const size_t n = random_matrix(&r, a);
+    assert_ok(tribo_definite_create(&d, n, a, &where));
+    for (int round = 0; round < 20; round++) {
+        for (size_t i = 0; i < n; i++) {
+            q[i] = uniform(&r, -1.0, 1.0);
+            x[i] = -q[i];
+            skip[i] = (signed char)(round == 0 || round % 3 ? (int)below(&r, 3) - 1 : skip[i]);
+        }
+        tribo_definite_solve(&d, round ? skip : NULL, x);
+        for (size_t i = 0; i < n; i++) {
+            const int in = a[i * n + i] > 0.0 && (!round || skip[i] == 0);
+            assert_close(in ? left(&d, i, q, x) : x[i], 0.0, 1e-11);
+        }
+    }
+    tribo_definite_free(&d);
+}
+
+/* Bounds of all kinds, and forces of the sizes of these. */
+TEST(boxes)
+{
+    struct random r = random_of(_i);
+    struct definite d;
+    double a[MOST * MOST];
+    size_t where;
+    const size_t n = random_matrix(&r, a);
+    assert_ok(tribo_definite_create(&d, n, a, &where));
+    for (size_t i = 0; i < n; i++) {
+        const size_t kind = below(&r, 5);
+        const double own = sqrt(a[i * n + i]), one = own > 0.0 ? 1.0 / own : 0.0;
+        d.q[i] = own * uniform(&r, -1.0, 1.0);
+        d.hi[i] = own > 0.0 && kind < 2 ? HUGE_VAL : kind == 2 ? 0.0 : one * uniform(&r, 0.0, 1.0);
+        d.lo[i] = own > 0.0 && kind == 0 ? -HUGE_VAL : kind == 4 ? d.hi[i] : kind < 2 ? 0.0 : -one * uniform(&r, 0.0, 1.0);
+    }
+    tribo_definite_box(&d);
+    for (size_t i = 0; i < n; i++) {
+        const double g = left(&d, i, d.q, d.f), lo = d.lo[i], hi = d.hi[i], f = d.f[i];
+        require(f >= lo && f <= hi, "f[%zu] = %g is not within %g and %g", i, f, lo, hi);
+        require(a[i * n + i] == 0.0 || f == lo || g <= 1e-11, "row %zu: %g above", i, g);
+        require(a[i * n + i] == 0.0 || f == hi || g >= -1e-11, "row %zu: %g below", i, g);
+    }
+    tribo_definite_free(&d);
+}
+
+TEST(refused)
+{
+    struct definite d;
+    const double singular[9] = {1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 4.0};
+    size_t where = 7;
+    assert_status(tribo_definite_create(&d, 3, singular, &where), TRIBO_ERR_INDEFINITE);
+    ck_assert_uint_eq(where, 2);
+    tribo_definite_free(&d);
+}
+
+TEST_MAIN("definite", {sets, 200}, {boxes, 2000}, {refused, 1})
