@@ -352,15 +352,37 @@ void tribo_planar_slips(const tribo_context *ctx, signed char *slip);
 /* The rate at which planar contact k relaxes. */
 double tribo_planar_rate(const tribo_context *ctx, size_t k);
 
-/* The problem of a cluster: the contacts in it, which are near stick at v: returns whether there are any; and their pull and
- * beginning,
- * when all other forces are known. The units of force and R in it. */
+/* The problem of a cluster: the contacts in it, which are near stick at v: returns whether there are any. The last one of these,
+ * at a. The units of force and R in it. */
 struct unit {
     double force, r;
 };
 int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v);
-void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a);
+void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const double *a);
 struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g);
+
+/* planar_reach.c: what stands for the limit of direction i in the problem, so that it is no farther from the force than numbers
+ * tell: at most the limit, and where it is less, which is where cut says so, the force is within it. */
+static inline double tribo_planar_reach(const tribo_context *ctx, size_t i)
+{
+    return lesser(ctx->follow.contacts.bound[i], ctx->plane.radius[i]);
+}
+static inline int tribo_planar_cut(const tribo_context *ctx, size_t i)
+{
+    return ctx->plane.radius[i] < ctx->follow.contacts.bound[i];
+}
+
+/* Which directions of the problem share a set, and their shift in parts of the reach. */
+void tribo_planar_arrange(tribo_context *ctx, const struct cluster *g);
+
+/* pull [size] += what the shifts of contacts, [size], and their own blocks of R make of it. */
+void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull);
+
+/* Finds the reach of all contacts of the problem from what pulls at them. */
+void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g);
+
+/* Widens the reach that forces of the solution come up against; returns how many directions did. */
+size_t tribo_planar_widen(tribo_context *ctx, const struct cluster *g);
 
 /* The force of a planar contact that is not near stick. */
 void tribo_planar_slide_force(const struct law *law, const struct slide *s, const double *limit, double *f);

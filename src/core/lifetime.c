@@ -115,6 +115,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
     tribo_copy(c->last.feq, ctx->last.feq, n);
     tribo_copy(c->last.f, ctx->last.f, n);
     tribo_copy(c->plane.y, ctx->plane.y, c->planar ? n : 0);
+    tribo_copy(c->plane.radius, ctx->plane.radius, c->planar ? n : 0);
     memcpy(c->moving, ctx->moving, n);
     memcpy(c->follow.chunk, ctx->follow.chunk, tribo_chunks(n) * sizeof *c->follow.chunk);
     memcpy(c->last.did.of, ctx->last.did.of, n);

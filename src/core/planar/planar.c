@@ -35,26 +35,32 @@ void tribo_planar_release(struct planar *planar)
 
 int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t n)
 {
-    enum { VECTORS = 7 };
+    enum { VECTORS = 10 };
     *plane = (struct plane){0};
     if (!planar) {
         return 1;
     }
     plane->near = malloc((planar->largest + 1) * sizeof *plane->near);
     plane->y = calloc(VECTORS * (n + 1), sizeof *plane->y);
-    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->df, &plane->other, &plane->dlimit};
+    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->df, &plane->other, &plane->dlimit,
+                                      &plane->radius, &plane->pull, &plane->shift};
     for (size_t k = 1; plane->y && k < VECTORS; k++) {
         *vector[k] = plane->y + k * (n + 1);
     }
-    return plane->near && plane->y && tribo_disc_create(&plane->problem, planar->largest);
+    for (size_t i = 0; plane->y && i < n; i++) {
+        plane->radius[i] = HUGE_VAL;
+    }
+    plane->directions = malloc(planar->largest + 1);
+    return plane->near && plane->y && plane->directions && tribo_disc_create(&plane->problem, planar->largest);
 }
 
 void tribo_plane_free(struct plane *plane)
 {
-    if (plane->near && plane->y) {
+    if (plane->near && plane->y && plane->directions) {
         tribo_disc_free(&plane->problem);
     }
     free(plane->near);
+    free(plane->directions);
     free(plane->y);
 }
 

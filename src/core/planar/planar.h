@@ -2,6 +2,7 @@
  *
  *   planar.c          life: clusters of directions, from the operator's groups and the contacts that join them
  *   planar_parts.c    what forces are made of: sliding, nearness to stick, blocks of R
+ *   planar_reach.c    how far a force of a problem of a cluster reaches
  *   planar_force.c    forces: sliding ones, and the problems of clusters
  *   planar_static.c   which of them break away, where limits are static
  *   planar_tangent.c  their derivatives
@@ -45,8 +46,13 @@ struct planar {
 struct plane {
     struct disc_qp problem;
     size_t *near;              /* [largest] places of the directions in the problem */
-    double *y;                 /* [n] what was found, in parts of limits */
+    unsigned char *directions; /* [largest] of the contact that begins with one of them: 2, 1, or 0 if none does */
+    size_t cuts;               /* directions in the problem with a reach below their limit */
+    double *y;                 /* [n] what was found, in parts of the reach */
+    double *radius;            /* [n] the reach of a contact's problem is that, or its limit if that is less */
     double *v, *a;             /* [n] of the last tribo_balance_tangent */
+    double *shift;             /* [largest] c of the lenses of the problem, in parts of limits */
+    double *pull;              /* [largest] R f + a without the forces of the problem */
     double *unit, *df, *other; /* [n] workspace; the first is zero between calls */
     double *dlimit;            /* [n] how limits change that follow v */
     size_t solved;             /* clusters, in the last call */
@@ -86,6 +92,9 @@ int tribo_planar_near(const struct law *law, const struct slide *s);
 
 /* The same for a scalar contact at v. */
 int tribo_scalar_near(const struct law *law, const struct contacts *c, size_t i, double v);
+
+/* R_ii = 0 is the limit of R_ii from above: in parts of the largest R_ii it is this. */
+#define NEXT_TO_IMMOVABLE 1e-200
 
 /* A symmetric block 11, 12, 22 by its eigenvalues, and the direction of the greater one. */
 struct block {

@@ -6,20 +6,35 @@
  * longer way to the edge of the band, limit epsilon, holds for both directions, so that c points along limit v, as f does where
  * it slides.
  *
- * Force and R come in any units: in S limits and R are parts of the largest ones near stick in the cluster. */
+ * Force and R come in any units: in S limits and R are parts of the largest ones near stick in the cluster. A limit that is far
+ * beyond the force stands back for a reach that is not, see planar_reach.c; c is then kappa/reach. */
 #include <float.h>
+#include <string.h>
 
 #include "core/context.h"
 
 /* --------------------------------------------------------------------------------------------------------- clusters */
 
-/* Takes a contact of 1 or 2 directions, from place k on, into the problem. */
-static void take(tribo_context *ctx, size_t k, int directions)
+/* Takes the direction at place k into the problem; directions: 1, or of a pair 2 and 0. */
+static void take(tribo_context *ctx, size_t k, size_t directions, double shift)
 {
     struct disc_qp *p = &ctx->plane.problem;
-    for (int d = 0; d < directions; d++) {
-        p->wide[p->size] = (unsigned char)(d ? 0 : directions);
-        ctx->plane.near[p->size++] = k + (size_t)d;
+    ctx->plane.shift[p->size] = shift;
+    ctx->plane.directions[p->size] = (unsigned char)directions;
+    ctx->plane.near[p->size++] = k;
+}
+
+/* Takes those directions of the planar contact i, at place k, that have a limit. */
+static void take_pair(tribo_context *ctx, size_t k, size_t i, const double *shift)
+{
+    const double *bound = ctx->follow.contacts.bound + i;
+    const int both = bound[0] > 0.0 && bound[1] > 0.0;
+    for (size_t d = 0; d < 2; d++) {
+        if (bound[d] > 0.0) {
+            take(ctx, k + d, both ? 2 - 2 * d : 1, shift[d]);
+        } else {
+            ctx->last.f[i + d] = 0.0;
+        }
     }
 }
 
@@ -28,10 +43,8 @@ static void take_scalar(tribo_context *ctx, size_t k, size_t i, double v)
 {
     const struct law *law = ctx->set.law;
     const struct contacts *c = &ctx->follow.contacts;
-    struct disc_qp *p = &ctx->plane.problem;
     if (tribo_scalar_near(law, c, i, v)) {
-        p->shift[p->size] = law->relaxes ? 2.0 * quotient(v, tribo_epsilon_of(c, i)) : 0.0;
-        take(ctx, k, 1);
+        take(ctx, k, 1, law->relaxes ? 2.0 * quotient(v, tribo_epsilon_of(c, i)) : 0.0);
     } else if (law->uses_feq && ctx->last.did.of[i] == STORED) {
         ctx->last.f[i] = sliding(v, c->limit[i]);
     }
@@ -40,16 +53,13 @@ static void take_scalar(tribo_context *ctx, size_t k, size_t i, double v)
 /* Takes the planar contact that begins with direction i if it is near stick, or finds its force. */
 static void take_planar(tribo_context *ctx, size_t k, size_t i, const double *v)
 {
-    struct disc_qp *p = &ctx->plane.problem;
     const struct slide s = tribo_planar_slide(&ctx->follow.contacts, i, v);
+    const double turn = ctx->set.law->relaxes ? 2.0 * s.speed : 0.0, shift[2] = {turn * s.n[0], turn * s.n[1]};
     if (!tribo_planar_near(ctx->set.law, &s)) {
         tribo_planar_slide_force(ctx->set.law, &s, ctx->follow.contacts.limit + i, ctx->last.f + i);
         return;
     }
-    for (size_t d = 0; d < 2; d++) {
-        p->shift[p->size + d] = ctx->set.law->relaxes ? 2.0 * s.speed * s.n[d] : 0.0;
-    }
-    take(ctx, k, 2);
+    take_pair(ctx, k, i, shift);
 }
 
 int tribo_planar_collect(tribo_context *ctx, const struct cluster *g, const double *v)
@@ -91,7 +101,7 @@ struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g
     struct unit u = {0.0, 0.0};
     for (size_t e = 0; e < ctx->plane.problem.size; e++) {
         const size_t k = ctx->plane.near[e];
-        u.force = greater(u.force, ctx->follow.contacts.bound[member[k]]);
+        u.force = greater(u.force, tribo_planar_reach(ctx, member[k]));
         u.r = greater(u.r, ctx->planar->r[g->r + k * (g->size + 1)]);
     }
     return u;
@@ -100,38 +110,73 @@ struct unit tribo_planar_units(const tribo_context *ctx, const struct cluster *g
 /* Of what pulls harder than anything that friction could do about it, in units of that, only the direction matters. */
 #define HARDEST 1e100
 
-void tribo_planar_pose(tribo_context *ctx, const struct cluster *g, const double *a)
+void tribo_planar_turn(const tribo_context *ctx, const double *shift, double *pull)
 {
-    struct disc_qp *p = &ctx->plane.problem;
-    const struct unit u = tribo_planar_units(ctx, g);
-    const size_t n = p->size, *member = ctx->planar->member + g->member, *near = ctx->plane.near;
-    const double *bound = ctx->follow.contacts.bound;
-    for (size_t e = 0; e < n; e++) {
-        const double weight = bound[member[near[e]]] / u.force, *row = ctx->planar->r + g->r + near[e] * g->size;
-        for (size_t j = 0; j < n; j++) {
-            p->s[e * n + j] = weight * (bound[member[near[j]]] / u.force) * (row[near[j]] / u.r);
-        }
-        p->weight[e] = weight;
-        p->pull[e] = pull_of(ctx, g, near[e], a[member[near[e]]]);
-        p->y[e] = ctx->plane.y[member[near[e]]];
-    }
-    for (size_t e = 0; e < n; e += p->wide[e]) {
-        const double length = tribo_length(p->wide[e], p->pull + e);
-        const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
-        for (size_t k = e; k < e + p->wide[e]; k++) {
-            p->pull[k] = length > 0.0 ? bound[member[near[k]]] / u.force * (p->pull[k] / length) * size : 0.0;
-            for (size_t j = e; j < e + p->wide[e]; j++) {
-                p->pull[k] += p->s[k * n + j] * p->shift[j];
+    const struct disc_qp *p = &ctx->plane.problem;
+    const unsigned char *directions = ctx->plane.directions;
+    for (size_t e = 0; e < p->size; e += directions[e]) {
+        for (size_t k = e; k < e + directions[e]; k++) {
+            for (size_t j = e; j < e + directions[e]; j++) {
+                pull[k] += p->s[k * p->size + j] * shift[j];
             }
         }
     }
 }
+
+/* The problem of forces in parts of their reach, from pull_of. */
+static void pose_cluster(tribo_context *ctx, const struct cluster *g)
+{
+    struct disc_qp *p = &ctx->plane.problem;
+    const struct unit u = tribo_planar_units(ctx, g);
+    const size_t n = p->size, *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    for (size_t e = 0; e < n; e++) {
+        p->weight[e] = tribo_planar_reach(ctx, member[near[e]]) / u.force;
+        p->y[e] = ctx->plane.y[member[near[e]]];
+    }
+    for (size_t e = 0; e < n; e++) {
+        const double *row = ctx->planar->r + g->r + near[e] * g->size;
+        for (size_t j = 0; j < n; j++) {
+            const double r = row[near[j]] / u.r;
+            p->s[e * n + j] = p->weight[e] * p->weight[j] * (j == e ? greater(r, NEXT_TO_IMMOVABLE) : r);
+        }
+    }
+    for (size_t e = 0; e < n; e += p->wide[e]) {
+                const double length = tribo_length(p->wide[e], ctx->plane.pull + e);
+        const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
+        for (size_t k = e; k < e + p->wide[e]; k++) {
+            p->pull[k] = length > 0.0 ? p->weight[k] * (ctx->plane.pull[k] / length) * size : 0.0;
+        }
+    }
+    tribo_planar_turn(ctx, p->shift, p->pull);
+}
+
+static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)
+{
+    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
+        const size_t k = ctx->plane.near[e];
+        ctx->plane.pull[e] = pull_of(ctx, g, k, a[ctx->planar->member[g->member + k]]);
+    }
+}
+
+void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const double *a)
+{
+    find_pulls(ctx, g, a);
+    tribo_planar_arrange(ctx, g);
+    pose_cluster(ctx, g);
+}
+
+/* Where forces are far within their reach, distances of this part of it are none. */
+#define NEAREST 1e-20
+
+/* Forces that miss their balance by more than this part of a reach are none. */
+#define TOO_FAR 1e-6
 
 static int solve(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
     p->factor.work.factorizations = 0;
+    p->near_enough = ctx->plane.cuts ? NEAREST : TRIBO_NEAR_ENOUGH;
     int done = tribo_disc_solve(p);
     if (done && g->redundant && ctx->set.sharing == TRIBO_SHARE_LEAST_NORM) {
         done = tribo_disc_share(p);
@@ -139,7 +184,7 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     ctx->count.solves++;
     ctx->count.reused += p->factor.work.factorizations == 0;
     ctx->memory.problem.work.factorizations += p->factor.work.factorizations;
-    if (!done) {
+    if (!done || p->residual > TOO_FAR) {
         return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
                           "no forces found for the %zu direction%s near stick around contact %zu: %g of a limit is missing",
                           p->size, plural(p->size), member[near[0]], p->residual);
@@ -148,18 +193,23 @@ static int solve(tribo_context *ctx, const struct cluster *g)
     for (size_t e = 0; e < p->size; e++) {
         const size_t i = member[near[e]];
         ctx->plane.y[i] = p->y[e];
-        ctx->last.f[i] = p->y[e] * ctx->follow.contacts.bound[i];
+        ctx->last.f[i] = p->y[e] * tribo_planar_reach(ctx, i);
     }
     return TRIBO_OK;
 }
 
-/* Where limits are static, until nobody breaks away any more. */
+/* Until all forces are within their reach; where limits are static, until no contact breaks away. */
 static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
 {
     int status;
     do {
-        tribo_planar_pose(ctx, g, a);
-        status = solve(ctx, g);
+        find_pulls(ctx, g, a);
+        tribo_planar_estimate(ctx, g);
+        do {
+            tribo_planar_arrange(ctx, g);
+            pose_cluster(ctx, g);
+            status = solve(ctx, g);
+        } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx, g));
     } while (!status && ctx->set.breaking && tribo_planar_break(ctx, g, dt, a));
     ctx->plane.solved++;
     ctx->last.rank += status ? 0 : ctx->plane.problem.sets.rank;
@@ -266,18 +316,17 @@ static int collect_free(tribo_context *ctx, const struct cluster *g, const signe
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member;
-    const double *limit = ctx->set.limit;
+    const double *limit = ctx->set.limit, none[2] = {0.0, 0.0};
     p->size = 0;
     for (size_t k = 0; k < g->size; k++) {
         const size_t i = member[k];
         const int role = ctx->planar->role[i];
-        if (role == ROLE_FIRST && (limit[i] > 0.0 || limit[i + 1] > 0.0)) {
-            take(ctx, k, 2);
+        if (role == ROLE_FIRST) {
+            take_pair(ctx, k, i, none);
         } else if (role == ROLE_SCALAR && limit[i] > 0.0 && !(known && known[i])) {
-            take(ctx, k, 1);
+            take(ctx, k, 1, 0.0);
         }
     }
-    memset(p->shift, 0, p->size * sizeof *p->shift);
     return p->size > 0;
 }
 
@@ -311,7 +360,8 @@ int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct giv
     const double *own = ctx->planar->own[k], r = greater(own[0], own[2]), turn = ctx->set.law->relaxes ? 2.0 * g->s.speed : 0.0;
     const double *bound = g->c.bound, force = greater(bound[0], bound[1]);
     const double weight[2] = {bound[0] / force, bound[1] / force}, across = weight[0] * weight[1] * (own[1] / r);
-    const double m[4] = {weight[0] * weight[0] * (own[0] / r), across, across, weight[1] * weight[1] * (own[2] / r)};
+    const double m[4] = {weight[0] * weight[0] * greater(own[0] / r, NEXT_TO_IMMOVABLE), across, across,
+                         weight[1] * weight[1] * greater(own[2] / r, NEXT_TO_IMMOVABLE)};
     const double shift[2] = {turn * g->s.n[0], turn * g->s.n[1]};
     double aim[2], pull[2];
     for (int d = 0; d < 2; d++) {
@@ -325,6 +375,7 @@ int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct giv
         pull[d] = -(m[2 * d] * aim[0] + m[2 * d + 1] * aim[1]);
     }
     tribo_disc_alone(x, m, pull, shift);
+    memcpy(x->p.y, aim, sizeof aim);
     return tribo_disc_solve(&x->p);
 }
 
@@ -378,8 +429,10 @@ int tribo_planar_force(const tribo_context *ctx, const double *v, const double *
         } else if (!tribo_planar_given_near(ctx, k, &g, feq + i, &x)) {
             return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
         } else {
-            f[i] = x.p.y[0] * g.c.bound[0];
-            f[i + 1] = x.p.y[1] * g.c.bound[1];
+            for (size_t d = 0; d < 2; d++) {
+                const double held = cut(feq[i + d]) - x.p.shift[d] * g.c.bound[d];
+                f[i + d] = x.p.place[0] == LENS_INSIDE && g.c.bound[d] > 0.0 ? held : x.p.y[d] * g.c.bound[d];
+            }
         }
     }
     return TRIBO_OK;

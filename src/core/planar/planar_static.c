@@ -76,13 +76,12 @@ static int pulled_beyond(const struct disc_qp *p, size_t e)
     return size - 1.0 > doubt + (p->sets.dependents ? DISAGREEMENT : 8.0 * DBL_EPSILON);
 }
 
-/* The velocities that a step of dt leaves to the contacts of the problem. */
+/* The velocities that a step of dt leaves to the contacts of the cluster. */
 static void find_ends(tribo_context *ctx, const struct cluster *g, double dt, const double *a)
 {
-    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
-    for (size_t e = 0; e < ctx->plane.problem.size; e++) {
-        const double rate = tribo_planar_others(ctx, g, near[e], near[e], 0, a[member[near[e]]]);
-        ctx->plane.v[member[near[e]]] = product(rate, dt);
+    const size_t *member = ctx->planar->member + g->member;
+    for (size_t k = 0; k < g->size; k++) {
+        ctx->plane.v[member[k]] = product(tribo_planar_others(ctx, g, k, k, 0, a[member[k]]), dt);
     }
 }
 
@@ -114,9 +113,10 @@ size_t tribo_planar_break(tribo_context *ctx, const struct cluster *g, double dt
     size_t broken = 0;
     find_ends(ctx, g, dt, a);
     for (size_t e = 0; e < p->size; e += p->wide[e]) {
-        const size_t i = member[ctx->plane.near[e]];
-        if (p->place[e] != LENS_INSIDE && holds(ctx, i, p->wide[e]) && pulled_beyond(p, e)) {
-            broken += (size_t)let_go(ctx, i, p->wide[e]);
+        const size_t k = member[ctx->plane.near[e]], i = k - (ctx->planar->role[k] == ROLE_SECOND);
+        const size_t directions = ctx->planar->role[k] == ROLE_SCALAR ? 1 : 2;
+        if (p->place[e] != LENS_INSIDE && holds(ctx, i, directions) && pulled_beyond(p, e)) {
+            broken += (size_t)let_go(ctx, i, directions);
         }
     }
     return broken;

@@ -13,7 +13,7 @@ static void resume(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
     if (tribo_planar_collect(ctx, g, ctx->plane.v)) {
-        tribo_planar_pose(ctx, g, ctx->plane.a);
+        tribo_planar_resume(ctx, g, ctx->plane.a);
         tribo_disc_gains(p);
         tribo_disc_gradients(p);
         tribo_disc_places(p);
@@ -21,14 +21,13 @@ static void resume(tribo_context *ctx, const struct cluster *g)
     }
 }
 
-/* The direction [2] of a velocity v; at rest, where |v| has a kink, that in which a contact beyond its limits is about to slide:
- * the one at e of the problem, if it is on the rim of its set. 0 if it stays. */
-static void heading(const struct disc_qp *p, size_t e, const double *bound, const double *v, double *along)
+/* along [2], which is the direction of a velocity v, or at rest, where |v| has a kink, that in which a contact beyond its limits is
+ * about to slide, in unit length; 0 if it stays. */
+static void heading(const double *v, double *along)
 {
-    const double speed = tribo_length(2, v);
-    const int about = !(speed > 0.0) && p && p->place[e] == LENS_ON_DISC;
+    const int moves = tribo_length(2, v) > 0.0;
     for (size_t k = 0; k < 2; k++) {
-        along[k] = !about ? v[k] : bound[k] > 0.0 ? quotient(p->gradient[e + k], bound[k]) : 0.0;
+        along[k] = moves ? v[k] : along[k];
     }
     const double length = tribo_length(2, along);
     for (size_t k = 0; k < 2; k++) {
@@ -36,17 +35,21 @@ static void heading(const struct disc_qp *p, size_t e, const double *bound, cons
     }
 }
 
-/* By how much |v| of the planar contact at place k of a cluster, whose first direction is i, grows with dv. */
+/* By how much |v| of the planar contact whose first direction is i grows with dv. */
 static double faster_by(const tribo_context *ctx, const struct cluster *g, size_t i, const double *dv)
 {
     const struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member;
-    double along[2];
-    size_t e = 0;
-    while (e < p->size && member[ctx->plane.near[e]] != i) {
-        e++;
+    double along[2] = {0.0, 0.0};
+    for (size_t e = 0; e < p->size; e += p->wide[e]) {
+        for (size_t k = e; k < e + p->wide[e] && p->place[e] == LENS_ON_DISC; k++) {
+            const size_t at = member[ctx->plane.near[k]];
+            if (at - i < 2) {
+                along[at - i] = quotient(p->gradient[k], tribo_planar_reach(ctx, at));
+            }
+        }
     }
-    heading(e < p->size ? p : NULL, e, ctx->follow.contacts.bound + i, ctx->plane.v + i, along);
+    heading(ctx->plane.v + i, along);
     return along[0] * tribo_entry(dv, i) + along[1] * tribo_entry(dv, i + 1);
 }
 
@@ -110,14 +113,13 @@ static void turn_force(const struct law *law, const struct slide *s, const doubl
     }
 }
 
-/* How the shift of a lens changes. */
-static void turn_shift(const struct slide *s, const double *limit, const double *v, const double *shift, const struct turn *t,
-                       double *dshift)
+/* How the shift of a lens changes, epsilon being what it is. */
+static void turn_shift(const struct slide *s, const double *limit, const double *v, const struct turn *t, double *dshift)
 {
     double dx[2];
     turn_slide(s, limit, v, t, dx);
     for (size_t k = 0; k < 2; k++) {
-        dshift[k] = 2.0 * quotient(dx[k], s->epsilon) - product(shift[k], t->epsilon);
+        dshift[k] = 2.0 * quotient(dx[k], s->epsilon);
     }
 }
 
@@ -142,7 +144,7 @@ static void products_of_slips(const tribo_context *ctx, const struct cluster *g,
     }
     for (size_t e = 0; e < p->size; e++) {
         const size_t i = member[ctx->plane.near[e]];
-        df[i] = product(p->y[e], tribo_limit_change(ctx, by_v, i));
+        df[i] = tribo_planar_cut(ctx, i) ? 0.0 : product(p->y[e], tribo_limit_change(ctx, by_v, i));
     }
 }
 
@@ -154,18 +156,21 @@ static void shift_change(const tribo_context *ctx, const size_t *member, size_t 
 {
     const struct contacts *c = &ctx->follow.contacts;
     const struct disc_qp *p = &ctx->plane.problem;
-    const size_t i = member[ctx->plane.near[e]];
-    dshift[0] = dshift[p->wide[e] - 1] = 0.0;
-    if (ctx->set.law->relaxes && p->wide[e] == 2) {
-        const struct slide s = tribo_planar_slide(c, i, ctx->plane.v + i);
-        const struct turn t = turn_of(ctx, i, &s, d);
-        turn_shift(&s, c->limit + i, ctx->plane.v + i, p->shift + e, &t, dshift);
+    const size_t i = member[ctx->plane.near[e]], first = i - (ctx->planar->role[i] == ROLE_SECOND);
+    double change[2] = {0.0, 0.0}, epsilon = 0.0;
+    if (ctx->set.law->relaxes && ctx->planar->role[i] != ROLE_SCALAR) {
+        const struct slide s = tribo_planar_slide(c, first, ctx->plane.v + first);
+        const struct turn t = turn_of(ctx, first, &s, d);
+        turn_shift(&s, c->limit + first, ctx->plane.v + first, &t, change);
+        epsilon = t.epsilon;
     } else if (ctx->set.law->relaxes) {
-        const double epsilon = c->follows ? tribo_limit_growth(ctx, d, i) : 0.0;
-        dshift[0] = product(2.0 * quotient(1.0, tribo_epsilon_of(c, i)), tribo_entry(d->v, i)) - product(p->shift[e], epsilon);
+        epsilon = c->follows ? tribo_limit_growth(ctx, d, i) : 0.0;
+        change[0] = product(2.0 * quotient(1.0, tribo_epsilon_of(c, i)), tribo_entry(d->v, i));
     }
     for (size_t k = 0; k < p->wide[e]; k++) {
-        dshift[k] = clamp(dshift[k], -STEEPEST, STEEPEST);
+        const double by_v = change[i + k - first], part = tribo_planar_cut(ctx, i + k) ? ctx->plane.radius[i + k] : 0.0;
+        const double larger = part > 0.0 ? product(quotient(c->bound[i + k], part), by_v) : by_v;
+        dshift[k] = clamp(larger - product(p->shift[e + k], epsilon), -STEEPEST, STEEPEST);
     }
 }
 
@@ -177,24 +182,13 @@ static void drag_all(const struct disc_qp *p, const double *dshift, double *dy)
     }
 }
 
-/* What presses on direction e of the problem, as its limit and those that shifts are parts of change. */
-static double press_change(const tribo_context *ctx, const struct cluster *g, size_t e, const struct change *d)
-{
-    const struct disc_qp *p = &ctx->plane.problem;
-    const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
-    const size_t n = p->size, first = p->wide[e] ? e : e - 1, i = member[near[e]];
-    double sum = product(tribo_limit_growth(ctx, d, i), p->gradient[e]);
-    for (size_t j = first; j < first + p->wide[first]; j++) {
-        sum += product(p->s[e * n + j] * p->shift[j], tribo_limit_growth(ctx, d, member[near[j]]));
-    }
-    return sum;
-}
-
-/* rhs [size] = the gradient that df, changes and shifts leave to balance; dy: what shifts drag along. */
+/* rhs [size] = the gradient that df, changes and shifts leave to balance, limits, of which shifts are parts, among them; dy: what
+ * shifts drag along. */
 static void find_rhs(const tribo_context *ctx, const struct cluster *g, const struct change *d, const double *df,
                      const double *dshift, const double *dy, double *rhs)
 {
     const struct disc_qp *p = &ctx->plane.problem;
+    double *turn = p->slide;
     const struct unit u = tribo_planar_units(ctx, g);
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near, n = p->size;
     for (size_t e = 0; e < n; e++) {
@@ -203,19 +197,14 @@ static void find_rhs(const tribo_context *ctx, const struct cluster *g, const st
         for (size_t j = 0; j < g->size; j++) {
             sum += product(row[j], df[member[j]]);
         }
-        rhs[e] = ctx->follow.contacts.bound[member[near[e]]] / u.force * quotient(quotient(cut(sum), u.r), u.force);
-        rhs[e] += d->limit ? press_change(ctx, g, e, d) : 0.0;
+        rhs[e] = p->weight[e] * quotient(quotient(cut(sum), u.r), u.force);
+        rhs[e] += d->limit ? product(tribo_limit_growth(ctx, d, member[near[e]]), p->gradient[e]) : 0.0;
+        turn[e] = dshift[e] + (d->limit ? product(p->shift[e], tribo_limit_growth(ctx, d, member[near[e]])) : 0.0);
         for (size_t j = 0; j < n; j++) {
             rhs[e] += p->s[e * n + j] * dy[j];
         }
     }
-    for (size_t e = 0; e < n; e += p->wide[e]) {
-        for (size_t k = e; k < e + p->wide[e]; k++) {
-            for (size_t j = e; j < e + p->wide[e]; j++) {
-                rhs[k] += p->s[k * n + j] * dshift[j];
-            }
-        }
-    }
+    tribo_planar_turn(ctx, turn, rhs);
 }
 
 /* Forces so far are those that f_eq balances; a law with a memory has another derivative where f_eq is beyond the limit.
@@ -255,7 +244,7 @@ static void cluster_product(tribo_context *ctx, const struct cluster *g, const s
         tribo_disc_follow(p, rhs, move);
     }
     for (size_t e = 0; e < p->size; e++) {
-        df[member[near[e]]] += product(ctx->follow.contacts.bound[member[near[e]]], dy[e] + move[e]);
+        df[member[near[e]]] += product(tribo_planar_reach(ctx, member[near[e]]), dy[e] + move[e]);
     }
     if (ctx->set.law->remembers) {
         for (size_t k = 0; k < g->size; k++) {
@@ -314,10 +303,10 @@ static void turn_near(struct disc_qp *p, const struct given *g, const double *v,
     const double *bound = g->c.bound;
     double dshift[2] = {0.0, 0.0}, dy[2], off[2], growth[2], rhs[2], move[2];
     if (relaxes) {
-        turn_shift(&g->s, g->c.limit, v, p->shift, t, dshift);
+        turn_shift(&g->s, g->c.limit, v, t, dshift);
     }
     for (size_t k = 0; k < 2; k++) {
-        dshift[k] = clamp(dshift[k], -STEEPEST, STEEPEST);
+        dshift[k] = clamp(dshift[k] - product(p->shift[k], t->epsilon), -STEEPEST, STEEPEST);
     }
     tribo_disc_drag(p, 0, dshift, dy);
     for (size_t k = 0; k < 2; k++) {
@@ -338,8 +327,11 @@ static struct turn turn_static(const tribo_context *ctx, size_t i, const struct 
                                const double *v, struct turn t)
 {
     const double *set = ctx->set.breaking ? ctx->follow.cut_limit + i : g->c.limit, speed = tribo_length(2, v);
-    double along[2];
-    heading(p, 0, g->c.bound, v, along);
+    double along[2] = {0.0, 0.0};
+    for (size_t k = 0; p && p->place[0] == LENS_ON_DISC && k < 2; k++) {
+        along[k] = g->c.bound[k] > 0.0 ? quotient(p->gradient[k], g->c.bound[k]) : 0.0;
+    }
+    heading(v, along);
     const double faster = along[0] * t.v[0] + along[1] * t.v[1];
     t.epsilon = g->c.scales && !g->s.open ? quotient(t.limit[g->s.far], set[g->s.far]) : 0.0;
     for (size_t k = 0; k < 2 && ctx->set.breaking; k++) {

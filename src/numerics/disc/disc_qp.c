@@ -56,9 +56,6 @@ static void step_newton(struct disc_qp *p)
     project(p, p->from, p->aim, 1.0);
 }
 
-/* Distances of this part of limits are none. */
-#define NEAR_ENOUGH 1e-13
-
 /* Returns what tribo_disc_places does. */
 static double look(struct disc_qp *p)
 {
@@ -70,7 +67,7 @@ static double look(struct disc_qp *p)
 static void polish(struct disc_qp *p)
 {
     double before = HUGE_VAL;
-    while (p->residual > NEAR_ENOUGH && p->residual < 0.5 * before) {
+    while (p->residual > p->near_enough && p->residual < 0.5 * before) {
         before = p->residual;
         memcpy(p->best, p->y, p->size * sizeof *p->y);
         step_newton(p);
@@ -102,15 +99,14 @@ static int descends(const struct disc_qp *p)
 static void sweep(struct disc_qp *p)
 {
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        double z[2];
+        double gradient[2];
         for (size_t k = 0; k < p->wide[i]; k++) {
-            double sum = p->pull[i + k];
+            gradient[k] = p->pull[i + k];
             for (size_t j = 0; j < p->size; j++) {
-                sum += p->s[(i + k) * p->size + j] * p->y[j];
+                gradient[k] += p->s[(i + k) * p->size + j] * p->y[j];
             }
-            z[k] = p->y[i + k] - product(p->gain[i], sum);
         }
-        tribo_lens_project(p->wide[i], p->shift + i, z, p->y + i);
+        tribo_disc_descend(p, i, gradient, p->y + i);
     }
 }
 
@@ -216,8 +212,8 @@ static int solve_softly(struct disc_qp *p, double more)
     return done;
 }
 
-/* Off by no more than that, in parts of limits, y is not solved for again: that would leave the share. */
-#define SHARED 1e-12
+/* Off by no more than that, in parts of near_enough, y is not solved for again: that would leave the share. */
+#define SHARED 10.0
 
 /* The solution with a little stiffness more is off by that; those with half and a quarter of it show by how much, to second
  * order. */
@@ -245,7 +241,7 @@ int tribo_disc_share(struct disc_qp *p)
     look(p);
     project(p, p->to, p->to, 1.0); /* what slides is on its rim, to the last digit */
     look(p);
-    return done && (p->residual < SHARED || tribo_disc_solve(p));
+    return done && (p->residual < SHARED * p->near_enough || tribo_disc_solve(p));
 }
 
 /* ------------------------------------------------------------------------------------------------------------ room */
@@ -303,6 +299,7 @@ void tribo_disc_alone(struct disc_alone *x, const double *s, const double *pull,
     memcpy(x->s, s, 4 * sizeof *s);
     x->wide[0] = 2;
     x->p = (struct disc_qp){.size = 2, .wide = x->wide, .place = x->place, .s = x->s, .matrix = x->matrix, .freedom = x->freedom};
+    x->p.near_enough = TRIBO_NEAR_ENOUGH;
     x->p.factor = (struct box_qp){.near = x->near, .order = x->order, .at = x->at, .l = x->l, .basis = x->basis};
     lay_out(&x->p, x->store, TRIBO_DISC_ALONE);
     memcpy(x->p.pull, pull, 2 * sizeof *pull);

@@ -19,20 +19,23 @@ struct freedom {
     double curvature;  /* of the rim, times what presses against it */
 };
 
+#define TRIBO_NEAR_ENOUGH 1e-13
+
 struct disc_qp {
     /* the problem */
     size_t size;          /* directions */
     unsigned char *wide;  /* [size] how many directions the contact that begins with this one has: 1, 2, or 0 if none does */
     double *s;            /* [size][size] */
     double *pull, *shift; /* [size] shift: c of the lenses */
+    double near_enough;   /* distances of this part of limits are none: TRIBO_NEAR_ENOUGH where forces are not far from limits */
     double *weight;       /* [size] what tribo_disc_share counts y by */
     /* what is found; in: where to begin */
     double *y;       /* [size] */
     double residual; /* how far y is from the fixed point, at most, in parts of limits */
     /* at y */
     double *gradient, *noise; /* [size] s y + pull, and what of it may be rounding */
-    double *gain;             /* [size] 1/(largest eigenvalue of the contact's own block) */
-    double *to;               /* [size] the nearest point of the set to y - gain gradient */
+    double *gain;             /* [size] 1/(largest eigenvalue of the contact's own block); 1/(2 s_kk) if the block is skew */
+    double *to;               /* [size] the point of the set nearest to y - gain gradient, lengths^2 being sum x_k^2/gain_k */
     double *outward;          /* [size] direction from the rim's centre to it, and at the first direction of the contact */
     double *curvature;        /* [size] of the rim, times what presses against it */
     unsigned char *place;     /* [size] LENS_... */
@@ -78,6 +81,9 @@ int tribo_disc_share(struct disc_qp *p);
 
 /* gain; once for a problem. */
 void tribo_disc_gains(struct disc_qp *p);
+
+/* to [wide] = the point of the set of the contact at i that is nearest to y - gain gradient [wide]; returns its place. */
+int tribo_disc_descend(const struct disc_qp *p, size_t i, const double *gradient, double *to);
 
 /* gradient and noise at y. */
 void tribo_disc_gradients(struct disc_qp *p);

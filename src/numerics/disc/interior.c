@@ -69,7 +69,7 @@ static double begin(struct disc_qp *p)
     }
     tribo_disc_gradients(p);
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        stiffest = greater(stiffest, 1.0 / p->gain[i]);
+        stiffest = greater(stiffest, 1.0 / lesser(p->gain[i], p->gain[i + p->wide[i] - 1]));
         most = greater(most, greater(stiffest, tribo_length(p->wide[i], p->gradient + i)));
     }
     for (size_t i = 0; i < p->size; i += p->wide[i]) {

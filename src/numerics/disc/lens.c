@@ -7,6 +7,8 @@
 
 #include "common/real.h"
 
+enum { SECULAR_ROUNDS = 40 };
+
 double tribo_length(int directions, const double *x)
 {
     if (directions == 1) {
@@ -50,6 +52,12 @@ static int project_interval(double c, double z, double *y)
     return z >= lo ? LENS_INSIDE : c < 0.0 ? LENS_ON_SHIFTED : LENS_ON_DISC;
 }
 
+static void corner_at(struct corner k, double *y)
+{
+    y[0] = -k.half * k.along[0] - k.side * k.height * k.along[1];
+    y[1] = -k.half * k.along[1] + k.side * k.height * k.along[0];
+}
+
 int tribo_lens_project(int directions, const double *c, const double *z, double *y)
 {
     if (directions == 1) {
@@ -78,8 +86,69 @@ int tribo_lens_project(int directions, const double *c, const double *z, double 
             return LENS_ON_SHIFTED;
         }
     }
-    const struct corner k = tribo_lens_corner(c, z);
-    y[0] = -k.half * k.along[0] - k.side * k.height * k.along[1];
-    y[1] = -k.half * k.along[1] + k.side * k.height * k.along[0];
+    corner_at(tribo_lens_corner(c, z), y);
+    return LENS_AT_CORNER;
+}
+
+/* n = q_k/(weight_k + mu) with the mu >= 0 at which |n| = 1: 1/|n| is concave in mu, so that Newton's method for 1/|n| = 1 rises
+ * to it. Returns 0, with mu = 0, if |n| <= 1 there. */
+static int minimize_on_disc(const double *weight, const double *q, double *n)
+{
+    double mu = greater(0.0, greater(fabs(q[0]) - weight[0], fabs(q[1]) - weight[1])), rise = 1.0;
+    for (int round = 0; round < SECULAR_ROUNDS && rise > DBL_EPSILON * mu; round++) {
+        n[0] = q[0] / (weight[0] + mu);
+        n[1] = q[1] / (weight[1] + mu);
+        const double length = tribo_length(2, n);
+        if (length <= 1.0) {
+            break;
+        }
+        const double u[2] = {n[0] / length, n[1] / length};
+        rise = (length - 1.0) / (u[0] * u[0] / (weight[0] + mu) + u[1] * u[1] / (weight[1] + mu));
+        mu += rise;
+    }
+    const double length = mu > 0.0 ? tribo_length(2, n) : 1.0;
+    n[0] /= length;
+    n[1] /= length;
+    return mu > 0.0;
+}
+
+/* The corner at which the sum is least. */
+static void minimize_at_corner(const double *c, const double *weight, const double *q, double *y)
+{
+    double other[2], change = 0.0;
+    struct corner k = tribo_lens_corner(c, q);
+    corner_at(k, y);
+    k.side = -k.side;
+    corner_at(k, other);
+    for (int d = 0; d < 2; d++) {
+        change += (other[d] - y[d]) * (0.5 * weight[d] * (other[d] + y[d]) - q[d]);
+    }
+    if (change < 0.0) {
+        y[0] = other[0];
+        y[1] = other[1];
+    }
+}
+
+int tribo_lens_minimize(const double *c, const double *weight, const double *q, double *y)
+{
+    const double shifted[2] = {q[0] + weight[0] * c[0], q[1] + weight[1] * c[1]}, square = c[0] * c[0] + c[1] * c[1];
+    double n[2], m[2];
+    const int beyond = minimize_on_disc(weight, q, n), far = minimize_on_disc(weight, shifted, m);
+    if (!beyond && !far) {
+        y[0] = n[0];
+        y[1] = n[1];
+        return LENS_INSIDE;
+    }
+    if (beyond && 2.0 * (n[0] * c[0] + n[1] * c[1]) + square <= 0.0) { /* |n + c| <= 1 */
+        y[0] = n[0];
+        y[1] = n[1];
+        return LENS_ON_DISC;
+    }
+    if (far && square <= 2.0 * (m[0] * c[0] + m[1] * c[1])) { /* |m - c| <= 1 */
+        y[0] = m[0] - c[0];
+        y[1] = m[1] - c[1];
+        return LENS_ON_SHIFTED;
+    }
+    minimize_at_corner(c, weight, q, y);
     return LENS_AT_CORNER;
 }

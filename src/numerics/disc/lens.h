@@ -9,6 +9,10 @@ enum { LENS_INSIDE, LENS_ON_DISC, LENS_ON_SHIFTED, LENS_AT_CORNER };
 /* y = the point of the set that is nearest to z; returns where it is. directions: 1 or 2. */
 int tribo_lens_project(int directions, const double *c, const double *z, double *y);
 
+/* y = the point of the set of a contact of two directions at which sum_k weight_k y_k^2/2 - q_k y_k is least; weight > 0. Returns
+ * where it is. weight = (1, 1): nearest to q. */
+int tribo_lens_minimize(const double *c, const double *weight, const double *q, double *y);
+
 /* Which of the two corners is nearer to z: how they follow c. corner = -c/2 + side height (-c_2, c_1)/|c|. */
 struct corner {
     double along[2];     /* c/|c| */

@@ -16,6 +16,15 @@
 /* Diagonal entries of Newton's matrix that are less than this part of the largest: null vectors have squares all the same. */
 #define NEXT_TO_NOTHING 1e-200
 
+/* A contact whose stiffnesses along its two directions differ by more than this factor has a gain for each of them. */
+#define SKEW 1e4
+
+/* Distances along the stiffer direction of such a contact count by the ratio of lengths that need the same energy, or this. */
+#define FINEST 1e6
+
+/* What rounding moves by more than this part of a limit is turned by less where it is pressed against a rim. */
+#define DOUBTFUL 1e-8
+
 /* No two points of a set are so far apart, in parts of limits. */
 #define BEYOND_ALL 4.0
 
@@ -26,10 +35,39 @@ void tribo_disc_gains(struct disc_qp *p)
         const double a = p->s[i * n + i], d = p->wide[i] == 2 ? p->s[(i + 1) * n + i + 1] : a;
         const double turned[2] = {0.5 * (a - d), p->wide[i] == 2 ? p->s[i * n + i + 1] : 0.0};
         const double largest = greater(0.5 * (a + d) + tribo_length(2, turned), DBL_MIN);
+        const int skew = lesser(a, d) * SKEW < greater(a, d);
         for (size_t k = i; k < i + p->wide[i]; k++) {
-            p->gain[k] = 1.0 / largest;
+            p->gain[k] = 1.0 / (skew ? greater(2.0 * p->s[k * (n + 1)], DBL_MIN) : largest);
         }
     }
+}
+
+/* The contact at i has a gain for each of its directions. */
+static int is_skew(const struct disc_qp *p, size_t i)
+{
+    return p->wide[i] == 2 && p->gain[i] != p->gain[i + 1];
+}
+
+static inline int descend(const struct disc_qp *p, size_t i, const double *gradient, double *to)
+{
+    const double most = 1e150, *y = p->y + i;
+    double z[2];
+    if (is_skew(p, i)) {
+        const double weight[2] = {1.0 / p->gain[i], 1.0 / p->gain[i + 1]};
+        const double q[2] = {weight[0] * y[0] - gradient[0], weight[1] * y[1] - gradient[1]};
+        return tribo_lens_minimize(p->shift + i, weight, q, to);
+    }
+    const double length = tribo_length(p->wide[i], gradient);
+    const int far = product(p->gain[i], length) > most;
+    for (size_t k = 0; k < p->wide[i]; k++) {
+        z[k] = y[k] - (far ? gradient[k] / length * most : p->gain[i] * gradient[k]);
+    }
+    return tribo_lens_project(p->wide[i], p->shift + i, z, to);
+}
+
+int tribo_disc_descend(const struct disc_qp *p, size_t i, const double *gradient, double *to)
+{
+    return descend(p, i, gradient, to);
 }
 
 void tribo_disc_gradients(struct disc_qp *p)
@@ -48,25 +86,34 @@ void tribo_disc_gradients(struct disc_qp *p)
     }
 }
 
-/* z = y - gain gradient, or as far in its direction as has squares. */
-static void find_target(const struct disc_qp *p, size_t i, double *z)
-{
-    const double most = 1e150, length = tribo_length(p->wide[i], p->gradient + i);
-    const int far = product(p->gain[i], length) > most;
-    for (size_t k = 0; k < p->wide[i]; k++) {
-        const double g = p->gradient[i + k];
-        z[k] = p->y[i + k] - (far ? g / length * most : p->gain[i] * g);
-    }
-}
-
 /* What presses a contact against the rim that it is on: of y - gain gradient the part beyond the rim, over gain. */
 static double press_of(const struct disc_qp *p, size_t i)
 {
     double sum = 0.0;
     for (size_t k = i; k < i + p->wide[i]; k++) {
-        sum += p->outward[k] * ((p->y[k] - p->to[k]) / p->gain[i] - p->gradient[k]);
+        sum += p->outward[k] * ((p->y[k] - p->to[k]) / p->gain[k] - p->gradient[k]);
     }
     return greater(sum, 0.0);
+}
+
+/* How much redundant contacts may disagree about direction i, in parts of limits, or of what pulls at it if that is far less. */
+static double disagreement(const struct disc_qp *p, size_t i)
+{
+    const double part = p->near_enough < TRIBO_NEAR_ENOUGH ? product(p->gain[i], p->noise[i] / tribo_resolution(p->size)) : 1.0;
+    return DISAGREEMENT * lesser(part, 1.0);
+}
+
+/* How far the contact at i may be off where rounding moves y - gain gradient by noise: less if it is pressed against a rim. */
+static double doubt_of(const struct disc_qp *p, size_t i, double noise)
+{
+    double move[2];
+    if (noise <= DOUBTFUL) {
+        return noise;
+    }
+    for (size_t k = 0; k < p->wide[i]; k++) {
+        move[k] = product(p->gain[i + k], p->gradient[i + k]);
+    }
+    return greater(DOUBTFUL, noise / greater(1.0, tribo_length(p->wide[i], move)));
 }
 
 double tribo_disc_places(struct disc_qp *p)
@@ -74,19 +121,25 @@ double tribo_disc_places(struct disc_qp *p)
     double worst = 0.0;
     p->residual = 0.0;
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        double z[2], off[2] = {0.0, 0.0}, noise[2] = {0.0, 0.0};
-        find_target(p, i, z);
-        p->place[i] = (unsigned char)tribo_lens_project(p->wide[i], p->shift + i, z, p->to + i);
+        double off[2] = {0.0, 0.0}, noise[2] = {0.0, 0.0};
+        p->place[i] = (unsigned char)descend(p, i, p->gradient + i, p->to + i);
         for (size_t k = 0; k < p->wide[i]; k++) {
             p->outward[i + k] = p->to[i + k] + (p->place[i] == LENS_ON_SHIFTED ? p->shift[i + k] : 0.0);
             off[k] = p->to[i + k] - p->y[i + k];
-            noise[k] = product(p->gain[i], p->noise[i + k]);
+            noise[k] = product(p->gain[i + k], p->noise[i + k]);
         }
         p->curvature[i] = press_of(p, i);
-        const double distance = tribo_length(p->wide[i], off);
-        const double rounding = p->sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON;
+        double distance = tribo_length(p->wide[i], off);
         p->residual = greater(p->residual, distance);
-        worst = greater(worst, quotient(distance, greater(rounding, tribo_length(p->wide[i], noise))));
+        if (is_skew(p, i)) {
+            const size_t stiff = p->gain[i] > p->gain[i + 1];
+            const double unit = lesser(sqrt(p->gain[i + 1 - stiff] / p->gain[i + stiff]), FINEST);
+            off[stiff] *= unit;
+            noise[stiff] = unit * (noise[stiff] + 4.0 * DBL_EPSILON * fabs(p->y[i + stiff]));
+            distance = tribo_length(2, off);
+        }
+        const double rounding = p->sets.dependents ? disagreement(p, i) : 16.0 * DBL_EPSILON;
+        worst = greater(worst, quotient(distance, greater(rounding, doubt_of(p, i, greater(noise[0], noise[1])))));
     }
     return worst;
 }
@@ -141,7 +194,8 @@ void tribo_disc_factorize(struct disc_qp *p, size_t size)
 }
 
 /* What a factor with pivots next to nothing makes of numbers of this size are numbers. */
-#define ROOM 200
+#define ROOM 0x1p200
+#define LEAST_EXPONENT (-1000)
 
 void tribo_disc_backsolve(struct disc_qp *p)
 {
@@ -151,8 +205,10 @@ void tribo_disc_backsolve(struct disc_qp *p)
         most = greater(most, fabs(p->step[k]));
     }
     frexp(most, &e);
+    e = e > LEAST_EXPONENT ? e : LEAST_EXPONENT;
+    const double unit = ldexp(1.0, e - 1), inverse = 0.5 / unit;
     for (size_t k = 0; k < p->group.size; k++) {
-        p->step[k] = ldexp(p->step[k], -e - ROOM);
+        p->step[k] = p->step[k] * inverse * (1.0 / ROOM);
     }
     tribo_null_project(&p->factor, p->redundant, p->step);
     tribo_dense_solve(&p->factor, p->step);
@@ -161,7 +217,7 @@ void tribo_disc_backsolve(struct disc_qp *p)
     }
     tribo_null_project(&p->factor, p->redundant, p->step);
     for (size_t k = 0; k < p->group.size; k++) {
-        p->step[k] = product(product(p->step[k], ldexp(1.0, ROOM)), ldexp(1.0, e));
+        p->step[k] = product(product(p->step[k], 2.0 * ROOM), unit);
     }
 }
 
@@ -207,7 +263,8 @@ void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move)
 
 void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
 {
-    double *pull = p->spare, *balanced = p->press, most = 0.0, distance = 0.0;
+    double *pull = p->spare, *balanced = p->press, most = 0.0;
+    int apart = 0;
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] = balanced[k] = -along(&p->freedom[k], rhs);
     }
@@ -215,10 +272,10 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] -= balanced[k];
         most = greater(most, fabs(pull[k]));
-        distance = greater(distance, product(p->gain[p->freedom[k].at], fabs(pull[k])));
+        apart |= product(p->gain[p->freedom[k].at], fabs(pull[k])) > disagreement(p, p->freedom[k].at);
     }
     for (size_t k = 0; k < p->freedoms; k++) {
-        pull[k] = distance > DISAGREEMENT ? BEYOND_ALL * (pull[k] / most) : 0.0;
+        pull[k] = apart ? BEYOND_ALL * (pull[k] / most) : 0.0;
     }
     spread(p, pull, move);
 }
