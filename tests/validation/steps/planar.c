@@ -151,4 +151,44 @@ TEST(open_direction)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("planar", {orders, 6}, {adaptive, 2}, {released, 3}, {copies, 4}, {refused, 1}, {open_direction, 4})
+/* Two bodies on springs, and one between them; the first one's contact never slips, and the second moves as if it were alone. */
+TEST(never_slips)
+{
+    static const char *const methods[] = {"event", "central/fixed", "moreau/fixed"};
+    const double mass[16] = {[0] = 1.0, [5] = 1.0, [10] = 2.0, [15] = 2.0};
+    const double direction[16] = {[0] = 1.0, [5] = 1.0, [10] = 1.0, [15] = 1.0};
+    const double spring[16] = {3.0, 0.0, -1.0, 0.0, 0.0, 3.0, 0.0, -1.0, -1.0, 0.0, 3.0, 0.0, 0.0, -1.0, 0.0, 3.0};
+    const double cosine[] = {1.0, 0.0, 1.0, 0.5}, sine[] = {0.3, 0.8, 0.0, -1.0}, limits[] = {1e3, 1e12, 1e30, 1e200, 1e300};
+    const double alone_mass[] = {2.0, 0.0, 0.0, 2.0}, alone_spring[] = {3.0, 0.0, 0.0, 3.0};
+    const size_t first[] = {0, 2};
+    double want[5] = {0.0}, t = 0.0;
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 2, 2, alone_mass, NULL, alone_spring, identity, 0, NULL, 0));
+    assert_ok(tribo_set_planar(tribo_system_context(sys), 1, first));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
+    assert_ok(tribo_system_add_load(sys, 0.7, cosine + 2, sine + 2));
+    tribo_driver *drv = driver_create(sys, methods[_i], 1e-3, 1e-10);
+    driver_advance(drv, &t, 6.0, want);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+    require(want[4] > 0.1, "friction dissipates %g", want[4]);
+    for (size_t k = 0; k < COUNT(limits); k++) {
+        const double limit[] = {limits[k], limits[k], 0.3, 0.3};
+        double y[9] = {0.0};
+        assert_ok(tribo_system_linear(&sys, 4, 4, mass, NULL, spring, direction, 0, NULL, 0));
+        assert_ok(tribo_set_planar(tribo_system_context(sys), 2, first));
+        assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+        assert_ok(tribo_system_add_load(sys, 0.7, cosine, sine));
+        drv = driver_create(sys, methods[_i], 1e-3, 1e-10);
+        driver_advance(drv, (t = 0.0, &t), 6.0, y);
+        assert_close(hypot(y[0], y[1]), 0.0, 1e-12);
+        assert_all_close(y + 2, want, 2, 1e-8);
+        assert_all_close(y + 6, want + 2, 2, 1e-8);
+        assert_close(y[8], want[4], 1e-8);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
+TEST_MAIN("planar", {orders, 6}, {adaptive, 2}, {released, 3}, {copies, 4}, {refused, 1}, {open_direction, 4},
+          {never_slips, 3})
