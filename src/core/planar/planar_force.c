@@ -129,6 +129,7 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
     struct disc_qp *p = &ctx->plane.problem;
     const struct unit u = tribo_planar_units(ctx, g);
     const size_t n = p->size, *member = ctx->planar->member + g->member, *near = ctx->plane.near;
+    int turned = 0;
     for (size_t e = 0; e < n; e++) {
         p->weight[e] = tribo_planar_reach(ctx, member[near[e]]) / u.force;
         p->y[e] = ctx->plane.y[member[near[e]]];
@@ -145,9 +146,12 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
         const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
         for (size_t k = e; k < e + p->wide[e]; k++) {
             p->pull[k] = length > 0.0 ? p->weight[k] * (ctx->plane.pull[k] / length) * size : 0.0;
+            turned |= p->shift[k] != 0.0;
         }
     }
-    tribo_planar_turn(ctx, p->shift, p->pull);
+    if (turned) {
+        tribo_planar_turn(ctx, p->shift, p->pull);
+    }
 }
 
 static void find_pulls(tribo_context *ctx, const struct cluster *g, const double *a)

@@ -212,8 +212,8 @@ static int solve_softly(struct disc_qp *p, double more)
     return done;
 }
 
-/* Off by no more than that, in parts of near_enough, y is not solved for again: that would leave the share. */
-#define SHARED 10.0
+/* Off by no more than that, in parts of limits, y is not solved for again: that would leave the share. */
+#define SHARED 1e-12
 
 /* The solution with a little stiffness more is off by that; those with half and a quarter of it show by how much, to second
  * order. */
@@ -240,8 +240,9 @@ int tribo_disc_share(struct disc_qp *p)
     project(p, p->share, p->share, 1.0);
     look(p);
     project(p, p->to, p->to, 1.0); /* what slides is on its rim, to the last digit */
-    look(p);
-    return done && (p->residual < SHARED * p->near_enough || tribo_disc_solve(p));
+    const double off = look(p);
+    const int shared = p->near_enough < TRIBO_NEAR_ENOUGH ? off <= SETTLED : p->residual < SHARED;
+    return done && (shared || tribo_disc_solve(p));
 }
 
 /* ------------------------------------------------------------------------------------------------------------ room */

@@ -96,11 +96,10 @@ static double press_of(const struct disc_qp *p, size_t i)
     return greater(sum, 0.0);
 }
 
-/* How much redundant contacts may disagree about direction i, in parts of limits, or of what pulls at it if that is far less. */
-static double disagreement(const struct disc_qp *p, size_t i)
+/* The limit of direction i, 1, or what pulls at it if forces are far from limits. */
+static double unit_of(const struct disc_qp *p, size_t i)
 {
-    const double part = p->near_enough < TRIBO_NEAR_ENOUGH ? product(p->gain[i], p->noise[i] / tribo_resolution(p->size)) : 1.0;
-    return DISAGREEMENT * lesser(part, 1.0);
+    return p->near_enough < TRIBO_NEAR_ENOUGH ? lesser(product(p->gain[i], p->noise[i] / tribo_resolution(p->size)), 1.0) : 1.0;
 }
 
 /* How far the contact at i may be off where rounding moves y - gain gradient by noise: less if it is pressed against a rim. */
@@ -118,6 +117,7 @@ static double doubt_of(const struct disc_qp *p, size_t i, double noise)
 
 double tribo_disc_places(struct disc_qp *p)
 {
+    const int far = p->near_enough < TRIBO_NEAR_ENOUGH;
     double worst = 0.0;
     p->residual = 0.0;
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
@@ -133,12 +133,13 @@ double tribo_disc_places(struct disc_qp *p)
         p->residual = greater(p->residual, distance);
         if (is_skew(p, i)) {
             const size_t stiff = p->gain[i] > p->gain[i + 1];
-            const double unit = lesser(sqrt(p->gain[i + 1 - stiff] / p->gain[i + stiff]), FINEST);
-            off[stiff] *= unit;
-            noise[stiff] = unit * (noise[stiff] + 4.0 * DBL_EPSILON * fabs(p->y[i + stiff]));
+            const double finer = lesser(sqrt(p->gain[i + 1 - stiff] / p->gain[i + stiff]), FINEST);
+            off[stiff] *= finer;
+            noise[stiff] = finer * (noise[stiff] + 4.0 * DBL_EPSILON * fabs(p->y[i + stiff]));
             distance = tribo_length(2, off);
         }
-        const double rounding = p->sets.dependents ? disagreement(p, i) : 16.0 * DBL_EPSILON;
+        const double unit = far ? greater(unit_of(p, i), unit_of(p, i + p->wide[i] - 1)) : 1.0;
+        const double rounding = unit * (p->sets.dependents ? DISAGREEMENT : 16.0 * DBL_EPSILON);
         worst = greater(worst, quotient(distance, greater(rounding, doubt_of(p, i, greater(noise[0], noise[1])))));
     }
     return worst;
@@ -272,7 +273,7 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] -= balanced[k];
         most = greater(most, fabs(pull[k]));
-        apart |= product(p->gain[p->freedom[k].at], fabs(pull[k])) > disagreement(p, p->freedom[k].at);
+        apart |= product(p->gain[p->freedom[k].at], fabs(pull[k])) > DISAGREEMENT * unit_of(p, p->freedom[k].at);
     }
     for (size_t k = 0; k < p->freedoms; k++) {
         pull[k] = apart ? BEYOND_ALL * (pull[k] / most) : 0.0;
