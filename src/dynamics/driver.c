@@ -275,8 +275,8 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
         *value = drv->newton;
         return TRIBO_OK;
     case TRIBO_COUNT_FREEDOM:
-        *value = drv->freedom;
-        return TRIBO_OK;
+        *value = 0;
+        return drv->shooting ? drv->find_freedom(drv->shooting, value) : TRIBO_OK;
     case TRIBO_COUNT_RESTED:
         *value = drv->rested;
         return TRIBO_OK;
@@ -457,7 +457,6 @@ static void add_counts(tribo_driver *drv, const tribo_driver *inner, const tribo
     drv->periods += inner->periods - before->periods;
     drv->newton += inner->newton - before->newton;
     drv->evaluations += finds ? inner->evaluations - before->evaluations : 0;
-    drv->freedom = inner->freedom;
     drv->excess = greater(drv->excess, inner->excess);
     drv->backslip = greater(drv->backslip, inner->backslip);
 }
@@ -478,6 +477,7 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     add_counts(drv, inner, &before, x->finds);
     if (x->finds) {
         drv->shooting = inner->shooting;
+        drv->find_freedom = inner->find_freedom;
     }
     const int kept = x->finds ? TRIBO_OK : tribo_driver_keep(drv, *x->t, x->y);
     if (status && !(which == EXACT && status == TRIBO_ERR_UNSUPPORTED)) {

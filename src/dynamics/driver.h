@@ -40,9 +40,9 @@ struct tribo_driver {
     void *data;
     struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting; NULL: borrowed */
     void (*free_shooting)(struct shooting *s);
-    size_t freedom; /* dimension of the family of the last one */
-    size_t rested;  /* degrees of freedom left out, step by step */
-    char *message;  /* is text, which a const driver keeps, too */
+    int (*find_freedom)(struct shooting *s, size_t *freedom); /* the dimension of the family of the last one; a status */
+    size_t rested; /* degrees of freedom left out, step by step */
+    char *message; /* is text, which a const driver keeps, too */
     char text[240];
 };
 

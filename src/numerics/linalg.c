@@ -82,11 +82,32 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
     }
 }
 
+/* x'y in eight parts side by side. */
+TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
+{
+    enum { LANES = 8 };
+    double part[LANES] = {0.0};
+    size_t i = 0;
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
+            part[k] += x[i + k] * y[i + k];
+        }
+    }
+    for (size_t k = 0; i < n; i++, k++) {
+        part[k] += x[i] * y[i];
+    }
+    return ((part[0] + part[4]) + (part[1] + part[5])) + ((part[2] + part[6]) + (part[3] + part[7]));
+}
+
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c)
 {
     for (size_t i = 0; i < rows; i++) {
         const double *row = a + i * inner;
         size_t k = 0;
+        if (cols == 1) {
+            c[i] += factor * dot_of_eight(inner, row, b);
+            continue;
+        }
         for (; k + 4 <= inner; k += 4) {
             const double f[] = {factor * row[k], factor * row[k + 1], factor * row[k + 2], factor * row[k + 3]};
             if (f[0] != 0.0 || f[1] != 0.0 || f[2] != 0.0 || f[3] != 0.0) {
@@ -95,6 +116,29 @@ void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, c
         }
         for (; k < inner; k++) {
             tribo_add(c + i * cols, factor * row[k], b + k * cols, cols);
+        }
+    }
+}
+
+void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const double *a, const double *b, double *c)
+{
+    size_t k = 0;
+    for (; k + 4 <= rows; k += 4) {
+        const double *four = a + k * inner;
+        if (cols == 1) {
+            add_four(c, four, inner, b + k);
+            continue;
+        }
+        for (size_t i = 0; i < inner; i++) {
+            const double f[] = {four[i], four[inner + i], four[2 * inner + i], four[3 * inner + i]};
+            if (f[0] != 0.0 || f[1] != 0.0 || f[2] != 0.0 || f[3] != 0.0) {
+                add_four(c + i * cols, b + k * cols, cols, f);
+            }
+        }
+    }
+    for (; k < rows; k++) {
+        for (size_t i = 0; i < inner; i++) {
+            tribo_add(c + i * cols, a[k * inner + i], b + k * cols, cols);
         }
     }
 }

@@ -25,8 +25,9 @@ static inline int tribo_few_finite(const double *x, size_t n)
 }
 
 /* c [rows][cols] += factor a b, a [rows][inner], b [inner][cols], skipping zeros of a, of which diagonal operators have many;
- * to [cols][rows] = the transpose of a [rows][cols]. */
+ * c [inner][cols] += a'b, b [rows][cols]; to [cols][rows] = the transpose of a [rows][cols]. */
 void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, const double *a, const double *b, double *c);
+void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const double *a, const double *b, double *c);
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
 /* a [n][n], symmetric but for rounding, becomes exactly so. */

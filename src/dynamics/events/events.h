@@ -34,9 +34,13 @@ struct events {
     void (*state)(void *motion, double tau, const double *from, double *to);
     /* Tells the system of what it knows of t, at which the phase that state was asked for last has ended; NULL: of nothing. */
     void (*arrive)(void *motion, double t);
-    /* Moves perturbations v [2 ndof][columns] of the state to tau into the phase, in which contacts at rest are held, and what
-     * would move these is taken away first. Returns a status, its message on the system's context. */
-    int (*transition)(void *motion, double tau, size_t columns, double *v);
+    /* What transition needs of the phase that ends, until it is released; NULL: phases are not kept. */
+    const void *(*keep)(void *motion);
+    void (*release)(const void *phase);
+    /* Moves perturbations v [2 ndof][columns] of the state to tau into a phase that was kept, or, with NULL, the one that ends;
+     * contacts at rest are held in it, and what would move these is taken away first. Returns a status, its message on the
+     * system's context. */
+    int (*transition)(void *motion, const void *phase, double tau, size_t columns, double *v);
     /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
     int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
     /* What a phase that has lasted tau dissipated in contact i, which slides; NULL: limits are steady, or harmonics. */

@@ -297,7 +297,17 @@ static int begin(void *motion, double t, const double *y, double *reach)
     return TRIBO_OK;
 }
 
-static int transition(void *motion, double tau, size_t columns, double *v)
+static const void *keep_phase(void *motion)
+{
+    return tribo_modal_share(((struct exact *)motion)->motion.h);
+}
+
+static void release_phase(const void *phase)
+{
+    tribo_modal_free(phase);
+}
+
+static int transition(void *motion, const void *phase, double tau, size_t columns, double *v)
 {
     struct exact *x = motion;
     if (columns > x->columns) {
@@ -308,7 +318,7 @@ static int transition(void *motion, double tau, size_t columns, double *v)
         x->work = more;
         x->columns = columns;
     }
-    tribo_modal_transition(x->motion.h, x->sys, tau, columns, v, x->work);
+    tribo_modal_transition(phase ? phase : x->motion.h, x->sys, tau, columns, v, x->work);
     return TRIBO_OK;
 }
 
@@ -373,6 +383,8 @@ static int create(tribo_driver *drv)
     x->events.begin = begin;
     x->events.state = move_to;
     x->events.arrive = arrive;
+    x->events.keep = keep_phase;
+    x->events.release = release_phase;
     x->events.transition = transition;
     x->events.signal = combine;
     x->events.shows_between = 1;

@@ -68,7 +68,7 @@ struct modal {
     double quickest;      /* the largest of these and the frequencies of harmonics */
     double decay, growth; /* the largest rate of decay, and of growth */
     void *memory;         /* of itself and all arrays */
-    size_t bytes;
+    size_t bytes, *users; /* besides the one that made it: tribo_modal_free leaves it to them */
 };
 
 /* |re + i im|: hypot, which takes ten times as long. */
@@ -81,6 +81,9 @@ static inline double tribo_modal_magnitude(double re, double im)
 /* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h); the others at rest depend on those.
  * Returns a status; its message is on the system's context. */
 int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds);
-void tribo_modal_free(struct modal *h);
+void tribo_modal_free(const struct modal *h);
+
+/* For another user. */
+const struct modal *tribo_modal_share(const struct modal *h);
 
 #endif

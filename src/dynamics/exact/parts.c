@@ -68,18 +68,28 @@ struct modal *tribo_modal_alloc(void)
     void *list = NULL;
     size_t bytes = 0;
     struct modal *h = tribo_modal_take(&list, &bytes, 1, sizeof *h);
-    if (h) {
-        h->memory = list;
-        h->bytes = bytes;
+    size_t *users = h ? tribo_modal_take(&list, &bytes, 1, sizeof *users) : NULL;
+    if (!users) {
+        tribo_modal_give_back(list);
+        return NULL;
     }
+    h->memory = list;
+    h->bytes = bytes;
+    h->users = users;
     return h;
 }
 
-void tribo_modal_free(struct modal *h)
+void tribo_modal_free(const struct modal *h)
 {
-    if (h) {
+    if (h && (*h->users)-- == 0) {
         tribo_modal_give_back(h->memory);
     }
+}
+
+const struct modal *tribo_modal_share(const struct modal *h)
+{
+    ++*h->users;
+    return h;
 }
 
 void tribo_modal_empty(void **list)

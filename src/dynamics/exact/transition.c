@@ -36,10 +36,9 @@ static void to_modes(const struct transition *x, const double *v, double *amplit
 static void add_modes(const struct transition *x, const double *amplitudes, double *v)
 {
     const struct modal *h = x->h;
-    double *rows = x->zr, *phi = x->zi;
-    tribo_transpose(h->modes, h->moving, h->phi, phi);
+    double *rows = x->zr;
     memset(rows, 0, h->moving * x->columns * sizeof *rows);
-    tribo_multiply_add(h->moving, h->modes, x->columns, 1.0, phi, amplitudes, rows);
+    tribo_multiply_transposed_add(h->modes, h->moving, x->columns, h->phi, amplitudes, rows);
     for (size_t i = 0; i < h->moving; i++) {
         tribo_add(v + h->dof[i] * x->columns, 1.0, rows + i * x->columns, x->columns);
     }

@@ -43,7 +43,7 @@ static void weigh(struct energy_norm *e, const tribo_system *sys)
 }
 
 /* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. */
-static int find(struct energy_norm *e, const tribo_system *sys, double *k, double *values, double least)
+static int find(struct energy_norm *e, const tribo_system *sys, double *k)
 {
     const size_t n = e->n;
     if (!dense_stiffness(sys, k)) {
@@ -55,30 +55,32 @@ static int find(struct energy_norm *e, const tribo_system *sys, double *k, doubl
     if (!tribo_dense_finite(e->psi, n * n)) {
         return TRIBO_ERR_NOT_FINITE;
     }
-    if (!tribo_symmetric_eigen(e->psi, n, values, e->phi)) {
+    if (!tribo_symmetric_eigen(e->psi, n, e->natural, e->phi)) {
         return TRIBO_ERR_MEMORY;
     }
     tribo_half_solve_back(&sys->factor, e->phi, n);
     weigh(e, sys);
     for (size_t i = 0; i < n; i++) {
-        e->omega[i] = greater(sqrt(fabs(values[i])), least);
+        e->natural[i] = sqrt(fabs(e->natural[i]));
     }
     return TRIBO_OK;
 }
 
-int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys, double least)
+int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = sys->ndof;
     *e = (struct energy_norm){.n = n};
     const size_t matrices = sys->massless.count ? 3 : 2;
-    e->phi = malloc((matrices * n * n + n + 1) * sizeof *e->phi);
-    double *work = malloc((n * n + n + 1) * sizeof *work);
+    e->phi = malloc((matrices * n * n + 3 * n + 1) * sizeof *e->phi);
+    double *work = malloc((n * n + 1) * sizeof *work);
     int status = TRIBO_ERR_MEMORY;
     if (e->phi && work) {
         e->psi = e->phi + n * n;
         e->rate = e->phi + (matrices - 1) * n * n;
         e->omega = e->rate + n * n;
-        status = find(e, sys, work, work + n * n, least);
+        e->natural = e->omega + n;
+        e->damping = e->natural + n;
+        status = find(e, sys, work);
     }
     free(work);
     return status ? tribo_system_fail(sys, status, "%s",
@@ -91,6 +93,37 @@ void tribo_energy_norm_free(struct energy_norm *e)
 {
     free(e->phi);
     memset(e, 0, sizeof *e);
+}
+
+void tribo_energy_norm_set_damping(struct energy_norm *e, const tribo_system *sys)
+{
+    const size_t n = e->n;
+    memset(e->damping, 0, n * sizeof *e->damping);
+    for (size_t i = 0; sys->damping.rows && i < n; i++) {
+        for (size_t m = sys->damping.first[i]; m < sys->damping.first[i + 1]; m++) {
+            const double *column = e->phi + sys->damping.col[m] * n, c = sys->damping.val[m];
+            for (size_t k = 0; k < n; k++) {
+                e->damping[k] += e->rate[k * n + i] * c * column[k];
+            }
+        }
+    }
+}
+
+int tribo_energy_norm_is_damped(const struct energy_norm *e)
+{
+    for (size_t k = 0; k < e->n; k++) {
+        if (!(e->damping[k] > 0.0)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+void tribo_energy_norm_set_least(struct energy_norm *e, double least)
+{
+    for (size_t i = 0; i < e->n; i++) {
+        e->omega[i] = greater(e->natural[i], least);
+    }
 }
 
 static void scale_rows(const struct energy_norm *e, size_t columns, int divide, double *rows)

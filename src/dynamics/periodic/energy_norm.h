@@ -12,13 +12,22 @@ struct energy_norm {
     double *phi;   /* [n][n] a mode in a column */
     double *psi;   /* [n][n] phi'M, what has no mass having some: inverse of phi */
     double *rate;  /* [n][n] phi'M; the same, if all has mass */
-    double *omega; /* [n] frequencies, none below a small one */
+    double *natural; /* [n] frequencies, */
+    double *damping; /* [n] damping of the modes, without what they share, */
+    double *omega;   /* [n] none below a small one */
 };
 
-/* least > 0: the frequency that modes without stiffness count with. Returns TRIBO_OK, or TRIBO_ERR_MEMORY or
+/* Returns TRIBO_OK, or TRIBO_ERR_MEMORY or
  * TRIBO_ERR_NOT_FINITE with a message on the system's context. tribo_energy_norm_free takes what failed too. */
-int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys, double least);
+int tribo_energy_norm_create(struct energy_norm *e, const tribo_system *sys);
 void tribo_energy_norm_free(struct energy_norm *e);
+
+/* Of the system as it is: the damping; and 1 if no mode is without. */
+void tribo_energy_norm_set_damping(struct energy_norm *e, const tribo_system *sys);
+int tribo_energy_norm_is_damped(const struct energy_norm *e);
+
+/* least > 0: the frequency that slower modes count with. */
+void tribo_energy_norm_set_least(struct energy_norm *e, double least);
 
 /* x [2n][columns] of states y [2n][columns], and back; x and y are different. */
 void tribo_energy_norm_of(const struct energy_norm *e, size_t columns, const double *y, double *x);

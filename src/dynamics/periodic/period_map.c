@@ -10,6 +10,9 @@
 /* Motions smaller than this part of what loads and bases would do at least are rounding of that. */
 #define LEAST_SIZE 1e-4
 
+/* Perturbations that tell whether contacts stop at one time by coincidence. */
+#define PROBES 4
+
 /* Modes without stiffness count with this part of the frequency of the period. */
 #define LEAST_OMEGA 0.1
 
@@ -137,38 +140,112 @@ static void enter(struct period_map *m)
     }
 }
 
-static void set_image(const struct period_map *m, size_t count, double *x)
+static void set_image(int odd, size_t count, double *x)
 {
-    for (size_t i = 0; m->odd && i < count; i++) {
+    for (size_t i = 0; odd && i < count; i++) {
         x[i] = -x[i];
     }
+}
+
+static int no_memory(const struct period_map *m)
+{
+    return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
+}
+
+static int on_driver(const struct period_map *m, int status)
+{
+    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts)) : TRIBO_OK;
+}
+
+/* A derivative without steps that is this point's alone; 0 if out of memory. */
+static int renew(struct period_map *m, struct point *p)
+{
+    if (p->derivative && p->derivative->users == 1) {
+        tribo_derivative_clear(p->derivative);
+        return 1;
+    }
+    tribo_derivative_free(p->derivative);
+    p->derivative = tribo_derivative_create(m->events, m->sys);
+    return p->derivative != NULL;
+}
+
+/* d->matrix = perturbations v [n][n], with which those of length 1 in coordinates of the norm end. */
+static int keep_matrix(struct period_map *m, const struct point *p, const double *v)
+{
+    double *matrix = malloc(m->n * m->n * sizeof *matrix);
+    if (!matrix) {
+        return no_memory(m);
+    }
+    tribo_energy_norm_of(&m->norm, m->n, v, matrix);
+    set_image(p->odd, m->n * m->n, matrix);
+    p->derivative->matrix = matrix;
+    return TRIBO_OK;
 }
 
 int tribo_period_map_follow(struct period_map *m, struct point *p)
 {
     const size_t n = m->n;
+    if (!renew(m, p)) {
+        return no_memory(m);
+    }
     set_state(m, p->x);
     int status = m->moved ? hold_still(m) : TRIBO_OK;
     enter(m);
     memcpy(p->y, m->y, n * sizeof *p->y);
     tribo_period_map_coordinates(m, m->y, p->x);
-    tribo_variation_begin(&m->variation, m->unit);
+    tribo_variation_begin(&m->variation, m->probe, p->derivative);
     m->size = greater(m->least, length(p->x, n));
     status = status ? status : integrate(m, m->t, m->t + m->span, &m->company);
+    status = status ? status : on_driver(m, m->variation.status);
     if (status) {
         return status;
     }
     m->moved = 1;
     memcpy(p->end, m->y, n * sizeof *p->end);
     tribo_period_map_coordinates(m, m->y, p->image);
-    tribo_energy_norm_of(&m->norm, n, m->variation.v, p->derivative);
-    set_image(m, n, p->image);
-    set_image(m, n * n, p->derivative);
+    set_image(m->odd, n, p->image);
     p->residual = distance(p->image, p->x, n);
     p->size = m->size;
+    p->odd = m->odd;
     p->torn = m->variation.torn;
     p->other = m->variation.other;
-    return TRIBO_OK;
+    return m->events->keep ? TRIBO_OK : keep_matrix(m, p, m->variation.v);
+}
+
+int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x)
+{
+    tribo_energy_norm_state(&m->norm, 1, x, m->y);
+    const int status = on_driver(m, tribo_derivative_apply(p->derivative, 0, 1, m->y));
+    tribo_energy_norm_of(&m->norm, 1, m->y, x);
+    set_image(p->odd, m->n, x);
+    return status;
+}
+
+/* v [n][n] = states of length 1. */
+static void set_units(const struct period_map *m, double *work, double *v)
+{
+    memset(work, 0, m->n * m->n * sizeof *work);
+    for (size_t i = 0; i < m->n; i++) {
+        work[i * m->n + i] = 1.0;
+    }
+    tribo_energy_norm_state(&m->norm, m->n, work, v);
+}
+
+int tribo_period_map_matrix(struct period_map *m, const struct point *p, const double **matrix)
+{
+    int status = TRIBO_OK;
+    if (!p->derivative->matrix) {
+        double *v = malloc(2 * m->n * m->n * sizeof *v);
+        if (!v) {
+            return no_memory(m);
+        }
+        set_units(m, v + m->n * m->n, v);
+        status = on_driver(m, tribo_derivative_apply(p->derivative, 0, m->n, v));
+        status = status ? status : keep_matrix(m, p, v);
+        free(v);
+    }
+    *matrix = p->derivative->matrix;
+    return status;
 }
 
 int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual)
@@ -273,24 +350,28 @@ static void prepare_sizes(struct period_map *m, const double *y)
     m->least = LEAST_SIZE * (m->scale * least);
 }
 
-static int prepare_norm(struct period_map *m, double period)
+/* What the variation follows: all perturbations, or some, between which there is nothing alike. */
+static int prepare_probes(struct period_map *m)
 {
-    const size_t n = m->n;
-    if (m->norm.phi && m->revision == m->sys->revision && m->period == period) {
-        return TRIBO_OK;
+    const size_t columns = m->events->keep && m->n > PROBES ? PROBES : m->n;
+    if (!m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, columns)) {
+        return no_memory(m);
     }
-    tribo_energy_norm_free(&m->norm);
-    const int status = tribo_energy_norm_create(&m->norm, m->sys, LEAST_OMEGA * turn() / period);
-    if (status) {
-        return tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts));
+    m->probe = m->probe ? m->probe : malloc(m->n * columns * sizeof *m->probe);
+    double *x = malloc(m->n * m->n * sizeof *x);
+    if (!m->probe || !x) {
+        free(x);
+        return no_memory(m);
     }
-    memset(m->work, 0, n * n * sizeof *m->work);
-    for (size_t i = 0; i < n; i++) {
-        m->work[i * n + i] = 1.0;
+    if (columns == m->n) {
+        set_units(m, x, m->probe);
+    } else {
+        for (size_t i = 0; i < m->n * columns; i++) {
+            x[i] = sin(1.0 + (double)(i * i));
+        }
+        tribo_energy_norm_state(&m->norm, columns, x, m->probe);
     }
-    tribo_energy_norm_state(&m->norm, n, m->work, m->unit);
-    m->revision = m->sys->revision;
-    m->period = period;
+    free(x);
     return TRIBO_OK;
 }
 
@@ -299,16 +380,26 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     m->halves = 0;
     m->moved = 0;
     int status = m->drv->method->open(m->drv, &m->events);
-    status = status ? status : prepare_norm(m, period);
-    if (!status && !m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, m->n)) {
-        status = tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
+    if (!status && !m->norm.phi) {
+        status = on_driver(m, tribo_energy_norm_create(&m->norm, m->sys));
+        if (status) {
+            tribo_energy_norm_free(&m->norm);
+        }
     }
-    if (!status) {
-        m->t = t;
-        tribo_period_map_choose(m, is_odd(m->sys, period));
-        prepare_sizes(m, y);
+    if (!status && m->period != period) {
+        tribo_energy_norm_set_least(&m->norm, LEAST_OMEGA * turn() / period);
+        m->period = period;
+        status = prepare_probes(m);
     }
-    return status;
+    if (status) {
+        m->period = 0.0;
+        return status;
+    }
+    tribo_energy_norm_set_damping(&m->norm, m->sys);
+    m->t = t;
+    tribo_period_map_choose(m, is_odd(m->sys, period));
+    prepare_sizes(m, y);
+    return TRIBO_OK;
 }
 
 void tribo_period_map_choose(struct period_map *m, int odd)
@@ -323,12 +414,10 @@ int tribo_period_map_create(struct period_map *m, tribo_driver *drv)
 {
     const size_t n = 2 * drv->sys->ndof;
     *m = (struct period_map){.drv = drv, .sys = drv->sys, .n = n, .company = {phase_ends, event_decided}};
-    m->y = malloc((2 * n * n + 2 * n + 2 * drv->sys->ncontact + 2) * sizeof *m->y);
+    m->y = malloc((2 * n + 2 * drv->sys->ncontact + 2) * sizeof *m->y);
     if (m->y) {
         m->x = m->y + n + 1;
-        m->unit = m->x + n + 1;
-        m->work = m->unit + n * n;
-        m->limit = m->work + n * n;
+        m->limit = m->x + n + 1;
     }
     return m->y != NULL;
 }
@@ -337,6 +426,7 @@ void tribo_period_map_free(struct period_map *m)
 {
     tribo_energy_norm_free(&m->norm);
     tribo_variation_free(&m->variation);
+    free(m->probe);
     free(m->y);
     memset(m, 0, sizeof *m);
 }

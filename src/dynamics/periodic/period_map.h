@@ -10,10 +10,11 @@
 struct point {
     double *y, *x;
     double *end, *image; /* the state after the span; and the image of x: that, or minus that */
-    double *derivative;  /* [n][n] of image by x */
-    double residual;     /* |image - x| */
-    double size;         /* the largest state on the way */
-    size_t torn, other;  /* two contacts for which there is no such derivative; ncontact: there is one */
+    struct derivative *derivative; /* of the state after the span by that before; NULL: there is none yet */
+    double residual;               /* |image - x| */
+    double size;                   /* the largest state on the way */
+    int odd;                       /* the image is minus the end */
+    size_t torn, other;            /* two contacts for which there is no such derivative; ncontact: there is one */
 };
 
 struct period_map {
@@ -23,11 +24,10 @@ struct period_map {
     size_t n; /* 2 ndof */
     struct energy_norm norm;
     double scale;    /* 1, but for motions so small or large that squares of their sizes are no numbers */
-    size_t revision; /* of the system whose norm it is */
     struct company company;
     struct variation variation;
     double *y, *x;          /* [n + 1] a state; [n] one in coordinates of the norm */
-    double *unit, *work;    /* [n][n] perturbed states to begin with; workspace */
+    double *probe;          /* [n][variation.columns] perturbed states to begin with */
     double *limit;          /* [2 ncontact] workspace */
     double t, period, span; /* span: of an integration */
     int odd;                /* span is half a period */
@@ -46,6 +46,11 @@ void tribo_period_map_free(struct period_map *m);
 int tribo_period_map_prepare(struct period_map *m, double t, double period, const double *y);
 int tribo_period_map_follow(struct period_map *m, struct point *p);
 int tribo_period_map_complete(struct period_map *m, struct point *p, double *residual);
+
+/* x [n] = the derivative of the image by x there, times x; and the same as a matrix [n][n], which the point keeps, made when it is
+ * first asked for. Both return a status. */
+int tribo_period_map_apply(struct period_map *m, const struct point *p, double *x);
+int tribo_period_map_matrix(struct period_map *m, const struct point *p, const double **matrix);
 
 /* x [n] of a state y [n]. */
 void tribo_period_map_coordinates(const struct period_map *m, const double *y, double *x);

@@ -2,7 +2,6 @@
 #include "shooting.h"
 
 #include <math.h>
-#include <string.h>
 
 /* A load goes round a whole number of times in a period, to this part of a turn. */
 #define WHOLE 1e-9
@@ -83,6 +82,7 @@ int tribo_events_find_periodic(tribo_driver *drv, double t, double period, doubl
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     drv->free_shooting = tribo_shooting_free;
+    drv->find_freedom = tribo_shooting_freedom;
     return drv->shooting
                ? tribo_shooting_find(drv->shooting, t, period, y)
                : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
@@ -107,7 +107,7 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
     if (!drv || !re || !im) {
         return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", re ? "im" : "re") : TRIBO_ERR_NULL;
     }
-    const struct shooting *s = drv->shooting;
+    struct shooting *s = drv->shooting;
     if (!s || !s->found) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
     }
@@ -118,7 +118,5 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
             "and it has no multipliers",
             s->best.torn, s->best.other);
     }
-    memcpy(re, s->re, s->map.n * sizeof *re);
-    memcpy(im, s->im, s->map.n * sizeof *im);
-    return TRIBO_OK;
+    return tribo_shooting_multipliers(s, re, im);
 }

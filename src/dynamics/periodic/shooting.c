@@ -17,6 +17,7 @@
 #include "shooting.h"
 #include "common/real.h"
 #include "numerics/eigen.h"
+#include "numerics/krylov.h"
 #include "numerics/least_norm.h"
 
 #include <math.h>
@@ -62,6 +63,14 @@
 #define CUT 1e-9
 #define FREE 1e-7
 
+/* Matrices with more rows are not made for steps, which leave this part of the residual; the free structure stands in where its
+ * determinants are more than NEARLY_SINGULAR. */
+#define DENSE 64
+#define INEXACT 1e-4
+#define NEARLY_SINGULAR 1e-6
+
+#define UNKNOWN ((size_t)-1)
+
 /* A guess that is so much of the motion's size away from the odd one, along the family, is meant. */
 #define MEANT 0.1
 
@@ -99,9 +108,13 @@ static void exchange(struct shooting *s)
 static void copy_point(const struct shooting *s, struct point *to, const struct point *from)
 {
     const size_t n = s->map.n;
-    memcpy(to->y, from->y, (4 * n + n * n) * sizeof *to->y); /* all arrays of a point are in one piece */
+    memcpy(to->y, from->y, 4 * n * sizeof *to->y); /* all arrays of a point are in one piece */
+    from->derivative->users++;
+    tribo_derivative_free(to->derivative);
+    to->derivative = from->derivative;
     to->residual = from->residual;
     to->size = from->size;
+    to->odd = from->odd;
     to->torn = from->torn;
     to->other = from->other;
 }
@@ -122,28 +135,118 @@ static double left_along(const struct shooting *s, const struct point *p)
     return tribo_dot(s->step, p->x, n) - tribo_dot(s->step, p->image, n);
 }
 
-/* to [n][n] = (1 + shift) I - derivative */
-static void set_matrix(const struct shooting *s, const double *derivative, double shift, double *to)
+/* a [n][n] = (1 + shift) I - derivative */
+static void set_matrix(const struct shooting *s, const double *derivative, double shift)
 {
     const size_t n = s->map.n;
     for (size_t i = 0; i < n * n; i++) {
-        to[i] = (i % (n + 1) == 0 ? 1.0 + shift : 0.0) - derivative[i];
+        s->a[i] = (i % (n + 1) == 0 ? 1.0 + shift : 0.0) - derivative[i];
     }
+}
+
+/* The matrix (1 + shift) I - derivative at a point, of one span or of two; `from the right` times the inverse that it has for
+ * the free structure. */
+struct equation {
+    struct shooting *s;
+    const struct point *at;
+    double shift;
+    int spans, free;
+};
+
+/* x = s->free x */
+static void apply_free(const struct shooting *s, double *x)
+{
+    const size_t half = s->map.n / 2;
+    for (size_t k = 0; k < half; k++) {
+        const double *t = s->free + 4 * k, q = x[k], u = x[half + k];
+        x[k] = t[0] * q + t[1] * u;
+        x[half + k] = t[2] * q + t[3] * u;
+    }
+}
+
+static int multiply(void *data, double *x)
+{
+    const struct equation *e = data;
+    struct shooting *s = e->s;
+    double *moved = s->a;
+    int status = TRIBO_OK;
+    if (e->free) {
+        apply_free(s, x);
+    }
+    memcpy(moved, x, s->map.n * sizeof *x);
+    for (int k = 0; !status && k < e->spans; k++) {
+        status = tribo_period_map_apply(&s->map, e->at, moved);
+    }
+    for (size_t i = 0; i < s->map.n; i++) {
+        x[i] = (1.0 + e->shift) * x[i] - moved[i];
+    }
+    return status;
+}
+
+/* s->free = of each mode the inverse of (1 + shift) I - what it does in a span. */
+static void set_free(struct shooting *s, double shift)
+{
+    const struct energy_norm *norm = &s->map.norm;
+    const double span = s->map.span, sign = s->map.odd ? -1.0 : 1.0;
+    for (size_t k = 0; k < norm->n; k++) {
+        const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
+        const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
+        const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
+        const double qq = 1.0 + shift - (c + half * d), qu = -norm->omega[k] * d, uq = omega * omega / norm->omega[k] * d;
+        const double uu = 1.0 + shift - (c - half * d), det = qq * uu - qu * uq;
+        const double inverse[] = {uu / det, -qu / det, -uq / det, qq / det};
+        static const double unit[] = {1.0, 0.0, 0.0, 1.0};
+        memcpy(s->free + 4 * k, square > 0.0 && fabs(det) > NEARLY_SINGULAR ? inverse : unit, sizeof unit);
+    }
+}
+
+/* x [n], the right-hand side, becomes the solution; *done = 0: no small space has it, x may be anything. Where contacts rest all
+ * the time, there may be many solutions: the Krylov space of a map that brings nothing further apart has the least one. */
+static int solve_in_space(struct shooting *s, const struct point *at, double shift, int spans, double tolerance, double *x,
+                          int *done)
+{
+    const int free = !tribo_derivative_rests(at->derivative) && spans == 1;
+    struct equation e = {s, at, shift, spans, free};
+    double part;
+    if (free) {
+        set_free(s, shift);
+    }
+    const int status = tribo_gmres(s->map.n, multiply, &e, tolerance, s->map.n / 2, x, &part, s->space);
+    if (free) {
+        apply_free(s, x);
+    }
+    *done = part <= tolerance;
+    return status;
+}
+
+/* 1 if matrices are too large to be made where that can be avoided. */
+static int is_large(const struct shooting *s)
+{
+    return s->map.n > DENSE && s->map.events->keep;
 }
 
 /* s->step with (I + shift - derivative) step = image - x, the least one if there are many. */
 static int newton_step(struct shooting *s, double shift)
 {
     const size_t n = s->map.n;
-    for (size_t i = 0; i < n; i++) {
-        s->step[i] = s->here.image[i] - s->here.x[i];
+    const double *derivative = NULL;
+    int done = 0, status = TRIBO_OK;
+    for (int large = is_large(s); large >= 0 && !status && !done; large--) {
+        for (size_t i = 0; i < n; i++) {
+            s->step[i] = s->here.image[i] - s->here.x[i];
+        }
+        status = large ? solve_in_space(s, &s->here, shift, 1, INEXACT, s->step, &done) : TRIBO_OK;
     }
-    set_matrix(s, s->here.derivative, shift, s->a);
+    status = status || done ? status : tribo_period_map_matrix(&s->map, &s->here, &derivative);
+    if (status || done) {
+        return status;
+    }
+    set_matrix(s, derivative, shift);
     if (tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
         tribo_lu_solve(s->a, n, s->pivot, s->step, 1);
         return TRIBO_OK;
     }
-    set_matrix(s, s->here.derivative, shift, s->a);
+    set_matrix(s, derivative, shift);
     return tribo_least_norm_solve(s->a, n, CUT, s->step, NULL) ? TRIBO_OK : no_memory(s);
 }
 
@@ -297,47 +400,74 @@ static int search_all(struct shooting *s)
 /* -------------------------------------------------------------------------------------------------------------- the family */
 
 /* s->b = the derivative of the whole period. */
-static void whole_derivative(struct shooting *s)
+static int whole_derivative(struct shooting *s)
 {
     const size_t n = s->map.n;
-    const double *d = s->best.derivative;
-    if (s->map.odd) {
+    const double *d = NULL;
+    const int status = tribo_period_map_matrix(&s->map, &s->best, &d);
+    if (!status && s->best.odd) {
         memset(s->b, 0, n * n * sizeof *s->b);
         tribo_multiply_add(n, n, n, 1.0, d, d, s->b);
-    } else {
+    } else if (!status) {
         memcpy(s->b, d, n * n * sizeof *s->b);
     }
+    return status;
 }
 
 /* Counts the directions in which there are other such motions; takes out of move [n] what leads elsewhere. */
 static int find_family(struct shooting *s, double *move)
 {
     const size_t n = s->map.n;
-    whole_derivative(s);
-    set_matrix(s, s->b, 0.0, s->a);
-    s->map.drv->freedom = 0;
+    const int status = whole_derivative(s);
+    if (status) {
+        return status;
+    }
+    set_matrix(s, s->b, 0.0);
+    s->freedom = 0;
     if (tribo_lu_create(s->a, n, s->pivot) > SINGULAR) {
+        memset(move, 0, n * sizeof *move);
         return TRIBO_OK;
     }
-    set_matrix(s, s->b, 0.0, s->a);
-    for (size_t i = 0; i < n; i++) {
-        s->step[i] = tribo_dot(s->a + i * n, move, n);
-    }
-    if (!tribo_least_norm_solve(s->a, n, FREE, s->step, &s->map.drv->freedom)) {
+    set_matrix(s, s->b, 0.0);
+    memset(s->step, 0, n * sizeof *s->step);
+    tribo_multiply_add(n, n, 1, 1.0, s->a, move, s->step);
+    if (!tribo_least_norm_solve(s->a, n, FREE, s->step, &s->freedom)) {
+        s->freedom = UNKNOWN;
         return no_memory(s);
     }
     tribo_add(move, -1.0, s->step, n);
     return TRIBO_OK;
 }
 
-/* The odd motion is one of a family, and the guess was near another one: that is taken if it comes back. */
+/* Takes out of move [n] what leads out of the family, if there is one. Where all contacts slide, and all modes are damped, there
+ * is none. */
+static int stay_in_family(struct shooting *s, double *move)
+{
+    const size_t n = s->map.n;
+    int status = TRIBO_OK, done = 0;
+    if (is_large(s)) {
+        if (tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(s->best.derivative)) {
+            memset(move, 0, n * sizeof *move);
+            return TRIBO_OK;
+        }
+        memcpy(s->step, move, n * sizeof *move);
+        status = multiply(&(struct equation){s, &s->best, 0.0, 2, 0}, s->step);
+        status = status ? status : solve_in_space(s, &s->best, 0.0, 2, FREE, s->step, &done);
+    }
+    if (!status && done) {
+        tribo_add(move, -1.0, s->step, n);
+    }
+    return status || done ? status : find_family(s, move);
+}
+
+/* The odd motion may be one of a family, and the guess near another one: that is taken if it comes back. */
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
     const int any = s->map.odd && length(s->guess, n) > 0.0;
     tribo_add(s->guess, -1.0, s->best.x, n);
-    int status = find_family(s, s->guess);
-    if (status || !any || s->map.drv->freedom == 0 || length(s->guess, n) < MEANT * s->best.size) {
+    int status = any && length(s->guess, n) >= MEANT * s->best.size ? stay_in_family(s, s->guess) : TRIBO_OK;
+    if (status || !any || length(s->guess, n) < MEANT * s->best.size) {
         return status;
     }
     tribo_period_map_choose(&s->map, 0);
@@ -352,34 +482,41 @@ static int approach_guess(struct shooting *s)
     return status;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- multipliers */
-
-static double size_of(const struct shooting *s, size_t i)
+int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 {
-    return hypot(s->re[i], s->im[i]);
+    const int status = s->found && s->freedom == UNKNOWN ? find_family(s, s->guess) : TRIBO_OK;
+    *freedom = s->found && !status ? s->freedom : 0;
+    return status;
 }
 
+/* -------------------------------------------------------------------------------------------------------------- multipliers */
+
 /* The largest first; pairs, next to each other and of one size, stay as they are. */
-static void sort(struct shooting *s)
+static void sort(size_t n, double *all_re, double *all_im)
 {
-    for (size_t i = 1; i < s->map.n; i++) {
-        const double re = s->re[i], im = s->im[i], size = size_of(s, i);
+    for (size_t i = 1; i < n; i++) {
+        const double re = all_re[i], im = all_im[i], size = hypot(re, im);
         size_t k = i;
-        for (; k > 0 && size_of(s, k - 1) < size; k--) {
-            s->re[k] = s->re[k - 1];
-            s->im[k] = s->im[k - 1];
+        for (; k > 0 && hypot(all_re[k - 1], all_im[k - 1]) < size; k--) {
+            all_re[k] = all_re[k - 1];
+            all_im[k] = all_im[k - 1];
         }
-        s->re[k] = re;
-        s->im[k] = im;
+        all_re[k] = re;
+        all_im[k] = im;
     }
 }
 
-static int find_multipliers(struct shooting *s)
+int tribo_shooting_multipliers(struct shooting *s, double *re, double *im)
 {
     const size_t n = s->map.n;
-    whole_derivative(s);
-    const int status = tribo_eigen(s->b, n, s->re, s->im, s->a);
-    sort(s);
+    int status = whole_derivative(s);
+    if (status) {
+        return status;
+    }
+    status = tribo_eigen(s->b, n, re, im, s->a);
+    if (!status) {
+        sort(n, re, im);
+    }
     return status
                ? tribo_driver_fail(s->map.drv, status, "multipliers of %zu equation%s: %s", n, plural(n), tribo_strerror(status))
                : TRIBO_OK;
@@ -409,7 +546,6 @@ static int find(struct shooting *s, double *y)
     if (!status && !comes_back(residual, s->best.size, TOLERANCE)) {
         return no_convergence(s, residual / s->best.size);
     }
-    status = status ? status : find_multipliers(s);
     if (!status) {
         memcpy(y, s->best.y, s->map.n * sizeof *y);
         y[s->map.n] = 0.0;
@@ -423,6 +559,7 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
 {
     tribo_driver *drv = s->map.drv;
     s->found = 0;
+    s->freedom = UNKNOWN;
     int status = tribo_period_map_prepare(&s->map, t, period, y);
     status = status ? status : find(s, y);
     drv->periods += (s->map.halves + 1) / 2;
@@ -437,8 +574,7 @@ static double *place_point(struct point *p, size_t n, double *at)
     p->x = at + n;
     p->end = at + 2 * n;
     p->image = at + 3 * n;
-    p->derivative = at + 4 * n;
-    return at + 4 * n + n * n;
+    return at + 4 * n;
 }
 
 struct shooting *tribo_shooting_create(tribo_driver *drv)
@@ -448,25 +584,27 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
     if (!s) {
         return NULL;
     }
-    s->memory = malloc((5 * n * n + 16 * n + 1) * sizeof *s->memory);
+    s->memory = malloc((2 * n * n + 16 * n + tribo_gmres_room(n, n / 2) + 1) * sizeof *s->memory);
     s->pivot = malloc((n + 1) * sizeof *s->pivot);
     if (!tribo_period_map_create(&s->map, drv) || !s->memory || !s->pivot) {
         tribo_shooting_free(s);
         return NULL;
     }
-    double *next = place_point(&s->best, n, place_point(&s->there, n, place_point(&s->here, n, s->memory)));
-    double **const vectors[] = {&s->step, &s->guess, &s->re, &s->im};
-    for (size_t k = 0; k < 4; k++) {
-        *vectors[k] = next + k * n;
-    }
-    s->a = next + 4 * n;
+    s->step = place_point(&s->best, n, place_point(&s->there, n, place_point(&s->here, n, s->memory)));
+    s->guess = s->step + n;
+    s->free = s->guess + n;
+    s->a = s->free + 2 * n;
     s->b = s->a + n * n;
+    s->space = s->b + n * n;
     return s;
 }
 
 void tribo_shooting_free(struct shooting *s)
 {
     if (s) {
+        tribo_derivative_free(s->here.derivative);
+        tribo_derivative_free(s->there.derivative);
+        tribo_derivative_free(s->best.derivative);
         tribo_period_map_free(&s->map);
         free(s->memory);
         free(s->pivot);

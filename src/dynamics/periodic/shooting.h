@@ -9,6 +9,8 @@ struct shooting {
     struct point here, there, best; /* where the search is; where a step leads; where it goes back to */
     double *memory;
     double *a, *b;        /* [n][n] workspace */
+    double *space;        /* of Krylov spaces, and */
+    double *free;         /* [2 n] the inverse of I - derivative that the free structure has: [n/2] matrices of two rows */
     double *step, *guess; /* [n] */
     size_t *pivot;        /* [n] */
     double ratio;         /* what is left along the step after it, beside what was before */
@@ -17,14 +19,18 @@ struct shooting {
     size_t astray;        /* steps since best that did not pay */
     size_t setbacks;      /* how often the search has gone back */
     double nearest;       /* the least residual seen beside the size */
-    double *re, *im;      /* [n] multipliers of the last motion found */
     int found;
+    size_t freedom; /* the dimension of the family of the motion found, once it is asked for; or UNKNOWN */
     size_t revision; /* of the system then */
 };
 
 /* NULL if out of memory. */
 struct shooting *tribo_shooting_create(tribo_driver *drv);
 void tribo_shooting_free(struct shooting *s);
+
+/* The multipliers re, im [n] of the motion found; the dimension of its family, 0 if none was found. Both return a status. */
+int tribo_shooting_multipliers(struct shooting *s, double *re, double *im);
+int tribo_shooting_freedom(struct shooting *s, size_t *freedom);
 
 /* As tribo_driver_find_periodic, arguments being checked. */
 int tribo_shooting_find(struct shooting *s, double t, double period, double *y);

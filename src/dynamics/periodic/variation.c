@@ -1,5 +1,4 @@
 #include "variation.h"
-#include "dynamics/system/elastic.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -66,15 +65,15 @@ static int find_pull(struct variation *x)
     const size_t n = x->sys->ndof;
     double *state = x->column, *change = state + 2 * n;
     int status = TRIBO_OK;
-    for (size_t j = 0; !status && j < x->columns; j++) {
-        for (size_t d = 0; d < 2 * n; d++) {
-            state[d] = x->v[d * x->columns + j];
-        }
+    memset(state, 0, 2 * n * sizeof *state);
+    for (size_t j = 0; !status && j < 2 * n; j++) {
+        state[j] = 1.0;
         memset(change, 0, n * sizeof *change);
         add_change(x->sys, state, state + n, change);
+        state[j] = 0.0;
         status = change_of_holds(x, change, 0);
         for (size_t k = 0; k < x->count; k++) {
-            x->pull[k * x->columns + j] = x->side[x->met[k]] * x->f[x->met[k]];
+            x->pull[k * 2 * n + j] = x->side[x->met[k]] * x->f[x->met[k]];
         }
     }
     return status;
@@ -171,20 +170,34 @@ static int look_at_met(struct variation *x, const double *y)
     return status ? status : find_bond(x);
 }
 
+static int no_memory(const struct variation *x)
+{
+    return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for the derivative of a motion");
+}
+
+/* Takes x->v along. */
+static int catch_up(struct variation *x)
+{
+    const size_t first = x->applied;
+    x->applied = x->to->steps;
+    return tribo_derivative_apply(x->to, first, x->columns, x->v);
+}
+
 static int phase_ends(struct company *company, double tau, double t, const double *y)
 {
     struct variation *x = (struct variation *)company;
     tribo_system *sys = x->sys;
     memcpy(x->before, x->events->stick_slip.slip, sys->ncontact);
-    if (sys->massless.count) {
-        tribo_elastic_perturb(sys, x->before, x->columns, x->v, x->work);
-    }
     int status = tribo_stick_slip_acceleration(&x->events->stick_slip, sys, t, y, x->acceleration, x->force);
+    status = status ? status : x->status;
     find_met(x);
     memset(x->slope, 0, sys->ncontact * sizeof *x->slope);
     tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
     tribo_matrix_multiply_add(&sys->direction, 1.0, x->acceleration, x->slope);
-    status = status ? status : x->events->transition(x->events->motion, tau, x->columns, x->v);
+    if (!status && !tribo_derivative_add_phase(x->to, tau, x->before)) {
+        status = no_memory(x);
+    }
+    status = status || x->events->keep ? status : catch_up(x);
     return status || !x->count ? status : look_at_met(x, y);
 }
 
@@ -210,23 +223,40 @@ static int stops(const struct variation *x, size_t i)
     return slid && now != 2 && before * x->slope[i] < 0.0 && (now != before || pulls_loose(x, i));
 }
 
-/* u += jump of accelerations, dt earlier: slope dt = row. */
+/* Adds a jump of accelerations, dt earlier: slope dt = row times perturbation. Returns where it is to be set: entries ndof, one
+ * in ncontact numbers. */
+static double *add_jump(struct variation *x, double slope, const double *row)
+{
+    const size_t n = 2 * x->sys->ndof;
+    double *to = x->row + x->jumps * n;
+    for (size_t j = 0; j < n; j++) {
+        to[j] = row[j] / slope;
+    }
+    return x->jump + x->jumps++;
+}
+
+/* That of all accelerations. */
 static void jump_earlier(struct variation *x, double slope, const double *row)
 {
-    const size_t n = x->sys->ndof;
     const double *after = tribo_stick_slip_find_acceleration(&x->events->stick_slip, x->sys);
-    for (size_t d = 0; d < n; d++) {
-        tribo_add(x->v + (n + d) * x->columns, (after[d] - x->acceleration[d]) / slope, row, x->columns);
+    double *jump = add_jump(x, slope, row);
+    for (size_t d = 0; d < x->sys->ndof; d++) {
+        jump[d * x->sys->ncontact] = after[d] - x->acceleration[d];
     }
 }
 
-/* The contacts that stop, to x->stopped, and how much earlier perturbed motions have them do so, in rows. Returns how many. */
+/* The contacts that stop, to x->stopped, and by how much perturbations change their velocities, in rows. Returns how many. */
 static size_t find_stopped(struct variation *x)
 {
+    const struct matrix *j = &x->sys->direction;
     size_t count = 0;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         if (stops(x, i)) {
-            tribo_contact_row(x->sys, i, x->v + x->sys->ndof * x->columns, x->columns, x->rows + count * x->columns);
+            double *row = x->rows + count * 2 * x->sys->ndof;
+            memset(row, 0, 2 * x->sys->ndof * sizeof *row);
+            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+                row[x->sys->ndof + j->col[k]] += j->val[k];
+            }
             x->stopped[count++] = i;
         }
     }
@@ -234,13 +264,19 @@ static size_t find_stopped(struct variation *x)
 }
 
 /* 1 if perturbed motions, too, have these contacts stop, or break away, at one time: others that hold tie them together. What has
- * to be zero then has slopes by contact, and changes by rows. */
-static int together(const struct variation *x, const size_t *contact, size_t count, const double *slope, const double *rows)
+ * to be zero then has slopes by contact, and changes by rows times perturbation. */
+static int together(struct variation *x, const size_t *contact, size_t count, const double *slope, const double *rows)
 {
-    const double first = slope[contact[0]], size = tribo_largest(rows, x->columns) / fabs(first);
+    if (count == 1) {
+        return 1;
+    }
+    x->status = x->status ? x->status : catch_up(x);
+    memset(x->changes, 0, count * x->columns * sizeof *x->changes);
+    tribo_multiply_add(count, 2 * x->sys->ndof, x->columns, 1.0, rows, x->v, x->changes);
+    const double first = slope[contact[0]], size = tribo_largest(x->changes, x->columns) / fabs(first);
     for (size_t k = 1; k < count; k++) {
         for (size_t j = 0; j < x->columns; j++) {
-            const double dt = rows[k * x->columns + j] / slope[contact[k]] - rows[j] / first;
+            const double dt = x->changes[k * x->columns + j] / slope[contact[k]] - x->changes[j] / first;
             if (fabs(dt) > TOGETHER * size) {
                 return 0;
             }
@@ -287,13 +323,13 @@ static void gather_all(struct variation *x, size_t count)
 
 static void swap_stopped(struct variation *x, size_t i, size_t k)
 {
-    const size_t contact = x->stopped[i];
+    const size_t contact = x->stopped[i], n = 2 * x->sys->ndof;
     x->stopped[i] = x->stopped[k];
     x->stopped[k] = contact;
-    for (size_t j = 0; i != k && j < x->columns; j++) {
-        const double change = x->rows[i * x->columns + j];
-        x->rows[i * x->columns + j] = x->rows[k * x->columns + j];
-        x->rows[k * x->columns + j] = change;
+    for (size_t j = 0; i != k && j < n; j++) {
+        const double change = x->rows[i * n + j];
+        x->rows[i * n + j] = x->rows[k * n + j];
+        x->rows[k * n + j] = change;
     }
 }
 
@@ -309,18 +345,18 @@ static size_t bring_forward(struct variation *x, size_t first, size_t count, siz
     return next - first;
 }
 
-/* u += the part that a group has in the jump of accelerations, dt earlier: slope dt = row. */
+/* The part that a group has in the jump of accelerations. */
 static void jump_of_group(struct variation *x, size_t group, double slope, const double *row)
 {
     const size_t n = x->sys->ndof;
-    double *jump = x->column;
+    double *jump = add_jump(x, slope, row), *change = x->column;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         x->f[i] = x->group[i] == group ? x->events->stick_slip.force[i] - x->force[i] : 0.0;
     }
-    memset(jump, 0, n * sizeof *jump);
-    tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, jump);
+    memset(change, 0, n * sizeof *change);
+    tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, change);
     for (size_t d = 0; d < n; d++) {
-        tribo_add(x->v + (n + d) * x->columns, jump[d] / slope, row, x->columns);
+        jump[d * x->sys->ncontact] = change[d];
     }
 }
 
@@ -341,7 +377,7 @@ static void stop_by_groups(struct variation *x, size_t count)
 {
     for (size_t next = 0, of_group; next < count; next += of_group) {
         const size_t *stopped = x->stopped + next, group = x->group[stopped[0]];
-        const double *rows = x->rows + next * x->columns;
+        const double *rows = x->rows + next * 2 * x->sys->ndof;
         of_group = bring_forward(x, next, count, group);
         if (together(x, stopped, of_group, x->slope, rows)) {
             jump_of_group(x, group, x->slope[stopped[0]], rows);
@@ -384,10 +420,10 @@ static void stop_earlier(struct variation *x)
 static void let_go(struct variation *x, size_t i, const double *row)
 {
     const struct stick_slip *m = &x->events->stick_slip;
-    const double ratio = tribo_breakaway_ratio(&m->breakaway, i),
-                 jump = -(m->slip[i] + x->side[i] * ratio) * m->limit[i] / x->rise[i];
+    const double drop = -(m->slip[i] + x->side[i] * tribo_breakaway_ratio(&m->breakaway, i)) * m->limit[i];
+    double *jump = add_jump(x, x->rise[i], row);
     for (size_t d = 0; d < x->sys->ndof; d++) {
-        tribo_add(x->v + (x->sys->ndof + d) * x->columns, jump * tribo_matrix_get(&x->sys->response, d, i), row, x->columns);
+        jump[d * x->sys->ncontact] = drop * tribo_matrix_get(&x->sys->response, d, i);
     }
 }
 
@@ -416,7 +452,7 @@ static void break_away_earlier(struct variation *x)
         const size_t bound = find_bound(x);
         for (size_t k = 0; k < x->count; k++) {
             if (now[x->met[k]] != 0) {
-                let_go(x, x->met[k], x->pull + k * x->columns);
+                let_go(x, x->met[k], x->pull + k * 2 * x->sys->ndof);
             }
         }
         if (bound < x->sys->ncontact) {
@@ -429,39 +465,51 @@ static void break_away_earlier(struct variation *x)
 static void event_decided(struct company *company)
 {
     struct variation *x = (struct variation *)company;
+    const size_t n = x->sys->ndof, c = x->sys->ncontact;
+    x->jumps = 0;
     stop_earlier(x);
     break_away_earlier(x);
+    for (size_t d = 0; d < n; d++) {
+        memmove(x->jump + d * x->jumps, x->jump + d * c, x->jumps * sizeof *x->jump);
+    }
+    if (x->jumps && !tribo_derivative_add_jumps(x->to, x->jumps, x->row, x->jump)) {
+        x->status = no_memory(x);
+    } else if (!x->events->keep && !x->status) {
+        x->status = catch_up(x);
+    }
 }
 
-void tribo_variation_begin(struct variation *x, const double *v)
+void tribo_variation_begin(struct variation *x, const double *v, struct derivative *to)
 {
     memcpy(x->v, v, 2 * x->sys->ndof * x->columns * sizeof *v);
+    x->to = to;
+    x->applied = 0;
+    x->status = TRIBO_OK;
     x->torn = x->other = x->sys->ncontact;
 }
 
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns)
 {
+    const size_t n = sys->ndof, c = sys->ncontact;
     *x = (struct variation){.company = {phase_ends, event_decided}, .events = e, .sys = sys, .columns = columns};
-    x->v = malloc((2 * (sys->ndof + sys->ncontact) * columns + 6 * sys->ncontact + 6 * sys->ndof + 1) * sizeof *x->v);
-    x->before = malloc(2 * sys->ncontact + 1);
-    x->stopped = malloc((4 * sys->ncontact + 1) * sizeof *x->stopped);
+    x->v = malloc((2 * n * columns + c * (columns + 7 * n) + 5 * c + 4 * n + 1) * sizeof *x->v);
+    x->before = malloc(2 * c + 1);
+    x->stopped = malloc((4 * c + 1) * sizeof *x->stopped);
     if (!x->v || !x->before || !x->stopped) {
         return 0;
     }
-    x->rows = x->v + 2 * sys->ndof * columns;
-    x->slope = x->rows + sys->ncontact * columns;
-    x->a = x->slope + sys->ncontact;
-    x->f = x->a + sys->ncontact;
-    x->acceleration = x->f + sys->ncontact;
-    x->column = x->acceleration + sys->ndof;
-    x->pull = x->column + 3 * sys->ndof;
-    x->work = x->pull + sys->ncontact * columns;
-    x->rise = x->work + 2 * sys->ndof + sys->ncontact;
-    x->side = x->before + sys->ncontact;
-    x->force = x->rise + sys->ncontact;
-    x->met = x->stopped + sys->ncontact;
-    x->group = x->met + sys->ncontact;
-    x->queue = x->group + sys->ncontact;
+    double **const array[] = {&x->rows, &x->pull, &x->row, &x->jump, &x->changes, &x->slope, &x->a,
+                              &x->f,    &x->rise, &x->force, &x->acceleration, &x->column};
+    const size_t count[] = {2 * n * c, 2 * n * c, 2 * n * c, n * c, c * columns, c, c, c, c, c, n, 3 * n};
+    double *next = x->v + 2 * n * columns;
+    for (size_t k = 0; k < sizeof array / sizeof *array; k++) {
+        *array[k] = next;
+        next += count[k];
+    }
+    x->side = x->before + c;
+    x->met = x->stopped + c;
+    x->group = x->met + c;
+    x->queue = x->group + c;
     return 1;
 }
 

@@ -14,18 +14,21 @@
 #ifndef TRIBO_VARIATION_H
 #define TRIBO_VARIATION_H
 
-#include "dynamics/events/events.h"
+#include "derivative.h"
 
 struct variation {
     struct company company;
     struct events *events;
     tribo_system *sys;
+    struct derivative *to; /* of the motion so far */
     size_t columns;
-    double *v;            /* [2 ndof][columns] perturbations; set before the motion begins */
-    double *rows;         /* [ncontact][columns] workspace */
+    double *v;            /* [2 ndof][columns] perturbations, as the first `applied` steps of that leave them */
+    size_t applied;       /* if phases are not kept: all of them */
+    int status;           /* of a failure in an event, its message on the system's context */
+    double *rows;         /* [ncontact][2 ndof] by how much a perturbation changes velocities where contacts stop */
+    double *changes;      /* [ncontact][columns] workspace */
     double *slope;        /* [ncontact] v' where the phase ends, */
     double *acceleration; /* [ndof] and q'' */
-    double *work;         /* [2 ndof + ncontact] */
     signed char *before;  /* [ncontact] slip in the phase that ends */
     size_t *stopped;      /* [ncontact] the contacts that stop there */
     size_t *group;     /* [ncontact] which of them, and of those at rest, pass forces to each other: 1, 2, ...; 0: none of them */
@@ -34,10 +37,13 @@ struct variation {
     size_t *met;       /* [ncontact] the contacts whose static limits their forces meet there, */
     size_t count;      /* how many they are, */
     signed char *side; /* [ncontact] the signs of these forces, */
-    double *pull;      /* [ncontact][columns] their changes, in the order of met, */
+    double *pull;      /* [ncontact][2 ndof] by how much a perturbation changes them, in the order of met, */
     double *rise;      /* [ncontact] and how fast they outgrow the limits */
     size_t bond;       /* one of them whose force changes if another one is let go; ncontact: there is none */
     size_t torn, other; /* two contacts that leave the motion without a derivative; ncontact: there are none */
+    size_t jumps;       /* of q'' at the event: */
+    double *row;        /* [ncontact][2 ndof] by how much earlier it is */
+    double *jump;       /* [ndof][ncontact] times this */
     double *column;     /* [3 ndof] workspace; */
     double *a, *f;      /* [ncontact] and this */
 };
@@ -46,8 +52,9 @@ struct variation {
 int tribo_variation_create(struct variation *x, struct events *e, tribo_system *sys, size_t columns);
 void tribo_variation_free(struct variation *x);
 
-/* Sets perturbations v [2 ndof][columns], before the motion begins. */
-void tribo_variation_begin(struct variation *x, const double *v);
+/* Before the motion begins: v [2 ndof][columns]: perturbations that are looked at where contacts stop at one time; steps go
+ * `to` a derivative without any. */
+void tribo_variation_begin(struct variation *x, const double *v, struct derivative *to);
 
 /* row [columns] = J_i times rows of v, those of displacements (ndof rows) or of velocities. */
 void tribo_contact_row(const tribo_system *sys, size_t i, const double *v, size_t columns, double *row);

@@ -252,7 +252,7 @@ static void destroy(tribo_driver *drv)
 }
 
 static int begin(void *motion, double t, const double *y, double *reach);
-static int transition(void *motion, double tau, size_t columns, double *v);
+static int transition(void *motion, const void *phase, double tau, size_t columns, double *v);
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
 static double work(const void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
@@ -528,8 +528,9 @@ static int begin(void *motion, double t, const double *y, double *reach)
                                    "at t = %.17g derivatives of the motion overflow: it grows without bound, or is too fast", t);
 }
 
-static int transition(void *motion, double tau, size_t columns, double *v)
+static int transition(void *motion, const void *phase, double tau, size_t columns, double *v)
 {
+    (void)phase;
     struct event *e = motion;
     const int falls = e->events.stick_slip.breakaway.falls;
     const struct slopes slopes = {falls ? e->order + 1 : 0, e->slope};
