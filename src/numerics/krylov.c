@@ -10,7 +10,7 @@ size_t tribo_gmres_room(size_t n, size_t most)
 }
 
 /* Turns (a, b) by the angle with cosine c and sine s. */
-static void turn(double c, double s, double *a, double *b)
+static void rotate_pair(double c, double s, double *a, double *b)
 {
     const double x = *a;
     *a = c * x + s * *b;
@@ -57,7 +57,7 @@ int tribo_gmres(size_t n, tribo_product *product, void *data, double tolerance, 
         }
         orthonormalize(n, count + 1, v, h);
         for (size_t i = 0; i < count; i++) {
-            turn(c[i], s[i], &h[i], &h[i + 1]);
+            rotate_pair(c[i], s[i], &h[i], &h[i + 1]);
         }
         const double length = hypot(h[count], h[count + 1]);
         if (!(length > 0.0)) {
@@ -67,7 +67,7 @@ int tribo_gmres(size_t n, tribo_product *product, void *data, double tolerance, 
         s[count] = h[count + 1] / length;
         h[count] = length;
         rhs[count + 1] = 0.0;
-        turn(c[count], s[count], &rhs[count], &rhs[count + 1]);
+        rotate_pair(c[count], s[count], &rhs[count], &rhs[count + 1]);
         count++;
         *part = fabs(rhs[count]) / size;
     }

@@ -88,7 +88,7 @@ static int find_modes(struct modal_build *b)
     const int held = z.rows > 0;
     b->h->modes = held ? z.cols : b->n;
     b->h->omega2 = tribo_modal_keep(b, b->h->modes);
-    b->phi = tribo_modal_scratch(b, b->h->modes * b->n);
+    b->phi = b->h->phi = tribo_modal_keep(b, b->h->modes * b->n);
     status = status || (b->h->omega2 && b->phi) ? status : TRIBO_ERR_MEMORY;
     if (!status && b->h->modes > 0) {
         status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
@@ -256,14 +256,60 @@ static void number_as_whole(struct modal_build *b)
     }
 }
 
+/* What does not depend on loads. Returns a status, TRIBO_ERR_MEMORY if none is in b. */
+static int find_structure(struct modal_build *b)
+{
+    if (!find_modes(b) || !multiply_modes(b) || !find_damping(b) || !find_drifts(b) || !tribo_modal_hold(b)) {
+        return b->status ? b->status : TRIBO_ERR_MEMORY;
+    }
+    return tribo_modal_exponents(b);
+}
+
+/* The same of all degrees of freedom, which is kept while the structure is what it is. */
+static int recall_structure(struct modal_build *b)
+{
+    struct modal_whole *w = b->whole;
+    size_t *key = tribo_modal_scratch_indices(b, b->rests + 2);
+    if (!key) {
+        return TRIBO_ERR_MEMORY;
+    }
+    key[0] = b->rests;
+    memcpy(key + 2, b->rest, b->rests * sizeof *key);
+    struct modal *h = b->h, *known = tribo_modal_recall(w->structures, b->rests + 2, key);
+    int status = TRIBO_OK;
+    if (!known) {
+        b->h = known = tribo_modal_alloc();
+        status = known ? find_structure(b) : TRIBO_ERR_MEMORY;
+        b->h = h;
+        if (status) {
+            tribo_modal_free(known);
+            return status;
+        }
+        status = tribo_modal_remember(w->structures, b->rests + 2, key, known);
+    }
+    if (status) {
+        return status;
+    }
+    const struct modal own = *h;
+    *h = *known;
+    h->key = own.key;
+    h->memory = own.memory;
+    h->bytes = own.bytes;
+    h->users = own.users;
+    h->base = tribo_modal_share(known);
+    b->phi = h->phi;
+    return b->psi || multiply_modes(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+}
+
 /* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
 static int find_all(struct modal_build *b, const unsigned char *holds)
 {
-    if (!find_part_key(b, holds) || !list_rest(b, holds) || !find_modes(b) || !multiply_modes(b) || !find_damping(b) ||
-        !find_drifts(b)) {
+    if (!find_part_key(b, holds) || !list_rest(b, holds)) {
         return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
-    const int status = tribo_modal_exponents(b);
+    const tribo_system *sys = b->whole->sys;
+    const int kept = b->n == sys->ndof && (!sys->massless.count || sys->base_harmonics == 0);
+    const int status = kept ? recall_structure(b) : find_structure(b);
     if (status) {
         return status;
     }

@@ -30,6 +30,9 @@ struct exact {
     struct modal_whole whole; /* what these are decompositions of; zeros until there is one */
     struct held *held;
     size_t helds, room, bytes, revision;
+    struct modal_known structures; /* what of these stays when loads change, in one list, */
+    struct modal_piece *list;
+    size_t structure; /* while the system has this one */
 
     struct modal_motion motion; /* of the phase, */
     struct course *course;      /* [ncontact] and of the outputs that guards are of */
@@ -51,7 +54,7 @@ static void drop_helds(struct exact *x)
 
 static int find_whole(struct exact *x)
 {
-    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys);
+    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys, &x->structures);
     if (status) {
         tribo_modal_whole_free(&x->whole);
     }
@@ -92,8 +95,9 @@ static int find_held(struct exact *x, const struct modal **found)
             return TRIBO_OK;
         }
     }
-    if (x->bytes + x->whole.known.bytes > CACHE_BYTES) {
+    if (x->bytes + x->whole.known.bytes + x->structures.bytes > CACHE_BYTES) {
         drop_helds(x);
+        tribo_modal_forget(&x->structures);
     }
     if (x->helds == x->room) {
         const size_t room = 2 * x->room + 16;
@@ -334,6 +338,7 @@ static void destroy(tribo_driver *drv)
     struct exact *x = drv->own;
     if (x) {
         drop_helds(x);
+        tribo_modal_forget(&x->structures);
         free(x->held);
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
@@ -371,6 +376,7 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
+    x->structures = (struct modal_known){.piece = &x->list, .lists = 1};
     x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
     const int status = tribo_events_create(&x->events, drv);
     if (status) {
@@ -404,6 +410,10 @@ static int open_events(tribo_driver *drv, struct events **events)
     if (x->revision != sys->revision) {
         drop_helds(x);
         x->revision = sys->revision;
+    }
+    if (x->structure != sys->structure) {
+        tribo_modal_forget(&x->structures);
+        x->structure = sys->structure;
     }
     *events = &x->events;
     return TRIBO_OK;

@@ -42,6 +42,7 @@ struct modal {
     double *omega2, *damping;
     double *coupling;      /* [modes][modes] C~, or NULL if it is diagonal */
     unsigned char *drifts; /* [modes] omega = 0 and no damping */
+    double *by_q, *by_u;   /* [modes][contacts that hold] their forces by eta and eta' */
 
     size_t exponents, terms;   /* terms: with harmonics, and zeros after them, at least TRIBO_TERMS */
     double *lr, *li, *size;    /* [terms] lambda (of harmonics: i Omega), and its absolute value, */
@@ -69,6 +70,7 @@ struct modal {
     double decay, growth; /* the largest rate of decay, and of growth */
     void *memory;         /* of itself and all arrays */
     size_t bytes, *users; /* besides the one that made it: tribo_modal_free leaves it to them */
+    const struct modal *base; /* whose arrays it shares, or NULL */
 };
 
 /* |re + i im|: hypot, which takes ten times as long. */

@@ -117,29 +117,39 @@ static int output_parting(struct modal_build *b, struct output *all, size_t *use
 
 /* What the held contacts carry, J_I'f = K q + C q' + M q'' - M load: by modes, by harmonics, and per unit of time. */
 struct holding {
-    double *by_q, *by_u;     /* [modes][rest] */
     double *wave_r, *wave_i; /* [harmonics][rest] */
     double *ramp;            /* [rest] */
     double *force[2], *load; /* [ndof] workspace */
 };
 
-/* Mode k, with K phi_k = omega_k^2 M phi_k + J_I'f, and so with damping. */
-static void hold_mode(const struct modal_build *b, struct holding *f, size_t k)
+/* By modes, with K phi_k = omega_k^2 M phi_k + J_I'f, and so with damping. */
+int tribo_modal_hold(struct modal_build *b)
 {
-    const struct modal *h = b->h;
-    const size_t n = b->n, s = b->rests;
-    const double *psi = b->psi + k * n;
-    memcpy(f->load, b->k_phi + k * n, n * sizeof *f->load);
-    tribo_add(f->load, -h->omega2[k], psi, n);
-    tribo_constraints_react(&b->ties, f->load, f->by_q + k * s);
-    if (b->damping) {
-        memcpy(f->load, b->c_phi + k * n, n * sizeof *f->load);
-        for (size_t l = 0; h->coupling && l < h->modes; l++) {
-            tribo_add(f->load, -h->coupling[l * h->modes + k], b->psi + l * n, n);
-        }
-        tribo_add(f->load, h->coupling ? 0.0 : -h->damping[k], psi, n);
-        tribo_constraints_react(&b->ties, f->load, f->by_u + k * s);
+    struct modal *h = b->h;
+    const size_t n = b->n, m = h->modes, s = b->rests;
+    double **const kept[] = {&h->by_q, &h->by_u};
+    const size_t count[] = {m * s, m * s};
+    double *load = tribo_modal_scratch(b, m * n);
+    if (!load || !tribo_modal_keep_all(b, 2, kept, count)) {
+        return 0;
     }
+    if (b->damping && h->coupling) {
+        tribo_multiply_transposed_add(m, m, n, h->coupling, b->psi, load);
+    }
+    for (size_t k = 0; s > 0 && k < m; k++) {
+        const double *psi = b->psi + k * n;
+        double *force = load + k * n;
+        for (size_t d = 0; b->damping && d < n; d++) {
+            force[d] = b->c_phi[k * n + d] - (h->coupling ? force[d] : h->damping[k] * psi[d]);
+        }
+        if (b->damping) {
+            tribo_constraints_react(&b->ties, force, h->by_u + k * s);
+        }
+        memcpy(force, b->k_phi + k * n, n * sizeof *force);
+        tribo_add(force, -h->omega2[k], psi, n);
+        tribo_constraints_react(&b->ties, force, h->by_q + k * s);
+    }
+    return 1;
 }
 
 /* A harmonic load. */
@@ -198,19 +208,16 @@ static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t
 static int find_holding(struct modal_build *b, struct holding *f)
 {
     const struct modal *h = b->h;
-    const size_t n = b->n, m = h->modes, s = b->rests;
-    double **const all[] = {&f->by_q, &f->by_u, &f->wave_r, &f->wave_i, &f->ramp, &f->force[0], &f->force[1], &f->load};
-    const size_t count[] = {m * s, m * s, h->harmonics * s, h->harmonics * s, s, n, n, n};
-    double *work = tribo_modal_scratch(b, (2 * (m + h->harmonics) + 1) * s + 3 * n);
+    const size_t n = b->n, s = b->rests;
+    double **const all[] = {&f->wave_r, &f->wave_i, &f->ramp, &f->force[0], &f->force[1], &f->load};
+    const size_t count[] = {h->harmonics * s, h->harmonics * s, s, n, n, n};
+    double *work = tribo_modal_scratch(b, (2 * h->harmonics + 1) * s + 3 * n);
     if (!work) {
         return 0;
     }
     for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
         *all[k] = work;
         work += count[k];
-    }
-    for (size_t k = 0; k < m; k++) {
-        hold_mode(b, f, k);
     }
     for (size_t w = 0; w < h->harmonics; w++) {
         if (h->forcing[w].omega != 0.0) {
@@ -231,7 +238,7 @@ static int changes(const struct modal_build *b, const struct holding *f, size_t 
     const struct modal *h = b->h;
     int found = f->ramp[p] != 0.0 || tribo_system_swing(b->sys, b->rest[p]) > 0.0;
     for (size_t k = 0; k < h->modes; k++) {
-        found |= f->by_q[k * b->rests + p] != 0.0 || f->by_u[k * b->rests + p] != 0.0;
+        found |= h->by_q[k * b->rests + p] != 0.0 || h->by_u[k * b->rests + p] != 0.0;
     }
     for (size_t w = 0; w < h->harmonics; w++) {
         found |= f->wave_r[w * b->rests + p] != 0.0 || f->wave_i[w * b->rests + p] != 0.0;
@@ -257,8 +264,8 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
         }
         output->ramp = f.ramp[p];
         for (size_t k = 0; k < h->modes; k++) {
-            output->on_rate[k] = f.by_q[k * b->rests + p];
-            output_mode(b, output, k, f.by_q[k * b->rests + p], f.by_u[k * b->rests + p]);
+            output->on_rate[k] = h->by_q[k * b->rests + p];
+            output_mode(b, output, k, h->by_q[k * b->rests + p], h->by_u[k * b->rests + p]);
         }
         for (size_t w = 0; w < h->harmonics; w++) {
             output->rr[w] += f.wave_r[w * b->rests + p];

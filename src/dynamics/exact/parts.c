@@ -82,6 +82,7 @@ struct modal *tribo_modal_alloc(void)
 void tribo_modal_free(const struct modal *h)
 {
     if (h && (*h->users)-- == 0) {
+        tribo_modal_free(h->base);
         tribo_modal_give_back(h->memory);
     }
 }

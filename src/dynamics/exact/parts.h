@@ -85,7 +85,8 @@ int tribo_modal_find_terms(struct modal_build *b);
 int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact);
 void tribo_modal_finish_output(const struct modal *h, struct output *w);
 
-/* These return 0 if out of memory, or with the status of another failure in b. */
+/* These return 0 if out of memory, or with the status of another failure in b; tribo_modal_hold: by_q and by_u. */
+int tribo_modal_hold(struct modal_build *b);
 int tribo_modal_forcing(struct modal_build *b);
 int tribo_modal_response(struct modal_build *b);
 int tribo_modal_outputs(struct modal_build *b);

@@ -45,7 +45,7 @@ void tribo_derivative_free(struct derivative *d)
 }
 
 /* Makes room for another step. */
-static int reserve(struct derivative *d)
+static int reserve_step(struct derivative *d)
 {
     if (d->steps < d->room) {
         return 1;
@@ -61,7 +61,7 @@ static int reserve(struct derivative *d)
 
 int tribo_derivative_add_phase(struct derivative *d, double tau, const signed char *slip)
 {
-    if (!reserve(d)) {
+    if (!reserve_step(d)) {
         return 0;
     }
     const struct events *e = d->events;
@@ -84,7 +84,7 @@ int tribo_derivative_add_jumps(struct derivative *d, size_t jumps, const double 
         d->number = more;
         d->number_room = room;
     }
-    if (!reserve(d)) {
+    if (!reserve_step(d)) {
         return 0;
     }
     d->step[d->steps++] = (struct derivative_step){.first = d->numbers, .jumps = jumps};

@@ -1,7 +1,7 @@
 /* Coordinates of a state in which its length is the root of twice its energy: amplitudes of the modes of the free structure times
  * their frequencies, and the rates of these. Two motions of a structure with Coulomb friction and no negative damping or
  * stiffness never come further apart in it, whatever they do: forces of friction against each other do no work. What has no mass
- * has elastic energy only: there velocities do not count. */
+ * has energy of springs only: there velocities do not count. */
 #ifndef TRIBO_ENERGY_NORM_H
 #define TRIBO_ENERGY_NORM_H
 

@@ -147,7 +147,7 @@ static void set_image(int odd, size_t count, double *x)
     }
 }
 
-static int no_memory(const struct period_map *m)
+static int no_room(const struct period_map *m)
 {
     return tribo_driver_fail(m->drv, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", m->n, plural(m->n));
 }
@@ -174,7 +174,7 @@ static int keep_matrix(struct period_map *m, const struct point *p, const double
 {
     double *matrix = malloc(m->n * m->n * sizeof *matrix);
     if (!matrix) {
-        return no_memory(m);
+        return no_room(m);
     }
     tribo_energy_norm_of(&m->norm, m->n, v, matrix);
     set_image(p->odd, m->n * m->n, matrix);
@@ -186,7 +186,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
 {
     const size_t n = m->n;
     if (!renew(m, p)) {
-        return no_memory(m);
+        return no_room(m);
     }
     set_state(m, p->x);
     int status = m->moved ? hold_still(m) : TRIBO_OK;
@@ -237,7 +237,7 @@ int tribo_period_map_matrix(struct period_map *m, const struct point *p, const d
     if (!p->derivative->matrix) {
         double *v = malloc(2 * m->n * m->n * sizeof *v);
         if (!v) {
-            return no_memory(m);
+            return no_room(m);
         }
         set_units(m, v + m->n * m->n, v);
         status = on_driver(m, tribo_derivative_apply(p->derivative, 0, m->n, v));
@@ -355,13 +355,13 @@ static int prepare_probes(struct period_map *m)
 {
     const size_t columns = m->events->keep && m->n > PROBES ? PROBES : m->n;
     if (!m->variation.v && !tribo_variation_create(&m->variation, m->events, m->sys, columns)) {
-        return no_memory(m);
+        return no_room(m);
     }
     m->probe = m->probe ? m->probe : malloc(m->n * columns * sizeof *m->probe);
     double *x = malloc(m->n * m->n * sizeof *x);
     if (!m->probe || !x) {
         free(x);
-        return no_memory(m);
+        return no_room(m);
     }
     if (columns == m->n) {
         set_units(m, x, m->probe);

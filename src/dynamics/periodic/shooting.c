@@ -63,10 +63,12 @@
 #define CUT 1e-9
 #define FREE 1e-7
 
-/* Matrices with more rows are not made for steps, which leave this part of the residual; the free structure stands in where its
- * determinants are more than NEARLY_SINGULAR. */
+/* Matrices with more rows are not made for steps. These leave the part of the residual that it is of the size, between two
+ * bounds: the motion, which is not linear, leaves about as much. The free structure stands in where its determinants are more
+ * than NEARLY_SINGULAR. */
 #define DENSE 64
-#define INEXACT 1e-4
+#define MOST_INEXACT 0.3
+#define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
 
 #define UNKNOWN ((size_t)-1)
@@ -164,7 +166,7 @@ static void apply_free(const struct shooting *s, double *x)
     }
 }
 
-static int multiply(void *data, double *x)
+static int apply_equation(void *data, double *x)
 {
     const struct equation *e = data;
     struct shooting *s = e->s;
@@ -211,7 +213,7 @@ static int solve_in_space(struct shooting *s, const struct point *at, double shi
     if (free) {
         set_free(s, shift);
     }
-    const int status = tribo_gmres(s->map.n, multiply, &e, tolerance, s->map.n / 2, x, &part, s->space);
+    const int status = tribo_gmres(s->map.n, apply_equation, &e, tolerance, s->map.n / 2, x, &part, s->space);
     if (free) {
         apply_free(s, x);
     }
@@ -220,7 +222,7 @@ static int solve_in_space(struct shooting *s, const struct point *at, double shi
 }
 
 /* 1 if matrices are too large to be made where that can be avoided. */
-static int is_large(const struct shooting *s)
+static int is_matrix_free(const struct shooting *s)
 {
     return s->map.n > DENSE && s->map.events->keep;
 }
@@ -229,13 +231,13 @@ static int is_large(const struct shooting *s)
 static int newton_step(struct shooting *s, double shift)
 {
     const size_t n = s->map.n;
-    const double *derivative = NULL;
+    const double *derivative = NULL, part = clamp(s->here.residual / s->here.size, LEAST_INEXACT, MOST_INEXACT);
     int done = 0, status = TRIBO_OK;
-    for (int large = is_large(s); large >= 0 && !status && !done; large--) {
+    for (int large = is_matrix_free(s); large >= 0 && !status && !done; large--) {
         for (size_t i = 0; i < n; i++) {
             s->step[i] = s->here.image[i] - s->here.x[i];
         }
-        status = large ? solve_in_space(s, &s->here, shift, 1, INEXACT, s->step, &done) : TRIBO_OK;
+        status = large ? solve_in_space(s, &s->here, shift, 1, part, s->step, &done) : TRIBO_OK;
     }
     status = status || done ? status : tribo_period_map_matrix(&s->map, &s->here, &derivative);
     if (status || done) {
@@ -445,13 +447,13 @@ static int stay_in_family(struct shooting *s, double *move)
 {
     const size_t n = s->map.n;
     int status = TRIBO_OK, done = 0;
-    if (is_large(s)) {
+    if (is_matrix_free(s)) {
         if (tribo_energy_norm_is_damped(&s->map.norm) && !tribo_derivative_rests(s->best.derivative)) {
             memset(move, 0, n * sizeof *move);
             return TRIBO_OK;
         }
         memcpy(s->step, move, n * sizeof *move);
-        status = multiply(&(struct equation){s, &s->best, 0.0, 2, 0}, s->step);
+        status = apply_equation(&(struct equation){s, &s->best, 0.0, 2, 0}, s->step);
         status = status ? status : solve_in_space(s, &s->best, 0.0, 2, FREE, s->step, &done);
     }
     if (!status && done) {

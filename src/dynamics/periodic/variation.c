@@ -170,7 +170,7 @@ static int look_at_met(struct variation *x, const double *y)
     return status ? status : find_bond(x);
 }
 
-static int no_memory(const struct variation *x)
+static int no_derivative(const struct variation *x)
 {
     return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for the derivative of a motion");
 }
@@ -195,7 +195,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
     tribo_system_loads(sys, DRIVES_BASE, 1, -1.0, x->slope);
     tribo_matrix_multiply_add(&sys->direction, 1.0, x->acceleration, x->slope);
     if (!status && !tribo_derivative_add_phase(x->to, tau, x->before)) {
-        status = no_memory(x);
+        status = no_derivative(x);
     }
     status = status || x->events->keep ? status : catch_up(x);
     return status || !x->count ? status : look_at_met(x, y);
@@ -225,7 +225,7 @@ static int stops(const struct variation *x, size_t i)
 
 /* Adds a jump of accelerations, dt earlier: slope dt = row times perturbation. Returns where it is to be set: entries ndof, one
  * in ncontact numbers. */
-static double *add_jump(struct variation *x, double slope, const double *row)
+static double *add_earlier(struct variation *x, double slope, const double *row)
 {
     const size_t n = 2 * x->sys->ndof;
     double *to = x->row + x->jumps * n;
@@ -239,7 +239,7 @@ static double *add_jump(struct variation *x, double slope, const double *row)
 static void jump_earlier(struct variation *x, double slope, const double *row)
 {
     const double *after = tribo_stick_slip_find_acceleration(&x->events->stick_slip, x->sys);
-    double *jump = add_jump(x, slope, row);
+    double *jump = add_earlier(x, slope, row);
     for (size_t d = 0; d < x->sys->ndof; d++) {
         jump[d * x->sys->ncontact] = after[d] - x->acceleration[d];
     }
@@ -349,7 +349,7 @@ static size_t bring_forward(struct variation *x, size_t first, size_t count, siz
 static void jump_of_group(struct variation *x, size_t group, double slope, const double *row)
 {
     const size_t n = x->sys->ndof;
-    double *jump = add_jump(x, slope, row), *change = x->column;
+    double *jump = add_earlier(x, slope, row), *change = x->column;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         x->f[i] = x->group[i] == group ? x->events->stick_slip.force[i] - x->force[i] : 0.0;
     }
@@ -421,7 +421,7 @@ static void let_go(struct variation *x, size_t i, const double *row)
 {
     const struct stick_slip *m = &x->events->stick_slip;
     const double drop = -(m->slip[i] + x->side[i] * tribo_breakaway_ratio(&m->breakaway, i)) * m->limit[i];
-    double *jump = add_jump(x, x->rise[i], row);
+    double *jump = add_earlier(x, x->rise[i], row);
     for (size_t d = 0; d < x->sys->ndof; d++) {
         jump[d * x->sys->ncontact] = drop * tribo_matrix_get(&x->sys->response, d, i);
     }
@@ -473,7 +473,7 @@ static void event_decided(struct company *company)
         memmove(x->jump + d * x->jumps, x->jump + d * c, x->jumps * sizeof *x->jump);
     }
     if (x->jumps && !tribo_derivative_add_jumps(x->to, x->jumps, x->row, x->jump)) {
-        x->status = no_memory(x);
+        x->status = no_derivative(x);
     } else if (!x->events->keep && !x->status) {
         x->status = catch_up(x);
     }

@@ -143,6 +143,7 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     tribo_matrix_free(&sys->damping);
     sys->damping = damping;
     sys->revision++;
+    sys->structure++;
     free(sys->dense);
     sys->dense = NULL;
     return TRIBO_OK;

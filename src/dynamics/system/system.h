@@ -55,7 +55,7 @@ struct tribo_system {
     struct table limits;         /* knots 0: the limits are those given in the context, and harmonics on top */
     double *given_limit;         /* [ncontact] while limits vary: those given in the context, */
     double *put_limit;           /* [ncontact] and those that it was told last, to see whether others have been given since */
-    size_t revision;             /* counts changes of loads, tables and damping */
+    size_t revision, structure;  /* count changes of loads, tables and damping; of damping */
     size_t ours, seen;           /* of the context's revision: how much varying limits added, and where they left it */
     double time, low;            /* that is set (NaN: none yet), and what rounding left of it (below) */
     size_t foreseen;             /* times in foresight */
