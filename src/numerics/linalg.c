@@ -82,7 +82,7 @@ TRIBO_SIMD static void add_four(double *restrict c, const double *restrict b, si
     }
 }
 
-/* x'y in eight parts side by side. */
+/* x'y in eight parts that are added at the end. */
 TRIBO_SIMD static double dot_of_eight(size_t n, const double *restrict x, const double *restrict y)
 {
     enum { LANES = 8 };
@@ -139,6 +139,30 @@ void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const
     for (; k < rows; k++) {
         for (size_t i = 0; i < inner; i++) {
             tribo_add(c + i * cols, a[k * inner + i], b + k * cols, cols);
+        }
+    }
+}
+
+void tribo_multiply_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b, double *c,
+                        size_t next_c)
+{
+    for (size_t i = 0; cols == 1 && i < rows; i++) {
+        c[i] += dot_of_eight(inner, a + i * inner, b);
+        c[next_c + i] += dot_of_eight(inner, a + i * inner, b + next_b);
+    }
+    for (size_t k = 0; cols != 1 && k < 2; k++) {
+        tribo_multiply_add(rows, inner, cols, 1.0, a, b + k * next_b, c + k * next_c);
+    }
+}
+
+void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
+                                   double *c, size_t next_c)
+{
+    const size_t part = cols == 1 ? 4 : rows;
+    for (size_t i = 0; i < rows; i += part) {
+        for (size_t k = 0; k < 2; k++) {
+            const size_t count = rows - i < part ? rows - i : part;
+            tribo_multiply_transposed_add(count, inner, cols, a + i * inner, b + k * next_b + i * cols, c + k * next_c);
         }
     }
 }

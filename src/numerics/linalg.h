@@ -30,6 +30,12 @@ void tribo_multiply_add(size_t rows, size_t inner, size_t cols, double factor, c
 void tribo_multiply_transposed_add(size_t rows, size_t inner, size_t cols, const double *a, const double *b, double *c);
 void tribo_transpose(size_t rows, size_t cols, const double *a, double *to);
 
+/* The same with two b and two c, one after the other from b + next_b and c + next_c on: a is read once if cols is 1. */
+void tribo_multiply_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b, double *c,
+                        size_t next_c);
+void tribo_multiply_transposed_two(size_t rows, size_t inner, size_t cols, const double *a, const double *b, size_t next_b,
+                                   double *c, size_t next_c);
+
 /* a [n][n], symmetric but for rounding, becomes exactly so. */
 void tribo_even_out(size_t n, double *a);
 

@@ -7,40 +7,47 @@
 #include <math.h>
 #include <string.h>
 
-/* Rows [modes][columns] of amplitudes, of their rates, of the constant that pulls at them; and [exponents][columns] of z. */
+/* Rows [modes][columns] of amplitudes, of their rates, of the constant that pulls at them; [exponents][columns] of z, and of its
+ * rate, which `next` numbers later. */
 struct transition {
     const struct modal *h;
     const tribo_system *sys;
     double tau;
-    size_t columns;
+    size_t columns, block, next; /* block: from displacements to velocities */
     double *eta, *rate, *pull, *change, *zr, *zi, *row;
 };
 
 size_t tribo_modal_transition_room(const tribo_system *sys, size_t columns)
 {
-    return (8 * sys->ndof + 1) * columns;
+    return (12 * sys->ndof + 1) * columns;
 }
 
-/* amplitudes [modes][columns] += those of rows of v, displacements or velocities. */
-static void to_modes(const struct transition *x, const double *v, double *amplitudes)
+/* Amplitudes of displacements and velocities v. */
+static void to_modes(const struct transition *x, const double *v)
 {
     const struct modal *h = x->h;
     double *rows = x->zr;
     for (size_t i = 0; i < h->moving; i++) {
-        memcpy(rows + i * x->columns, v + h->dof[i] * x->columns, x->columns * sizeof *rows);
+        for (size_t k = 0; k < 2; k++) {
+            const double *row = v + k * x->block + h->dof[i] * x->columns;
+            memcpy(rows + k * x->block + i * x->columns, row, x->columns * sizeof *rows);
+        }
     }
-    tribo_multiply_add(h->modes, h->moving, x->columns, 1.0, h->psi, rows, amplitudes);
+    tribo_multiply_two(h->modes, h->moving, x->columns, h->psi, rows, x->block, x->eta, x->block);
 }
 
-/* Rows of v += those of amplitudes. */
-static void add_modes(const struct transition *x, const double *amplitudes, double *v)
+/* Displacements and velocities v += those of amplitudes. */
+static void add_modes(const struct transition *x, double *v)
 {
     const struct modal *h = x->h;
     double *rows = x->zr;
-    memset(rows, 0, h->moving * x->columns * sizeof *rows);
-    tribo_multiply_transposed_add(h->modes, h->moving, x->columns, h->phi, amplitudes, rows);
+    memset(rows, 0, 2 * x->block * sizeof *rows);
+    tribo_multiply_transposed_two(h->modes, h->moving, x->columns, h->phi, x->eta, x->block, rows, x->block);
     for (size_t i = 0; i < h->moving; i++) {
-        tribo_add(v + h->dof[i] * x->columns, 1.0, rows + i * x->columns, x->columns);
+        for (size_t k = 0; k < 2; k++) {
+            const double *row = rows + k * x->block + i * x->columns;
+            tribo_add(v + k * x->block + h->dof[i] * x->columns, 1.0, row, x->columns);
+        }
     }
 }
 
@@ -48,10 +55,9 @@ static void add_modes(const struct transition *x, const double *amplitudes, doub
 static void split(const struct transition *x, const double *v)
 {
     const struct modal *h = x->h;
-    const size_t n = x->sys->ndof, c = x->columns;
-    memset(x->eta, 0, 3 * n * c * sizeof *x->eta);
-    to_modes(x, v, x->eta);
-    to_modes(x, v + n * c, x->rate);
+    const size_t c = x->columns;
+    memset(x->eta, 0, 3 * x->block * sizeof *x->eta);
+    to_modes(x, v);
     for (size_t o = h->sliding; o < h->outputs; o++) {
         const struct output *out = &h->output[o];
         tribo_contact_row(x->sys, out->contact, v, c, x->row);
@@ -126,71 +132,65 @@ static void add_rest(const struct transition *x, double factor)
     }
 }
 
-/* z of the amplitudes, after tau: in zr, zi. */
+/* z of the amplitudes, after tau, and its rate. z = a eta + b eta' with a = -b omega^2/lambda, as b is a left eigenvector: b
+ * serves both, which is half as much to read. */
 static void move_exponents(const struct transition *x)
 {
     const struct modal *h = x->h;
     const size_t m = h->modes, c = x->columns;
     memset(x->zr, 0, h->exponents * c * sizeof *x->zr);
     memset(x->zi, 0, h->exponents * c * sizeof *x->zi);
-    tribo_multiply_add(h->exponents, m, c, 1.0, h->ar, x->eta, x->zr);
-    tribo_multiply_add(h->exponents, m, c, 1.0, h->br, x->rate, x->zr);
-    tribo_multiply_add(h->exponents, m, c, 1.0, h->ai, x->eta, x->zi);
-    tribo_multiply_add(h->exponents, m, c, 1.0, h->bi, x->rate, x->zi);
+    memset(x->zr + x->next, 0, h->exponents * c * sizeof *x->zr);
+    memset(x->zi + x->next, 0, h->exponents * c * sizeof *x->zi);
+    for (size_t k = 0; k < m; k++) {
+        for (size_t j = 0; j < c; j++) {
+            x->eta[k * c + j] *= h->omega2[k];
+        }
+    }
+    tribo_multiply_two(h->exponents, m, c, h->br, x->eta, x->block, x->zr, x->next);
+    tribo_multiply_two(h->exponents, m, c, h->bi, x->eta, x->block, x->zi, x->next);
     for (size_t p = 0; p < h->exponents; p++) {
-        double re, im, *zr = x->zr + p * c, *zi = x->zi + p * c;
+        double re, im, *zr = x->zr + p * c, *zi = x->zi + p * c, *rate_r = zr + x->next, *rate_i = zi + x->next;
+        const double lr = h->lr[p], li = h->li[p], square = lr * lr + li * li;
         growth_of(x, p, &re, &im);
         for (size_t j = 0; j < c; j++) {
-            const double old = zr[j];
-            zr[j] = re * old - im * zi[j];
-            zi[j] = im * old + re * zi[j];
+            const double r = rate_r[j] - (lr * zr[j] + li * zi[j]) / square, i = rate_i[j] - (lr * zi[j] - li * zr[j]) / square;
+            zr[j] = re * r - im * i;
+            zi[j] = -(im * r + re * i);
+            rate_r[j] = lr * zr[j] + li * zi[j];
+            rate_i[j] = -(li * zr[j] - lr * zi[j]);
         }
     }
 }
 
-/* rows [modes][columns] = Re(r z). */
-static void gather(const struct transition *x, double *rows)
-{
-    const struct modal *h = x->h;
-    memset(rows, 0, h->modes * x->columns * sizeof *rows);
-    tribo_multiply_add(h->modes, h->exponents, x->columns, 1.0, h->rr, x->zr, rows);
-    tribo_multiply_add(h->modes, h->exponents, x->columns, -1.0, h->ri, x->zi, rows);
-}
-
-/* Modes that damping couples: all of them have stiffness. */
+/* Modes that damping couples: all of them have stiffness. zi has minus the imaginary parts. */
 static void move_together(const struct transition *x)
 {
     const struct modal *h = x->h;
-    const size_t c = x->columns;
     add_rest(x, -1.0);
     move_exponents(x);
-    gather(x, x->eta);
+    memset(x->eta, 0, 2 * x->block * sizeof *x->eta);
+    tribo_multiply_two(h->modes, h->exponents, x->columns, h->rr, x->zr, x->next, x->eta, x->block);
+    tribo_multiply_two(h->modes, h->exponents, x->columns, h->ri, x->zi, x->next, x->eta, x->block);
     add_rest(x, 1.0);
-    for (size_t p = 0; p < h->exponents; p++) {
-        double *zr = x->zr + p * c, *zi = x->zi + p * c;
-        for (size_t j = 0; j < c; j++) {
-            const double old = zr[j];
-            zr[j] = h->lr[p] * old - h->li[p] * zi[j];
-            zi[j] = h->li[p] * old + h->lr[p] * zi[j];
-        }
-    }
-    gather(x, x->rate);
 }
 
 void tribo_modal_transition(const struct modal *h, const tribo_system *sys, double tau, size_t columns, double *v, double *work)
 {
-    const size_t n = sys->ndof, block = n * columns;
-    const struct transition x = {h,
-                                 sys,
-                                 tau,
-                                 columns,
-                                 work,
-                                 work + block,
-                                 work + 2 * block,
-                                 work + 3 * block,
-                                 work + 4 * block,
-                                 work + 6 * block,
-                                 work + 8 * block};
+    const size_t block = sys->ndof * columns;
+    const struct transition x = {.h = h,
+                                 .sys = sys,
+                                 .tau = tau,
+                                 .columns = columns,
+                                 .block = block,
+                                 .next = 2 * block,
+                                 .eta = work,
+                                 .rate = work + block,
+                                 .pull = work + 2 * block,
+                                 .change = work + 3 * block,
+                                 .zr = work + 4 * block,
+                                 .zi = work + 8 * block,
+                                 .row = work + 12 * block};
     split(&x, v);
     memcpy(x.change, x.eta, block * sizeof *x.change);
     if (h->coupling) {
@@ -200,6 +200,5 @@ void tribo_modal_transition(const struct modal *h, const tribo_system *sys, doub
     }
     memset(v + block, 0, block * sizeof *v);
     tribo_add(x.eta, -1.0, x.change, h->modes * columns);
-    add_modes(&x, x.eta, v);
-    add_modes(&x, x.rate, v + block);
+    add_modes(&x, v);
 }
