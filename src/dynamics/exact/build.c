@@ -308,7 +308,7 @@ static int find_all(struct modal_build *b, const unsigned char *holds)
         return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
     const tribo_system *sys = b->whole->sys;
-    const int kept = b->owns == sys->ndof && (!sys->massless.count || sys->base_harmonics == 0);
+    const int kept = b->whole->structures && b->owns == sys->ndof && (!sys->massless.count || sys->base_harmonics == 0);
     const int status = kept ? recall_structure(b) : find_structure(b);
     if (status) {
         return status;

@@ -54,10 +54,11 @@ static void drop_helds(struct exact *x)
 
 static int find_whole(struct exact *x)
 {
-    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys, &x->structures);
+    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys);
     if (status) {
         tribo_modal_whole_free(&x->whole);
     }
+    x->whole.structures = &x->structures;
     return status;
 }
 

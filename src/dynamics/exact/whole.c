@@ -227,9 +227,9 @@ static int create_workspace(struct modal_whole *w)
     return w->how && w->ours && w->known.piece && w->found;
 }
 
-int tribo_modal_whole_create(struct modal_whole *w, tribo_system *sys, struct modal_known *structures)
+int tribo_modal_whole_create(struct modal_whole *w, tribo_system *sys)
 {
-    *w = (struct modal_whole){.sys = sys, .structures = structures};
+    *w = (struct modal_whole){.sys = sys};
     return create_workspace(w) && find_forces(w) && find_beside(w) && list_contacts(w) && find_harmonics(w)
                ? TRIBO_OK
                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrices of a structure to be held");

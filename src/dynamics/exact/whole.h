@@ -32,7 +32,7 @@ struct modal_whole {
     unsigned char *ours;               /* [ndof] 1: is of that part, and not only beside it */
 
     struct modal_known known; /* parts that have been looked at */
-    struct modal_known *structures; /* what of these does not depend on loads, of all degrees of freedom: the caller's */
+    struct modal_known *structures; /* the caller's, or NULL: what does not depend on loads, of all degrees of freedom */
     struct modal **found;     /* [ndof + 1] those of the set that is looked at */
     void *memory, *scratch;   /* of all arrays; for the next decomposition */
 };
@@ -40,7 +40,7 @@ struct modal_whole {
 #define NOWHERE ((size_t)-1)
 
 /* Returns a status; its message is on the system's context. tribo_modal_whole_free takes what failed, and zeros, too. */
-int tribo_modal_whole_create(struct modal_whole *w, tribo_system *sys, struct modal_known *structures);
+int tribo_modal_whole_create(struct modal_whole *w, tribo_system *sys);
 void tribo_modal_whole_free(struct modal_whole *w);
 
 /* Divides the structure with these held into parts; or takes as one part all that moves or feels it. */

@@ -66,7 +66,7 @@
 /* Matrices with more rows are not made for steps. These leave the part of the residual that it is of the size, between two
  * bounds: the motion, which is not linear, leaves about as much. The free structure stands in where its determinants are more
  * than NEARLY_SINGULAR. */
-#define DENSE 24
+#define DENSE 64
 #define MOST_INEXACT 0.3
 #define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
