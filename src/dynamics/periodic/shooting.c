@@ -66,7 +66,7 @@
 /* Matrices with more rows are not made for steps. These leave the part of the residual that it is of the size, between two
  * bounds: the motion, which is not linear, leaves about as much. The free structure stands in where its determinants are more
  * than NEARLY_SINGULAR. */
-#define DENSE 64
+#define DENSE 40
 #define MOST_INEXACT 0.3
 #define LEAST_INEXACT 1e-6
 #define NEARLY_SINGULAR 1e-6
@@ -202,7 +202,7 @@ static void set_free(struct shooting *s, double shift)
     }
 }
 
-/* x [n], the right-hand side, becomes the solution; *done = 0: no small space has it, x may be anything. Where contacts rest all
+/* x [n], the right-hand side, becomes the solution; *done = 0: there is none, x may be anything. Where contacts rest all
  * the time, there may be many solutions: the Krylov space of a map that brings nothing further apart has the least one. */
 static int solve_in_space(struct shooting *s, const struct point *at, double shift, int spans, double tolerance, double *x,
                           int *done)
@@ -213,7 +213,7 @@ static int solve_in_space(struct shooting *s, const struct point *at, double shi
     if (free) {
         set_free(s, shift);
     }
-    const int status = tribo_gmres(s->map.n, apply_equation, &e, tolerance, s->map.n / 2, x, &part, s->space);
+    const int status = tribo_gmres(s->map.n, apply_equation, &e, tolerance, s->map.n, x, &part, s->space);
     if (free) {
         apply_free(s, x);
     }
@@ -454,7 +454,7 @@ static int stay_in_family(struct shooting *s, double *move)
         }
         memcpy(s->step, move, n * sizeof *move);
         status = apply_equation(&(struct equation){s, &s->best, 0.0, 2, 0}, s->step);
-        status = status ? status : solve_in_space(s, &s->best, 0.0, 2, FREE, s->step, &done);
+        status = status ? status : solve_in_space(s, &s->best, 0.0, 2, AIM, s->step, &done);
     }
     if (!status && done) {
         tribo_add(move, -1.0, s->step, n);
@@ -586,7 +586,7 @@ struct shooting *tribo_shooting_create(tribo_driver *drv)
     if (!s) {
         return NULL;
     }
-    s->memory = malloc((2 * n * n + 16 * n + tribo_gmres_room(n, n / 2) + 1) * sizeof *s->memory);
+    s->memory = malloc((2 * n * n + 16 * n + tribo_gmres_room(n, n) + 1) * sizeof *s->memory);
     s->pivot = malloc((n + 1) * sizeof *s->pivot);
     if (!tribo_period_map_create(&s->map, drv) || !s->memory || !s->pivot) {
         tribo_shooting_free(s);

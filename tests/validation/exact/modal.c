@@ -248,6 +248,45 @@ TEST(parts)
     tribo_system_destroy(sys);
 }
 
+/* Loads that change leave the decomposition of a set as it is; with it the set is what it is without. */
+TEST(kept)
+{
+    struct random r = random_of(_i);
+    tribo_system *sys = row_of_bodies(&r, 0.0);
+    struct modal_piece *list = NULL;
+    struct modal_known structures = {.piece = &list, .lists = 1};
+    const struct modal *base = NULL;
+    for (int k = 0; k < 3; k++) {
+        const double load[BODIES] = {0.0, 1.0, 0.0, -0.3};
+        signed char slip[CONTACTS];
+        unsigned char holds[CONTACTS];
+        struct modal_whole with, without;
+        struct modal *g, *h;
+        for (size_t i = 0; i < CONTACTS; i++) {
+            holds[i] = i == BODIES; /* the one between two bodies */
+            slip[i] = !holds[i];
+        }
+        assert_ok(tribo_modal_whole_create(&with, sys));
+        assert_ok(tribo_modal_whole_create(&without, sys));
+        with.divides = without.divides = 0;
+        with.structures = &structures;
+        assert_ok(tribo_modal_create(&g, &without, slip, holds));
+        assert_ok(tribo_modal_create(&h, &with, slip, holds));
+        compare(g, h);
+        ck_assert_ptr_null(g->base);
+        ck_assert_ptr_nonnull(h->base);
+        ck_assert(!base || h->base == base);
+        base = h->base;
+        tribo_modal_free(g);
+        tribo_modal_free(h);
+        tribo_modal_whole_free(&with);
+        tribo_modal_whole_free(&without);
+        assert_ok(tribo_system_add_load(sys, 0.4 + k, load, NULL));
+    }
+    tribo_modal_forget(&structures);
+    tribo_system_destroy(sys);
+}
+
 /* Damping that couples the modes of a part: the set is one again, and the same. */
 TEST(coupled_part)
 {
@@ -368,5 +407,5 @@ TEST(exponential_from_one)
     }
 }
 
-TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {coupled_part, 1},
+TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {kept, 5}, {coupled_part, 1},
           {one_sided, 1}, {free_motions, 1}, {moved_alike, 1}, {exponential_from_one, 5})

@@ -5,6 +5,7 @@
 
 #include "numerics/constraint.h"
 #include "numerics/eigen.h"
+#include "numerics/krylov.h"
 #include "dynamics/reduce/normal_modes.h"
 #include "support.h"
 
@@ -478,7 +479,57 @@ TEST(equations)
     assert_exact(tribo_lu_create(a, N, pivot), 0.0);
 }
 
+/* ------------------------------------------------------------------------------------------------------ Krylov spaces */
+
+enum { SPACE = 12 };
+
+static int multiply_by(void *data, double *x)
+{
+    const double *a = data;
+    double y[SPACE] = {0.0};
+    for (size_t i = 0; i < SPACE; i++) {
+        for (size_t k = 0; k < SPACE; k++) {
+            y[i] += a[i * SPACE + k] * x[k];
+        }
+    }
+    memcpy(x, y, sizeof y);
+    return TRIBO_OK;
+}
+
+/* Loop test: up to _i % 4 dimensions of I - (a map that brings nothing further apart) are zero; of the solutions the least is
+ * found. A space that is too small leaves what it says. */
+TEST(krylov)
+{
+    struct random g = random_of(_i);
+    const size_t zeros = (size_t)(_i % 4);
+    double a[SPACE * SPACE] = {0.0}, want[SPACE], x[SPACE], b[SPACE], part, work[(SPACE + 1) * (2 * SPACE + 4)];
+    for (size_t i = 0; i < SPACE; i++) {
+        a[i * SPACE + i] = i < zeros ? 0.0 : 1.0;
+        want[i] = i < zeros ? 0.0 : uniform(&g, -1.0, 1.0);
+        for (size_t k = zeros; i >= zeros && k < SPACE; k++) {
+            a[i * SPACE + k] -= uniform(&g, -0.5, 0.5) / sqrt((double)SPACE);
+        }
+    }
+    memcpy(x, want, sizeof x);
+    multiply_by(a, x);
+    memcpy(b, x, sizeof b);
+    ck_assert_uint_le(tribo_gmres_room(SPACE, SPACE), sizeof work / sizeof *work);
+    assert_ok(tribo_gmres(SPACE, multiply_by, a, 1e-13, SPACE, x, &part, work));
+    assert_close(part, 0.0, 1e-13);
+    assert_all_close(x, want, SPACE, 1e-11);
+    memcpy(x, b, sizeof x);
+    assert_ok(tribo_gmres(SPACE, multiply_by, a, 1e-13, 2, x, &part, work));
+    multiply_by(a, x);
+    double left = 0.0, size = 0.0;
+    for (size_t i = 0; i < SPACE; i++) {
+        left += (b[i] - x[i]) * (b[i] - x[i]);
+        size += b[i] * b[i];
+    }
+    ck_assert(part > 1e-3);
+    assert_close(sqrt(left / size), part, 1e-13);
+}
+
 TEST_MAIN("linalg", {light_between, 31}, {light_follows, 1}, {piles, 20}, {clusters, 20}, {graded_rows, 45},
           {forces_and_displacements, 20}, {nearly_dependent, 17}, {touches_nothing, 1}, {graded_stiffness, 20}, {pairs, 400},
           {one_alone, 1}, {negative_stiffness, 1}, {overflowing_stiffness, 1}, {random_eigenvalues, 120}, {circles, 20},
-          {eigenvalues_of_what_is_none, 1}, {equations, 10})
+          {eigenvalues_of_what_is_none, 1}, {equations, 10}, {krylov, 20})
