@@ -5,6 +5,10 @@ module tribo_gsl_constants
   implicit none
   private
 
+  integer, parameter, public :: TRIBO_STATICS_NONE = 0
+  integer, parameter, public :: TRIBO_STATICS_MASS = 1
+  integer, parameter, public :: TRIBO_STATICS_COMPLIANCE = 2
+
   !> accepted steps
   integer, parameter, public :: TRIBO_COUNT_STEPS = 100
   !> steps tried and undone

@@ -91,11 +91,22 @@ TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix 
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
                                          char *message, size_t size);
 
-/* A structure reduced to its lowest nmode modes, as by tribo_system_linear_sparse, and with static_contacts not 0 to what steady
- * forces at its contacts do beside them, too: of the displacements that contacts make, modes alone leave out much. The system's
- * motions are orthonormal in M and orthogonal in K; ndof is nmode and at most one more a contact. Responses to a load are had
- * in the same way, from a row of direction that is the load, as a contact whose limit stays 0.
- * nmode > 0. Returns what tribo_system_linear does. */
+/* What stands for the displacements by steady forces at contacts, beside the modes of a reduced system. */
+enum { TRIBO_STATICS_NONE = 0, TRIBO_STATICS_MASS = 1, TRIBO_STATICS_COMPLIANCE = 2 };
+
+/* A structure reduced to its lowest nmode modes, as by tribo_system_linear_sparse, and to what steady forces at its contacts do
+ * beside them: of the displacements that contacts make, modes alone leave out much. static_contacts:
+ *   TRIBO_STATICS_NONE        nothing beside the modes
+ *   TRIBO_STATICS_MASS        motions, orthonormal in M and orthogonal in K as the modes: ndof is nmode and at most one more a
+ *                             contact. Their frequencies may be far above those of the modes. Responses to a load are had in the
+ *                             same way, from a row of direction that is the load, as a contact whose limit stays 0
+ *   TRIBO_STATICS_COMPLIANCE  contacts are elastic (see tribo_system_linear), with the flexibility G that the modes leave them as
+ *                             shared compliance, and rigid where that is none: z = J Phi q + G f + g(t), with g what loads do
+ *                             beside the modes. State: q, then w = z - g of the elastic contacts, without mass; g'(t) counts in
+ *                             their velocities. No frequency is above those of the structure. G must be positive definite:
+ *                             repeated contacts are refused, and so are loads by tables. tribo_system_expand lacks what loads do
+ *                             beside the modes
+ * nmode > 0. Returns what tribo_system_linear does, and TRIBO_ERR_RANGE (static_contacts). */
 TRIBO_API int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
                                    const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size);
 
@@ -151,8 +162,8 @@ TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, cons
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_UNSUPPORTED (not reduced), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_set_damping_ratio(tribo_system *sys, double zeta);
 
-/* Reduced systems: natural frequencies omega_k [ndof] out, ascending, rad/time; and the displacements of the whole structure,
- * full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in.
+/* Reduced systems: natural frequencies omega_k [ndof] out, ascending, rad/time, infinite without mass; and the displacements of
+ * the whole structure, full [ndof of the matrices given] out, that belong to modal ones, reduced [ndof] in.
  * Return TRIBO_ERR_NULL, TRIBO_ERR_UNSUPPORTED (not reduced). */
 TRIBO_API int tribo_system_get_frequencies(const tribo_system *sys, double *omega);
 TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced, double *full);
@@ -161,9 +172,10 @@ TRIBO_API int tribo_system_expand(const tribo_system *sys, const double *reduced
  * omega  in   the highest frequency that matters: of the load, and of those of its harmonics that matter
  * error  out  harmonic forces at the contacts, up to that frequency and in any proportion to each other, make displacements
  *             there of which at most this part is missing, in terms of the work that the same forces do on the whole elastic
- *             structure while they are steady. With static contacts it is x^2/(1 - x) and less, x being (omega/omega_next)^2 and
- *             omega_next the first frequency left out, or a bound below it: not less than the last of the nmode kept. HUGE_VAL
- *             if modes that slow may be left out. The places where loads act count if they are contacts, too
+ *             structure while they are steady. With static contacts it is x^2/(1 - x) and less, with compliance x/(1 - x), x
+ *             being (omega/omega_next)^2 and omega_next the first frequency left out, or a bound below it: not less than the last
+ *             of the nmode kept. HUGE_VAL if modes that slow may be left out. The places where loads act count if they are
+ *             contacts, too
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (not reduced). */
 TRIBO_API int tribo_system_get_truncation(const tribo_system *sys, double omega, double *error);
 

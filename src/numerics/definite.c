@@ -1,6 +1,7 @@
 #include "definite.h"
 #include "common/layout.h"
 #include "common/real.h"
+#include "linalg.h"
 
 #include <float.h>
 #include <math.h>
@@ -69,28 +70,35 @@ static size_t choose_set(struct definite *d, const signed char *skip)
     return same ? held : factorize_set(d);
 }
 
-void tribo_definite_solve(struct definite *d, const signed char *skip, double *x)
+static void divide_row(double *row, double by, size_t columns)
 {
-    double *y = d->x;
+    for (size_t j = 0; j < columns; j++) {
+        row[j] /= by;
+    }
+}
+
+void tribo_definite_solve(struct definite *d, const signed char *skip, size_t columns, double *x)
+{
     choose_set(d, skip);
     const size_t m = d->held;
+    for (size_t i = 0, at = 0; i < d->n; i++) {
+        const int in = at < m && d->index[at] == i;
+        memset(x + i * columns, 0, in ? 0 : columns * sizeof *x);
+        at += (size_t)in;
+    }
     for (size_t i = 0; i < m; i++) {
-        double sum = x[d->index[i]];
+        double *row = x + d->index[i] * columns;
         for (size_t k = 0; k < i; k++) {
-            sum -= d->factor[i * m + k] * y[k];
+            tribo_add(row, -d->factor[i * m + k], x + d->index[k] * columns, columns);
         }
-        y[i] = sum / d->factor[i * m + i];
+        divide_row(row, d->factor[i * m + i], columns);
     }
     for (size_t i = m; i-- > 0;) {
-        double sum = y[i];
+        double *row = x + d->index[i] * columns;
         for (size_t k = i + 1; k < m; k++) {
-            sum -= d->factor[k * m + i] * y[k];
+            tribo_add(row, -d->factor[k * m + i], x + d->index[k] * columns, columns);
         }
-        y[i] = sum / d->factor[i * m + i];
-    }
-    memset(x, 0, d->n * sizeof *x);
-    for (size_t i = 0; i < m; i++) {
-        x[d->index[i]] = y[i];
+        divide_row(row, d->factor[i * m + i], columns);
     }
 }
 
@@ -111,7 +119,7 @@ int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t 
     }
     for (size_t i = 0; i < n; i++) {
         d->inverse[i * n + i] = 1.0;
-        tribo_definite_solve(d, NULL, d->inverse + i * n);
+        tribo_definite_solve(d, NULL, 1, d->inverse + i * n);
     }
     return TRIBO_OK;
 }
@@ -151,7 +159,7 @@ static void solve_set(struct definite *d)
             f[i] -= d->at[k] ? d->matrix[i * n + k] * (d->at[k] < 0 ? d->lo[k] : d->hi[k]) : 0.0;
         }
     }
-    tribo_definite_solve(d, d->at, f);
+    tribo_definite_solve(d, d->at, 1, f);
     for (size_t i = 0; i < n; i++) {
         f[i] = d->at[i] ? (d->at[i] < 0 ? d->lo[i] : d->hi[i]) : f[i];
     }

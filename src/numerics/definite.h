@@ -9,7 +9,7 @@ struct definite {
     double *matrix, *inverse; /* [n][n] A, and A^-1 over the rows with a_ii > 0 */
     double *factor;           /* [held][held] lower Cholesky factor of A over index */
     size_t held, *index;      /* [held] rows of the set that was solved for last */
-    double *x;                /* [n] workspace */
+    double *x;                /* [n] workspace of the caller */
     double *q, *lo, *hi, *f;  /* [n] of tribo_definite_box */
     signed char *at, *to;     /* [n] workspace */
     void *memory;             /* of all arrays */
@@ -20,8 +20,8 @@ struct definite {
 int tribo_definite_create(struct definite *d, size_t n, const double *a, size_t *where);
 void tribo_definite_free(struct definite *d);
 
-/* x_S = A_SS^-1 x_S over the set S of rows with skip 0 (all rows: NULL); x = 0 outside S. x, skip [n]. */
-void tribo_definite_solve(struct definite *d, const signed char *skip, double *x);
+/* x_S = A_SS^-1 x_S, x [n][columns], over the set S of rows with skip [n] 0 (all rows: NULL); x = 0 outside S. */
+void tribo_definite_solve(struct definite *d, const signed char *skip, size_t columns, double *x);
 
 /* f = the minimum of 1/2 f'Af + q'f, lo <= f <= hi, arrays of d. Bounds may be infinite, and are 0 where a_ii = 0. */
 void tribo_definite_box(struct definite *d);

@@ -1,7 +1,7 @@
 /* What a steady motion costs over the number of modes of the structure and of its contacts.
- *   bench_points [mass stiffness dofs contacts modes [statics]]
+ *   bench_points [mass stiffness dofs contacts modes [mass|compliance]]
  * Without arguments: the beam of the examples on three contacts, driven at frequencies about three times its first one, in 12, 24,
- * 48 and 96 modes, alone and with static responses of the contacts. Otherwise a structure whose contacts are spread over the
+ * 48 and 96 modes, alone, with static responses of the contacts, and with compliance. Otherwise a structure whose contacts are spread over the
  * degrees of freedom in direction z, the last of which has the load, driven about its first frequency.
  * POINTS motions at several frequencies and limits, by one driver, each from the motion before. Prints a row a system: times in
  * milliseconds and beside those of the first row; spans followed, events and decompositions a point; power at the first point. */
@@ -133,13 +133,15 @@ static struct cost run(const struct scene *x, tribo_system *sys, double first)
     return cost;
 }
 
+static const char *const kind[] = {"none", "mass", "compliance"};
+
 /* Returns the seconds of a point. */
 static double measure(const struct scene *x, size_t modes, int statics, double unit)
 {
     double first;
     tribo_system *sys = create(x, modes, statics, &first);
     const struct cost cost = run(x, sys, first);
-    printf("%5zu %7s %6zu %10.2f %8.1f %9.1f %9.1f %14.6g\n", modes, statics ? "yes" : "no", cost.found, 1e3 * cost.seconds,
+    printf("%5zu %10s %6zu %10.2f %8.1f %9.1f %9.1f %14.6g\n", modes, kind[statics], cost.found, 1e3 * cost.seconds,
            unit > 0.0 ? cost.seconds / unit : 1.0, (double)cost.periods / POINTS, (double)cost.events / POINTS, cost.power);
     fflush(stdout);
     tribo_system_destroy(sys);
@@ -151,23 +153,24 @@ int main(int argc, char **argv)
     program = "bench_points";
     gsl_set_error_handler_off(); /* as read_structure expects */
     if (argc != 1 && argc != 6 && argc != 7) {
-        die("usage: bench_points [mass stiffness dofs contacts modes [statics]]");
+        die("usage: bench_points [mass stiffness dofs contacts modes [mass|compliance]]");
     }
     struct scene x = {.force = 0.1};
-    printf("%5s %7s %6s %10s %8s %9s %9s %14s\n", "modes", "statics", "found", "ms a point", "ratio", "periods", "events", "power");
+    printf("%5s %10s %6s %10s %8s %9s %9s %14s\n", "modes", "statics", "found", "ms a point", "ratio", "periods", "events",
+           "power");
     if (argc == 1) {
         static const size_t modes[] = {12, 24, 48, 96};
         double unit = 0.0;
         place_beam(&x);
-        for (size_t k = 0; k < 8; k++) {
-            const double seconds = measure(&x, modes[k % 4], k >= 4, unit);
+        for (size_t k = 0; k < 12; k++) {
+            const double seconds = measure(&x, modes[k % 4], (int)(k / 4), unit);
             unit = k ? unit : seconds;
         }
     } else {
         x.s = read_structure(argv[1], argv[2], argv[3]);
         x.contacts = strtoul(argv[4], NULL, 10);
         spread_contacts(&x);
-        measure(&x, strtoul(argv[5], NULL, 10), argc == 7, 0.0);
+        measure(&x, strtoul(argv[5], NULL, 10), argc == 7 ? !strcmp(argv[6], kind[1]) + 2 * !strcmp(argv[6], kind[2]) : 0, 0.0);
     }
     gsl_spmatrix_free(x.direction);
     free_structure(&x.s);

@@ -69,14 +69,13 @@ static int make_reduced(tribo_system **sys, tribo_driver **drv)
     return make_linear(sys, model, 0, 3);
 }
 
-/* A chain long enough for sparse factors, with static responses; its copy. */
-static int make_sparse(tribo_system **sys, tribo_driver **drv)
+enum { MASSES = 210 };
+
+/* A chain long enough for sparse factors, with static responses. */
+static int make_long(tribo_system **sys, int statics)
 {
-    enum { MASSES = 210 };
     gsl_spmatrix *m = gsl_spmatrix_alloc(MASSES, MASSES), *k = gsl_spmatrix_alloc(MASSES, MASSES),
                  *j = gsl_spmatrix_alloc(2, MASSES);
-    tribo_system *from = NULL;
-    (void)drv;
     for (size_t i = 0; i < MASSES; i++) {
         gsl_spmatrix_set(m, i, i, 4.0);
         gsl_spmatrix_set(k, i, i, 2.0);
@@ -87,12 +86,35 @@ static int make_sparse(tribo_system **sys, tribo_driver **drv)
     }
     gsl_spmatrix_set(j, 0, 50, 1.0);
     gsl_spmatrix_set(j, 1, 120, 1.0);
-    int status = tribo_system_reduced(&from, m, k, j, 3, 1, NULL, 0);
-    status = status ? status : tribo_system_clone(from, sys);
-    tribo_system_destroy(from);
+    const int status = tribo_system_reduced(sys, m, k, j, 3, statics, NULL, 0);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(k);
     gsl_spmatrix_free(j);
+    return status;
+}
+
+/* Its copy. */
+static int make_sparse(tribo_system **sys, tribo_driver **drv)
+{
+    tribo_system *from = NULL;
+    (void)drv;
+    int status = make_long(&from, TRIBO_STATICS_MASS);
+    status = status ? status : tribo_system_clone(from, sys);
+    tribo_system_destroy(from);
+    return status;
+}
+
+/* The same with compliance, and a load that bends its contacts. */
+static int make_compliant(tribo_system **sys, tribo_driver **drv)
+{
+    const double load[MASSES] = {[70] = 1.0};
+    tribo_system *from = NULL;
+    (void)drv;
+    int status = make_long(&from, TRIBO_STATICS_COMPLIANCE);
+    status = status ? status : tribo_system_set_damping_ratio(from, 0.1);
+    status = status ? status : tribo_system_add_load(from, 1.0, load, NULL);
+    status = status ? status : tribo_system_clone(from, sys);
+    tribo_system_destroy(from);
     return status;
 }
 
@@ -260,6 +282,7 @@ static const struct {
               {"periodic", make_periodic},
               {"periodic event", make_periodic_event},
               {"sparse", make_sparse},
+              {"compliant", make_compliant},
               {"massless", make_massless},
               {"massless coupled", make_massless_coupled},
               {"massless event", make_massless_event},

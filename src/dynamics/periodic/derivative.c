@@ -97,7 +97,7 @@ int tribo_derivative_add_jumps(struct derivative *d, size_t jumps, const double 
 int tribo_derivative_apply(const struct derivative *d, size_t first, size_t columns, double *v)
 {
     const size_t n = d->sys->ndof, c = d->sys->ncontact;
-    double *work = malloc((c * columns + 2 * n + c + 1) * sizeof *work);
+    double *work = malloc((c * columns + 1) * sizeof *work);
     int status = work ? TRIBO_OK
                       : tribo_system_fail(d->sys, TRIBO_ERR_MEMORY, "out of memory for %zu perturbation%s", columns, plural(columns));
     for (size_t k = first; !status && k < d->steps; k++) {

@@ -306,13 +306,53 @@ static void add_static(const struct model *m, struct reduced *r, size_t i, doubl
     for (size_t j = 0; j < m->ncontact; j++) {
         missing[i * m->ncontact + j] = tribo_matrix_row_dot(&m->direction, j, x);
     }
-    const double norm = m->statics ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
+    if (r->residual) {
+        memcpy(r->residual + i * m->ndof, x, m->ndof * sizeof *x);
+    }
+    const double norm =
+        m->statics == TRIBO_STATICS_MASS ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
     if (norm > greater(OWN * before, ROUNDING * whole)) {
         for (size_t k = 0; k < m->ndof; k++) {
             r->phi[r->count * m->ndof + k] = x[k] / norm;
         }
         r->count++;
     }
+}
+
+/* A force at a contact that the modes take but for this part moves nothing else. */
+#define TAKEN 1e-12
+
+/* force [ndof] -= what accelerates the modes, twice; 0 if the rest is rounding. mx [ndof] is workspace. */
+static void deflate(const struct model *m, const struct reduced *r, double *force, double *mx)
+{
+    const double whole = tribo_dot(force, force, m->ndof);
+    for (int pass = 0; pass < 2; pass++) {
+        for (size_t k = 0; k < m->nmode; k++) {
+            weigh(m, r->phi + k * m->ndof, mx);
+            tribo_add(force, -tribo_dot(r->phi + k * m->ndof, force, m->ndof), mx, m->ndof);
+        }
+    }
+    if (!(tribo_dot(force, force, m->ndof) > TAKEN * TAKEN * whole)) {
+        memset(force, 0, m->ndof * sizeof *force);
+    }
+}
+
+/* Takes the shift of K, but for its square, out of responses x [count][ndof] of contacts from first on. mx [ndof] is workspace. 0 if
+ * out of memory. */
+static int unshift(const struct model *m, const struct shifted *s, struct reduced *r, size_t first, size_t count, double *x,
+                   double *mx)
+{
+    const size_t n = m->ndof;
+    double *before = r->residual + first * n;
+    for (size_t i = 0; i < count; i++) {
+        separate(m, m->nmode, r->phi, x + i * n, mx);
+        memcpy(before + i * n, x + i * n, n * sizeof *x);
+        memset(x + i * n, 0, n * sizeof *x);
+        tribo_matrix_multiply_add(&m->mass, s->shift, before + i * n, x + i * n);
+    }
+    const int done = tribo_cholesky_solve(&s->factor, count, x);
+    tribo_add(x, 1.0, before, count * n);
+    return done;
 }
 
 static int add_statics(const struct model *m, const struct shifted *s, struct reduced *r, double *missing)
@@ -327,8 +367,11 @@ static int add_statics(const struct model *m, const struct shifted *s, struct re
             for (size_t k = m->direction.first[i]; k < m->direction.first[i + 1]; k++) {
                 x[(i - first) * n + m->direction.col[k]] = m->direction.val[k];
             }
+            if (r->residual) {
+                deflate(m, r, x + (i - first) * n, x + BATCH * n);
+            }
         }
-        done = tribo_cholesky_solve(&s->factor, count, x);
+        done = tribo_cholesky_solve(&s->factor, count, x) && (!r->residual || unshift(m, s, r, first, count, x, x + BATCH * n));
         for (size_t i = first; done && i < first + count; i++) {
             add_static(m, r, i, x + (i - first) * n, x + BATCH * n, missing);
         }
@@ -400,6 +443,10 @@ static int find_statics(const struct model *m, const struct shifted *s, struct r
     const size_t c = m->ncontact;
     double *missing = calloc(2 * c * c + 1, sizeof *missing), *whole = missing + c * c;
     int status = missing ? add_statics(m, s, r, missing) : tribo_model_no_memory(m);
+    if (!status && r->flexibility) {
+        memcpy(r->flexibility, missing, c * c * sizeof *missing);
+        tribo_even_out(c, r->flexibility);
+    }
     r->truncation.missing = c > m->nmode ? 1.0 : 0.0;
     if (!status && c <= m->nmode) {
         memcpy(whole, missing, c * c * sizeof *whole);
@@ -416,6 +463,7 @@ void tribo_reduced_free(struct reduced *r)
 {
     free(r->omega2);
     free(r->phi);
+    free(r->residual);
 }
 
 static int find_lowest_densely(const struct model *m, struct shifted *s, struct reduced *r)
@@ -448,20 +496,25 @@ static int find_lowest(const struct model *m, struct shifted *s, struct reduced 
 
 int tribo_model_find_modes(const struct model *m, struct reduced *r)
 {
-    const size_t n = m->ndof, most = m->nmode + (m->statics ? m->ncontact : 0);
+    const size_t n = m->ndof, most = m->nmode + (m->statics == TRIBO_STATICS_MASS ? m->ncontact : 0);
     struct shifted s = {0.0, {0}};
     memset(r, 0, sizeof *r);
     r->omega2 = malloc(most * sizeof *r->omega2);
     r->phi = malloc(most * n * sizeof *r->phi);
-    r->truncation.statics = m->statics;
-    int status = r->omega2 && r->phi ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
+    r->truncation.order = m->statics == TRIBO_STATICS_MASS ? 2.0 : m->statics == TRIBO_STATICS_COMPLIANCE ? 1.0 : 0.0;
+    if (m->statics == TRIBO_STATICS_COMPLIANCE) {
+        r->residual = calloc(m->ncontact * (n + m->ncontact) + 1, sizeof *r->residual);
+        r->flexibility = r->residual ? r->residual + m->ncontact * n : NULL;
+    }
+    const int done = r->omega2 && r->phi && (r->residual || m->statics != TRIBO_STATICS_COMPLIANCE);
+    int status = done ? find_lowest(m, &s, r) : tribo_model_no_memory(m);
     if (!status && r->omega2[0] < 0.0) {
         status = tribo_model_fail(m, TRIBO_ERR_INDEFINITE, "stiffness is not positive semidefinite: omega^2 = %g of mode 0",
                                   r->omega2[0]);
     }
     status = status || m->nmode == n || !m->ncontact ? status : find_statics(m, &s, r);
-    r->truncation.shift = s.shift;
-    r->truncation.above += s.shift;
+    r->truncation.shift = r->residual ? 0.0 : s.shift;
+    r->truncation.above += r->truncation.shift;
     tribo_cholesky_free(&s.factor);
     return status;
 }

@@ -7,19 +7,6 @@
 #include "dynamics/system/model.h"
 #include "common/real.h"
 
-/* a = diag(factor x); zeroed if out of memory. */
-static int diagonal_matrix(struct matrix *a, const double *x, double factor, size_t n)
-{
-    double *entries = malloc(n * sizeof *entries);
-    for (size_t i = 0; entries && i < n; i++) {
-        entries[i] = factor * x[i];
-    }
-    *a = (struct matrix){0};
-    const int done = entries && tribo_matrix_diagonal(a, n, entries);
-    free(entries);
-    return done;
-}
-
 /* The modes as the system keeps them, [ndof][count], and omega; takes what else it needs from r. 0 if out of memory. */
 static int take_modes(tribo_system *sys, size_t given, const struct reduced *r)
 {
@@ -83,7 +70,7 @@ static int build(const struct model *m, const struct reduced *r, double *respons
     if (done) {
         find_shapes(m, r, shapes);
         tribo_transpose(c, count, shapes, responses);
-        done = diagonal_matrix(&stiffness, r->omega2, 1.0, count) && tribo_matrix_from_dense(&direction, c, count, shapes) &&
+        done = tribo_matrix_diagonal(&stiffness, count, r->omega2) && tribo_matrix_from_dense(&direction, c, count, shapes) &&
                tribo_matrix_from_dense(&response, count, c, responses);
     }
     free(shapes);
@@ -97,18 +84,176 @@ static int build(const struct model *m, const struct reduced *r, double *respons
     return tribo_model_no_memory(m);
 }
 
+/* ------------------------------------------------------------------------------------------------------------ compliance */
+
+/* A contact to which the modes leave no more than this part of its flexibility is rigid. */
+#define RIGID 1e-7
+
+/* The soft contacts of a reduced structure, to which the modes leave flexibility, and w = J q of them, degrees of freedom without
+ * mass. With the shapes P = J Phi, the flexibility G that the modes leave, and B = G^-1 over soft contacts,
+ *     q'' + (Omega^2 + P'B P) q - P'B w = modes' p,   B (w - P q) = f,   displacements = Phi q + residual' B (w - P q). */
+struct compliant {
+    size_t modes, contacts, given, soft; /* numbers */
+    size_t *contact;                     /* [soft] */
+    double *shapes, *spring;             /* [contacts][modes] P; [soft][soft] B */
+    double *pull;                        /* [soft][modes] B P */
+};
+
+static void find_soft(struct compliant *e, const struct reduced *r)
+{
+    for (size_t i = 0; i < e->contacts; i++) {
+        const double *shape = e->shapes + i * e->modes, own = r->flexibility[i * e->contacts + i];
+        double whole = own;
+        for (size_t k = 0; k < e->modes; k++) {
+            whole += r->omega2[k] > 0.0 ? shape[k] * shape[k] / r->omega2[k] : 0.0;
+        }
+        if (own > RIGID * whole) {
+            e->contact[e->soft++] = i;
+        }
+    }
+}
+
+/* B and B P. Returns a status. */
+static int find_springs(const struct model *m, struct compliant *e, const struct reduced *r)
+{
+    const size_t c = e->contacts, n = e->soft;
+    struct definite g = {0};
+    size_t where = 0;
+    for (size_t a = 0; a < n; a++) {
+        for (size_t b = 0; b < n; b++) {
+            e->spring[a * n + b] = r->flexibility[e->contact[a] * c + e->contact[b]];
+        }
+    }
+    const int status = tribo_definite_create(&g, n, e->spring, &where);
+    if (!status) {
+        memcpy(e->spring, g.inverse, n * n * sizeof *e->spring);
+        tribo_even_out(n, e->spring);
+        for (size_t a = 0; a < n; a++) {
+            for (size_t b = 0; b < n; b++) {
+                tribo_add(e->pull + a * e->modes, e->spring[a * n + b], e->shapes + e->contact[b] * e->modes, e->modes);
+            }
+        }
+    }
+    tribo_definite_free(&g);
+    return status == TRIBO_ERR_INDEFINITE
+               ? tribo_model_fail(
+                     m, TRIBO_ERR_UNSUPPORTED,
+                     "the flexibility that %zu mode%s to contact %zu is that of other contacts: take other modes, or "
+                     "TRIBO_STATICS_MASS",
+                     e->modes, e->modes == 1 ? " leaves" : "s leave", e->contact[where])
+           : status ? tribo_model_no_memory(m)
+                    : TRIBO_OK;
+}
+
+/* Mass, stiffness and direction of q and w. 0 if out of memory. */
+static int put_matrices(const struct compliant *e, const struct reduced *r, struct model *to)
+{
+    const size_t m = e->modes, n = m + e->soft;
+    double *k = calloc(n * n, sizeof *k), *j = calloc(e->contacts * n + 1, sizeof *j), *mass = calloc(n, sizeof *mass);
+    int done = k && j && mass;
+    for (size_t a = 0; done && a < m; a++) {
+        mass[a] = 1.0;
+        k[a * n + a] = r->omega2[a];
+        for (size_t b = 0; b < e->soft; b++) {
+            const double shape = e->shapes[e->contact[b] * m + a];
+            tribo_add(k + a * n, shape, e->pull + b * m, m);
+            k[a * n + m + b] = k[(m + b) * n + a] = -e->pull[b * m + a];
+        }
+    }
+    for (size_t i = 0; done && i < e->contacts; i++) {
+        memcpy(j + i * n, e->shapes + i * m, m * sizeof *j);
+    }
+    for (size_t a = 0; done && a < e->soft; a++) {
+        memcpy(k + (m + a) * n + m, e->spring + a * e->soft, e->soft * sizeof *k);
+        memset(j + e->contact[a] * n, 0, m * sizeof *j);
+        j[e->contact[a] * n + m + a] = 1.0;
+    }
+    if (done) {
+        tribo_even_out(n, k);
+        done = tribo_matrix_diagonal(&to->mass, n, mass) && tribo_matrix_from_dense(&to->stiffness, n, n, k) &&
+               tribo_matrix_from_dense(&to->direction, e->contacts, n, j);
+    }
+    free(k);
+    free(j);
+    free(mass);
+    return done;
+}
+
+/* Displacements of q and w, and omega: infinite without mass. 0 if out of memory. */
+static int put_all_modes(const struct compliant *e, const struct reduced *r, tribo_system *sys)
+{
+    const size_t m = e->modes, n = m + e->soft;
+    double *x = calloc(n * e->given, sizeof *x), *omega2 = malloc(n * sizeof *omega2);
+    const struct reduced all = {n, omega2, x, r->truncation, NULL, NULL};
+    int done = x && omega2;
+    for (size_t k = 0; done && k < n; k++) {
+        omega2[k] = k < m ? r->omega2[k] : HUGE_VAL;
+    }
+    if (done) {
+        memcpy(x, r->phi, m * e->given * sizeof *x);
+        for (size_t b = 0; b < e->soft; b++) {
+            const double *residual = r->residual + e->contact[b] * e->given;
+            for (size_t a = 0; a < e->soft; a++) {
+                tribo_add(x + (m + a) * e->given, e->spring[a * e->soft + b], residual, e->given);
+            }
+            for (size_t k = 0; k < m; k++) {
+                tribo_add(x + k * e->given, -e->pull[b * m + k], residual, e->given);
+            }
+        }
+        done = take_modes(sys, e->given, &all);
+    }
+    free(x);
+    free(omega2);
+    return done;
+}
+
+static int build_compliant(const struct model *m, const struct reduced *r, tribo_system **sys)
+{
+    const size_t c = m->ncontact;
+    struct compliant e = {.modes = r->count, .contacts = c, .given = m->ndof};
+    e.contact = malloc((c + 1) * sizeof *e.contact);
+    e.shapes = calloc(2 * c * r->count + c * c + 1, sizeof *e.shapes);
+    int status = e.contact && e.shapes ? TRIBO_OK : tribo_model_no_memory(m);
+    if (!status) {
+        e.pull = e.shapes + c * r->count;
+        e.spring = e.pull + c * r->count;
+        find_shapes(m, r, e.shapes);
+        find_soft(&e, r);
+        status = find_springs(m, &e, r);
+    }
+    struct model reduced = {.ndof = r->count + e.soft, .ncontact = c, .message = m->message, .size = m->size};
+    if (!status) {
+        status = put_matrices(&e, r, &reduced) ? tribo_model_build_whole(&reduced, sys) : tribo_model_no_memory(m);
+    }
+    if (!status && !put_all_modes(&e, r, *sys)) {
+        status = tribo_model_no_memory(m);
+    }
+    tribo_model_free(&reduced);
+    free(e.contact);
+    free(e.shapes);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------------------------------------- build */
+
+static int build_with_mass(const struct model *m, const struct reduced *r, tribo_system **sys)
+{
+    double *responses = malloc((m->ncontact * r->count + 1) * sizeof *responses);
+    int status = responses ? build(m, r, responses, sys) : tribo_model_no_memory(m);
+    if (!status) {
+        status = take_modes(*sys, m->ndof, r) ? tribo_model_set_operator(m, *sys, responses, r->count) : tribo_model_no_memory(m);
+    }
+    free(responses);
+    return status;
+}
+
 int tribo_model_reduce(struct model *m, tribo_system **sys)
 {
     struct reduced r;
     int status = tribo_model_find_modes(m, &r);
-    double *responses = status ? NULL : malloc((m->ncontact * r.count + 1) * sizeof *responses);
     if (!status) {
-        status = responses ? build(m, &r, responses, sys) : tribo_model_no_memory(m);
+        status = (r.residual ? build_compliant : build_with_mass)(m, &r, sys);
     }
-    if (!status) {
-        status = take_modes(*sys, m->ndof, &r) ? tribo_model_set_operator(m, *sys, responses, r.count) : tribo_model_no_memory(m);
-    }
-    free(responses);
     tribo_reduced_free(&r);
     return status;
 }
@@ -135,8 +280,14 @@ int tribo_system_set_damping_ratio(tribo_system *sys, double zeta)
     if (zeta < 0.0) {
         return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "zeta = %g is negative", zeta);
     }
-    struct matrix damping;
-    if (!diagonal_matrix(&damping, sys->omega, 2.0 * zeta, sys->ndof)) {
+    struct matrix damping = {0};
+    double *entries = malloc(sys->ndof * sizeof *entries);
+    for (size_t k = 0; entries && k < sys->ndof; k++) {
+        entries[k] = sys->omega[k] < HUGE_VAL ? 2.0 * zeta * sys->omega[k] : 0.0;
+    }
+    const int done = entries && tribo_matrix_diagonal(&damping, sys->ndof, entries);
+    free(entries);
+    if (!done) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the damping of %zu mode%s", sys->ndof,
                                  plural(sys->ndof));
     }
@@ -195,6 +346,6 @@ int tribo_system_get_truncation(const tribo_system *sys, double omega, double *e
     }
     const struct truncation *t = &sys->truncation;
     const double x = (omega * omega + t->shift) / t->above;
-    *error = x < 1.0 ? t->missing * (t->statics ? x * x : 1.0) / (1.0 - x) : HUGE_VAL;
+    *error = x < 1.0 ? t->missing * pow(x, t->order) / (1.0 - x) : HUGE_VAL;
     return TRIBO_OK;
 }

@@ -21,16 +21,19 @@ static double displaced(const tribo_system *sys, size_t i, const double *x, doub
     return sum;
 }
 
-/* x [ncontact] = C_HH^-1 x over the elastic contacts H with slip 0 (all elastic contacts: NULL); 0 for the others. */
-static void solve_compliance(const tribo_system *sys, const signed char *slip, double *x)
+/* x [ncontact][columns] = C_HH^-1 x over the elastic contacts H with slip 0 (all elastic contacts: NULL); 0 for the others. */
+static void solve_compliance(const tribo_system *sys, const signed char *slip, size_t columns, double *x)
 {
     const struct massless *w = &sys->massless;
+    if (w->shared) {
+        tribo_definite_solve(w->shared, slip, columns, x);
+        return;
+    }
     for (size_t i = 0; i < sys->ncontact; i++) {
         const int holds = is_elastic(sys, i) && (!slip || slip[i] == 0);
-        x[i] = !holds ? 0.0 : w->shared ? x[i] : x[i] / w->compliance[i];
-    }
-    if (w->shared) {
-        tribo_definite_solve(w->shared, slip, x);
+        for (size_t j = i * columns; j < (i + 1) * columns; j++) {
+            x[j] = holds ? x[j] / w->compliance[i] : 0.0;
+        }
     }
 }
 
@@ -51,7 +54,7 @@ static void stretch_springs(const tribo_system *sys, const double *x, double *wo
 void tribo_elastic_forces(const tribo_system *sys, const double *q, double *work, double *force, double *size)
 {
     stretch_springs(sys, q, work, force, size);
-    solve_compliance(sys, NULL, force);
+    solve_compliance(sys, NULL, 1, force);
     if (size) {
         tribo_elastic_sizes(sys, size);
     }
@@ -61,7 +64,7 @@ void tribo_elastic_sizes(const tribo_system *sys, double *force)
 {
     struct definite *c = sys->massless.shared;
     if (!c) {
-        solve_compliance(sys, NULL, force);
+        solve_compliance(sys, NULL, 1, force);
         return;
     }
     memcpy(c->x, force, c->n * sizeof *force);
@@ -76,7 +79,7 @@ void tribo_elastic_sizes(const tribo_system *sys, double *force)
 void tribo_elastic_answer(const tribo_system *sys, const signed char *slip, const double *q, double *work, double *force)
 {
     stretch_springs(sys, q, work, force, NULL);
-    solve_compliance(sys, slip, force);
+    solve_compliance(sys, slip, 1, force);
 }
 
 void tribo_elastic_give(const tribo_system *sys, const double *f, double *x)
@@ -92,7 +95,7 @@ void tribo_elastic_move(const tribo_system *sys, const signed char *slip, const 
     for (size_t i = 0; i < sys->ncontact; i++) {
         rate[i] = is_elastic(sys, i) ? base[i] - tribo_matrix_row_dot(&sys->direction, i, u) : 0.0;
     }
-    solve_compliance(sys, slip, rate);
+    solve_compliance(sys, slip, 1, rate);
     tribo_matrix_multiply_add(&w->give, 1.0, rate, u);
 }
 
@@ -141,19 +144,40 @@ void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *w
     tribo_elastic_give(sys, force, y);
 }
 
-void tribo_elastic_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work)
+/* way [ncontact][columns] += factor J v, of what has no mass. */
+static void add_ways(const tribo_system *sys, double factor, size_t columns, const double *v, double *way)
 {
-    const size_t n = sys->ndof;
-    double *x = work, *force = work + 2 * n;
-    for (size_t j = 0; j < columns; j++) {
-        for (size_t d = 0; d < n; d++) {
-            x[d] = v[d * columns + j];
-        }
-        tribo_elastic_answer(sys, slip, x, work + n, force);
-        tribo_elastic_give(sys, force, x);
-        for (size_t d = 0; d < n; d++) {
-            v[d * columns + j] = x[d];
-            v[(n + d) * columns + j] = sys->massless.is[d] ? 0.0 : v[(n + d) * columns + j];
+    const struct matrix *j = &sys->direction;
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            const double part = sys->massless.is[j->col[e]] ? factor * j->val[e] : 0.0;
+            tribo_add(way + i * columns, part, v + j->col[e] * columns, part != 0.0 ? columns : 0);
         }
     }
+}
+
+/* Rows of to += rows of a [rows][..] that are not empty times rows of v. */
+static void add_row_products(const struct matrix *a, size_t columns, const double *v, double *to)
+{
+    for (size_t d = 0; d < a->rows; d++) {
+        for (size_t e = a->first[d]; e < a->first[d + 1]; e++) {
+            tribo_add(to + d * columns, a->val[e], v + a->col[e] * columns, columns);
+        }
+    }
+}
+
+void tribo_elastic_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work)
+{
+    const struct massless *w = &sys->massless;
+    memset(work, 0, sys->ncontact * columns * sizeof *work);
+    add_ways(sys, 1.0, columns, v, work);
+    for (size_t d = 0; d < sys->ndof; d++) {
+        const size_t empty = w->is[d] ? columns * sizeof *v : 0;
+        memset(v + d * columns, 0, empty);
+        memset(v + (sys->ndof + d) * columns, 0, empty);
+    }
+    add_row_products(&w->follow, columns, v, v);
+    add_ways(sys, -1.0, columns, v, work);
+    solve_compliance(sys, slip, columns, work);
+    add_row_products(&w->give, columns, work, v);
 }

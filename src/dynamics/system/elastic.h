@@ -32,7 +32,7 @@ void tribo_elastic_move(const tribo_system *sys, const signed char *slip, const 
 void tribo_elastic_enter(const tribo_system *sys, const double *limit, double *work, double *force, double *y);
 
 /* Perturbations v [2 ndof][columns] of a state in which contacts do that: forces of those that slide stay what they are. What has
- * no mass has no velocity of its own, and its rows of these become 0. work [2 ndof + ncontact]. */
+ * no mass has no velocity of its own, and its rows of these become 0. work [ncontact][columns]. */
 void tribo_elastic_perturb(const tribo_system *sys, const signed char *slip, size_t columns, double *v, double *work);
 
 #endif

@@ -354,9 +354,10 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
 static int check_massless(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
     const struct massless *w = &sys->massless;
-    const size_t n = x && w->count ? (drives == DRIVES_LOAD ? sys->ndof : sys->ncontact) : 0;
+    const int of_load = drives == DRIVES_LOAD;
+    const size_t n = !x || !w->count || (of_load && sys->modes) ? 0 : of_load ? sys->ndof : sys->ncontact;
     for (size_t i = 0; i < n; i++) {
-        if (x[i] != 0.0 && drives == DRIVES_LOAD && w->is[i]) {
+        if (x[i] != 0.0 && of_load && w->is[i]) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "%s[%zu] = %g, but degree of freedom %zu has no mass, and takes no load", name, i, x[i], i);
         }
@@ -385,6 +386,61 @@ static int check_limits(const tribo_system *sys, const double *cosine, const dou
     return TRIBO_OK;
 }
 
+/* Loads x [ndof] on what has no mass, of systems reduced with compliance, become loads on the others and the static displacements
+ * way [ncontact] of contacts without force. */
+static void bend(const tribo_system *sys, double *x, double *way)
+{
+    const struct massless *w = &sys->massless;
+    for (size_t d = 0; d < w->follow.rows; d++) {
+        const double load = w->is[d] ? x[d] : 0.0;
+        x[d] -= load;
+        for (size_t e = w->follow.first[d]; load != 0.0 && e < w->follow.first[d + 1]; e++) {
+            x[w->follow.col[e]] += w->follow.val[e] * load;
+        }
+        for (size_t e = w->give.first[d]; load != 0.0 && e < w->give.first[d + 1]; e++) {
+            way[w->give.col[e]] += w->give.val[e] * load;
+        }
+    }
+}
+
+/* The harmonic of parts [2][n], cosine and sine. 0 if out of memory. */
+static int append_harmonic(tribo_system *sys, enum drives drives, double omega, size_t n, const double *parts)
+{
+    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
+    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
+    sys->harmonic = all ? all : sys->harmonic;
+    if (!all || !compress(&h, n, parts, parts + n)) {
+        return 0;
+    }
+    sys->harmonic[sys->harmonics++] = h;
+    sys->base_harmonics += drives == DRIVES_BASE;
+    sys->limit_harmonics += drives == DRIVES_LIMIT;
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return 1;
+}
+
+/* The load added last displaces contacts by way [2][ncontact], cosine and sine: what w is beside that moves against bases that go
+ * back, b = -d(way)/dt. 0 if out of memory. */
+static int append_bend(tribo_system *sys, double omega, double *way)
+{
+    const size_t c = sys->ncontact;
+    for (size_t i = 0; i < c; i++) {
+        const double cosine = way[i], sine = way[c + i];
+        way[i] = -omega * sine;
+        way[c + i] = omega * cosine;
+    }
+    if (tribo_largest(way, 2 * c) == 0.0) {
+        return 1;
+    }
+    if (!append_harmonic(sys, DRIVES_BASE, omega, c, way)) {
+        free_harmonic(&sys->harmonic[--sys->harmonics]);
+        return 0;
+    }
+    sys->harmonic[sys->harmonics - 1].by_load = 1;
+    return 1;
+}
+
 static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
 {
     if (!sys) {
@@ -403,31 +459,22 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     if (status) {
         return status;
     }
-    struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
-    double *parts = tribo_zeros(2 * n + 1, sizeof *parts);
-    struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
-    sys->harmonic = all ? all : sys->harmonic;
-    int done = parts && all;
-    for (int part = 0; done && part < 2; part++) {
+    double *parts = tribo_zeros(2 * n + 1, sizeof *parts), *way = tribo_zeros(2 * sys->ncontact + 1, sizeof *way);
+    for (int part = 0; parts && way && part < 2; part++) {
         const double *from = part ? sine : cosine;
         if (from && of_contacts) {
             memcpy(parts + (size_t)part * n, from, n * sizeof *parts);
         } else if (from) {
             tribo_system_accelerate(sys, from, parts + (size_t)part * n);
+            bend(sys, parts + (size_t)part * n, way + (size_t)part * sys->ncontact);
         }
     }
-    done = done && compress(&h, n, parts, parts + n);
+    const int done =
+        parts && way && append_harmonic(sys, drives, omega, n, parts) && (of_contacts || append_bend(sys, omega, way));
     free(parts);
-    if (!done) {
-        free_harmonic(&h);
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
-    }
-    sys->harmonic[sys->harmonics++] = h;
-    sys->base_harmonics += drives == DRIVES_BASE;
-    sys->limit_harmonics += drives == DRIVES_LIMIT;
-    sys->revision++;
-    tribo_system_forget_time(sys);
-    return TRIBO_OK;
+    free(way);
+    return done ? TRIBO_OK
+                : tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a harmonic of %zu value%s", n, plural(n));
 }
 
 int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
@@ -439,9 +486,11 @@ static void remove_harmonics(tribo_system *sys, enum drives drives)
 {
     size_t kept = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
-        if (sys->harmonic[k].drives != drives) {
+        const int by_load = drives == DRIVES_LOAD && sys->harmonic[k].by_load;
+        if (sys->harmonic[k].drives != drives && !by_load) {
             sys->harmonic[kept++] = sys->harmonic[k];
         } else {
+            sys->base_harmonics -= (size_t)by_load;
             free_harmonic(&sys->harmonic[k]);
         }
     }
@@ -544,6 +593,13 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
     }
     tribo_system_accelerate(sys, pattern, t.pattern);
+    memset(sys->feq, 0, sys->ncontact * sizeof *sys->feq);
+    bend(sys, t.pattern, sys->feq);
+    if (tribo_largest(sys->feq, sys->ncontact) > 0.0) {
+        free_table(&t);
+        return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                 "the load of a table bends what is reduced to compliance: take TRIBO_STATICS_MASS");
+    }
     sys->table[sys->tables++] = t;
     sys->revision++;
     tribo_system_forget_time(sys);

@@ -7,7 +7,7 @@
 /* What a caller gives, and where the text of an error goes. */
 struct model {
     size_t ndof, ncontact, nmode;
-    int statics; /* beside the modes, what steady forces at the contacts do */
+    int statics; /* beside the modes, what steady forces at the contacts do: TRIBO_STATICS_... */
     struct matrix mass, damping, stiffness, direction;
     char *message;
     size_t size;
@@ -29,6 +29,9 @@ void tribo_model_free(struct model *m);
 /* The Cholesky factor of the mass matrix, or an error. */
 int tribo_model_factorize(const struct model *m, struct cholesky *c);
 
+/* structure.c: the system of all degrees of freedom, of matrices that need no check. */
+int tribo_model_build_whole(struct model *m, tribo_system **sys);
+
 /* massless.c: a system by build_massive, which knows only degrees of freedom with mass, and those without mass beside it. */
 int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);
 
@@ -46,6 +49,9 @@ struct reduced {
     size_t count;
     double *omega2, *phi; /* [count] ascending, [count][ndof] */
     struct truncation truncation;
+    double *residual,
+        *flexibility; /* [ncontact][ndof] what steady unit forces at contacts do beside the modes, [ncontact][ncontact]
+                                       at the contacts; NULL without TRIBO_STATICS_COMPLIANCE */
 };
 
 /* low_modes.c: the lowest nmode modes, and if asked for the static ones. Allocates, also on failure. */

@@ -194,12 +194,17 @@ static int build_massive(struct model *m, tribo_system **sys)
                                               : build_unsolved(m, sys);
 }
 
+int tribo_model_build_whole(struct model *m, tribo_system **sys)
+{
+    return tribo_model_build_massless(m, build_massive, sys);
+}
+
 int tribo_model_build(struct model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
     int status = check(m);
     if (!status) {
-        status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_massless(m, build_massive, &s);
+        status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_whole(m, &s);
     }
     tribo_model_free(m);
     if (status) {
@@ -298,9 +303,12 @@ int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, con
 int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
                          const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size)
 {
-    struct model m = {.nmode = nmode, .statics = static_contacts != 0, .message = message, .size = size};
+    struct model m = {.nmode = nmode, .statics = static_contacts, .message = message, .size = size};
     if (nmode == 0) {
         return tribo_model_fail(&m, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
+    }
+    if (static_contacts < TRIBO_STATICS_NONE || static_contacts > TRIBO_STATICS_COMPLIANCE) {
+        return tribo_model_fail(&m, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", static_contacts);
     }
     return create_sparse(sys, mass, NULL, stiffness, direction, &m);
 }

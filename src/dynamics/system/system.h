@@ -22,6 +22,7 @@ struct harmonic {
     double cos_ahead[FORESIGHT], sin_ahead[FORESIGHT]; /* those of times foreseen */
     size_t next;                                       /* which of them may be asked for next */
     enum drives drives;
+    int by_load; /* of a base: a load moves it, see tribo_system_add_load */
     size_t count;
     size_t *index;
     double *cosine, *sine;
@@ -40,7 +41,7 @@ struct table {
  * of the work that steady forces at the contacts do on the elastic structure they take up to the part `missing`. */
 struct truncation {
     double above, shift, missing;
-    int statics; /* the displacements by steady forces are among the reduced motions nevertheless */
+    double order; /* but only this power of omega^2/above of it, as the displacements by steady forces are there */
 };
 
 struct tribo_system {

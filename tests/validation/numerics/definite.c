@@ -56,7 +56,7 @@ TEST(sets)
             x[i] = -q[i];
             skip[i] = (signed char)(round == 0 || round % 3 ? (int)below(&r, 3) - 1 : skip[i]);
         }
-        tribo_definite_solve(&d, round ? skip : NULL, x);
+        tribo_definite_solve(&d, round ? skip : NULL, 1, x);
         for (size_t i = 0; i < n; i++) {
             const int in = a[i * n + i] > 0.0 && (!round || skip[i] == 0);
             assert_close(in ? left(&d, i, q, x) : x[i], 0.0, 1e-11);
