@@ -291,7 +291,7 @@ TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, doub
  * Where all loads and motions of bases are odd harmonics of the period, the motion is one whose second half is minus the first.
  * Where there is a family of motions (contacts that never slip keep any place within their limits), it is one near the guess; of
  * such that may be odd, the odd one, unless the guess is clearly another one of the family. TRIBO_COUNT_FREEDOM counts its
- * dimensions.
+ * dimensions, when it is asked for.
  * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
  * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits beside elastic
@@ -300,11 +300,11 @@ TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double per
 
 /* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary
  * part. Motions next to it, in which contacts that rest do so too, come closer by these factors a period. Contacts at rest
- * forget: multipliers of 0.
+ * forget: multipliers of 0. They are found when they are asked for, in a time of the third power of ndof.
  * re, im  [2 ndof] out
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none was found, or the last search found none), TRIBO_ERR_UNSUPPORTED (contacts that
- * bear upon each other stop, or reach their static limits, at one instant: what motions next to it do is not linear; or one
- * reaches its static limit at an instant at which another one stops). */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (none was found, or the last search found
+ * none), TRIBO_ERR_UNSUPPORTED (contacts that bear upon each other stop, or reach their static limits, at one instant: what
+ * motions next to it do is not linear; or one reaches its static limit at an instant at which another one stops). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
 /* What the last periodic motion found holds, in closed form from event to event: nothing is sampled. Each call follows the motion
