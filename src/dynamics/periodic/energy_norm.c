@@ -26,6 +26,19 @@ static int dense_stiffness(const tribo_system *sys, double *k)
     return entries != NULL;
 }
 
+/* Columns of x [n][n]: those of what has mass += factor times the columns of what follows, by how it follows. */
+static void add_followers(const tribo_system *sys, double factor, double *x)
+{
+    const struct matrix *f = &sys->massless.follow;
+    for (size_t i = 0; i < sys->ndof; i++) {
+        for (size_t d = 0; d < f->rows; d++) {
+            for (size_t e = f->first[d]; e < f->first[d + 1]; e++) {
+                x[i * sys->ndof + f->col[e]] += factor * f->val[e] * x[i * sys->ndof + d];
+            }
+        }
+    }
+}
+
 /* rate = phi'M, and psi. */
 static void weigh(struct energy_norm *e, const tribo_system *sys)
 {
@@ -42,13 +55,18 @@ static void weigh(struct energy_norm *e, const tribo_system *sys)
     }
 }
 
-/* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. */
+/* Modes by S'KS, M^-1 = S S'. k [n][n] is workspace. What has no mass counts by how far it is from where it would follow the
+ * others: these have the modes of the free structure. */
 static int find(struct energy_norm *e, const tribo_system *sys, double *k)
 {
     const size_t n = e->n;
     if (!dense_stiffness(sys, k)) {
         return TRIBO_ERR_MEMORY;
     }
+    add_followers(sys, 1.0, k);
+    tribo_transpose(n, n, k, e->psi);
+    add_followers(sys, 1.0, e->psi);
+    memcpy(k, e->psi, n * n * sizeof *k);
     tribo_half_solve(&sys->factor, k, n);
     tribo_transpose(n, n, k, e->psi);
     tribo_half_solve(&sys->factor, e->psi, n);
@@ -60,6 +78,14 @@ static int find(struct energy_norm *e, const tribo_system *sys, double *k)
     }
     tribo_half_solve_back(&sys->factor, e->phi, n);
     weigh(e, sys);
+    if (sys->massless.count) {
+        add_followers(sys, -1.0, e->psi);
+    }
+    for (size_t d = 0; d < sys->massless.follow.rows; d++) {
+        for (size_t j = sys->massless.follow.first[d]; j < sys->massless.follow.first[d + 1]; j++) {
+            tribo_add(e->phi + d * n, sys->massless.follow.val[j], e->phi + sys->massless.follow.col[j] * n, n);
+        }
+    }
     for (size_t i = 0; i < n; i++) {
         e->natural[i] = sqrt(fabs(e->natural[i]));
     }
