@@ -465,7 +465,8 @@ enum {
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);
 
 /* Real quantities.
- *   RESIDUAL  of the last tribo_balance: how much of its limit a contact near stick misses its balance by, at most
+ *   RESIDUAL  of the last tribo_balance or step: the largest part of its limit by which a contact near stick misses its balance,
+ *             beyond rounding of the forces. Calls that couple contacts return TRIBO_ERR_NO_CONVERGENCE where it is above 1e-6
  *   MAX_RATE  lambda, 1/time: stuck contacts relax no faster
  *   MAX_STEP  2.785/lambda, up to which rk4 is stable; HUGE_VAL if lambda = 0
  * lambda is the largest 2 limit R_ii/epsilon in the consistent coupling, and for contacts that share no body. In the partition

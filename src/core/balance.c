@@ -18,6 +18,7 @@ void tribo_begin_call(tribo_context *ctx)
     ctx->memory.nsolved = 0;
     ctx->last.far = ctx->follow.largest > TRIBO_ROOM * ctx->op->most;
     ctx->last.rank = 0;
+    ctx->last.residual = 0.0;
     ctx->last.slips = NO_SLIPS;
     ctx->last.linearized = 0;
 }
@@ -67,6 +68,32 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
     return p;
 }
 
+/* The part of its limit by which the force of the contact at place k misses its balance, but for an error of its gradient. */
+static double missed_part(const tribo_context *ctx, const struct box_qp *p, size_t k, double error)
+{
+    const double beyond = fabs(p->gradient[k]) - TRIBO_SETTLED * error, sure = beyond < 0.0 ? 0.0 : copysign(beyond, p->gradient[k]);
+    const double f = clamp(p->x[k], p->lo[k], p->hi[k]);
+    const double to = clamp(p->x[k] - quotient(sure, ctx->op->diagonal[p->member[k]]), p->lo[k], p->hi[k]);
+    return quotient(fabs(f - to), greater(greater(fabs(p->lo[k]), fabs(p->hi[k])), DBL_MIN));
+}
+
+/* Keeps the largest part of its limit by which a force misses the balance of its contact beyond rounding of all forces. Each
+ * contact is measured in its own unit: beside a light body's accelerations those of a heavy one count, too. */
+static int check_balance(tribo_context *ctx, const struct box_qp *p)
+{
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t k = p->near[e], i = p->member[k];
+        double missed = missed_part(ctx, p, k, p->noise[k]);
+        missed = missed > TRIBO_MISSED ? missed_part(ctx, p, k, tribo_box_doubt(p, k)) : missed;
+        ctx->last.residual = greater(ctx->last.residual, missed);
+        if (!(missed <= TRIBO_MISSED)) {
+            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "the forces found miss the balance of contact %zu by %g of its limit", i,
+                              missed);
+        }
+    }
+    return TRIBO_OK;
+}
+
 /* Solves the problem of a group; q, lo and hi are set. */
 int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
 {
@@ -87,7 +114,7 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
     }
     ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     ctx->last.rank += p->sets->rank;
-    return TRIBO_OK;
+    return check_balance(ctx, p);
 }
 
 /* kappa, see above. */
@@ -110,8 +137,7 @@ static int solve_bounded(tribo_context *ctx, struct box_qp *p, const double *v, 
     const int status = tribo_solve_group(ctx, p);
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
-        const double beyond = quotient(p->gradient[k], ctx->op->diagonal[i]), to = clamp(p->x[k] - beyond, p->lo[k], p->hi[k]);
-        ctx->last.residual = greater(ctx->last.residual, fabs(p->x[k] - to) / greater(ctx->follow.contacts.bound[i], DBL_MIN));
+        const double beyond = quotient(p->gradient[k], ctx->op->diagonal[i]);
         /* of a contact inside its box the gradient is rounding, of which the forces of a large group would gather too much */
         ctx->last.feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
     }
@@ -150,12 +176,15 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
         p->unit[k] = ctx->op->diagonal[i] * ctx->follow.contacts.bound[i];
     }
     ctx->count.solves++;
-    const int consistent = tribo_box_linear(p);
+    int consistent = tribo_box_linear(p);
     ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = member[k];
         const double off = fabs(quotient(p->gradient[k], ctx->op->diagonal[i]));
         ctx->last.residual = greater(ctx->last.residual, quotient(off, greater(ctx->follow.contacts.limit[i], DBL_MIN)));
+        p->hi[k] = ctx->follow.contacts.limit[i];
+        p->lo[k] = -p->hi[k];
+        consistent &= missed_part(ctx, p, k, p->noise[k]) <= TRIBO_MISSED;
         ctx->last.feq[i] = p->x[k];
     }
     ctx->last.rank += p->sets->rank;
@@ -205,7 +234,6 @@ static void feq_of_others(tribo_context *ctx, const double *a)
 static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
 {
     tribo_begin_call(ctx);
-    ctx->last.residual = 0.0;
     tribo_forces_alone(ctx, v, a, wanted);
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.did.stored[k] == SOME_STORED) {

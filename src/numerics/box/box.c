@@ -42,7 +42,7 @@ static int box_revise(struct box_qp *p)
     memcpy(p->to, p->at, g->size);
     for (size_t e = 0; e < p->count; e++) {
         const size_t i = p->near[e];
-        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && (double)p->at[i] * p->gradient[i] > tribo_box_tolerance(p, i)) {
+        if (p->at[i] != FREE && p->lo[i] < p->hi[i] && tribo_box_pulls(p, i, (double)p->at[i] * p->gradient[i])) {
             p->to[i] = FREE;
         }
     }
@@ -52,7 +52,7 @@ static int box_revise(struct box_qp *p)
     }
     for (size_t k = p->sets->rank; k < p->sets->rank + p->sets->dependents; k++) {
         const size_t i = p->order[k];
-        if (fabs(p->gradient[i]) > tribo_box_tolerance(p, i)) {
+        if (tribo_box_pulls(p, i, fabs(p->gradient[i]))) {
             p->to[i] = p->gradient[i] > 0.0 ? AT_LOWER : AT_UPPER;
         }
     }
@@ -93,15 +93,17 @@ static int box_solve_sets(struct box_qp *p)
 
 /* The same; if rounding has gathered in the factor over many changes with a new one, and where forces of earlier calls are in the
  * way without them. */
-static void box_find(struct box_qp *p)
+static int box_find(struct box_qp *p)
 {
-    if (!box_solve_sets(p)) {
-        tribo_factor_rebuild(p, NULL);
-        if (!box_solve_sets(p)) {
-            box_forget(p);
-            box_solve_sets(p);
-        }
+    if (box_solve_sets(p)) {
+        return 1;
     }
+    tribo_factor_rebuild(p, NULL);
+    if (box_solve_sets(p)) {
+        return 1;
+    }
+    box_forget(p);
+    return box_solve_sets(p);
 }
 
 /* Whether a dependent is to go to a bound so far away that beside its force there what pulls at it is rounding. */
@@ -122,9 +124,9 @@ static int box_primal_dual(struct box_qp *p)
 {
     size_t least = SIZE_MAX;
     for (int patience = 10; patience > 0; patience--) {
-        box_find(p);
+        const int found = box_find(p);
         if (box_revise(p)) {
-            return 1;
+            return found;
         }
         if (box_hides(p)) {
             return 0;
@@ -161,6 +163,14 @@ static void find_doubt(const struct box_qp *p, double *error)
     }
 }
 
+double tribo_box_doubt(const struct box_qp *p, size_t i)
+{
+    double doubt;
+    find_doubt(p, p->spare[0]);
+    tribo_row_dot(p, i, p->spare[0], &doubt);
+    return p->noise[i] + doubt;
+}
+
 /* A contact whose gradient is farthest beyond rounding, its own and that of the others' x: a dependent one, or one at a bound
  * that should leave it. size if there is none. */
 static size_t box_worst(const struct box_qp *p, int dependent)
@@ -172,11 +182,11 @@ static size_t box_worst(const struct box_qp *p, int dependent)
     for (size_t e = 0; e < (dependent ? p->sets->dependents : p->count); e++) {
         const size_t i = dependent ? p->order[p->sets->rank + e] : p->near[e];
         const double pull = dependent ? fabs(p->gradient[i]) : p->lo[i] < p->hi[i] ? (double)p->at[i] * p->gradient[i] : 0.0;
-        double doubt = 0.0;
-        if (pull > tribo_box_tolerance(p, i)) {
+        double doubt = 0.0, excess = 0.0;
+        if (tribo_box_pulls(p, i, pull)) {
             tribo_row_dot(p, i, p->spare[0], &doubt);
+            excess = quotient(pull, greater(tribo_box_tolerance(p, i) + doubt, DBL_MIN));
         }
-        const double excess = quotient(pull, greater(tribo_box_tolerance(p, i) + doubt, DBL_MIN));
         if (excess > most) {
             most = excess;
             found = i;
@@ -197,8 +207,13 @@ static int box_slide(struct box_qp *p, size_t d)
     for (size_t k = 0; pull > 0.0 && k < p->sets->rank + p->sets->dependents; k++) {
         p->step[p->order[k]] *= -1.0;
     }
-    const double curvature = fabs(tribo_row_dot(p, d, p->step, &size));
-    return box_move(p, quotient(fabs(pull), greater(greater(curvature, tribo_resolution(p->group->size) * size), DBL_MIN)));
+    /* twice as many digits leave no doubt that R is singular along a null vector */
+    double curvature = 0.0;
+    if (!p->twofold) {
+        curvature = fabs(tribo_row_dot(p, d, p->step, &size));
+        curvature = greater(curvature, tribo_resolution(p->group->size) * size);
+    }
+    return box_move(p, quotient(fabs(pull), greater(curvature, DBL_MIN)));
 }
 
 /* 1 if something moved as far as a bound. */
@@ -246,7 +261,8 @@ static int box_primal(struct box_qp *p)
     return 0;
 }
 
-/* How far x is from the fixed point, in parts of what is no gradient. */
+/* How far x is from the fixed point, in parts of the tolerances: by the acceleration that the contact is free to follow; by all of
+ * its gradient where x misses by more than a trace of its box, which may be less than the tolerance altogether. */
 static double box_violation(const struct box_qp *p)
 {
     double most = 0.0;
@@ -254,7 +270,8 @@ static double box_violation(const struct box_qp *p)
         const size_t i = p->near[e];
         const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
         const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
-        most = greater(most, quotient(fabs(off), greater(tribo_box_tolerance(p, i), DBL_MIN)));
+        const double counts = fabs(off) > TRIBO_MISSED * p->unit[i] ? fabs(p->gradient[i]) : fabs(off);
+        most = greater(most, quotient(counts, greater(tribo_box_tolerance(p, i), DBL_MIN)));
     }
     return most;
 }
@@ -328,8 +345,5 @@ void tribo_box_share(struct box_qp *p)
     }
     if (violation > TRIBO_SETTLED) {
         box_restore(p, before);
-        if (box_violation(p) > violation) {
-            box_restore(p, after);
-        }
     }
 }

@@ -97,7 +97,6 @@ struct box_qp {
     double *gradient, *noise; /* R x + q, and what of it may be rounding */
     int twofold;              /* x is kept to twice as many digits */
     double *low;              /* what rounding left of it */
-    double pull;              /* then, the largest q */
     double *unit;             /* R_ii times the limit, or half the box; of groups with redundant contacts */
     double *terms;            /* size of the gradient's terms where each contact carries what it would alone; of the same */
     signed char *to;          /* workspace */
@@ -184,6 +183,10 @@ void tribo_graded_newton(struct box_qp *p);
 /* tribo_null_vector, but for y of the dependents. */
 void tribo_graded_null_vector(const struct box_qp *p, size_t d, double *y);
 
+/* |q_i| + sum_j |y_j q_j| over the independent j, y = R^-1 R_.i: the gradient of i follows errors of all q by at most this part of
+ * it, since the forces of the independent contacts do. Uses step_low. */
+double tribo_graded_terms(const struct box_qp *p, size_t i);
+
 /* x_i + length step_i, its low part kept. */
 double tribo_graded_move(struct box_qp *p, size_t i, double length);
 
@@ -241,14 +244,19 @@ static inline double tribo_box_disagreement(const struct box_qp *p, size_t i)
     if (!p->group->nullity) {
         return 0.0;
     }
-    /* of a graded group a unit may be a billion times what counts: there the largest q is taken */
-    return p->twofold ? TRIBO_DISAGREEMENT * p->pull
+    return p->twofold ? TRIBO_DISAGREEMENT * tribo_graded_terms(p, i)
                       : lesser(TRIBO_DISAGREEMENT * p->unit[i], TRIBO_DISAGREED_TERMS * p->terms[i]);
 }
 
 static inline double tribo_box_tolerance(const struct box_qp *p, size_t i)
 {
     return p->noise[i] + tribo_box_disagreement(p, i);
+}
+
+/* 1 if a pull, which may be negative, is beyond the tolerance of i. */
+static inline int tribo_box_pulls(const struct box_qp *p, size_t i, double pull)
+{
+    return pull > p->noise[i] && pull > tribo_box_tolerance(p, i);
 }
 
 /* ---- Newton's method with the sets as they are */
@@ -293,8 +301,14 @@ static inline void tribo_box_forget_low(const struct box_qp *p)
 
 /* ---- the problem */
 
+/* Forces that miss the balance of a contact by more than this part of its limit are no solution. */
+#define TRIBO_MISSED 1e-6
+
 /* Solves the problem from what is kept. 1, or 0 without convergence. */
 int tribo_box_solve(struct box_qp *p);
+
+/* What rounding of the gradient of i, and of the x of the free contacts, may add to the gradient of i. Uses spare[0]. */
+double tribo_box_doubt(const struct box_qp *p, size_t i);
 
 /* Makes x the one of least norm among all solutions of the problem. */
 void tribo_box_share(struct box_qp *p);

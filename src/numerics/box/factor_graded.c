@@ -194,6 +194,16 @@ void tribo_graded_newton(struct box_qp *p)
     tribo_graded_solve(p, p->step, p->step_low);
 }
 
+double tribo_graded_terms(const struct box_qp *p, size_t i)
+{
+    double *y = p->step_low, sum = fabs(p->q[i]);
+    tribo_graded_null_vector(p, i, y);
+    for (size_t k = 0; k < p->sets->rank; k++) {
+        sum += fabs(y[p->order[k]] * p->q[p->order[k]]);
+    }
+    return sum;
+}
+
 double tribo_graded_move(struct box_qp *p, size_t i, double length)
 {
     const struct twofold step = twofold_times((struct twofold){p->step[i], p->step_low[i]}, (struct twofold){length, 0.0}),

@@ -8,25 +8,36 @@
 /* Rounding of a graded group's terms beside that of doubles. */
 #define GRADED_PART 0x1p-50
 
-/* The gradient of i is found, what of its terms is rounded being of this size. */
-static inline void set_noise(struct box_qp *p, size_t i, double rounded)
+/* The gradient of i is found, what of its terms is rounded being of this size; times most forces underflow. */
+static inline void set_noise(struct box_qp *p, size_t i, double rounded, double most)
 {
-    p->noise[i] = p->part[i] * (rounded + p->least[i]);
+    p->noise[i] = p->part[i] * (rounded + p->least[i] * most);
+}
+
+/* How much larger the largest force of the group may be than 1: beside it forces underflow in a solve. */
+static double most_underflow(const struct box_qp *p)
+{
+    double most = 1.0;
+    for (size_t i = 0; p->far && i < p->group->size; i++) {
+        most = greater(most, fabs(p->x[i]));
+    }
+    return lesser(most, TRIBO_FAR);
 }
 
 /* A graded group's forces and R are as good as exact, and what it knows of q is q. */
 void tribo_box_gradients(struct box_qp *p)
 {
+    const double most = most_underflow(p);
     double size, low;
     for (size_t e = 0; !p->twofold && e < p->count; e++) {
         const size_t i = p->near[e];
         p->gradient[i] = tribo_row_dot(p, i, p->x, &size) + p->q[i];
-        set_noise(p, i, size + fabs(p->q[i]));
+        set_noise(p, i, size + fabs(p->q[i]), most);
     }
     for (size_t e = 0; p->twofold && e < p->count; e++) {
         const size_t i = p->near[e];
         p->gradient[i] = tribo_graded_gradient(p, i, &low, &size);
-        set_noise(p, i, fabs(p->q[i]) + GRADED_PART * size);
+        set_noise(p, i, fabs(p->q[i]) + GRADED_PART * size, most);
     }
 }
 
@@ -76,10 +87,6 @@ static void find_terms(struct box_qp *p, int bounded)
 void tribo_box_begin(struct box_qp *p, int bounded)
 {
     p->twofold = p->group->graded && tribo_graded_fits(p, bounded);
-    p->pull = 0.0;
-    for (size_t e = 0; p->twofold && e < p->count; e++) {
-        p->pull = greater(p->pull, fabs(p->q[p->near[e]]));
-    }
     if (p->group->nullity && !p->twofold) {
         find_terms(p, bounded);
     }
