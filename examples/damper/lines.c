@@ -107,6 +107,22 @@ static struct shown shown(const char *word, size_t length)
     return s;
 }
 
+double number_at(const char *at, char **end)
+{
+    char word[64], *stop;
+    const double value = strtod(at, end);
+    const size_t mantissa = (size_t)(*end - at);
+    if (mantissa == 0 || mantissa + 1 >= sizeof word || (**end != 'D' && **end != 'd')) {
+        return value;
+    }
+    strncpy(word, at, sizeof word - 1);
+    word[sizeof word - 1] = '\0';
+    word[mantissa] = 'e';
+    const double whole = strtod(word, &stop);
+    *end += (stop - word) - (ptrdiff_t)mantissa;
+    return whole;
+}
+
 double next_real(struct lines *l, const char *what)
 {
     const size_t length = next_word(l);
@@ -114,7 +130,7 @@ double next_real(struct lines *l, const char *what)
     if (length == 0) {
         die_at(l, "the line ends before %s", what);
     }
-    const double value = strtod(l->at, &end);
+    const double value = number_at(l->at, &end);
     if (end != l->at + length || !isfinite(value)) {
         const struct shown word = shown(l->at, length);
         die_at(l, "%s \"%s\" is no finite number", what, word.text);

@@ -24,6 +24,9 @@ int next_line(struct lines *l);
 /* The next line that is neither blank nor begins with #, or % as in Matrix Market; 0 at the end of the file. */
 int next_data(struct lines *l);
 
+/* The number at the beginning of a text, *end behind it, as strtod has it; with exponents as Fortran may write them: 1.1D+03. */
+double number_at(const char *at, char **end);
+
 /* The next word of the line as a number, or as a whole one from least to most; what it is, for the message. */
 double next_real(struct lines *l, const char *what);
 size_t next_whole(struct lines *l, const char *what, size_t least, size_t most);

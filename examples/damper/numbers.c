@@ -5,11 +5,12 @@
 #include <string.h>
 
 #include "../common/output.h"
+#include "lines.h"
 
 const char *read_number(const char *origin, const char *at, char end, double *value)
 {
     char *stop;
-    *value = strtod(at, &stop);
+    *value = number_at(at, &stop);
     if (stop == at || *stop != end || !isfinite(*value)) {
         die("%s: expected a finite number%s%.1s at \"%s\"", origin, end ? ", then " : "", &end, at);
     }

@@ -10,7 +10,7 @@
 enum { BLOCK = 1 << 16 };
 
 struct source {
-    void *file; /* FILE or gzFile */
+    void *file; /* FILE or struct packed */
     size_t (*read)(struct source *s);
     void (*close)(void *file);
     size_t at, end;
@@ -44,26 +44,71 @@ static void open_plain(struct source *s, const char *path)
 #if defined(EXAMPLES_ZLIB)
 #include <zlib.h>
 
-/* A file that is cut off gives what it has, and the error with it. */
+/* Members of gzip's format, one behind the other; or a file that is not compressed in spite of its name. */
+struct packed {
+    FILE *file;
+    z_stream stream;
+    int between; /* members */
+    unsigned char byte[BLOCK];
+};
+
+static int refill(struct packed *p)
+{
+    p->stream.next_in = p->byte;
+    p->stream.avail_in = (uInt)fread(p->byte, 1, BLOCK, p->file);
+    return p->stream.avail_in > 0;
+}
+
+/* A file that is cut off, or has other bytes behind its members, gives what it has, and the error with it. */
 static size_t read_packed(struct source *s)
 {
-    const int count = gzread(s->file, s->byte, BLOCK);
-    int status;
-    const char *text = gzerror(s->file, &status);
-    s->error = status == Z_OK || status == Z_STREAM_END ? NULL : status == Z_ERRNO ? strerror(errno) : text;
-    return count > 0 ? (size_t)count : 0;
+    struct packed *p = s->file;
+    p->stream.next_out = s->byte;
+    p->stream.avail_out = BLOCK;
+    while (!s->error && p->stream.avail_out == BLOCK && (p->stream.avail_in > 0 || refill(p))) {
+        if (p->between) {
+            inflateReset(&p->stream);
+        }
+        const int status = inflate(&p->stream, Z_NO_FLUSH);
+        if (status != Z_OK && status != Z_STREAM_END) {
+            s->error = p->between ? "other bytes behind its compressed ones" : p->stream.msg ? p->stream.msg : zError(status);
+        }
+        p->between = status == Z_STREAM_END;
+    }
+    const size_t count = BLOCK - p->stream.avail_out;
+    if (!s->error && count == 0) {
+        s->error = ferror(p->file) ? strerror(errno) : p->between ? NULL : "unexpected end of file";
+    }
+    return count;
 }
 
 static void close_packed(void *file)
 {
-    gzclose_r(file);
+    struct packed *p = file;
+    inflateEnd(&p->stream);
+    fclose(p->file);
+    free(p);
 }
 
 static void open_packed(struct source *s, const char *path)
 {
-    s->file = gzopen(path, "rb");
-    s->read = read_packed;
-    s->close = close_packed;
+    open_plain(s, path);
+    if (!s->file) {
+        return;
+    }
+    const int first = getc(s->file), second = getc(s->file);
+    rewind(s->file);
+    if (first == 0x1f && second == 0x8b) {
+        struct packed *p = need_memory(1, sizeof *p);
+        memset(p, 0, sizeof *p);
+        p->file = s->file;
+        if (inflateInit2(&p->stream, 16 + MAX_WBITS) != Z_OK) {
+            die("%s: out of memory", path);
+        }
+        s->file = p;
+        s->read = read_packed;
+        s->close = close_packed;
+    }
 }
 #else
 static void open_packed(struct source *s, const char *path)

@@ -1,4 +1,5 @@
 /* Drivers: fixed steps, counts, observers, and every way to fail. */
+#include <fenv.h>
 #include <string.h>
 
 #include "run.h"
@@ -441,6 +442,35 @@ TEST(reals)
     assert_exact(value[1], value[0]);
 }
 
-TEST_MAIN("driver", {reals, 1}, {four_evaluations_a_step, 6}, {last_steps, 1}, {classical_runge_kutta, 1}, {pieces, 6},
+/* The rounding mode of the caller changes rounding, and nothing else. */
+TEST(rounding_modes)
+{
+    const char *const methods[] = {"exact", "event", "central/fixed", "moreau/fixed", "rk4/fixed"};
+    const int modes[] = {FE_TONEAREST,
+#if defined(FE_UPWARD) && defined(FE_DOWNWARD) && defined(FE_TOWARDZERO)
+                         FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO
+#endif
+    };
+    double first[3];
+    for (size_t m = 0; m < COUNT(modes); m++) {
+        tribo_system *sys;
+        double t = 0.0, y[3] = {1.0, 0.0, 0.0};
+        assert_ok(tribo_system_oscillator(&sys, 0.1, 0.5, 0.7));
+        assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), 0.01, 1.0));
+        fesetround(modes[m]);
+        tribo_driver *drv = driver_create(sys, methods[_i], 0.01, 1e-10);
+        const int status = tribo_driver_advance(drv, &t, 10.0, y);
+        fesetround(FE_TONEAREST);
+        assert_ok(status);
+        for (size_t k = 0; k < 3; k++) {
+            first[k] = m ? first[k] : y[k];
+        }
+        assert_all_close(y, first, 3, 1e-9);
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
+TEST_MAIN("driver", {rounding_modes, 5}, {reals, 1}, {four_evaluations_a_step, 6}, {last_steps, 1}, {classical_runge_kutta, 1}, {pieces, 6},
           {observer_stops, 3}, {creation_errors, 1}, {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3},
           {overflow, 3}, {names, 1}, {resolution, 3}, {growth, METHODS}, {no_contacts, METHODS})

@@ -1,12 +1,13 @@
 /* For many times: the angle omega t as the sum of two numbers, less a whole number of quarter turns, is at most an eighth of a
- * turn: there Taylor's series end soon. Nothing is chosen, so that loops over times become vectors. */
+ * turn: there Taylor's series end soon. A caller that rounds upwards or downwards is left with at most a quarter turn, where they
+ * are right to 1e-12. Nothing is chosen, so that loops over times become vectors. */
 #include "cos_sin.h"
 #include "common/simd.h"
 #include "numerics/twofold.h"
 
 #include <math.h>
 
-/* The whole number next to x, |x| < 2^51. */
+/* A whole number next to x, |x| < 2^51: the nearest one, where the caller rounds to nearest. */
 static inline double nearest(double x)
 {
     const double lift = 6755399441055744.0; /* 1.5 2^52: the digits of a sum end before the point */
@@ -52,7 +53,8 @@ TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restric
         const double quarters = nearest(angle.hi * 0.63661977236758134);
         const struct twofold x = without_quarters(angle, quarters);
         const double cx = cosine_near_0(x), sx = sine_near_0(x);
-        const double left = quarters - 4.0 * nearest(0.25 * quarters); /* -2, -1, 0, 1 or 2 */
+        const double turned = quarters - 4.0 * nearest(0.25 * quarters);                           /* -3 to 3 */
+        const double left = turned - (turned > 2.0 ? 4.0 : 0.0) + (turned < -2.0 ? 4.0 : 0.0); /* -2, -1, 0, 1 or 2 */
         const double cq = 1.0 - fabs(left), sq = left * (2.0 - fabs(left));
         c[k] = cq * cx - sq * sx;
         s[k] = sq * cx + cq * sx;

@@ -24,8 +24,8 @@ static int check(const struct model *m)
         if (!isfinite(x)) {
             return tribo_model_fail(m, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", all[k].name, i, j, x);
         }
-        return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %g, but %s[%zu][%zu] = %g", all[k].name, i, j, x,
-                                all[k].name, j, i, y);
+        return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", all[k].name,
+                                i, j, x, all[k].name, j, i, y);
     }
     return TRIBO_OK;
 }
@@ -141,7 +141,7 @@ static int check_unsolved(const struct model *m)
     }
     if (m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {
         return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC,
-                                "damping[%zu][%zu] = %g, but damping[%zu][%zu] = %g: with more than %d degrees of freedom and a "
+                                "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
                                 "mass matrix that is not diagonal it must be symmetric",
                                 i, j, x, j, i, y, DENSE_MOST);
     }

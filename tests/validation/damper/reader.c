@@ -296,4 +296,44 @@ TEST(damaged)
 }
 END_TEST
 
-TEST_MAIN("reader", {matrices, 1}, {places, 1}, {order, 1}, {refusals, 1}, {inputs, 1}, {cut_off, 1}, {damaged, 1})
+/* Members may follow each other, as gzip -c a b makes them; other bytes behind them are none of the file's. */
+TEST(members)
+{
+#if defined(EXAMPLES_ZLIB)
+    char bytes[TEXT];
+    const size_t half = strlen(market) / 2;
+    size_t length = 0;
+    for (int part = 0; part < 2; part++) {
+        char text[TEXT] = {0}, packed[TEXT];
+        memcpy(text, market + (part ? half : 0), part ? strlen(market) - half : half);
+        write_file("part.gz", text);
+        const size_t more = read_plain("part.gz", packed);
+        memcpy(bytes + length, packed, more);
+        length += more;
+    }
+    write_plain("K.mtx.gz", bytes, length);
+    assert_is_chain("K.mtx.gz");
+    memcpy(bytes + length, "garbage", 7);
+    write_plain("K.mtx.gz", bytes, length + 7);
+    assert_says(refusal("K.mtx.gz"), "other bytes behind its compressed ones");
+    memset(bytes + length, 0, 7);
+    write_plain("K.mtx.gz", bytes, length + 7);
+    assert_says(refusal("K.mtx.gz"), "other bytes behind its compressed ones");
+#endif
+}
+END_TEST
+
+/* Exponents as Nastran and old Fortran write them; hexadecimal digits d are digits. */
+TEST(fortran_exponents)
+{
+    static const char written[] = "1 1  4.0000000000000D+02\n1 2 -2.0000000000000d+02\n2 2  4.0D2\n1 3  0.D0\n2 3 -.2D+3\n3 3  400D0\n"
+                                  "1 4  0.0000000000000D+00\n3 4 -2.0000000000000D+02\n4 4  2.0000000000000D+02\n";
+    assert_chain("p.sti", written);
+    assert_refused("p.sti", "1 1 4.0D\n", "\"4.0D\" is no finite number");
+    assert_refused("p.sti", "1 1 4.0D+\n", "\"4.0D+\" is no finite number");
+    assert_refused("p.sti", "1 1 4.0D2D1\n", "\"4.0D2D1\" is no finite number");
+    assert_refused("p.sti", "1 1 1D400\n", "\"1D400\" is no finite number");
+}
+END_TEST
+
+TEST_MAIN("reader", {members, 1}, {fortran_exponents, 1}, {matrices, 1}, {places, 1}, {order, 1}, {refusals, 1}, {inputs, 1}, {cut_off, 1}, {damaged, 1})

@@ -1,5 +1,6 @@
 /* Cosine and sine of omega t: right to rounding, and the same bits for one time and for many; and of harmonics that a motion
  * turns on from one time to the next. */
+#include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -123,4 +124,26 @@ TEST(turned_on)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("cos_sin", {right_to_rounding, 1}, {late_times, 1}, {quarter_turns, 1}, {one_by_one, 1}, {turned_on, 1})
+/* Callers that round upwards, downwards or to zero get the same, but for the ends of series. */
+TEST(rounding_modes)
+{
+    const int modes[] = {
+#if defined(FE_UPWARD) && defined(FE_DOWNWARD) && defined(FE_TOWARDZERO)
+        FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO,
+#endif
+        FE_TONEAREST};
+    uint32_t state = 3;
+    for (int k = 0; k < 20000; k++) {
+        const double omega = exp(6.0 * next(&state) - 3.0), t = 200.0 * next(&state) - 100.0;
+        for (size_t m = 0; m < COUNT(modes); m++) {
+            double c, s;
+            fesetround(modes[m]);
+            tribo_cos_sin_all(omega, 1, &t, &c, &s);
+            fesetround(FE_TONEAREST);
+            const double off = hypot(c - cos(omega * t), s - sin(omega * t));
+            require(off <= 1e-11, "rounding mode %zu, omega = %.17g, t = %.17g: off by %g", m, omega, t, off);
+        }
+    }
+}
+
+TEST_MAIN("cos_sin", {rounding_modes, 1}, {right_to_rounding, 1}, {late_times, 1}, {quarter_turns, 1}, {one_by_one, 1}, {turned_on, 1})
