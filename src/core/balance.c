@@ -68,10 +68,11 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
     return p;
 }
 
-/* The part of its limit by which the force of the contact at place k misses its balance, but for an error of its gradient. */
+/* The part of its limit by which the force of the contact at place k misses its balance, but for an error of its gradient, which
+ * is at least that of an underflow. */
 static double missed_part(const tribo_context *ctx, const struct box_qp *p, size_t k, double error)
 {
-    const double beyond = fabs(p->gradient[k]) - TRIBO_SETTLED * error, sure = beyond < 0.0 ? 0.0 : copysign(beyond, p->gradient[k]);
+    const double beyond = fabs(p->gradient[k]) - TRIBO_SETTLED * greater(error, DBL_MIN), sure = beyond < 0.0 ? 0.0 : copysign(beyond, p->gradient[k]);
     const double f = clamp(p->x[k], p->lo[k], p->hi[k]);
     const double to = clamp(p->x[k] - quotient(sure, ctx->op->diagonal[p->member[k]]), p->lo[k], p->hi[k]);
     return quotient(fabs(f - to), greater(greater(fabs(p->lo[k]), fabs(p->hi[k])), DBL_MIN));

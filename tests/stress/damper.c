@@ -127,7 +127,7 @@ static void damage_word(struct text *file, struct random *r)
                                        "1..2",
                                        "0x",
                                        "--3",
-                                       "1d5",
+                                       "1d5d",
                                        "12a",
                                        "1,5",
                                        "\"",

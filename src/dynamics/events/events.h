@@ -43,8 +43,8 @@ struct events {
     int (*transition)(void *motion, const void *phase, double tau, size_t columns, double *v);
     /* c'y, c [2 ndof], in the phase that lasts tau and ends with the state end. Returns a status, likewise. */
     int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
-    /* What a phase that has lasted tau dissipated in contact i, which slides; NULL: limits are steady, or harmonics. */
-    double (*work)(const void *motion, size_t i, double tau);
+    /* The energy that contact i, which slides, dissipated in the phase that lasted tau, if its force is counted once. */
+    double (*work)(void *motion, size_t i, double tau);
     int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
 
     struct company *company; /* NULL: nobody */

@@ -332,6 +332,11 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     return tribo_modal_motion_signal(&((struct exact *)motion)->motion, c, tau, end, to);
 }
 
+static double work(void *motion, size_t i, double tau)
+{
+    return tribo_modal_motion_work(&((struct exact *)motion)->motion, i, tau);
+}
+
 /* --------------------------------------------------------------------------------------------------------- the driver */
 
 static void destroy(tribo_driver *drv)
@@ -394,6 +399,7 @@ static int create(tribo_driver *drv)
     x->events.release = release_phase;
     x->events.transition = transition;
     x->events.signal = combine;
+    x->events.work = work;
     x->events.shows_between = 1;
     if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");

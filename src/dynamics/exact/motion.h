@@ -63,8 +63,9 @@ void tribo_modal_motion_go(struct modal_motion *x, double tau);
 struct sample tribo_modal_motion_limit(const struct modal_motion *x, size_t i);
 double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i);
 
-/* Energy dissipated until t0 + tau, where dq is. */
-double tribo_modal_motion_dissipated(const struct modal_motion *x, double tau);
+/* Energy dissipated by contact i, which slides, until t0 + tau, where dq is, if its force is counted once; and by all. */
+double tribo_modal_motion_work(struct modal_motion *x, size_t i, double tau);
+double tribo_modal_motion_dissipated(struct modal_motion *x, double tau);
 
 /* Goes to t0 + tau: the state there. from is the state at t0; to may be the same. */
 void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *from, double *to);

@@ -1,7 +1,6 @@
 /* What the periodic motion found last holds. Each call follows it through its period once more, phase by phase in closed form. */
 #include "shooting.h"
 
-#include <complex.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +16,6 @@ struct replay {
     struct extremes extremes;
     double omega, re, im; /* integral with e^{-i omega t} */
     double *sum;          /* [ncontact] */
-    double *row;          /* [2 ndof] workspace */
 };
 
 static int no_memory(const struct replay *r)
@@ -154,101 +152,16 @@ int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, d
 
 /* -------------------------------------------------------------------------------------------------------------- contacts */
 
-/* Entry i of a harmonic, or 0, as Re(a e^{i omega s}), s from t on. */
-static double complex entry(const struct harmonic *w, size_t i, double t)
-{
-    for (size_t k = 0; k < w->count; k++) {
-        if (w->index[k] == i) {
-            return (w->cosine[k] - w->sine[k] * I) * cexp(w->omega * t * I);
-        }
-    }
-    return 0.0;
-}
-
-/* The integral of e^{i omega s} over tau, about the middle. */
-static double complex integral(double omega, double tau)
-{
-    return (omega != 0.0 ? 2.0 * sin(0.5 * omega * tau) / omega : tau) * cexp(0.5 * omega * tau * I);
-}
-
-/* Integrals over tau of the velocity of contact i, and of that times what a harmonic makes of its limit, limit. */
-struct way {
-    size_t i;
-    double t, tau;
-    const struct harmonic *limit;
-    double complex amplitude;
-};
-
-/* The part of the base, which moves from below. */
-static double way_of_base(const tribo_system *sys, const struct way *x)
-{
-    double way = 0.0;
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *w = &sys->harmonic[s];
-        const double complex b = w->drives == DRIVES_BASE ? entry(w, x->i, x->t) : 0.0;
-        if (b != 0.0 && !x->limit) {
-            way -= creal(b * integral(w->omega, x->tau));
-        } else if (b != 0.0) {
-            const double complex sum = integral(x->limit->omega + w->omega, x->tau);
-            const double complex difference = integral(x->limit->omega - w->omega, x->tau);
-            way -= 0.5 * creal(x->amplitude * (b * sum + conj(b) * difference));
-        }
-    }
-    return way;
-}
-
-/* The work of what harmonics add to the limit of contact i. */
-static int add_swing(struct replay *r, const struct way *steady, const double *end, double *work, double *limit)
-{
-    const tribo_system *sys = r->map->sys;
-    struct way x = *steady;
-    memset(r->row, 0, 2 * sys->ndof * sizeof *r->row);
-    for (size_t k = sys->direction.first[x.i]; k < sys->direction.first[x.i + 1]; k++) {
-        r->row[sys->ndof + sys->direction.col[k]] = sys->direction.val[k];
-    }
-    r->c = r->row;
-    int status = set_signal(r, x.tau, end);
-    for (size_t s = 0; !status && s < sys->harmonics; s++) {
-        x.limit = &sys->harmonic[s];
-        if (x.limit->drives == DRIVES_LIMIT && (x.amplitude = entry(x.limit, x.i, x.t)) != 0.0) {
-            double re = 0.0, im = 0.0;
-            tribo_signal_integrate(&r->signal, x.limit->omega, &re, &im);
-            *work += creal(x.amplitude) * re + cimag(x.amplitude) * im + way_of_base(sys, &x);
-            *limit -= creal(x.amplitude);
-        }
-    }
-    return status;
-}
-
-/* A sliding force dissipates its size times the way. */
-static int find_work(struct replay *r, size_t i, double tau, const double *end, double *work)
-{
-    const tribo_system *sys = r->map->sys;
-    const struct stick_slip *m = &r->map->events->stick_slip;
-    const struct way x = {i, r->map->t + r->elapsed, tau, NULL, 0.0};
-    double limit = m->limit[i], swung = 0.0;
-    const int status = m->swing[i] > 0.0 ? add_swing(r, &x, end, &swung, &limit) : TRIBO_OK;
-    const double way = tribo_matrix_row_dot(&sys->direction, i, end) - tribo_matrix_row_dot(&sys->direction, i, r->map->x);
-    *work = m->slip[i] * (swung + limit * (way + way_of_base(sys, &x)));
-    return status;
-}
-
 static int add_energy(struct replay *r, double tau, const double *end)
 {
     const struct events *e = r->map->events;
-    int status = TRIBO_OK;
-    for (size_t i = 0; !status && i < r->map->sys->ncontact; i++) {
+    (void)end;
+    for (size_t i = 0; i < r->map->sys->ncontact; i++) {
         if (e->stick_slip.slip[i] == 1 || e->stick_slip.slip[i] == -1) {
-            double work = 0.0;
-            if (e->work) {
-                work = e->work(e->motion, i, tau);
-            } else {
-                status = find_work(r, i, tau, end, &work);
-            }
-            r->sum[i] += r->map->sys->tally[i] * work;
+            r->sum[i] += r->map->sys->tally[i] * e->work(e->motion, i, tau);
         }
     }
-    return status;
+    return TRIBO_OK;
 }
 
 static int add_rest(struct replay *r, double tau, const double *end)
@@ -270,8 +183,7 @@ static int sum_up(tribo_driver *drv, const char *name, int (*phase)(struct repla
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", name);
     }
     const size_t count = drv->sys->ncontact;
-    struct replay r = {.phase = phase, .sum = calloc(count + 2 * drv->sys->ndof + 1, sizeof *to)};
-    r.row = r.sum ? r.sum + count : NULL;
+    struct replay r = {.phase = phase, .sum = calloc(count + 1, sizeof *to)};
     const int status = r.sum ? replay(drv, &r)
                              : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for %zu contact%s", count, plural(count));
     if (!status) {

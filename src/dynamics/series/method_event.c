@@ -254,7 +254,7 @@ static void destroy(tribo_driver *drv)
 static int begin(void *motion, double t, const double *y, double *reach);
 static int transition(void *motion, const void *phase, double tau, size_t columns, double *v);
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
-static double work(const void *motion, size_t i, double tau);
+static double work(void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
 
 /* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes, and half as many where squares of
@@ -555,7 +555,7 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     return TRIBO_OK;
 }
 
-static double work(const void *motion, size_t i, double tau)
+static double work(void *motion, size_t i, double tau)
 {
     return tribo_event_work(motion, i, tau);
 }

@@ -218,7 +218,7 @@ static int ill_posed(struct random *g, const struct scene *s, const struct twofo
 TEST(enumerated)
 {
     const double decades[] = {2.0, 6.0, 9.0};
-    struct random g = random_of((size_t)_i);
+    struct random g = random_of(_i);
     size_t solved = 0;
     for (size_t k = 0; k < 400; k++) {
         const struct scene s = any_scene(&g, decades[_i % 3]);

@@ -479,7 +479,44 @@ TEST(creation)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("exact", {reference_values, REFERENCES}, {events_of_the_chain, 1}, {growth_that_stops, 1}, {chains, 6},
+/* A contact holds, lifts off and stops its body again under a limit of up to 1e9 times the load that swings through zero: what
+ * friction takes is the little kinetic energy at touch-down, and no difference of large numbers. As "event" has it, whose series
+ * are of the power; in an advance, and over a period. */
+TEST(limits_through_zero)
+{
+    const double big = pow(10.0, 2.0 + _i), one = 1.0, damping = 0.07, limit = big, swing = 1.2 * big, period = PI / 0.8;
+    double taken[2], over[2], least = HUGE_VAL;
+    for (int k = 0; k < 2; k++) {
+        char text[200];
+        tribo_system *sys;
+        double t = 0.0, y[3] = {0.0}, before = 0.0;
+        assert_ok(tribo_system_linear(&sys, 1, 1, &one, &damping, &one, &one, 0, text, sizeof text));
+        assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
+        assert_ok(tribo_system_add_load(sys, 1.6, &one, NULL));
+        assert_ok(tribo_system_add_limit(sys, 3.2, &swing, NULL));
+        tribo_driver *drv = driver_create(sys, k ? "event" : "exact", period, 1e-13);
+        for (int part = 1; part <= 40; part++) {
+            driver_advance(drv, &t, period * part / 40.0, y);
+            least = fmin(least, y[2] - before);
+            before = y[2];
+        }
+        taken[k] = y[2];
+        memset(y, 0, sizeof y);
+        if (big < 1e6) {
+            assert_ok(tribo_driver_find_periodic(drv, 0.0, period, y));
+            assert_ok(tribo_driver_period_dissipation(drv, &over[k]));
+        }
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+    assert_close(taken[0], taken[1], 1e-12 * sqrt(big) * taken[1] + 1e-17 * big);
+    require(least >= 0.0, "friction gave %g", -least);
+    if (big < 1e6) {
+        assert_close(over[0], over[1], 1e-7 * over[1]);
+    }
+}
+
+TEST_MAIN("exact", {limits_through_zero, 8}, {reference_values, REFERENCES}, {events_of_the_chain, 1}, {growth_that_stops, 1}, {chains, 6},
           {beam_against_event, 3}, {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1}, {resonance_beside_damping, 1},
           {held_together, 2}, {balance_of_energy, 8}, {observer_sees_the_motion, 1}, {observer_stops, 1}, {in_pieces, 1},
           {automatic, 1}, {automatic_runs, 1}, {unsupported, 1}, {tables, 2}, {creation, 1})
