@@ -7,7 +7,7 @@
  * Writes FOLDER/hysteresis.csv and FOLDER/values-hysteresis.txt. */
 #include <math.h>
 
-#include "../common/output.h"
+#include "../../src/damper/output.h"
 #include "tribo/tribo.h"
 
 enum { ELEMENTS = 25, STEPS = 400 };

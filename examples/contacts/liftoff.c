@@ -6,7 +6,7 @@
  * Writes FOLDER/liftoff.csv (one steady period) and FOLDER/values-liftoff.txt. */
 #include <math.h>
 
-#include "../common/output.h"
+#include "../../src/damper/output.h"
 #include "tribo/tribo_gsl.h"
 
 /* Mass and stiffness are 1; the load is cos(omega t), and the limit 0.6 + sin(omega t) where that is positive. */

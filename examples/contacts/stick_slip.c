@@ -6,7 +6,7 @@
  * Writes FOLDER/stick-slip.csv and FOLDER/values-stick-slip.txt. */
 #include <math.h>
 
-#include "../common/output.h"
+#include "../../src/damper/output.h"
 #include "tribo/tribo_gsl.h"
 
 /* Mass, stiffness and static limit are 1. */

@@ -6,7 +6,7 @@
  * Writes FOLDER/whirl.csv and FOLDER/values-whirl.txt. */
 #include <math.h>
 
-#include "../common/output.h"
+#include "../../src/damper/output.h"
 #include "tribo/tribo.h"
 
 /* Mass, stiffness and the turning force are 1. */

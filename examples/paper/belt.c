@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../common/output.h"
+#include "../../src/damper/output.h"
 #include "tribo/tribo_gsl.h"
 
 static const char *const names[] = {"consistent", "partition"};

@@ -12,7 +12,7 @@
 
 #include <gsl/gsl_fit.h>
 
-#include "../common/output.h"
+#include "../../src/damper/output.h"
 #include "tribo/tribo_gsl.h"
 
 enum { MAX_STEPS = 11 };

@@ -6,7 +6,7 @@
  * Writes FOLDER/fig5.csv (all three laws), FOLDER/values-fig5.txt, and prints the rest points. */
 #include <math.h>
 
-#include "../common/output.h"
+#include "../../src/damper/output.h"
 #include "tribo/tribo_gsl.h"
 
 static const int laws[] = {TRIBO_COULOMB, TRIBO_VELOCITY_LIMITED, TRIBO_QUINN};

@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../common/output.h"
-#include "../damper/lines.h"
-#include "../damper/matrix_file.h"
+#include "../../src/damper/output.h"
+#include "../../src/damper/lines.h"
+#include "../../src/damper/matrix_file.h"
 #include "tribo/tribo_gsl.h"
 
 enum { MAX_CONTACTS = 64 };

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 #include "contacts.h"
 #include "couplings.h"
 #include "harness.h"

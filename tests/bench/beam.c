@@ -6,8 +6,8 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
-#include "../../examples/common/output.h"
-#include "../../examples/damper/structure.h"
+#include "../../src/damper/output.h"
+#include "../../src/damper/structure.h"
 
 static const struct place contact_place[CONTACTS] = {
     {{200.0, 0.0, 5.0}, 3, "contact 1"}, {{300.0, 0.0, 5.0}, 3, "contact 2"}, {{400.0, 0.0, 5.0}, 3, "contact 3"}};

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 
 /* splitmix64, in [-1, 1] */
 static double random_of(uint64_t *state)

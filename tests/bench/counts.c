@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 #include "kernel_scene.h"
 #include "tribo/tribo_gsl.h"
 

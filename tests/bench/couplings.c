@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 #include "../validation/pile.h"
 
 static const char *const name[] = {"consistent", "partition"};

@@ -10,7 +10,7 @@
 #include <gsl/gsl_fft_real.h>
 #include <gsl/gsl_linalg.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 
 typedef double complex z;
 

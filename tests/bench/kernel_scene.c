@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 
 const char *const kernel_name[KERNELS] = {"tribo_force",
                                           "tribo_force_tangent",

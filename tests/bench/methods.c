@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 #include "harness.h"
 
 void outcome_fail(struct outcome *o, const char *format, ...)

@@ -4,7 +4,7 @@
 
 #include <cholmod.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 #include "contacts.h"
 
 struct peer {

@@ -17,7 +17,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 #include "harness.h"
 #include "methods.h"
 #include "motion.h"

@@ -12,8 +12,8 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "../../examples/common/output.h"
-#include "../../examples/damper/structure.h"
+#include "../../src/damper/output.h"
+#include "../../src/damper/structure.h"
 #include "harness.h"
 #include "tribo/tribo_gsl.h"
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../../examples/common/output.h"
+#include "../../src/damper/output.h"
 #include "beam.h"
 
 /* ---------------------------------------------------------------------------------------------------------- models */
@@ -113,7 +113,7 @@ static void add_beam(struct scene *scenes, size_t *count)
         s->weight[i] = sqrt(beam.beam.stiffness[i]);
     }
     s->beam = sys;
-    s->dt = 0.25 / s->model.fastest; /* as examples/damper has it */
+    s->dt = 0.25 / s->model.fastest; /* as src/damper has it */
     s->size = beam.beam.load[0] / beam.beam.stiffness[0];
 }
 

@@ -8,8 +8,8 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "../../examples/common/output.h"
-#include "../../examples/damper/structure.h"
+#include "../../src/damper/output.h"
+#include "../../src/damper/structure.h"
 #include "harness.h"
 #include "memory.h"
 #include "tribo/tribo_gsl.h"

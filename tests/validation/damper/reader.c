@@ -7,7 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#if defined(EXAMPLES_ZLIB)
+#if defined(DAMPER_ZLIB)
 #include <zlib.h>
 #endif
 
@@ -52,7 +52,7 @@ static size_t read_plain(const char *path, char *bytes)
 
 static void write_file(const char *path, const char *text)
 {
-#if defined(EXAMPLES_ZLIB)
+#if defined(DAMPER_ZLIB)
     if (strstr(path, ".gz")) {
         gzFile file = gzopen(path, "wb");
         require(file && gzwrite(file, text, (unsigned)strlen(text)) == (int)strlen(text) && gzclose(file) == Z_OK,
@@ -131,7 +131,7 @@ TEST(matrices)
     assert_chain("K.mtx", market);
     assert_chain("p.sti", calculix);
     assert_chain("p.mas", calculix);
-#if defined(EXAMPLES_ZLIB)
+#if defined(DAMPER_ZLIB)
     assert_chain("K.mtx.gz", market);
     assert_chain("p.sti.gz", calculix);
     write_plain("plain.mtx.gz", market, strlen(market)); /* as gunzip -f would have it */
@@ -266,7 +266,7 @@ TEST(cut_off)
 {
     assert_no_part_of("p.sti", calculix);
     assert_no_part_of("K.mtx", market);
-#if defined(EXAMPLES_ZLIB)
+#if defined(DAMPER_ZLIB)
     assert_no_part_of("p.mas.gz", calculix);
     assert_no_part_of("K.mtx.gz", market);
 #endif
@@ -276,7 +276,7 @@ END_TEST
 /* A compressed file of which a byte is wrong is refused, or says what it said: the last bits before its sum may mean nothing. */
 TEST(damaged)
 {
-#if defined(EXAMPLES_ZLIB)
+#if defined(DAMPER_ZLIB)
     char bytes[TEXT];
     write_file("K.mtx.gz", market);
     const size_t length = read_plain("K.mtx.gz", bytes), head = 10;
@@ -299,7 +299,7 @@ END_TEST
 /* Members may follow each other, as gzip -c a b makes them; other bytes behind them are none of the file's. */
 TEST(members)
 {
-#if defined(EXAMPLES_ZLIB)
+#if defined(DAMPER_ZLIB)
     char bytes[TEXT];
     const size_t half = strlen(market) / 2;
     size_t length = 0;

@@ -8,7 +8,7 @@
 #include "beam.h"
 #include "run.h"
 
-/* The beam of examples/damper: contacts at z of three nodes, a load at a fourth one. */
+/* The beam of src/damper: contacts at z of three nodes, a load at a fourth one. */
 enum { HELD = 3, ROWS = 4 };
 static const double damping = 0.002, force = 0.1;
 

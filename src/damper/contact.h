@@ -1,0 +1,35 @@
+#ifndef DAMPER_CONTACT_H
+#define DAMPER_CONTACT_H
+
+#include <stddef.h>
+
+enum { MAX_CONTACTS = 32 };
+
+/* A degree of freedom as the user names it: a node by its coordinates, and a direction (1, 2, 3 for x, y, z). */
+struct place {
+    double at[3];
+    int direction;
+    const char *origin; /* where it was given, for messages */
+};
+
+/* A contact between a node and the ground, or another node; or one of the two directions of a contact in a plane. */
+struct contact {
+    struct place at, to;
+    int between;  /* 0: to the ground, and there is no to */
+    double limit; /* NaN: it varies, and is mu times what it varies with */
+    double mu;
+    double stiffness; /* of the spring that it slides on; 0: none, it is rigid */
+    int planar;       /* the first direction of two, and the next contact is the other one */
+};
+
+/* "X,Y,Z,DIR" */
+struct place read_place(const char *origin, const char *text);
+
+/* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind
+ * it, parted by colons or blanks, into contact [MAX_CONTACTS], of which count are there already; returns how many then are. */
+size_t read_contact(const char *origin, const char *text, struct contact *contact, size_t count);
+
+/* One contact a line, from the file into contact [MAX_CONTACTS], of which count are there already; returns how many then are. */
+size_t read_contacts(const char *path, struct contact *contact, size_t count);
+
+#endif

@@ -1,0 +1,282 @@
+#include "curve.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "lines.h"
+#include "team.h"
+
+enum { MOST_SAMPLES = 1000, ROUNDS = 12, CLIMBS = 12 };
+static const double LEAST_WIDTH = 1.0 / 16384.0; /* of a gap between samples, relative to the whole curve */
+static const double LEAST_AMPLITUDE = 1e-5;      /* of the largest one: below, it does not matter how the curve bends */
+
+/* -------------------------------------------------------------------------------------------------------------- samples */
+
+struct curve create_curve(int over_limit, double fixed, size_t dimension)
+{
+    return (struct curve){.over_limit = over_limit, .fixed = fixed, .dimension = dimension};
+}
+
+void free_curve(struct curve *c)
+{
+    for (size_t k = 0; k < c->count; k++) {
+        free(c->sample[k].y);
+    }
+    free(c->sample);
+}
+
+/* Where x belongs. */
+static size_t place_of(const struct curve *c, double x)
+{
+    size_t low = 0, high = c->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (c->sample[middle].x < x) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static void insert_sample(struct curve *c, size_t k, double x, int asked)
+{
+    c->sample = need_room(c->sample, c->count, &c->room, sizeof *c->sample);
+    memmove(&c->sample[k + 1], &c->sample[k], (c->count - k) * sizeof *c->sample);
+    c->sample[k] = (struct sample){.x = x, .asked = asked, .y = need_memory(c->dimension, sizeof(double))};
+    c->count++;
+}
+
+void ask_sample(struct curve *c, double x, int asked)
+{
+    const size_t k = place_of(c, x);
+    if (k < c->count && c->sample[k].x == x) {
+        c->sample[k].asked |= asked;
+    } else {
+        insert_sample(c, k, x, asked);
+    }
+}
+
+static int found(const struct curve *c, size_t k)
+{
+    return c->sample[k].motion.found;
+}
+
+/* The nearest one found on that side of sample k, or NULL. */
+static const struct sample *neighbour(const struct curve *c, size_t k, int right)
+{
+    while (right ? ++k < c->count : k-- > 0) {
+        if (found(c, k)) {
+            return &c->sample[k];
+        }
+    }
+    return NULL;
+}
+
+/* From the nearer neighbour, from the other one, from rest, until it is found: so many of these are tried. */
+enum { NEARER = 1, ALL = 3 };
+static void find_sample(struct curve *c, struct worker *w, size_t k, int tries)
+{
+    struct sample *s = &c->sample[k];
+    const struct sample *left = neighbour(c, k, 0), *right = neighbour(c, k, 1);
+    const int right_first = right && (!left || right->x - s->x < s->x - left->x);
+    const struct sample *guess[] = {right_first ? right : left, right_first ? left : right, NULL};
+    const double limit = c->over_limit ? exp(s->x) : c->fixed, hz = c->over_limit ? c->fixed : s->x;
+    for (int i = 0; i < tries && !s->motion.found && !interrupted(); i++) {
+        if (guess[i] || i == 2) {
+            const size_t periods = s->motion.periods;
+            s->motion = find_motion(w, limit, hz, guess[i] ? guess[i]->y : NULL, s->y);
+            s->motion.periods += periods;
+        }
+    }
+}
+
+/* ------------------------------------------------------------------------------------------------------------ refinement */
+
+/* What a curve is measured by. */
+struct height {
+    double amplitude, power;
+};
+
+static struct height height_of(const struct curve *c)
+{
+    struct height h = {0.0, 0.0};
+    for (size_t k = 0; k < c->count; k++) {
+        if (found(c, k)) {
+            h.amplitude = fmax(h.amplitude, c->sample[k].motion.amplitude);
+            h.power = fmax(h.power, c->sample[k].motion.friction);
+        }
+    }
+    return h;
+}
+
+static double off_chord(const struct sample *s, double left, double middle, double right)
+{
+    return fabs(middle - left - (right - left) * (s[0].x - s[-1].x) / (s[1].x - s[-1].x));
+}
+
+/* Whether the curve bends at sample k: the amplitude is looked at by its logarithm, the power as it is. */
+static int bends(const struct curve *c, size_t k, const struct height *h, double tolerance)
+{
+    if (k == 0 || k + 1 >= c->count || !found(c, k - 1) || !found(c, k) || !found(c, k + 1)) {
+        return 0;
+    }
+    const struct sample *s = &c->sample[k];
+    double x[3], p[3];
+    for (int i = 0; i < 3; i++) {
+        x[i] = log(fmax(s[i - 1].motion.amplitude, LEAST_AMPLITUDE * h->amplitude));
+        p[i] = s[i - 1].motion.friction;
+    }
+    return off_chord(s, x[0], x[1], x[2]) > tolerance || off_chord(s, p[0], p[1], p[2]) > tolerance * h->power;
+}
+
+static int wants_more(const struct curve *c, size_t k, const struct height *h, double tolerance)
+{
+    const double whole = c->sample[c->count - 1].x - c->sample[0].x, width = c->sample[k + 1].x - c->sample[k].x;
+    return width > LEAST_WIDTH * whole &&
+           (found(c, k) != found(c, k + 1) || bends(c, k, h, tolerance) || bends(c, k + 1, h, tolerance));
+}
+
+/* A sample between k and k + 1, from which what was not found beside it is tried again. */
+static void split(struct curve *c, struct worker *w, size_t k)
+{
+    insert_sample(c, k + 1, 0.5 * (c->sample[k].x + c->sample[k + 1].x), 0);
+    find_sample(c, w, k + 1, ALL);
+    if (found(c, k + 1)) {
+        find_sample(c, w, k, NEARER);
+        find_sample(c, w, k + 2, NEARER);
+    }
+}
+
+/* One more sample in every gap that wants one; from the right, so that those on the left keep their places. Returns how many. */
+static size_t refine(struct curve *c, struct worker *w, double tolerance)
+{
+    const struct height h = height_of(c);
+    char *wanted = need_memory(c->count, 1);
+    size_t added = 0;
+    for (size_t k = 0; k + 1 < c->count; k++) {
+        wanted[k] = (char)wants_more(c, k, &h, tolerance);
+    }
+    for (size_t k = c->count - 1; k-- > 0;) {
+        if (wanted[k] && c->count < MOST_SAMPLES && !interrupted()) {
+            split(c, w, k);
+            added++;
+        }
+    }
+    free(wanted);
+    return added;
+}
+
+void find_curve(struct curve *c, struct worker *w, double tolerance)
+{
+    for (size_t k = 0; k < c->count; k++) {
+        find_sample(c, w, k, ALL);
+    }
+    for (size_t k = c->count; k-- > 0;) {
+        find_sample(c, w, k, NEARER); /* those that were not found, from the right */
+    }
+    for (int round = 0; round < ROUNDS && c->count > 1 && refine(c, w, tolerance) > 0; round++) {
+    }
+}
+
+const struct sample *reach_sample(struct curve *c, struct worker *w, double x)
+{
+    ask_sample(c, x, 0);
+    find_sample(c, w, place_of(c, x), ALL);
+    for (int i = 0; i < ROUNDS && !found(c, place_of(c, x)) && !interrupted(); i++) {
+        const size_t k = place_of(c, x);
+        if (k > 0 && found(c, k - 1)) {
+            split(c, w, k - 1);
+        } else if (k + 1 < c->count && found(c, k + 1)) {
+            split(c, w, k);
+        }
+    }
+    const size_t k = place_of(c, x);
+    return found(c, k) ? &c->sample[k] : NULL;
+}
+
+/* --------------------------------------------------------------------------------------------------------------- largest */
+
+static size_t place_of_largest(const struct curve *c)
+{
+    size_t best = c->count;
+    for (size_t k = 0; k < c->count; k++) {
+        if (found(c, k) && (best == c->count || c->sample[k].motion.amplitude > c->sample[best].motion.amplitude)) {
+            best = k;
+        }
+    }
+    return best;
+}
+
+const struct sample *largest_of(const struct curve *c)
+{
+    const size_t k = place_of_largest(c);
+    return k < c->count ? &c->sample[k] : NULL;
+}
+
+/* The top of the parabola through a sample and its neighbours. */
+static double top_of(const struct sample *s)
+{
+    const double left = s[-1].x - s[0].x, right = s[1].x - s[0].x;
+    const double a = (s[-1].motion.amplitude - s[0].motion.amplitude) / left,
+                 b = (s[1].motion.amplitude - s[0].motion.amplitude) / right;
+    return s[0].x + 0.5 * (a * right - b * left) / (a - b);
+}
+
+/* Whether sample k is not below its neighbours. */
+static int is_top(const struct curve *c, size_t k)
+{
+    const struct sample *s = &c->sample[k];
+    return k > 0 && k + 1 < c->count && found(c, k - 1) && found(c, k) && found(c, k + 1) &&
+           s->motion.amplitude >= s[-1].motion.amplitude && s->motion.amplitude >= s[1].motion.amplitude;
+}
+
+/* From a top among the samples to that of the curve. */
+static void climb(struct curve *c, struct worker *w, double x)
+{
+    for (int i = 0; i < CLIMBS && !interrupted(); i++) {
+        const size_t k = place_of(c, x);
+        const double top = top_of(&c->sample[k]), whole = c->sample[c->count - 1].x - c->sample[0].x;
+        const double reached = c->sample[k].motion.amplitude;
+        if (!(is_top(c, k) && fabs(top - x) > 1e-8 * whole)) {
+            return;
+        }
+        ask_sample(c, top, 0);
+        find_sample(c, w, place_of(c, top), ALL);
+        const struct motion *there = &c->sample[place_of(c, top)].motion;
+        x = there->found && there->amplitude > reached ? top : x;
+    }
+}
+
+void find_largest(struct curve *c, struct worker *w, double tolerance)
+{
+    const struct sample *largest = largest_of(c);
+    double *x = need_memory(c->count, sizeof *x);
+    size_t tops = 0;
+    for (size_t k = 0; k < c->count; k++) {
+        if (is_top(c, k) && c->sample[k].motion.amplitude * (1.0 + tolerance) >= largest->motion.amplitude) {
+            x[tops++] = c->sample[k].x;
+        }
+    }
+    for (size_t i = 0; i < tops; i++) {
+        climb(c, w, x[i]);
+    }
+    free(x);
+}
+
+int looked_for(const struct sample *s)
+{
+    return s->motion.found || s->motion.message[0] != '\0';
+}
+
+size_t gaps_of(const struct curve *c)
+{
+    size_t gaps = 0;
+    for (size_t k = 0; k < c->count; k++) {
+        gaps += !found(c, k) && looked_for(&c->sample[k]);
+    }
+    return gaps;
+}

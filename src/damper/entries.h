@@ -1,0 +1,36 @@
+#ifndef DAMPER_ENTRIES_H
+#define DAMPER_ENTRIES_H
+
+#include <stddef.h>
+
+#include <gsl/gsl_spmatrix.h>
+
+#include "lines.h"
+
+/* How many rows and columns a matrix has, by the degrees of freedom in the file of that path. */
+struct rows {
+    size_t count;
+    const char *path;
+};
+
+/* Entries of a matrix as a file has them. */
+struct entry {
+    size_t row, column, line; /* row and column counted from 1 */
+    double value;
+};
+
+struct entries {
+    size_t count, room;
+    struct entry *entry;
+};
+
+/* What is left of the line: "row column value". */
+struct entry read_entry(struct lines *l, const struct rows *rows);
+
+void add_entry(struct entries *all, const struct entry *e);
+
+/* Sorts the entries, and makes a matrix of those that are not zero, in compressed rows; of symmetric ones, which lie in the lower
+ * triangle, also what is above. Ends the program if a place has been given twice in the file of that path. */
+gsl_spmatrix *make_matrix(const char *path, struct entries *all, size_t rows, int symmetric);
+
+#endif

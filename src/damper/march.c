@@ -1,0 +1,211 @@
+#include "march.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_multifit.h>
+
+#include "output.h"
+#include "linear.h"
+#include "team.h"
+
+/* The motion is run in blocks of cycles, and its transient extrapolated after each from the last KEEP + 1 of them. */
+enum { BLOCK = 16, KEEP = 8, BLOCKS = 250, QUIET = 5 };
+static const double TOLERANCE = 1e-6;
+static const double LEAST_STEPS = 400, MOST_STEPS = 1e5; /* a period; an amplitude is the largest of the values there */
+
+/* A system that is marched. */
+struct run {
+    const struct damper *d;
+    tribo_driver *drv;
+    double period, omega; /* of the load */
+    size_t steps;         /* a period */
+    struct scale free;
+};
+
+/* ---------------------------------------------------------------------------------------------------------------- steps */
+
+/* rk4 damps a mode by (omega dt)^5/144 of critical, and follows it up to omega dt = 2.8. */
+static double steps_of(const struct damper *d, double hz)
+{
+    const double highest = fmax(d->omega[d->modes - 1], TURN * hz);
+    return fmax(LEAST_STEPS, ceil(highest / (hz * d->step)));
+}
+
+void check_steps(const struct damper *d, double hz)
+{
+    if (!(steps_of(d, hz) <= MOST_STEPS)) {
+        die("a period of %g Hz would take %g steps, more than %g: keep fewer --modes, or take a larger --step", hz,
+            steps_of(d, hz), MOST_STEPS);
+    }
+}
+
+tribo_driver *create_marcher(struct worker *w, double limit, double hz)
+{
+    const double dt = 1.0 / (hz * steps_of(w->d, hz));
+    tribo_context *contacts = tribo_system_context(w->sys);
+    tribo_driver *drv;
+    set_point(w, limit, hz);
+    /* stuck contacts relax within a step or so, which rk4 still follows; epsilon then goes along with each limit */
+    need(tribo_set_epsilon_step(contacts, dt, 1.0), tribo_message(contacts));
+    need(tribo_driver_create(&drv, w->sys, "rk4/fixed", dt, 0.0, 0.0), tribo_message(contacts));
+    return drv;
+}
+
+static struct run create_run(struct worker *w, double limit, double hz)
+{
+    struct run r = {.d = w->d, .period = 1.0 / hz, .omega = TURN * hz, .steps = (size_t)steps_of(w->d, hz)};
+    r.free = free_scale(w->d, r.omega);
+    r.drv = create_marcher(w, limit, hz);
+    return r;
+}
+
+/* Runs y through one period and measures it. The load is the same in every period, so that time may begin at 0 again. */
+static struct motion run_cycle(const struct run *r, double *y)
+{
+    const struct damper *d = r->d;
+    struct motion m = {.hz = 1.0 / r->period};
+    double t = 0.0, least = HUGE_VAL, most = -HUGE_VAL;
+    y[2 * d->modes] = 0.0;
+    for (size_t i = 1; i <= r->steps; i++) {
+        need(tribo_driver_advance(r->drv, &t, r->period * (double)i / (double)r->steps, y), tribo_driver_message(r->drv));
+        const double x = load_displacement(d, y);
+        least = fmin(least, x);
+        most = fmax(most, x);
+        m.damped += damping_power(d, y) / (double)r->steps;
+        m.input += d->force * sin(r->omega * t) * load_displacement(d, y + d->modes) / (double)r->steps;
+    }
+    m.amplitude = 0.5 * (most - least);
+    m.friction = y[2 * d->modes] / r->period;
+    return m;
+}
+
+/* ----------------------------------------------------------------------------------------------------- steady motion */
+
+/* Energy norm of the difference of two states; of a itself if b is NULL. */
+static double distance(const struct damper *d, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (size_t k = 0; k < 2 * d->modes; k++) {
+        const double x = (k < d->modes ? d->omega[k] : 1.0) * (a[k] - (b ? b[k] : 0.0));
+        sum += x * x;
+    }
+    return sqrt(sum);
+}
+
+/* Where the sequence of states y_0 ... y_keep+1 leads to, if each is a linear function of the one before, as it is close to a
+ * steady motion: reduced rank extrapolation, s = y_0 - dY (d2Y)^+ dy_0 with first and second differences (Eddy 1979, Mesina
+ * 1977). Plain repetition would do too, but a mode with a damping ratio of 0.2% takes a thousand cycles. */
+static void extrapolate(const struct damper *d, double *const *y, size_t keep, double *to)
+{
+    const size_t n = 2 * d->modes;
+    gsl_matrix *second = gsl_matrix_alloc(n, keep), *covariance = gsl_matrix_alloc(keep, keep);
+    gsl_vector *first = gsl_vector_alloc(n), *c = gsl_vector_alloc(keep);
+    gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, keep);
+    double unused;
+    size_t rank;
+    if (!second || !covariance || !first || !c || !work) {
+        die("out of memory for %zu modes", d->modes);
+    }
+    for (size_t i = 0; i < n; i++) {
+        const double weight = i < d->modes ? d->omega[i] : 1.0;
+        gsl_vector_set(first, i, weight * (y[1][i] - y[0][i]));
+        for (size_t k = 0; k < keep; k++) {
+            gsl_matrix_set(second, i, k, weight * (y[k + 2][i] - 2.0 * y[k + 1][i] + y[k][i]));
+        }
+    }
+    if (gsl_multifit_linear_tsvd(second, first, 1e-9, c, covariance, &unused, &rank, work)) {
+        gsl_vector_set_zero(c);
+    }
+    for (size_t i = 0; i < n; i++) {
+        to[i] = y[0][i];
+        for (size_t k = 0; k < keep; k++) {
+            to[i] -= gsl_vector_get(c, k) * (y[k + 1][i] - y[k][i]);
+        }
+    }
+    gsl_matrix_free(second);
+    gsl_matrix_free(covariance);
+    gsl_vector_free(first);
+    gsl_vector_free(c);
+    gsl_multifit_linear_free(work);
+}
+
+/* Whether amplitude and dissipated power have not changed for QUIET cycles. Powers are compared with the input, since friction
+ * dissipates nothing where contacts never slip. */
+static int quiet(const struct scale *free, const struct motion *m)
+{
+    for (int k = BLOCK - QUIET; k < BLOCK; k++) {
+        const double power = m[k].friction + fabs(m[k].damped);
+        if (fabs(m[k].amplitude - m[k - 1].amplitude) > fmax(TOLERANCE * m[k].amplitude, NOTHING * free->amplitude) ||
+            fabs(m[k].friction - m[k - 1].friction) > fmax(TOLERANCE * power, NOTHING * free->power)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Runs a block of cycles from state[0] on; state[k] is that at the beginning of cycle k. */
+static void run_block(const struct run *r, double *const *state, struct motion *m)
+{
+    for (size_t k = 0; k < BLOCK; k++) {
+        memcpy(state[k + 1], state[k], (2 * r->d->modes + 1) * sizeof *state[k]);
+        m[k] = run_cycle(r, state[k + 1]);
+    }
+}
+
+/* Cycles from state[0] until they repeat themselves, the last one out; state[0] is then at the beginning of the next. */
+static struct motion settle(const struct run *r, double *const *state)
+{
+    const struct damper *d = r->d;
+    const size_t n = 2 * d->modes + 1, keep = n - 1 < KEEP ? n - 1 : KEEP;
+    double *ahead = state[BLOCK + 1], change = HUGE_VAL;
+    struct motion m[BLOCK];
+    size_t cycles = 0, pause = 0, wait = 0;
+    int steady = 0;
+    while (!steady && cycles < BLOCKS * BLOCK && !interrupted()) {
+        run_block(r, state, m);
+        cycles += BLOCK;
+        const double last = distance(d, state[BLOCK], state[BLOCK - 1]);
+        memcpy(ahead, state[BLOCK], n * sizeof *ahead);
+        if (last > NOTHING * r->free.norm) {
+            extrapolate(d, state + BLOCK - (keep + 1), keep, ahead);
+        }
+        steady = quiet(&r->free, m) &&
+                 distance(d, ahead, state[BLOCK]) < fmax(TOLERANCE * distance(d, state[BLOCK], NULL), NOTHING * r->free.norm);
+        /* contacts may begin or cease to stick on the way to where the extrapolation leads: then rather wait, longer each time */
+        if (wait == 0 && last > 0.5 * change) {
+            pause = 2 * pause + 1;
+            wait = pause;
+        } else if (wait > 0) {
+            wait--;
+        }
+        change = last;
+        memcpy(state[0], wait || steady ? state[BLOCK] : ahead, n * sizeof *ahead);
+    }
+    m[BLOCK - 1].periods = cycles;
+    m[BLOCK - 1].found = steady;
+    return m[BLOCK - 1];
+}
+
+struct motion march(struct worker *w, double limit, double hz, double *y)
+{
+    const size_t n = w->dimension;
+    double *memory = need_memory((BLOCK + 2) * n, sizeof *memory), *state[BLOCK + 2];
+    for (size_t k = 0; k < BLOCK + 2; k++) {
+        state[k] = memory + k * n;
+    }
+    memcpy(state[0], y, n * sizeof *y);
+    struct run r = create_run(w, limit, hz);
+    struct motion m = settle(&r, state);
+    m.limit = limit;
+    m.hz = hz;
+    if (!m.found) {
+        snprintf(m.message, sizeof m.message, "%s after %zu periods", interrupted() ? "interrupted" : "not steady", m.periods);
+    }
+    memcpy(y, state[0], n * sizeof *y);
+    tribo_driver_destroy(r.drv);
+    free(memory);
+    return m;
+}

@@ -1,0 +1,119 @@
+#include "motion.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "linear.h"
+#include "march.h"
+#include "team.h"
+
+struct worker create_worker(const struct damper *d, int march)
+{
+    struct worker w = {.d = d, .march = march, .dimension = 2 * d->motions + 1};
+    need(tribo_system_clone(d->sys, &w.sys), NULL);
+    if (!d->planar) {
+        need(tribo_driver_create(&w.drv, w.sys, "exact", 1.0, 0.0, 0.0), tribo_message(tribo_system_context(w.sys)));
+    }
+    w.limit = need_memory(d->contacts, sizeof *w.limit);
+    w.c = need_memory(2 * d->motions, sizeof *w.c);
+    memcpy(w.c, d->load_shape, d->modes * sizeof *w.c);
+    return w;
+}
+
+void free_worker(struct worker *w)
+{
+    tribo_driver_destroy(w->drv);
+    tribo_system_destroy(w->sys);
+    free(w->limit);
+    free(w->c);
+}
+
+void set_point(struct worker *w, double limit, double hz)
+{
+    const struct damper *d = w->d;
+    tribo_context *contacts = tribo_system_context(w->sys);
+    for (size_t c = 0; c < d->contacts; c++) {
+        w->limit[c] = isnan(d->limit[c]) ? d->mu[c] * limit : d->limit[c];
+    }
+    need(tribo_set_limit(contacts, w->limit), tribo_message(contacts));
+    need(tribo_system_clear_loads(w->sys), tribo_message(contacts));
+    need(tribo_system_add_load(w->sys, TURN * hz, NULL, d->load), tribo_message(contacts));
+}
+
+/* ------------------------------------------------------------------------------------------------------------ measuring */
+
+/* What the period of the motion just found holds, in closed form. The load is F sin(omega t), so that its mean power is that
+ * of its velocity's part in phase; what friction does not take of it damping does. */
+static int measure(struct worker *w, struct motion *m)
+{
+    const struct damper *d = w->d;
+    double least, most, cosine, sine;
+    int status = tribo_driver_period_extremes(w->drv, w->c, &least, &most);
+    status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
+    status = status ? status : tribo_driver_period_dissipation(w->drv, m->power);
+    status = status ? status : tribo_driver_period_stick(w->drv, m->stick);
+    if (status) {
+        return status;
+    }
+    m->amplitude = 0.5 * (most - least);
+    m->input = -0.5 * TURN * m->hz * d->force * cosine;
+    for (size_t c = 0; c < d->contacts; c++) {
+        m->power[c] *= m->hz;
+        m->friction += m->power[c];
+    }
+    m->damped = m->input - m->friction;
+    return TRIBO_OK;
+}
+
+/* Rounding is nothing. */
+static void take_rounding_away(const struct damper *d, struct motion *m)
+{
+    const struct scale whole = free_scale(d, TURN * m->hz);
+    m->amplitude = m->amplitude < NOTHING * whole.amplitude ? 0.0 : m->amplitude;
+    m->friction = fabs(m->friction) < NOTHING * fmax(10.0 * m->damped, whole.power) ? 0.0 : m->friction;
+    m->damped = fabs(m->damped) < NOTHING * whole.power ? 0.0 : m->damped;
+    m->input = fabs(m->input) < NOTHING * whole.power ? 0.0 : m->input;
+}
+
+/* ------------------------------------------------------------------------------------------------------------- shooting */
+
+static size_t periods_of(const struct worker *w)
+{
+    size_t periods = 0;
+    need(tribo_driver_count(w->drv, TRIBO_COUNT_PERIODS, &periods), NULL);
+    return periods;
+}
+
+static struct motion shoot(struct worker *w, double limit, double hz, double *y)
+{
+    struct motion m = {.limit = limit, .hz = hz};
+    const size_t before = periods_of(w);
+    set_point(w, limit, hz);
+    int status = tribo_driver_find_periodic(w->drv, 0.0, 1.0 / hz, y);
+    status = status ? status : measure(w, &m);
+    m.periods = periods_of(w) - before;
+    m.found = !status;
+    if (status) {
+        snprintf(m.message, sizeof m.message, "%s: %s", tribo_strerror(status), tribo_driver_message(w->drv));
+    }
+    return m;
+}
+
+struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y)
+{
+    double *state = need_memory(w->dimension, sizeof *state);
+    if (guess) {
+        memcpy(state, guess, w->dimension * sizeof *state);
+    }
+    struct motion m = w->march ? march(w, limit, hz, state) : shoot(w, limit, hz, state);
+    if (m.found) {
+        take_rounding_away(w->d, &m);
+        memcpy(y, state, w->dimension * sizeof *y);
+    }
+    free(state);
+    tell_point();
+    return m;
+}

@@ -1,0 +1,23 @@
+#ifndef DAMPER_NUMBERS_H
+#define DAMPER_NUMBERS_H
+
+#include <stddef.h>
+
+/* Numbers in what the user wrote. origin says where that was, e.g. "option --force 1N": what is no number ends the program with a
+ * message that begins so. */
+
+/* Reads a number that ends with the character end, and returns what is behind that. */
+const char *read_number(const char *origin, const char *at, char end, double *value);
+
+/* The whole text is a number, or a whole one up to 1000000. */
+double read_real(const char *origin, const char *text, double smallest, int may_equal);
+size_t read_whole(const char *origin, const char *text, size_t smallest);
+
+/* FROM:TO:N, or FROM alone with N = 1. FROM > 0, and ascending. */
+struct range {
+    double from, to;
+    size_t points;
+};
+struct range read_range(const char *origin, const char *text);
+
+#endif

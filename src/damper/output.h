@@ -1,0 +1,36 @@
+/* What the tool and the larger examples share: errors that end the program, files in the folder of results, and named values,
+ * from which run.sh makes its closing table. */
+#ifndef DAMPER_OUTPUT_H
+#define DAMPER_OUTPUT_H
+
+#include <stdio.h>
+
+#if defined(__GNUC__)
+#define PRINTF_LIKE(at) __attribute__((format(printf, at, at + 1)))
+#else
+#define PRINTF_LIKE(at)
+#endif
+
+/* Prints "program: ..." to stderr and exits with 1. program is set by main. */
+extern const char *program;
+void die(const char *format, ...) PRINTF_LIKE(1);
+
+/* Ends the program if a call of the library failed; detail is the message that belongs to it, or NULL. */
+void need(int status, const char *detail);
+
+/* malloc that ends the program instead of failing. */
+void *need_memory(size_t count, size_t size);
+
+/* printf into memory of its own. */
+char *new_text(const char *format, ...) PRINTF_LIKE(1);
+
+/* Creates folder/name; ends the program if it cannot. */
+FILE *create_file(const char *folder, const char *name);
+
+/* Closes a file that was written to; ends the program if it could not be written. */
+void close_file(FILE *file, const char *name);
+
+/* One line "key value", all digits. */
+void write_value(FILE *file, double value, const char *key, ...) PRINTF_LIKE(3);
+
+#endif

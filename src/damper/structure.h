@@ -1,0 +1,31 @@
+#ifndef DAMPER_STRUCTURE_H
+#define DAMPER_STRUCTURE_H
+
+#include <stddef.h>
+
+#include <gsl/gsl_spmatrix.h>
+
+#include "contact.h"
+#include "degrees.h"
+
+/* A structure as finite-element programs hand it over. */
+struct structure {
+    size_t ndof;
+    gsl_spmatrix *mass, *stiffness;
+    struct degree *dof; /* [ndof] in the order of the rows */
+};
+
+/* Reads matrices and degrees of freedom; ends the program, naming file, line and value, if anything is wrong with them. */
+struct structure read_structure(const char *mass, const char *stiffness, const char *dofs);
+void free_structure(struct structure *s);
+
+/* Tells of rows of the stiffness that are empty, as those of what nothing holds but contacts, or has been left out by mistake. */
+void tell_of_loose_rows(const struct structure *s, const char *stiffness);
+
+/* The row of a place; ends the program if the structure has none there. */
+size_t find_degree(const struct structure *s, const struct place *p);
+
+/* Frequencies in Hz from a file, at most room of them, into hz; returns their number. */
+size_t read_frequencies(const char *path, double *hz, size_t room);
+
+#endif

@@ -1,0 +1,29 @@
+#ifndef DAMPER_STUDY_H
+#define DAMPER_STUDY_H
+
+#include "tables.h"
+
+/* What a run has at hand. */
+struct study {
+    const struct options *options;
+    const struct damper *damper;
+    struct tables *tables;
+    size_t gaps; /* points that were not found */
+};
+
+/* The response over the limits at one frequency, the limit of most power, and the motion there. */
+void study_limits(struct study *s);
+
+/* The response over a band of frequencies for every limit, and the limit with the least of the largest amplitudes. */
+void study_band(struct study *s);
+
+/* A limit of so many in equal ratios. */
+double limit_of(const struct range *limits, size_t k);
+
+/* Without friction, and with so much that nothing slips: both are known. */
+void check_extremes(const struct study *s, double hz);
+
+/* Some points of a curve by marching: writes the table, and the largest differences. */
+void check_by_marching(const struct study *s, const struct curve *c);
+
+#endif

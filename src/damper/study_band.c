@@ -1,0 +1,179 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "linear.h"
+#include "search.h"
+#include "study.h"
+#include "team.h"
+
+static const double BEND = 0.02;       /* curves are followed to that; with more, narrow peaks are missed */
+static const double LEAST_PART = 5e-4; /* the best limit is found to that */
+
+/* Curves over the band, one for each limit. */
+struct family {
+    const struct study *study;
+    struct curve *curve;
+};
+
+/* The frequencies that are asked for, and those at which the structure resonates, free or stuck. */
+static void ask_band(const struct study *s, struct curve *c)
+{
+    const struct range *band = &s->options->drive;
+    double *stuck = need_memory(s->damper->modes, sizeof *stuck);
+    const size_t held = stuck_frequencies(s->damper, stuck);
+    for (size_t k = 0; k < band->points; k++) {
+        ask_sample(c, band->from + (band->to - band->from) * ((double)k / (double)(band->points - 1)), 1);
+    }
+    for (size_t k = 0; k < s->damper->modes + held; k++) {
+        const double hz = (k < held ? stuck[k] : s->damper->omega[k - held]) / TURN;
+        if (hz > band->from && hz < band->to) {
+            ask_sample(c, hz, 0);
+        }
+    }
+    free(stuck);
+}
+
+static void run_curve(void *data, size_t k)
+{
+    const struct family *f = data;
+    struct curve *c = &f->curve[k];
+    struct worker w = create_worker(f->study->damper, f->study->options->march);
+    find_curve(c, &w, BEND);
+    find_largest(c, &w, BEND);
+    free_worker(&w);
+}
+
+static struct family run_family(const struct study *s, const double *limit, size_t count)
+{
+    struct family f = {s, need_memory(count, sizeof *f.curve)};
+    for (size_t k = 0; k < count; k++) {
+        f.curve[k] = create_curve(0, limit[k], 2 * s->damper->motions + 1);
+        ask_band(s, &f.curve[k]);
+    }
+    run_jobs(s->options->threads, count, run_curve, &f);
+    return f;
+}
+
+static void free_family(struct family *f, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        free_curve(&f->curve[k]);
+    }
+    free(f->curve);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- best limit */
+
+static void largest_amplitudes(void *data, const double *limit, double *value, size_t count)
+{
+    const struct study *s = data;
+    struct family f = run_family(s, limit, count);
+    for (size_t k = 0; k < count; k++) {
+        const struct sample *top = largest_of(&f.curve[k]);
+        value[k] = top ? top->motion.amplitude : HUGE_VAL;
+    }
+    free_family(&f, count);
+}
+
+static void report_best(struct study *s, double limit)
+{
+    struct family f = run_family(s, &limit, 1);
+    const struct sample *top = largest_of(&f.curve[0]);
+    end_telling();
+    if (top && !interrupted()) {
+        check_by_marching(s, &f.curve[0]);
+        FILE *table = create_table(s->tables, "best");
+        write_motion_head(table, s->damper->contacts);
+        write_curve(table, &f.curve[0], s->damper->contacts);
+        close_table(s->tables, table, "best");
+        printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude, top->motion.hz);
+        write_result(s->tables, "band.limit", limit);
+        write_result(s->tables, "band.amplitude", top->motion.amplitude);
+        write_result(s->tables, "band.frequency", top->motion.hz);
+        s->gaps += gaps_of(&f.curve[0]);
+    }
+    free_family(&f, 1);
+}
+
+/* Why a motion was not found. */
+static const char *first_message(const struct family *f, size_t count)
+{
+    for (size_t k = 0; k < count; k++) {
+        for (size_t i = 0; i < f->curve[k].count; i++) {
+            if (f->curve[k].sample[i].motion.message[0]) {
+                return f->curve[k].sample[i].motion.message;
+            }
+        }
+    }
+    return "nobody looked";
+}
+
+static void find_best(struct study *s, const struct family *f, const double *limit, size_t count)
+{
+    size_t best = count;
+    double least = HUGE_VAL;
+    for (size_t k = 0; k < count; k++) {
+        const struct sample *top = largest_of(&f->curve[k]);
+        if (top && top->motion.amplitude < least) {
+            least = top->motion.amplitude;
+            best = k;
+        }
+    }
+    if (best == count) {
+        printf("no motion was found at any of these limits: %s\n", first_message(f, count));
+        return;
+    }
+    if (best == 0 || best + 1 == count) {
+        printf("no limit within the range is better than its ends: widen --limits to find the best\n");
+        return;
+    }
+    const double found = find_least(limit[best - 1], limit[best + 1], LEAST_PART, largest_amplitudes, s);
+    if (!interrupted()) {
+        report_best(s, found);
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- family */
+
+static void write_family(struct study *s, const struct family *f, size_t count)
+{
+    FILE *table = create_table(s->tables, "family");
+    write_motion_head(table, s->damper->contacts);
+    printf("         limit   points    not found  largest amplitude  at frequency\n");
+    for (size_t k = 0; k < count; k++) {
+        const struct curve *c = &f->curve[k];
+        const struct sample *top = largest_of(c);
+        write_curve(table, c, s->damper->contacts);
+        fprintf(table, "%s", k + 1 < count && c->count ? "\n" : "");
+        if (top) {
+            printf("  %12.5g %8zu %12zu %18.8g %13.7g\n", c->fixed, c->count, gaps_of(c), top->motion.amplitude, top->motion.hz);
+        }
+        s->gaps += gaps_of(c);
+    }
+    close_table(s->tables, table, "family");
+    fflush(stdout);
+}
+
+void study_band(struct study *s)
+{
+    const struct range *limits = &s->options->limits;
+    const size_t count = limits->points;
+    double *limit = need_memory(count, sizeof *limit);
+    for (size_t k = 0; k < count; k++) {
+        limit[k] = limit_of(limits, k);
+    }
+    check_extremes(s, s->options->drive.from);
+    struct family f = run_family(s, limit, count);
+    end_telling();
+    write_family(s, &f, count);
+    write_linear(s->tables, s->damper, &s->options->drive);
+    if (!interrupted() && count > 1) {
+        find_best(s, &f, limit, count);
+    } else {
+        check_by_marching(s, &f.curve[0]);
+    }
+    free_family(&f, count);
+    free(limit);
+}

@@ -1,0 +1,143 @@
+/* What the steady motions are checked against. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "output.h"
+#include "linear.h"
+#include "study.h"
+#include "team.h"
+
+/* Relative difference; none between zeros. */
+static double difference(double a, double b)
+{
+    return a == b ? 0.0 : fabs(a - b) / fmax(fabs(a), fabs(b));
+}
+
+static void compare(const struct study *s, const struct motion *m, double known, const char *key, const char *what)
+{
+    if (!m->found) {
+        printf("%s: not found: %s\n", what, m->message);
+        return;
+    }
+    char *analytic = new_text("%s.analytic", key);
+    printf("%s: amplitude %.10g, in closed form %.10g\n", what, m->amplitude, known);
+    write_result(s->tables, key, m->amplitude);
+    write_result(s->tables, analytic, known);
+    free(analytic);
+}
+
+/* Without friction no contact has any, and stuck all are, whatever limits they have. */
+static void follow_all(struct damper *d)
+{
+    for (size_t c = 0; c < d->contacts; c++) {
+        d->limit[c] = (double)NAN;
+        d->mu[c] = 1.0;
+    }
+}
+
+void check_extremes(const struct study *s, double hz)
+{
+    const struct damper *d = s->damper;
+    if (!limits_vary(s->options)) {
+        return;
+    }
+    double *each = need_memory(2 * d->contacts, sizeof *each);
+    struct damper all = *d;
+    all.limit = each;
+    all.mu = each + d->contacts;
+    follow_all(&all);
+    struct worker w = create_worker(&all, s->options->march);
+    double *y = need_memory(w.dimension, sizeof *y);
+    const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->force, hz, NULL, y);
+    const double omega = TURN * hz;
+    end_telling();
+    printf("load at %.7g Hz\n", hz);
+    compare(s, &open, free_amplitude(d, omega), "free", "without friction");
+    compare(s, &stuck, stuck_amplitude(d, omega), "stuck", "all contacts stuck");
+    fflush(stdout);
+    free(y);
+    free_worker(&w);
+    free(each);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- marching */
+
+/* Those of a curve that are marched, and what comes of it. */
+struct marched {
+    const struct damper *damper;
+    const struct sample **sample;
+    struct motion *motion;
+};
+
+static void march_one(void *data, size_t k)
+{
+    const struct marched *m = data;
+    const struct motion *known = &m->sample[k]->motion;
+    struct worker w = create_worker(m->damper, 1);
+    double *y = need_memory(w.dimension, sizeof *y);
+    m->motion[k] = find_motion(&w, known->limit, known->hz, NULL, y);
+    free(y);
+    free_worker(&w);
+}
+
+/* So many of those that were asked for and found, spread over the curve; returns how many there are. */
+static size_t choose(const struct curve *c, size_t most, const struct sample **chosen)
+{
+    const struct sample **all = need_memory(c->count, sizeof *all);
+    size_t count = 0;
+    for (size_t k = 0; k < c->count; k++) {
+        if (c->sample[k].asked && c->sample[k].motion.found) {
+            all[count++] = &c->sample[k];
+        }
+    }
+    const size_t wanted = count < most ? count : most;
+    for (size_t i = 0; i < wanted; i++) {
+        chosen[i] = all[(2 * i + 1) * count / (2 * wanted)];
+    }
+    free(all);
+    return wanted;
+}
+
+static void report(const struct study *s, const struct marched *m, size_t count)
+{
+    FILE *table = create_table(s->tables, "check");
+    double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
+    write_motion_head(table, 0);
+    printf("by marching (rk4, %s)\n         limit    frequency    amplitude   difference  periods\n",
+           tribo_law_name(s->options->law));
+    for (size_t k = 0; k < count; k++) {
+        const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
+        write_motion(table, here, 0);
+        if (!here->found) {
+            printf("  %12.5g %12.5g  %s\n", here->limit, here->hz, here->message);
+            continue;
+        }
+        const double off = difference(here->amplitude, known->amplitude);
+        printf("  %12.5g %12.5g %12.5g %12.1e %8zu\n", here->limit, here->hz, here->amplitude, off, here->periods);
+        amplitude = fmax(amplitude, off);
+        power = fmax(power, fabs(here->friction - known->friction));
+        most = fmax(most, known->friction);
+        unbalanced = fmax(unbalanced, difference(here->input, here->friction + here->damped));
+    }
+    write_result(s->tables, "check.amplitude", amplitude);
+    write_result(s->tables, "check.power", power > 0.0 ? power / most : 0.0);
+    write_result(s->tables, "check.balance", unbalanced);
+    close_table(s->tables, table, "check");
+}
+
+void check_by_marching(const struct study *s, const struct curve *c)
+{
+    const size_t most = s->options->check;
+    if (most == 0 || interrupted()) {
+        return;
+    }
+    struct marched m = {s->damper, need_memory(most, sizeof *m.sample), need_memory(most, sizeof *m.motion)};
+    const size_t count = choose(c, most, m.sample);
+    run_jobs(s->options->threads, count, march_one, &m);
+    end_telling();
+    if (!interrupted()) {
+        report(s, &m, count);
+    }
+    free(m.sample);
+    free(m.motion);
+}

@@ -1,0 +1,166 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "linear.h"
+#include "search.h"
+#include "study.h"
+#include "team.h"
+
+static const double BEND = 0.02;       /* a curve is followed to that */
+static const double LEAST_PART = 1e-6; /* the limit of most power is found to that */
+
+double limit_of(const struct range *limits, size_t k)
+{
+    return k ? limits->from * pow(limits->to / limits->from, (double)k / (double)(limits->points - 1)) : limits->from;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- power */
+
+/* Limits at which the dissipated power is looked at, each from the motion at one in the middle of them. */
+struct trial {
+    const struct study *study;
+    const struct sample *from;
+    const double *limit;
+    double *value;
+};
+
+static void try_limit(void *data, size_t k)
+{
+    const struct trial *t = data;
+    struct worker w = create_worker(t->study->damper, t->study->options->march);
+    double *y = need_memory(w.dimension, sizeof *y);
+    const struct motion m = find_motion(&w, t->limit[k], t->from->motion.hz, t->from->y, y);
+    t->value[k] = m.found ? -m.friction : HUGE_VAL;
+    free(y);
+    free_worker(&w);
+}
+
+static void try_limits(void *data, const double *limit, double *value, size_t count)
+{
+    struct trial *t = data;
+    t->limit = limit;
+    t->value = value;
+    run_jobs(t->study->options->threads, count, try_limit, t);
+}
+
+/* The place of the largest dissipated power; count if nothing dissipates. */
+static size_t most_power(const struct curve *c)
+{
+    size_t best = c->count;
+    double most = 0.0;
+    for (size_t k = 0; k < c->count; k++) {
+        if (c->sample[k].motion.found && c->sample[k].motion.friction > most) {
+            most = c->sample[k].motion.friction;
+            best = k;
+        }
+    }
+    return best;
+}
+
+static void report_optimum(const struct study *s, const struct motion *best)
+{
+    const struct optimum simple = harmonic_balance(s->damper, TURN * best->hz);
+    printf("most power: limit %.8g dissipates %.8g, amplitude %.8g\n", best->limit, best->friction, best->amplitude);
+    write_result(s->tables, "best.limit", best->limit);
+    write_result(s->tables, "best.power", best->friction);
+    write_result(s->tables, "best.amplitude", best->amplitude);
+    if (isfinite(simple.limit)) {
+        printf("by harmonic balance of the driven mode: limit %.5g, power %.6g\n", simple.limit, simple.power);
+        write_result(s->tables, "best.limit.balance", simple.limit);
+        write_result(s->tables, "best.power.balance", simple.power);
+        write_result(s->tables, "best.amplitude.balance", simple.amplitude);
+    }
+}
+
+/* Three periods of the motion at a limit of the curve; returns that motion. */
+static struct motion show_motion(struct study *s, struct curve *c, double limit, const char *what)
+{
+    struct worker w = create_worker(s->damper, s->options->march);
+    const struct sample *there = reach_sample(c, &w, log(limit));
+    const struct motion m = there ? there->motion : (struct motion){.found = 0};
+    if (there) {
+        write_history(s->tables, &w, &m, there->y, what);
+    }
+    free_worker(&w);
+    return m;
+}
+
+static void find_most_power(struct study *s, struct curve *c)
+{
+    const size_t at = most_power(c);
+    if (at == c->count) {
+        printf("friction dissipates nothing at any of these limits: nothing slips, or the contacts are where nothing moves\n");
+        return;
+    }
+    if (at == 0 || at + 1 == c->count) {
+        printf("most power is dissipated at the end of the range, at limit %g: widen --limits to find the optimum\n",
+               c->sample[at].motion.limit);
+        return;
+    }
+    struct trial t = {.study = s, .from = &c->sample[at]};
+    const double limit = find_least(c->sample[at - 1].motion.limit, c->sample[at + 1].motion.limit, LEAST_PART, try_limits, &t);
+    if (!interrupted()) {
+        const struct motion best = show_motion(s, c, limit, "history");
+        /* above the optimum contacts rest for a part of each period */
+        show_motion(s, c, 3.0 * limit, "sticking");
+        end_telling();
+        if (best.found) {
+            report_optimum(s, &best);
+        }
+    }
+}
+
+/* --------------------------------------------------------------------------------------------------------------- curve */
+
+struct limits_job {
+    const struct study *study;
+    struct curve *curve;
+};
+
+static void run_curve(void *data, size_t k)
+{
+    const struct limits_job *j = data;
+    struct worker w = create_worker(j->study->damper, j->study->options->march);
+    find_curve(&j->curve[k], &w, BEND);
+    free_worker(&w);
+}
+
+static void print_curve(const struct curve *c)
+{
+    printf("         limit    amplitude friction power  damping power  periods\n");
+    for (size_t k = 0; k < c->count; k++) {
+        const struct motion *m = &c->sample[k].motion;
+        if (c->sample[k].asked && m->found) {
+            printf("  %12.5g %12.5g %14.5g %14.5g %8zu\n", m->limit, m->amplitude, m->friction, m->damped, m->periods);
+        } else if (!m->found && looked_for(&c->sample[k])) {
+            printf("  %12.5g  not found: %s\n", m->limit, m->message);
+        }
+    }
+}
+
+void study_limits(struct study *s)
+{
+    const struct options *o = s->options;
+    const double hz = o->drive.from > 0.0 ? o->drive.from : s->damper->omega[0] / TURN;
+    struct curve c = create_curve(1, hz, 2 * s->damper->motions + 1);
+    struct limits_job j = {s, &c};
+    check_extremes(s, hz);
+    for (size_t k = 0; k < o->limits.points; k++) {
+        ask_sample(&c, log(limit_of(&o->limits, k)), 1);
+    }
+    run_jobs(1, 1, run_curve, &j);
+    end_telling();
+    print_curve(&c);
+    check_by_marching(s, &c);
+    if (!interrupted() && o->limits.points > 1) {
+        find_most_power(s, &c);
+    }
+    FILE *table = create_table(s->tables, "curve");
+    write_motion_head(table, s->damper->contacts);
+    write_curve(table, &c, s->damper->contacts);
+    close_table(s->tables, table, "curve");
+    s->gaps += gaps_of(&c);
+    free_curve(&c);
+}

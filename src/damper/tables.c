@@ -1,0 +1,208 @@
+#include "tables.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_sort.h>
+
+#include "output.h"
+#include "linear.h"
+#include "march.h"
+
+struct tables open_tables(const struct options *o)
+{
+    struct tables t = {.out = o->out, .name = o->name};
+    char *name = new_text("values-%s.txt", t.name);
+    t.values = create_file(t.out, name);
+    free(name);
+    return t;
+}
+
+void close_tables(struct tables *t)
+{
+    char *name = new_text("%s/values-%s.txt", t->out, t->name);
+    close_file(t->values, name);
+    free(name);
+}
+
+FILE *create_table(const struct tables *t, const char *what)
+{
+    char *name = new_text("%s-%s.csv", t->name, what);
+    FILE *file = create_file(t->out, name);
+    free(name);
+    return file;
+}
+
+void close_table(const struct tables *t, FILE *file, const char *what)
+{
+    char *name = new_text("%s/%s-%s.csv", t->out, t->name, what);
+    close_file(file, name);
+    free(name);
+}
+
+void write_result(const struct tables *t, const char *key, double value)
+{
+    write_value(t->values, value, "%s.%s", t->name, key);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- motions */
+
+void write_motion_head(FILE *file, size_t contacts)
+{
+    fprintf(file, "limit,frequency,amplitude,friction power,damping power,input power,periods,message");
+    for (size_t c = 1; c <= contacts; c++) {
+        fprintf(file, ",power%zu,stick%zu", c, c);
+    }
+    fprintf(file, "\n");
+}
+
+static void write_message(FILE *file, const char *message)
+{
+    fputc('"', file);
+    for (; *message; message++) {
+        fputc(*message == '"' ? '\'' : *message, file);
+    }
+    fputc('"', file);
+}
+
+void write_motion(FILE *file, const struct motion *m, size_t contacts)
+{
+    fprintf(file, "%.10g,%.10g", m->limit, m->hz);
+    if (m->found) {
+        fprintf(file, ",%.10g,%.10g,%.10g,%.10g,%zu,", m->amplitude, m->friction, m->damped, m->input, m->periods);
+    } else {
+        fprintf(file, ",,,,,%zu,", m->periods);
+        write_message(file, m->message);
+    }
+    for (size_t c = 0; c < contacts; c++) {
+        if (m->found) {
+            fprintf(file, ",%.8g,%.8g", m->power[c], m->stick[c]);
+        } else {
+            fprintf(file, ",,");
+        }
+    }
+    fprintf(file, "\n");
+}
+
+void write_curve(FILE *file, const struct curve *c, size_t contacts)
+{
+    for (size_t k = 0; k < c->count; k++) {
+        if (looked_for(&c->sample[k])) {
+            write_motion(file, &c->sample[k].motion, contacts);
+        }
+    }
+}
+
+/* -------------------------------------------------------------------------------------------------------------- modes */
+
+void write_frequencies(const struct tables *t, const struct damper *d, const char *given)
+{
+    double *hz = need_memory(2 * d->modes, sizeof *hz), *stuck = hz + d->modes, worst = 0.0;
+    const size_t known = given ? read_frequencies(given, hz, d->modes) : 0, held = stuck_frequencies(d, stuck);
+    FILE *table = create_table(t, "frequencies");
+    fprintf(table, "mode,frequency,given,relative difference,stuck\n");
+    printf("natural frequencies, Hz; the last with all contacts stuck\n  mode         here%s        stuck\n",
+           known ? "        given  relative difference" : "");
+    for (size_t k = 0; k < d->modes; k++) {
+        const double here = d->omega[k] / TURN, off = k < known ? here / hz[k] - 1.0 : 0.0;
+        char *seen = k < known ? new_text("%12.7g  %19.1e", hz[k], off) : new_text("%*s", known ? 33 : 0, "");
+        char *kept = k < known ? new_text("%.10g,%.3g", hz[k], off) : new_text(",");
+        char *still = k < held ? new_text("%.10g", stuck[k] / TURN) : new_text("%s", "");
+        printf("  %4zu %12.7g %s%s %12.8s\n", k + 1, here, seen, known ? "" : "", still);
+        fprintf(table, "%zu,%.10g,%s,%s\n", k + 1, here, kept, still);
+        worst = fmax(worst, fabs(off));
+        write_value(t->values, here, "%s.frequency%zu", t->name, k + 1);
+        free(seen);
+        free(kept);
+        free(still);
+    }
+    if (known) {
+        write_result(t, "frequency.error", worst);
+    }
+    close_table(t, table, "frequencies");
+    fflush(stdout);
+    free(hz);
+}
+
+/* Evenly spaced frequencies, and the resonances between them; *count out. */
+static double *linear_frequencies(const struct damper *d, const struct range *band, size_t *count)
+{
+    enum { EVEN = 2001 };
+    double *omega = need_memory(EVEN + 2 * d->modes, sizeof *omega);
+    const size_t resonances = d->modes + stuck_frequencies(d, omega);
+    memcpy(omega + resonances - d->modes, d->omega, d->modes * sizeof *omega);
+    *count = 0;
+    for (size_t k = 0; k < resonances; k++) {
+        if (omega[k] > TURN * band->from && omega[k] < TURN * band->to) {
+            omega[(*count)++] = omega[k];
+        }
+    }
+    for (size_t k = 0; k < EVEN; k++) {
+        omega[(*count)++] = TURN * (band->from + (band->to - band->from) * ((double)k / (EVEN - 1)));
+    }
+    gsl_sort(omega, 1, *count);
+    return omega;
+}
+
+void write_linear(const struct tables *t, const struct damper *d, const struct range *band)
+{
+    size_t count;
+    double *omega = linear_frequencies(d, band, &count);
+    FILE *table = create_table(t, "linear");
+    fprintf(table, "frequency,without friction,stuck\n");
+    for (size_t k = 0; k < count; k++) {
+        fprintf(table, "%.10g,%.10g,%.10g\n", omega[k] / TURN, free_amplitude(d, omega[k]), stuck_amplitude(d, omega[k]));
+    }
+    close_table(t, table, "linear");
+    free(omega);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- history */
+
+enum { PERIODS = 3, STEPS = 3000 /* of them all */ };
+
+static void write_instant(FILE *table, const struct damper *d, double cycle, double t, const double *y, const double *v,
+                          const double *f, const signed char *slip)
+{
+    fprintf(table, "%.8g,%.10g,%.10g", cycle, t, load_displacement(d, y));
+    for (size_t c = 0; c < d->contacts; c++) {
+        fprintf(table, ",%.8g,%.8g,%d", v[c], f[c], slip[c]);
+    }
+    fprintf(table, "\n");
+}
+
+void write_history(const struct tables *t, struct worker *w, const struct motion *m, const double *y, const char *what)
+{
+    const struct damper *d = w->d;
+    tribo_context *contacts = tribo_system_context(w->sys);
+    double *v = need_memory(2 * d->contacts, sizeof *v), *f = v + d->contacts, now = 0.0;
+    double *state = need_memory(w->dimension, sizeof *state);
+    signed char *slip = need_memory(d->contacts, sizeof *slip);
+    FILE *table = create_table(t, what);
+    tribo_driver *marcher = w->drv ? NULL : create_marcher(w, m->limit, m->hz), *drv = marcher ? marcher : w->drv;
+    if (!marcher) {
+        set_point(w, m->limit, m->hz);
+        /* what sticks has velocities that are rounding, to be told from those of what slides */
+        const double size = fmax(m->amplitude, 1e-6 * free_amplitude(d, TURN * m->hz));
+        need(tribo_set_epsilon_all(contacts, 1e-8 * TURN * m->hz * size), tribo_message(contacts));
+    }
+    memcpy(state, y, w->dimension * sizeof *state);
+    fprintf(table, "cycle,t,displacement");
+    for (size_t c = 0; c < d->contacts; c++) {
+        fprintf(table, ",v%zu,f%zu,mode%zu", c + 1, c + 1, c + 1);
+    }
+    fprintf(table, "\n");
+    for (int i = 0; i <= STEPS; i++) {
+        const double cycle = (double)PERIODS * i / STEPS;
+        need(tribo_driver_advance(drv, &now, cycle / m->hz, state), tribo_driver_message(drv));
+        need(tribo_system_contacts(w->sys, now, state, v, NULL, f), tribo_message(contacts));
+        need(tribo_get_slip(contacts, slip), tribo_message(contacts));
+        write_instant(table, d, cycle, now, state, v, f, slip);
+    }
+    close_table(t, table, what);
+    tribo_driver_destroy(marcher);
+    free(v);
+    free(state);
+    free(slip);
+}

@@ -1,0 +1,35 @@
+#ifndef DAMPER_TABLES_H
+#define DAMPER_TABLES_H
+
+#include "curve.h"
+
+/* The files of a run: folder, and how their names begin. */
+struct tables {
+    const char *out, *name;
+    FILE *values;
+};
+struct tables open_tables(const struct options *o);
+void close_tables(struct tables *t);
+
+/* NAME-what.csv */
+FILE *create_table(const struct tables *t, const char *what);
+void close_table(const struct tables *t, FILE *file, const char *what);
+
+/* Shown by NAME.key. */
+void write_result(const struct tables *t, const char *key, double value);
+
+/* A table of motions: its head, and a line for each of a curve. contacts: of how many
+ * it tells powers and shares of rest. */
+void write_motion_head(FILE *file, size_t contacts);
+void write_motion(FILE *file, const struct motion *m, size_t contacts);
+void write_curve(FILE *file, const struct curve *c, size_t contacts);
+
+void write_frequencies(const struct tables *t, const struct damper *d, const char *given);
+
+/* Over a band: frequency, amplitudes without friction and with all contacts stuck. */
+void write_linear(const struct tables *t, const struct damper *d, const struct range *band);
+
+/* Three periods of the motion that begins with y, with what each contact does. */
+void write_history(const struct tables *t, struct worker *w, const struct motion *m, const double *y, const char *what);
+
+#endif
