@@ -86,6 +86,10 @@ TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t nconta
  * factor's pivots, and each is checked by its residual; what does not pass is TRIBO_ERR_NO_CONVERGENCE. A library with CHOLMOD
  * also reduces structures with a mass matrix that is only semidefinite, if the stiffness holds what has no mass, to the modes
  * that there are; of an indefinite one with more than 3000 rows it sees what the minors of two rows show.
+ *
+ * CHOLMOD's factors may start threads of OpenMP, up to four, unless the environment has OMP_THREAD_LIMIT=1: with such threads, a
+ * child process made by fork() after a factor may wait forever in a call that makes another factor, and OpenMP ends the program
+ * if no thread can be started.
  * Returns what tribo_system_linear does. */
 TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
                                          const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,

@@ -103,13 +103,23 @@ static size_t given_row(const cholmod_factor *l, size_t row)
     return l && row < l->n ? (size_t)((const SuiteSparse_long *)l->Perm)[row] : 0;
 }
 
+/* Makes the room of count vectors. 0 if out of memory; cholmod_l_solve2 makes it, too, but goes on without work[0]. */
+static int reserve(struct sparse_factor *f, struct room *room, size_t count)
+{
+    const size_t n = f->l->n, most = f->l->maxesize;
+    return cholmod_l_ensure_dense(&room->solution, n, count, n, CHOLMOD_REAL, &f->common) &&
+           cholmod_l_ensure_dense(&room->work[0], n, count, n, CHOLMOD_REAL, &f->common) &&
+           cholmod_l_ensure_dense(&room->work[1], count, most, count, CHOLMOD_REAL, &f->common);
+}
+
 static int solve(struct sparse_factor *f, int what, size_t count, double *x)
 {
     const size_t n = f->l->n;
     cholmod_dense b = {
         .nrow = n, .ncol = count, .nzmax = n * count, .d = n, .x = x, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
     struct room *room = count == 1 ? &f->one : &f->many;
-    if (!cholmod_l_solve2(what, f->l, &b, NULL, &room->solution, NULL, &room->work[0], &room->work[1], &f->common)) {
+    if (!reserve(f, room, count) ||
+        !cholmod_l_solve2(what, f->l, &b, NULL, &room->solution, NULL, &room->work[0], &room->work[1], &f->common)) {
         return 0;
     }
     memcpy(x, room->solution->x, n * count * sizeof *x);
