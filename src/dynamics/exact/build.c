@@ -19,19 +19,19 @@
 
 static int list_rest(struct modal_build *b, const unsigned char *holds)
 {
-    b->rest = tribo_modal_scratch_indices(b, b->sys->ncontact);
-    for (size_t i = 0; b->rest && i < b->sys->ncontact; i++) {
-        if (holds[b->contact[i]]) {
+    tribo_system *sys = b->shared->sys;
+    b->rest = tribo_modal_scratch_indices(b, sys->ncontact);
+    for (size_t i = 0; b->rest && i < sys->ncontact; i++) {
+        if (holds[i]) {
             b->rest[b->rests++] = i;
         }
     }
-    if (!b->rest || !tribo_constraints_create(&b->ties, &b->sys->direction, &b->sys->mass, b->rest, b->rests, NULL)) {
+    if (!b->rest || !tribo_constraints_create(&b->ties, &sys->direction, &sys->mass, b->rest, b->rests, NULL)) {
         return 0;
     }
     if (b->ties.rank < b->rests) {
-        b->status =
-            tribo_system_fail(b->sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
-                              b->contact[b->rest[b->ties.order[b->ties.rank]]]);
+        b->status = tribo_system_fail(sys, TRIBO_ERR_INDEFINITE, "contact %zu cannot hold: the others that do leave it no motion",
+                                      b->rest[b->ties.order[b->ties.rank]]);
         return 0;
     }
     return 1;
@@ -47,12 +47,12 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
     struct matrix w = {0};
     size_t where = 0;
     int status = TRIBO_ERR_MEMORY;
-    if (mass && tribo_matrix_congruent(&b->sys->mass, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
+    if (mass && tribo_matrix_congruent(&b->shared->sys->mass, z, mass) && tribo_matrix_from_dense(&w, m, m, mass)) {
         status = tribo_cholesky_create(c, &w, &where, &pivot);
     }
     tribo_matrix_free(&w);
     if (status == TRIBO_ERR_INDEFINITE) {
-        tribo_system_fail(b->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
+        tribo_system_fail(b->shared->sys, status, "mass of what is not held is not positive definite: pivot %g", pivot);
     }
     return status;
 }
@@ -62,14 +62,14 @@ static int modes_failed(const struct modal_build *b, int status, const struct do
 {
     switch (status) {
     case TRIBO_ERR_NOT_FINITE:
-        return tribo_system_fail(b->sys, status, "stiffness over mass overflows");
+        return tribo_system_fail(b->shared->sys, status, "stiffness over mass overflows");
     case TRIBO_ERR_UNSUPPORTED:
-        return tribo_system_fail(b->sys, status,
+        return tribo_system_fail(b->shared->sys, status,
                                  "with contacts at rest held, omega^2 = %g of mode %zu is hardly more than rounding of the "
                                  "stiffness, which comes to %g: make the stiffest parts softer, or rigid",
                                  doubt->omega2, doubt->mode, doubt->noise);
     case TRIBO_ERR_NO_CONVERGENCE:
-        return tribo_system_fail(b->sys, status,
+        return tribo_system_fail(b->shared->sys, status,
                                  "with contacts at rest held, omega^2 = %g of mode %zu does not come out pure: take method event",
                                  doubt->omega2, doubt->mode);
     default:
@@ -82,9 +82,9 @@ static int find_modes(struct modal_build *b)
     struct matrix z = {0};
     struct cholesky own = {0};
     struct doubt doubt = {0};
-    const int all_free = b->rests == 0 && b->n == b->whole->sys->ndof;
+    const int all_free = b->rests == 0;
     int status = all_free || tribo_constraints_basis(&b->ties, b->n, &z) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    status = status || !b->sys->massless.count ? status : tribo_modal_condense(b, &z);
+    status = status || !b->shared->sys->massless.count ? status : tribo_modal_condense(b, &z);
     const int held = z.rows > 0;
     b->h->modes = held ? z.cols : b->n;
     b->h->omega2 = tribo_modal_keep(b, b->h->modes);
@@ -94,7 +94,7 @@ static int find_modes(struct modal_build *b)
         status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
         status = status ? status
                         : modes_failed(b,
-                                       tribo_normal_modes(b->stiffness, &z, held ? &own : &b->sys->factor, b->h->modes,
+                                       tribo_normal_modes(b->shared->stiffness, &z, held ? &own : &b->shared->sys->factor, b->h->modes,
                                                           b->h->omega2, b->phi, &doubt),
                                        &doubt);
     }
@@ -108,18 +108,18 @@ static int find_modes(struct modal_build *b)
 static int multiply_modes(struct modal_build *b)
 {
     const size_t n = b->n, m = b->h->modes;
-    b->psi = tribo_modal_scratch(b, (b->damping ? 3 : 2) * m * n);
+    b->psi = tribo_modal_scratch(b, (b->shared->damping ? 3 : 2) * m * n);
     if (!b->psi) {
         return 0;
     }
     b->k_phi = b->psi + m * n;
-    b->c_phi = b->damping ? b->k_phi + m * n : NULL;
+    b->c_phi = b->shared->damping ? b->k_phi + m * n : NULL;
     for (size_t k = 0; k < m; k++) {
         const double *phi = b->phi + k * n;
-        tribo_system_add_mass(b->sys, 1.0, phi, b->psi + k * n);
-        tribo_matrix_multiply_add(b->stiffness, 1.0, phi, b->k_phi + k * n);
-        if (b->damping) {
-            tribo_matrix_multiply_add(b->damping, 1.0, phi, b->c_phi + k * n);
+        tribo_system_add_mass(b->shared->sys, 1.0, phi, b->psi + k * n);
+        tribo_matrix_multiply_add(b->shared->stiffness, 1.0, phi, b->k_phi + k * n);
+        if (b->shared->damping) {
+            tribo_matrix_multiply_add(b->shared->damping, 1.0, phi, b->c_phi + k * n);
         }
     }
     return 1;
@@ -134,7 +134,7 @@ static int damping_couples(const struct modal_build *b, const double *c, const d
             const double shared = fabs(c[k * m + l]), own = sqrt(fabs(c[k * m + k] * c[l * m + l]));
             const double impure = IMPURITY * greater(fabs(c[k * m + k]), fabs(c[l * m + l]));
             if (k != l && shared > greater(NEGLIGIBLE * own, impure) &&
-                shared > ROUNDING * tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + l * n)) {
+                shared > ROUNDING * tribo_matrix_noise(b->shared->damping, root, b->phi + k * n, b->phi + l * n)) {
                 return 1;
             }
         }
@@ -148,11 +148,11 @@ static int find_damping(struct modal_build *b)
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes;
     h->damping = tribo_modal_keep(b, m);
-    double *c = b->damping ? tribo_modal_scratch(b, m * m + n) : NULL, *root = c ? c + m * m : NULL;
+    double *c = b->shared->damping ? tribo_modal_scratch(b, m * m + n) : NULL, *root = c ? c + m * m : NULL;
     if (!h->damping || !c) {
-        return h->damping && !b->damping;
+        return h->damping && !b->shared->damping;
     }
-    tribo_matrix_roots(b->damping, root);
+    tribo_matrix_roots(b->shared->damping, root);
     double most = 0.0;
     for (size_t k = 0; k < m; k++) {
         for (size_t l = 0; l < m; l++) {
@@ -161,7 +161,7 @@ static int find_damping(struct modal_build *b)
         most = greater(most, fabs(c[k * m + k]));
     }
     for (size_t k = 0; k < m; k++) {
-        const double own = c[k * m + k], noise = tribo_matrix_noise(b->damping, root, b->phi + k * n, b->phi + k * n);
+        const double own = c[k * m + k], noise = tribo_matrix_noise(b->shared->damping, root, b->phi + k * n, b->phi + k * n);
         h->damping[k] = fabs(own) > greater(ROUNDING * noise, IMPURITY * IMPURITY * most) ? own : 0.0;
     }
     if (damping_couples(b, c, root)) {
@@ -229,33 +229,6 @@ static int compress(struct modal_build *b)
     return 1;
 }
 
-/* What the contacts of the part do: as the set is known, or, if it has no key, whether they hold. */
-static int find_part_key(struct modal_build *b, const unsigned char *holds)
-{
-    b->key = (signed char *)tribo_modal_scratch_bytes(b, b->contacts);
-    for (size_t i = 0; b->key && i < b->contacts; i++) {
-        const size_t at = b->contact[i];
-        b->key[i] = b->h->key ? b->h->key[at] : (signed char)(2 * holds[at]);
-    }
-    return b->key != NULL;
-}
-
-/* Degrees of freedom and contacts of the part become those of the whole. */
-static void number_as_whole(struct modal_build *b)
-{
-    struct modal *h = b->h;
-    for (size_t i = 0; i < h->moving; i++) {
-        h->dof[i] = b->dof[h->dof[i]];
-    }
-    for (size_t k = 0; k < h->outputs; k++) {
-        h->output[k].contact = b->contact[h->output[k].contact];
-    }
-    for (size_t s = 0; s < h->harmonics; s++) {
-        size_t *contact = &h->forcing[s].contact;
-        *contact = *contact < b->sys->ncontact ? b->contact[*contact] : b->whole->sys->ncontact;
-    }
-}
-
 /* What does not depend on loads. Returns a status, TRIBO_ERR_MEMORY if none is in b. */
 static int find_structure(struct modal_build *b)
 {
@@ -265,38 +238,65 @@ static int find_structure(struct modal_build *b)
     return tribo_modal_exponents(b);
 }
 
-/* The same of all degrees of freedom, which is kept while the structure is what it is. */
-static int recall_structure(struct modal_build *b)
+struct modal_piece {
+    struct modal_piece *next;
+    struct modal *modal;
+    size_t rests, rest[]; /* [rests] the contacts that hold */
+};
+
+void tribo_modal_forget(struct modal_known *known)
 {
-    struct modal_whole *w = b->whole;
-    size_t *key = tribo_modal_scratch_indices(b, b->rests + 2);
-    if (!key) {
-        return TRIBO_ERR_MEMORY;
+    for (struct modal_piece *p = known->first; p;) {
+        struct modal_piece *next = p->next;
+        tribo_modal_free(p->modal);
+        free(p);
+        p = next;
     }
-    key[0] = b->rests;
-    memcpy(key + 2, b->rest, b->rests * sizeof *key);
-    struct modal *h = b->h, *known = tribo_modal_recall(w->structures, b->rests + 2, key);
-    int status = TRIBO_OK;
-    if (!known) {
-        b->h = known = tribo_modal_alloc();
-        status = known ? find_structure(b) : TRIBO_ERR_MEMORY;
-        b->h = h;
-        if (status) {
-            tribo_modal_free(known);
-            return status;
-        }
-        status = tribo_modal_remember(w->structures, b->rests + 2, key, known);
+    *known = (struct modal_known){NULL, 0};
+}
+
+/* Adds a structure that is not known. Returns a status. */
+static int learn(struct modal_build *b, struct modal_known *known)
+{
+    const size_t bytes = sizeof(struct modal_piece) + b->rests * sizeof *b->rest;
+    struct modal_piece *p = malloc(bytes);
+    struct modal *h = b->h, *found = b->h = p ? tribo_modal_alloc() : NULL;
+    const int status = found ? find_structure(b) : TRIBO_ERR_MEMORY;
+    b->h = h;
+    if (status) {
+        tribo_modal_free(found);
+        free(p);
+        return status;
     }
+    p->modal = found;
+    p->rests = b->rests;
+    memcpy(p->rest, b->rest, b->rests * sizeof *b->rest);
+    p->next = known->first;
+    known->first = p;
+    known->bytes += bytes + found->bytes;
+    return TRIBO_OK;
+}
+
+/* The same, which is kept while the structure is what it is. */
+static int recall_structure(struct modal_build *b, struct modal_known *known)
+{
+    const struct modal_piece *p = known->first;
+    while (p && (p->rests != b->rests || memcmp(p->rest, b->rest, b->rests * sizeof *b->rest) != 0)) {
+        p = p->next;
+    }
+    const int status = p ? TRIBO_OK : learn(b, known);
     if (status) {
         return status;
     }
+    p = p ? p : known->first;
+    struct modal *h = b->h;
     const struct modal own = *h;
-    *h = *known;
+    *h = *p->modal;
     h->key = own.key;
     h->memory = own.memory;
     h->bytes = own.bytes;
     h->users = own.users;
-    h->base = tribo_modal_share(known);
+    h->base = tribo_modal_share(p->modal);
     b->phi = h->phi;
     return b->psi || multiply_modes(b) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
@@ -304,25 +304,23 @@ static int recall_structure(struct modal_build *b)
 /* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
 static int find_all(struct modal_build *b, const unsigned char *holds)
 {
-    if (!find_part_key(b, holds) || !list_rest(b, holds)) {
+    if (!list_rest(b, holds)) {
         return b->status ? b->status : TRIBO_ERR_MEMORY;
     }
-    const tribo_system *sys = b->whole->sys;
-    const int kept = b->whole->structures && b->owns == sys->ndof && (!sys->massless.count || sys->base_harmonics == 0);
-    const int status = kept ? recall_structure(b) : find_structure(b);
+    const tribo_system *sys = b->shared->sys;
+    struct modal_known *known = sys->massless.count && sys->base_harmonics ? NULL : b->shared->known;
+    const int status = known ? recall_structure(b, known) : find_structure(b);
     if (status) {
         return status;
     }
-    if (!tribo_modal_forcing(b) || !tribo_modal_response(b) || !tribo_modal_outputs(b) || !compress(b)) {
-        return b->status ? b->status : TRIBO_ERR_MEMORY;
-    }
-    number_as_whole(b);
-    return TRIBO_OK;
+    return tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b) ? TRIBO_OK
+           : b->status                                                                                ? b->status
+                                                                                                      : TRIBO_ERR_MEMORY;
 }
 
 int tribo_modal_build(struct modal_build *b, const unsigned char *holds)
 {
-    const int status = tribo_modal_extract(b) ? find_all(b, holds) : TRIBO_ERR_MEMORY;
+    const int status = find_all(b, holds);
     tribo_constraints_free(&b->ties);
     tribo_matrix_free(&b->slack);
     tribo_cholesky_free(&b->slack_stiffness);

@@ -1,58 +1,66 @@
-/* A structure with contacts held: put together from its parts, or, where it has only one or they depend on each other, as a
- * whole. */
+/* Structures with contacts held: what they share, and one of them. */
 #include "parts.h"
 
 #include <stdlib.h>
+#include <string.h>
 
-/* What a set is known by. */
-static int find_key(struct modal_build *b, const signed char *slip, const unsigned char *holds)
+void tribo_modal_shared_free(struct modal_shared *shared)
 {
-    const size_t contacts = b->whole->sys->ncontact;
-    signed char *key = b->h->key = (signed char *)tribo_modal_keep_bytes(b, contacts);
+    tribo_matrix_free(&shared->own_stiffness);
+    tribo_matrix_free(&shared->own_damping);
+    tribo_modal_give_back(shared->scratch);
+    memset(shared, 0, sizeof *shared);
+}
+
+/* K or C: as given, or M times what accelerates. NULL if out of memory. */
+static const struct matrix *force_matrix(const tribo_system *sys, const struct matrix *given, const struct matrix *accelerates,
+                                         struct matrix *own)
+{
+    if (given->rows || !sys->mass.rows) {
+        return given->rows ? given : accelerates;
+    }
+    double *mass = malloc(sys->ndof * sizeof *mass);
+    for (size_t d = 0; mass && d < sys->ndof; d++) {
+        mass[d] = tribo_matrix_get(&sys->mass, d, d);
+    }
+    const int done = mass && tribo_matrix_copy(own, accelerates);
+    if (done) {
+        tribo_matrix_scale_rows(own, mass);
+    }
+    free(mass);
+    return done ? own : NULL;
+}
+
+int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys)
+{
+    *shared = (struct modal_shared){.sys = sys};
+    shared->stiffness = force_matrix(sys, &sys->elastic, &sys->stiffness, &shared->own_stiffness);
+    shared->damping = sys->damping.rows ? force_matrix(sys, &sys->viscous, &sys->damping, &shared->own_damping) : NULL;
+    if (shared->stiffness && (shared->damping || !sys->damping.rows)) {
+        return TRIBO_OK;
+    }
+    tribo_modal_shared_free(shared);
+    return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the matrices of a structure to be held");
+}
+
+int tribo_modal_create(struct modal **modal, struct modal_shared *shared, const signed char *slip, const unsigned char *holds)
+{
+    const size_t contacts = shared->sys->ncontact;
+    struct modal_build b = {.shared = shared, .n = shared->sys->ndof, .h = tribo_modal_alloc()};
+    signed char *key = b.h ? (signed char *)tribo_modal_keep_bytes(&b, contacts) : NULL;
     for (size_t i = 0; key && i < contacts; i++) {
         key[i] = (signed char)((slip[i] == 0) + holds[i]);
     }
-    return key != NULL;
-}
-
-/* Divides the structure, and says whether that leaves several parts, or one that is not all of it. */
-static int falls_apart(struct modal_whole *w, const unsigned char *holds)
-{
-    if (!w->divides) {
-        return 0;
+    int status = TRIBO_ERR_MEMORY;
+    if (key) {
+        b.h->key = key;
+        status = tribo_modal_build(&b, holds);
+        tribo_modal_empty(&shared->scratch);
     }
-    tribo_modal_divide(w, holds);
-    return w->parts != 1 || w->first_own[1] < w->sys->ndof;
-}
-
-static int build_whole(struct modal_build *b, const unsigned char *holds)
-{
-    tribo_modal_take_all(b->whole, holds);
-    const int status = tribo_modal_list(b, 0, holds) ? tribo_modal_build(b, holds) : TRIBO_ERR_MEMORY;
-    tribo_modal_unlist(b);
-    tribo_modal_empty(&b->whole->scratch);
-    return status;
-}
-
-static int build(struct modal_build *b, const unsigned char *holds)
-{
-    if (falls_apart(b->whole, holds)) {
-        const int status = tribo_modal_from_pieces(b, holds);
-        if (status || b->whole->divides) {
-            return status;
-        }
-    }
-    return build_whole(b, holds);
-}
-
-int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds)
-{
-    struct modal_build b = {.whole = whole, .h = tribo_modal_alloc()};
-    const int status = b.h && find_key(&b, slip, holds) ? build(&b, holds) : TRIBO_ERR_MEMORY;
     if (status) {
         tribo_modal_free(b.h);
         return status == TRIBO_ERR_MEMORY
-                   ? tribo_system_fail(whole->sys, status, "out of memory for the modes of a held structure")
+                   ? tribo_system_fail(shared->sys, status, "out of memory for the modes of a held structure")
                    : status;
     }
     *modal = b.h;

@@ -16,7 +16,7 @@
 
 static int unsupported(const struct modal_build *b, const char *why)
 {
-    return tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
+    return tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
 }
 
 static int exponents_decoupled(struct modal_build *b)
@@ -177,7 +177,7 @@ static int exponents_coupled(struct modal_build *b)
     first_order(h, s, a);
     int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_system_fail(b->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m, plural(m),
+        return tribo_system_fail(b->shared->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m, plural(m),
                                  tribo_strerror(status));
     }
     status = status ? status : invert(b, x, a, pivot, inverse);

@@ -27,12 +27,11 @@ struct held {
 struct exact {
     tribo_system *sys;
     struct events events;
-    struct modal_whole whole; /* what these are decompositions of; zeros until there is one */
+    struct modal_shared shared; /* by these; zeros until there is one */
     struct held *held;
     size_t helds, room, bytes, revision;
-    struct modal_known structures; /* what of these stays when loads change, in one list, */
-    struct modal_piece *list;
-    size_t structure; /* while the system has this one */
+    struct modal_known known; /* what of these stays when loads change, */
+    size_t structure;         /* while the system has this one */
 
     struct modal_motion motion; /* of the phase, */
     struct course *course;      /* [ncontact] and of the outputs that guards are of */
@@ -47,19 +46,9 @@ static void drop_helds(struct exact *x)
     for (size_t i = 0; i < x->helds; i++) {
         tribo_modal_free(x->held[i].modal);
     }
-    tribo_modal_whole_free(&x->whole);
+    tribo_modal_shared_free(&x->shared);
     x->helds = 0;
     x->bytes = 0;
-}
-
-static int find_whole(struct exact *x)
-{
-    const int status = x->whole.sys ? TRIBO_OK : tribo_modal_whole_create(&x->whole, x->sys);
-    if (status) {
-        tribo_modal_whole_free(&x->whole);
-    }
-    x->whole.structures = &x->structures;
-    return status;
 }
 
 /* What a key of n bytes, and zeros after them, comes down to. */
@@ -96,9 +85,9 @@ static int find_held(struct exact *x, const struct modal **found)
             return TRIBO_OK;
         }
     }
-    if (x->bytes + x->whole.known.bytes + x->structures.bytes > CACHE_BYTES) {
+    if (x->bytes + x->known.bytes > CACHE_BYTES) {
         drop_helds(x);
-        tribo_modal_forget(&x->structures);
+        tribo_modal_forget(&x->known);
     }
     if (x->helds == x->room) {
         const size_t room = 2 * x->room + 16;
@@ -110,8 +99,9 @@ static int find_held(struct exact *x, const struct modal **found)
         x->room = room;
     }
     struct modal *h;
-    int status = find_whole(x);
-    status = status ? status : tribo_modal_create(&h, &x->whole, m->slip, m->holds);
+    int status = x->shared.sys ? TRIBO_OK : tribo_modal_shared_create(&x->shared, sys);
+    x->shared.known = &x->known;
+    status = status ? status : tribo_modal_create(&h, &x->shared, m->slip, m->holds);
     if (status) {
         return status;
     }
@@ -344,7 +334,7 @@ static void destroy(tribo_driver *drv)
     struct exact *x = drv->own;
     if (x) {
         drop_helds(x);
-        tribo_modal_forget(&x->structures);
+        tribo_modal_forget(&x->known);
         free(x->held);
         tribo_events_free(&x->events);
         tribo_modal_motion_free(&x->motion);
@@ -382,7 +372,6 @@ static int create(tribo_driver *drv)
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
     x->sys = drv->sys;
-    x->structures = (struct modal_known){.piece = &x->list, .lists = 1};
     x->course = malloc((drv->sys->ncontact + 1) * sizeof *x->course);
     const int status = tribo_events_create(&x->events, drv);
     if (status) {
@@ -419,7 +408,7 @@ static int open_events(tribo_driver *drv, struct events **events)
         x->revision = sys->revision;
     }
     if (x->structure != sys->structure) {
-        tribo_modal_forget(&x->structures);
+        tribo_modal_forget(&x->known);
         x->structure = sys->structure;
     }
     *events = &x->events;

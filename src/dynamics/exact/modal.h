@@ -10,7 +10,7 @@
 
 #include <math.h>
 
-#include "whole.h"
+#include "dynamics/system/system.h"
 
 /* How many terms are done side by side: the number of terms is a multiple of this. */
 enum { TRIBO_TERMS = 4 };
@@ -80,9 +80,30 @@ static inline double tribo_modal_magnitude(double re, double im)
     return square > 1e-280 && square < 1e300 ? sqrt(square) : hypot(re, im);
 }
 
-/* For the contacts whose slip is 0, those of them that hold being marked (see stick_slip.h); the others at rest depend on those.
- * Returns a status; its message is on the system's context. */
-int tribo_modal_create(struct modal **modal, struct modal_whole *whole, const signed char *slip, const unsigned char *holds);
+/* Structures with contacts held, as far as loads and limits do not change them, by the contacts that hold. */
+struct modal_known {
+    struct modal_piece *first;
+    size_t bytes; /* of all */
+};
+
+void tribo_modal_forget(struct modal_known *known);
+
+/* What the structures of one system with contacts held share. */
+struct modal_shared {
+    tribo_system *sys;
+    const struct matrix *stiffness, *damping; /* K and C, or NULL */
+    struct matrix own_stiffness, own_damping; /* where the system has only M^-1 K and M^-1 C */
+    struct modal_known *known;                /* the caller's, or NULL */
+    void *scratch;                            /* for the next one */
+};
+
+/* Returns a status; its message is on the system's context. tribo_modal_shared_free takes zeros, too. */
+int tribo_modal_shared_create(struct modal_shared *shared, tribo_system *sys);
+void tribo_modal_shared_free(struct modal_shared *shared);
+
+/* The structure with the contacts held whose slip is 0, those of them that hold being marked (see stick_slip.h); the others at
+ * rest depend on those. Returns a status; its message is on the system's context. */
+int tribo_modal_create(struct modal **modal, struct modal_shared *shared, const signed char *slip, const unsigned char *holds);
 void tribo_modal_free(const struct modal *h);
 
 /* For another user. */

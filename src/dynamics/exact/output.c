@@ -30,7 +30,7 @@ static void output_mode(const struct modal_build *b, struct output *w, size_t k,
     }
 }
 
-int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact)
+static int create_output(struct modal_build *b, struct output *w, size_t contact)
 {
     const size_t terms = b->h->terms, p = b->h->exponents;
     double *x = tribo_modal_keep(b, 3 * terms + b->h->modes);
@@ -42,7 +42,7 @@ int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t co
     return 1;
 }
 
-void tribo_modal_finish_output(const struct modal *h, struct output *w)
+static void finish_output(const struct modal *h, struct output *w)
 {
     for (size_t p = 0; p < h->exponents + h->harmonics; p++) {
         w->size[p] = tribo_modal_magnitude(w->cr[p], w->ci[p]);
@@ -63,10 +63,10 @@ static double largest(const double *x, const double *y, size_t n)
  * there is anything. */
 static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 {
-    const struct matrix *j = &b->sys->direction;
+    const struct matrix *j = &b->shared->sys->direction;
     int any = 0;
     for (size_t s = 0; s < b->h->given; s++) {
-        const struct harmonic *wave = &b->sys->harmonic[s];
+        const struct harmonic *wave = &b->shared->sys->harmonic[s];
         const double *yr = b->yr + s * b->n, *yi = b->yi + s * b->n, most = largest(yr, yi, b->n);
         double re = 0.0, im = 0.0, size = 0.0;
         for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
@@ -90,7 +90,7 @@ static int output_belts(const struct modal_build *b, struct output *w, size_t i)
 /* v_i = J_i q' - b_i. */
 static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 {
-    if (!tribo_modal_create_output(b, w, i)) {
+    if (!create_output(b, w, i)) {
         return 0;
     }
     for (size_t k = 0; k < b->h->modes; k++) {
@@ -99,7 +99,7 @@ static int output_sliding(struct modal_build *b, struct output *w, size_t i)
         output_mode(b, w, k, 0.0, shape);
     }
     output_belts(b, w, i);
-    tribo_modal_finish_output(b->h, w);
+    finish_output(b->h, w);
     return 1;
 }
 
@@ -107,11 +107,11 @@ static int output_sliding(struct modal_build *b, struct output *w, size_t i)
 static int output_parting(struct modal_build *b, struct output *all, size_t *used, size_t i)
 {
     struct output *w = &all[*used];
-    if (!tribo_modal_create_output(b, w, i)) {
+    if (!create_output(b, w, i)) {
         return 0;
     }
     *used += output_belts(b, w, i) != 0;
-    tribo_modal_finish_output(b->h, w);
+    finish_output(b->h, w);
     return 1;
 }
 
@@ -133,16 +133,16 @@ int tribo_modal_hold(struct modal_build *b)
     if (!load || !tribo_modal_keep_all(b, 2, kept, count)) {
         return 0;
     }
-    if (b->damping && h->coupling) {
+    if (b->shared->damping && h->coupling) {
         tribo_multiply_transposed_add(m, m, n, h->coupling, b->psi, load);
     }
     for (size_t k = 0; s > 0 && k < m; k++) {
         const double *psi = b->psi + k * n;
         double *force = load + k * n;
-        for (size_t d = 0; b->damping && d < n; d++) {
+        for (size_t d = 0; b->shared->damping && d < n; d++) {
             force[d] = b->c_phi[k * n + d] - (h->coupling ? force[d] : h->damping[k] * psi[d]);
         }
-        if (b->damping) {
+        if (b->shared->damping) {
             tribo_constraints_react(&b->ties, force, h->by_u + k * s);
         }
         memcpy(force, b->k_phi + k * n, n * sizeof *force);
@@ -160,7 +160,7 @@ static void hold_load(const struct modal_build *b, struct holding *f, const stru
         for (size_t e = 0; e < wave->count; e++) {
             f->load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
         }
-        tribo_system_add_mass(b->sys, 1.0, f->load, f->force[part]);
+        tribo_system_add_mass(b->shared->sys, 1.0, f->load, f->force[part]);
     }
 }
 
@@ -169,18 +169,18 @@ static void hold_motion(const struct modal_build *b, struct holding *f, double o
 {
     for (int part = 0; part < 2; part++) {
         const double turn = part ? 1.0 : -1.0;
-        if (b->damping) {
-            tribo_matrix_multiply_add(b->damping, 1.0, y[part], f->force[part]);
+        if (b->shared->damping) {
+            tribo_matrix_multiply_add(b->shared->damping, 1.0, y[part], f->force[part]);
         }
-        tribo_matrix_multiply_add(b->stiffness, turn / omega, y[part], f->force[1 - part]);
-        tribo_system_add_mass(b->sys, -turn * omega, y[part], f->force[1 - part]);
+        tribo_matrix_multiply_add(b->shared->stiffness, turn / omega, y[part], f->force[1 - part]);
+        tribo_system_add_mass(b->shared->sys, -turn * omega, y[part], f->force[1 - part]);
     }
 }
 
 /* The force of another contact, which follows its limit. */
 static void hold_limit(const struct modal_build *b, struct holding *f, const struct harmonic *limit, size_t i)
 {
-    const struct matrix *j = &b->sys->direction;
+    const struct matrix *j = &b->shared->sys->direction;
     for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
         f->force[0][j->col[e]] = -j->val[e] * limit->cosine[i];
         f->force[1][j->col[e]] = j->val[e] * limit->sine[i];
@@ -190,11 +190,11 @@ static void hold_limit(const struct modal_build *b, struct holding *f, const str
 static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t w)
 {
     const struct forcing *forcing = &b->h->forcing[w];
-    const struct harmonic *wave = &b->sys->harmonic[forcing->harmonic];
+    const struct harmonic *wave = &b->shared->sys->harmonic[forcing->harmonic];
     const size_t n = b->n, s = b->rests;
     memset(f->force[0], 0, n * sizeof **f->force);
     memset(f->force[1], 0, n * sizeof **f->force);
-    if (forcing->contact < b->sys->ncontact) {
+    if (forcing->contact < b->shared->sys->ncontact) {
         hold_limit(b, f, wave, forcing->contact);
     } else if (wave->drives == DRIVES_BASE) {
         hold_motion(b, f, wave->omega, (const double *const[]){b->yr + w * n, b->yi + w * n});
@@ -226,7 +226,7 @@ static int find_holding(struct modal_build *b, struct holding *f)
     }
     if (b->steady) {
         memset(f->load, 0, n * sizeof *f->load);
-        tribo_matrix_multiply_add(b->stiffness, 1.0, b->y0, f->load);
+        tribo_matrix_multiply_add(b->shared->stiffness, 1.0, b->y0, f->load);
         tribo_modal_react(b, f->load, f->ramp);
     }
     return 1;
@@ -236,7 +236,7 @@ static int find_holding(struct modal_build *b, struct holding *f)
 static int changes(const struct modal_build *b, const struct holding *f, size_t p)
 {
     const struct modal *h = b->h;
-    int found = f->ramp[p] != 0.0 || tribo_system_swing(b->sys, b->rest[p]) > 0.0;
+    int found = f->ramp[p] != 0.0 || tribo_system_swing(b->shared->sys, b->rest[p]) > 0.0;
     for (size_t k = 0; k < h->modes; k++) {
         found |= h->by_q[k * b->rests + p] != 0.0 || h->by_u[k * b->rests + p] != 0.0;
     }
@@ -259,7 +259,7 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
             continue;
         }
         struct output *output = &all[(*used)++];
-        if (!tribo_modal_create_output(b, output, b->rest[p])) {
+        if (!create_output(b, output, b->rest[p])) {
             return 0;
         }
         output->ramp = f.ramp[p];
@@ -271,7 +271,7 @@ static int output_held(struct modal_build *b, struct output *all, size_t *used)
             output->rr[w] += f.wave_r[w * b->rests + p];
             output->ri[w] += f.wave_i[w * b->rests + p];
         }
-        tribo_modal_finish_output(b->h, output);
+        finish_output(b->h, output);
     }
     return 1;
 }
@@ -281,7 +281,7 @@ static double sixth_power(double x)
     return x * x * x * x * x * x;
 }
 
-int tribo_modal_find_terms(struct modal_build *b)
+static int find_terms(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t p = h->exponents;
@@ -316,14 +316,14 @@ int tribo_modal_find_terms(struct modal_build *b)
 int tribo_modal_outputs(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t c = b->sys->ncontact;
+    const size_t c = b->shared->sys->ncontact;
     h->output = tribo_modal_keep_outputs(b, c);
-    if (!h->output || !tribo_modal_find_terms(b)) {
+    if (!h->output || !find_terms(b)) {
         return 0;
     }
     for (size_t i = 0; i < c; i++) {
-        const int done = b->key[i] == 0   ? output_sliding(b, &h->output[h->outputs++], i)
-                         : b->key[i] == 1 ? output_parting(b, h->output, &h->outputs, i)
+        const int done = b->h->key[i] == 0   ? output_sliding(b, &h->output[h->outputs++], i)
+                         : b->h->key[i] == 1 ? output_parting(b, h->output, &h->outputs, i)
                                           : 1;
         if (!done) {
             return 0;

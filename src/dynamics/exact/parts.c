@@ -149,38 +149,26 @@ struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count)
 double *tribo_modal_scratch(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return tribo_modal_take(&b->whole->scratch, &ignored, count, sizeof(double));
+    return tribo_modal_take(&b->shared->scratch, &ignored, count, sizeof(double));
 }
 
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return tribo_modal_take(&b->whole->scratch, &ignored, count, sizeof(size_t));
+    return tribo_modal_take(&b->shared->scratch, &ignored, count, sizeof(size_t));
 }
 
 unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count)
 {
     size_t ignored = 0;
-    return tribo_modal_take(&b->whole->scratch, &ignored, count, 1);
-}
-
-struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count)
-{
-    size_t ignored = 0;
-    return tribo_modal_take(&b->whole->scratch, &ignored, count, sizeof(struct harmonic));
-}
-
-tribo_system *tribo_modal_scratch_system(struct modal_build *b)
-{
-    size_t ignored = 0;
-    return tribo_modal_take(&b->whole->scratch, &ignored, 1, sizeof(tribo_system));
+    return tribo_modal_take(&b->shared->scratch, &ignored, count, 1);
 }
 
 /* ----------------------------------------------------------------------------------------------------- the contacts that hold */
 
 double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k)
 {
-    return tribo_matrix_row_dot(&b->sys->direction, i, b->phi + k * b->n);
+    return tribo_matrix_row_dot(&b->shared->sys->direction, i, b->phi + k * b->n);
 }
 
 void tribo_modal_react(const struct modal_build *b, double *force, double *f)

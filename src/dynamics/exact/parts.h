@@ -1,23 +1,15 @@
-/* What is needed only while a modal structure is built (modal_create.c), and what the parts of that share. */
+/* What is needed only while a structure with contacts held is built (create.c), and what the parts of that share. */
 #ifndef TRIBO_MODAL_PARTS_H
 #define TRIBO_MODAL_PARTS_H
 
 #include "numerics/constraint.h"
 #include "modal.h"
-#include "whole.h"
 
-/* Degrees of freedom and contacts are those of the part that is looked at (modal_whole.h): vectors are [ndof] of it, modes
- * [modes][ndof]. */
+/* Vectors are [ndof], modes [modes][ndof]. */
 struct modal_build {
-    struct modal_whole *whole;
-    size_t n, contacts;                       /* of degrees of freedom and contacts: as much of it as is looked at, */
-    size_t *dof, *contact;                    /* [n], [contacts] and where that is in the whole; */
-    size_t owns;                              /* how many degrees of freedom are its own */
-    const struct matrix *stiffness, *damping; /* K and C of the part, or NULL */
-    struct matrix own_stiffness, own_damping; /* if it is not the whole */
-    const tribo_system *sys;                  /* the part */
+    struct modal_shared *shared;
+    size_t n; /* ndof */
     struct modal *h;
-    signed char *key;                  /* [ncontact] as in h */
     size_t rests, *rest;               /* [rests] the contacts that hold */
     struct constraints ties;           /* and what they tie together */
     struct matrix slack;               /* [ndof][..] displacements that are free and have no mass: they follow the others, */
@@ -29,18 +21,8 @@ struct modal_build {
     int status;                        /* of a failure other than of memory */
 };
 
-/* modal_extract.c: lists who belongs to a part of b->whole that is divided, until it is unlisted, and makes the part a system.
- * These return 0 if out of memory. */
-int tribo_modal_list(struct modal_build *b, size_t part, const unsigned char *holds);
-void tribo_modal_unlist(struct modal_build *b);
-int tribo_modal_extract(struct modal_build *b);
-
-/* modal_build.c: fills b->h, which is zero but for its key, and may have none, from the part that is listed. Returns a status. */
+/* build.c: fills b->h, which is zero but for its key. Returns a status. */
 int tribo_modal_build(struct modal_build *b, const unsigned char *holds);
-
-/* modal_pieces.c: fills b->h, of which the key is known, from parts of the whole, which is divided. Nothing is done, and the
- * whole divides no more, if damping turns out to couple modes. Returns a status. */
-int tribo_modal_from_pieces(struct modal_build *b, const unsigned char *holds);
 
 /* A structure of zeros, or NULL if out of memory; tribo_modal_free takes both. */
 struct modal *tribo_modal_alloc(void);
@@ -56,8 +38,6 @@ struct forcing *tribo_modal_keep_forcing(struct modal_build *b, size_t count);
 double *tribo_modal_scratch(struct modal_build *b, size_t count);
 size_t *tribo_modal_scratch_indices(struct modal_build *b, size_t count);
 unsigned char *tribo_modal_scratch_bytes(struct modal_build *b, size_t count);
-struct harmonic *tribo_modal_scratch_harmonics(struct modal_build *b, size_t count);
-tribo_system *tribo_modal_scratch_system(struct modal_build *b);
 void *tribo_modal_take(void **list, size_t *bytes, size_t count, size_t size); /* of a list, and adds to its bytes */
 void tribo_modal_give_back(void *list);
 void tribo_modal_empty(void **list); /* what is on the list is nobody's, but it may keep a block for what comes */
@@ -68,7 +48,7 @@ double tribo_modal_shape(const struct modal_build *b, size_t i, size_t k);
 /* f [rests] = the forces J_I'f = force [ndof] of the contacts that hold. Takes out of force first what moves the modes. */
 void tribo_modal_react(const struct modal_build *b, double *force, double *f);
 
-/* modal_slack.c: takes out of the displacements z that constraints allow (without rows: all) those without mass, and lets them
+/* slack.c: takes out of the displacements z that constraints allow (without rows: all) those without mass, and lets them
  * follow the others. Returns a status. */
 int tribo_modal_condense(struct modal_build *b, struct matrix *z);
 
@@ -77,13 +57,6 @@ int tribo_modal_relax(struct modal_build *b, double *y);
 
 /* The exponents of eta. Returns a status. */
 int tribo_modal_exponents(struct modal_build *b);
-
-/* Lists the harmonics of the system, and then those of limits again, contact by contact that does not hold; lets them be terms as
- * exponents are; an output, without anything, and the sizes of its terms. The first three return 0 if out of memory. */
-int tribo_modal_list_forcing(struct modal_build *b);
-int tribo_modal_find_terms(struct modal_build *b);
-int tribo_modal_create_output(struct modal_build *b, struct output *w, size_t contact);
-void tribo_modal_finish_output(const struct modal *h, struct output *w);
 
 /* These return 0 if out of memory, or with the status of another failure in b; tribo_modal_hold: by_q and by_u. */
 int tribo_modal_hold(struct modal_build *b);

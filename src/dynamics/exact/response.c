@@ -41,10 +41,10 @@ static int base_part(const struct modal_build *b, const struct harmonic *w, int 
     return moves;
 }
 
-int tribo_modal_list_forcing(struct modal_build *b)
+static int list_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const tribo_system *sys = b->sys;
+    const tribo_system *sys = b->shared->sys;
     const size_t c = sys->ncontact;
     h->given = h->harmonics = sys->harmonics;
     h->forcing = tribo_modal_keep_forcing(b, sys->harmonics + sys->limit_harmonics * (c - b->rests));
@@ -55,7 +55,7 @@ int tribo_modal_list_forcing(struct modal_build *b)
         const struct harmonic *w = &sys->harmonic[k];
         h->forcing[k] = (struct forcing){w->omega, k, c};
         for (size_t i = 0; w->drives == DRIVES_LIMIT && w->omega != 0.0 && i < c; i++) {
-            if (b->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
+            if (b->h->key[i] != 2 && (w->cosine[i] != 0.0 || w->sine[i] != 0.0)) {
                 h->forcing[h->harmonics++] = (struct forcing){w->omega, k, i};
             }
         }
@@ -68,7 +68,7 @@ static void force_by_limit(struct modal_build *b, size_t w)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, i = h->forcing[w].contact;
-    const struct harmonic *limit = &b->sys->harmonic[h->forcing[w].harmonic];
+    const struct harmonic *limit = &b->shared->sys->harmonic[h->forcing[w].harmonic];
     for (size_t k = 0; k < m; k++) {
         const double push = tribo_modal_shape(b, i, k);
         h->gr[w * m + k] = push * limit->cosine[i];
@@ -81,7 +81,7 @@ static void force_by_load(struct modal_build *b, size_t w)
 {
     struct modal *h = b->h;
     const size_t m = h->modes;
-    const struct harmonic *load = &b->sys->harmonic[w];
+    const struct harmonic *load = &b->shared->sys->harmonic[w];
     for (size_t k = 0; k < m; k++) {
         const double *psi = b->psi + k * b->n;
         for (size_t i = 0; i < load->count; i++) {
@@ -96,9 +96,9 @@ static void resist(const struct modal_build *b, const double *y, double by, doub
 {
     memset(pull, 0, b->n * sizeof *pull);
     memset(drag, 0, b->n * sizeof *drag);
-    tribo_matrix_multiply_add(b->stiffness, -by, y, pull);
-    if (b->damping) {
-        tribo_matrix_multiply_add(b->damping, -1.0, y, drag);
+    tribo_matrix_multiply_add(b->shared->stiffness, -by, y, pull);
+    if (b->shared->damping) {
+        tribo_matrix_multiply_add(b->shared->damping, -1.0, y, drag);
     }
 }
 
@@ -109,7 +109,7 @@ static int force_by_base(struct modal_build *b, size_t w, double *x, double *pul
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes;
-    const struct harmonic *wave = &b->sys->harmonic[w];
+    const struct harmonic *wave = &b->shared->sys->harmonic[w];
     double *const g[] = {h->gr + w * m, h->gi + w * m}, *const y[] = {b->yr + w * n, b->yi + w * n};
     int moves[2];
     for (int part = 0; part < 2; part++) {
@@ -148,7 +148,7 @@ static void force_by_constants(struct modal_build *b, double *pull, double *drag
     for (size_t k = 0; k < h->modes; k++) {
         h->ramp[k] = b->steady ? tribo_dot(b->phi + k * b->n, pull, b->n) : 0.0;
         h->constant[k] = b->steady ? tribo_dot(b->phi + k * b->n, drag, b->n) : 0.0;
-        for (size_t w = 0; w < b->sys->harmonics; w++) {
+        for (size_t w = 0; w < b->shared->sys->harmonics; w++) {
             h->constant[k] += h->forcing[w].omega == 0.0 ? h->gr[w * h->modes + k] : 0.0;
         }
     }
@@ -169,7 +169,7 @@ static void drag_by_ramps(struct modal *h)
 static int create_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
-    const size_t m = h->modes, velocities = b->sys->harmonics * b->n;
+    const size_t m = h->modes, velocities = b->shared->sys->harmonics * b->n;
     double **const kept[] = {&h->gr, &h->gi, &h->ramp, &h->constant};
     const size_t count[] = {h->harmonics * m, h->harmonics * m, m, m};
     double *y = tribo_modal_scratch(b, 2 * velocities + b->n);
@@ -185,20 +185,20 @@ static int create_forcing(struct modal_build *b)
 /* Forcing of eta by each harmonic, and what the held contacts are moved by. */
 int tribo_modal_forcing(struct modal_build *b)
 {
-    if (!tribo_modal_list_forcing(b) || !create_forcing(b)) {
+    if (!list_forcing(b) || !create_forcing(b)) {
         return 0;
     }
     double *pull = tribo_modal_scratch(b, 2 * b->n + b->rests), *drag = pull ? pull + b->n : NULL, *x = pull ? drag + b->n : NULL;
     int done = pull != NULL;
-    for (size_t w = 0; done && w < b->sys->harmonics; w++) {
-        const enum drives drives = b->sys->harmonic[w].drives;
+    for (size_t w = 0; done && w < b->shared->sys->harmonics; w++) {
+        const enum drives drives = b->shared->sys->harmonic[w].drives;
         if (drives == DRIVES_LOAD) {
             force_by_load(b, w);
         } else if (drives == DRIVES_BASE) {
             done = force_by_base(b, w, x, pull, drag);
         }
     }
-    for (size_t w = b->sys->harmonics; done && w < b->h->harmonics; w++) {
+    for (size_t w = b->shared->sys->harmonics; done && w < b->h->harmonics; w++) {
         force_by_limit(b, w);
     }
     if (done) {
@@ -243,7 +243,7 @@ static int respond_together(struct modal_build *b, size_t w, double *a, double *
     memcpy(x, h->gr + w * m, m * sizeof *x);
     memcpy(x + m, h->gi + w * m, m * sizeof *x);
     if (!(tribo_lu_create(a, size, pivot) > UNDAMPED * omega * omega)) {
-        b->status = tribo_system_fail(b->sys, TRIBO_ERR_UNSUPPORTED,
+        b->status = tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED,
                                       "the harmonic of omega = %g is in resonance with an undamped mode, while damping couples "
                                       "others: take method event",
                                       omega);

@@ -12,7 +12,7 @@ static size_t divide(const struct modal_build *b, const struct matrix *z, ptrdif
     memset(place, 0, z->cols * sizeof *place);
     for (size_t d = 0; d < z->rows; d++) {
         for (size_t e = z->first[d]; e < z->first[d + 1]; e++) {
-            place[z->col[e]] |= !b->sys->massless.is[d] && z->val[e] != 0.0;
+            place[z->col[e]] |= !b->shared->sys->massless.is[d] && z->val[e] != 0.0;
         }
     }
     for (size_t j = 0; j < z->cols; j++) {
@@ -44,7 +44,7 @@ static int solve_slack(struct modal_build *b, const double *k, size_t cols, cons
     status = status ? status : tribo_cholesky_create(&b->slack_stiffness, &a, &where, &pivot);
     tribo_matrix_free(&a);
     if (status == TRIBO_ERR_INDEFINITE) {
-        return tribo_system_fail(b->sys, status, "with contacts held, the stiffness does not hold what has no mass: pivot %g",
+        return tribo_system_fail(b->shared->sys, status, "with contacts held, the stiffness does not hold what has no mass: pivot %g",
                                  pivot);
     }
     return status || tribo_cholesky_solve(&b->slack_stiffness, cols - slack, y) ? status : TRIBO_ERR_MEMORY;
@@ -81,7 +81,7 @@ int tribo_modal_condense(struct modal_build *b, struct matrix *z)
     double *k = tribo_modal_scratch(b, cols * cols);
     const size_t slack = place ? divide(b, z, place) : 0, others = cols - slack;
     double *y = tribo_modal_scratch(b, others * slack), *x = tribo_modal_scratch(b, b->n * others);
-    int status = place && k && y && x && tribo_matrix_congruent(b->stiffness, z, k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    int status = place && k && y && x && tribo_matrix_congruent(b->shared->stiffness, z, k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     if (!status && slack) {
         status = solve_slack(b, k, cols, place, slack, y);
         status = status || split(b, z, place, slack, y, x) ? status : TRIBO_ERR_MEMORY;
@@ -99,7 +99,7 @@ int tribo_modal_relax(struct modal_build *b, double *y)
     if (!force) {
         return w->cols == 0;
     }
-    tribo_matrix_multiply_add(b->stiffness, -1.0, y, force);
+    tribo_matrix_multiply_add(b->shared->stiffness, -1.0, y, force);
     for (size_t d = 0; d < w->rows; d++) {
         for (size_t e = w->first[d]; e < w->first[d + 1]; e++) {
             give[w->col[e]] += w->val[e] * force[d];

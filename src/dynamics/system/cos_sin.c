@@ -53,9 +53,9 @@ TRIBO_SIMD void tribo_cos_sin_near(double omega, size_t n, const double *restric
         const double quarters = nearest(angle.hi * 0.63661977236758134);
         const struct twofold x = without_quarters(angle, quarters);
         const double cx = cosine_near_0(x), sx = sine_near_0(x);
-        const double turned = quarters - 4.0 * nearest(0.25 * quarters);                           /* -3 to 3 */
-        const double left = turned - (turned > 2.0 ? 4.0 : 0.0) + (turned < -2.0 ? 4.0 : 0.0); /* -2, -1, 0, 1 or 2 */
-        const double cq = 1.0 - fabs(left), sq = left * (2.0 - fabs(left));
+        const double left = quarters - 4.0 * nearest(0.25 * quarters), size = fabs(left); /* -2 to 2, rounded otherwise -3 to 3 */
+        const double past = (size - 1.0) * (size - 2.0) * (1 / 3.);                       /* 0 but for 0 and 3 */
+        const double cq = (1.0 - size) + size * past, sq = left * (2.0 - size) + left * past;
         c[k] = cq * cx - sq * sx;
         s[k] = sq * cx + cq * sx;
     }

@@ -5,10 +5,10 @@
 
 static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)
 {
-    struct modal_whole whole;
-    int status = tribo_modal_whole_create(&whole, sys);
-    status = status ? status : tribo_modal_create(h, &whole, slip, holds);
-    tribo_modal_whole_free(&whole);
+    struct modal_shared shared;
+    int status = tribo_modal_shared_create(&shared, sys);
+    status = status ? status : tribo_modal_create(h, &shared, slip, holds);
+    tribo_modal_shared_free(&shared);
     return status;
 }
 
@@ -110,7 +110,7 @@ TEST(too_many_hold)
     tribo_system_destroy(sys);
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- parts */
+/* ------------------------------------------------------------------------------------------------- what is kept of a set */
 
 #define BODIES 9
 #define CONTACTS (BODIES + 1)
@@ -211,65 +211,26 @@ static void compare(const struct modal *g, const struct modal *h)
     compare_outputs(g, h);
 }
 
-/* A set that is put together from parts is what it is as a whole, whichever bodies are held; and what is known of parts is not
- * sought again. */
-TEST(parts)
-{
-    struct random r = random_of(_i);
-    tribo_system *sys = row_of_bodies(&r, _i % 2 ? 0.05 : 0.0);
-    struct modal_whole divided, undivided;
-    assert_ok(tribo_modal_whole_create(&divided, sys));
-    assert_ok(tribo_modal_whole_create(&undivided, sys));
-    ck_assert(divided.divides);
-    undivided.divides = 0;
-    for (int k = 0; k < 20; k++) {
-        signed char slip[CONTACTS];
-        unsigned char holds[CONTACTS];
-        struct modal *g, *h, *again;
-        for (size_t i = 0; i < CONTACTS; i++) {
-            holds[i] = i < BODIES && below(&r, 3) > 0;
-            slip[i] = !holds[i];
-        }
-        assert_ok(tribo_modal_create(&g, &undivided, slip, holds));
-        assert_ok(tribo_modal_create(&h, &divided, slip, holds));
-        compare(g, h);
-        const size_t bytes = divided.known.bytes;
-        assert_ok(tribo_modal_create(&again, &divided, slip, holds));
-        ck_assert_uint_eq(divided.known.bytes, bytes);
-        tribo_modal_free(g);
-        tribo_modal_free(h);
-        tribo_modal_free(again);
-    }
-    ck_assert(divided.divides);
-    ck_assert_uint_gt(divided.known.bytes, 0);
-    ck_assert_uint_eq(undivided.known.bytes, 0);
-    tribo_modal_whole_free(&divided);
-    tribo_modal_whole_free(&undivided);
-    tribo_system_destroy(sys);
-}
-
 /* Loads that change leave the decomposition of a set as it is; with it the set is what it is without. */
 TEST(kept)
 {
     struct random r = random_of(_i);
-    tribo_system *sys = row_of_bodies(&r, 0.0);
-    struct modal_piece *list = NULL;
-    struct modal_known structures = {.piece = &list, .lists = 1};
+    tribo_system *sys = row_of_bodies(&r, _i % 2 ? 0.05 : 0.0);
+    struct modal_known known = {NULL, 0};
     const struct modal *base = NULL;
     for (int k = 0; k < 3; k++) {
         const double load[BODIES] = {0.0, 1.0, 0.0, -0.3};
         signed char slip[CONTACTS];
         unsigned char holds[CONTACTS];
-        struct modal_whole with, without;
+        struct modal_shared with, without;
         struct modal *g, *h;
         for (size_t i = 0; i < CONTACTS; i++) {
             holds[i] = i == BODIES; /* the one between two bodies */
             slip[i] = !holds[i];
         }
-        assert_ok(tribo_modal_whole_create(&with, sys));
-        assert_ok(tribo_modal_whole_create(&without, sys));
-        with.divides = without.divides = 0;
-        with.structures = &structures;
+        assert_ok(tribo_modal_shared_create(&with, sys));
+        assert_ok(tribo_modal_shared_create(&without, sys));
+        with.known = &known;
         assert_ok(tribo_modal_create(&g, &without, slip, holds));
         assert_ok(tribo_modal_create(&h, &with, slip, holds));
         compare(g, h);
@@ -279,35 +240,11 @@ TEST(kept)
         base = h->base;
         tribo_modal_free(g);
         tribo_modal_free(h);
-        tribo_modal_whole_free(&with);
-        tribo_modal_whole_free(&without);
+        tribo_modal_shared_free(&with);
+        tribo_modal_shared_free(&without);
         assert_ok(tribo_system_add_load(sys, 0.4 + k, load, NULL));
     }
-    tribo_modal_forget(&structures);
-    tribo_system_destroy(sys);
-}
-
-/* Damping that couples the modes of a part: the set is one again, and the same. */
-TEST(coupled_part)
-{
-    const double mass[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0},
-                 stiffness[] = {2.0, -1.0, 0.0, -1.0, 2.0, -1.0, 0.0, -1.0, 2.0};
-    const double damping[] = {0.1, 0.0, 0.0, 0.0, 0.3, 0.0, 0.0, 0.0, 0.0}, direction[] = {0.0, 0.0, 1.0};
-    const signed char slip[] = {0};
-    const unsigned char holds[] = {1};
-    tribo_system *sys;
-    struct modal_whole whole;
-    struct modal *h;
-    assert_ok(tribo_system_linear(&sys, 3, 1, mass, damping, stiffness, direction, 0, NULL, 0));
-    assert_ok(tribo_modal_whole_create(&whole, sys));
-    ck_assert(whole.divides);
-    assert_ok(tribo_modal_create(&h, &whole, slip, holds));
-    ck_assert(!whole.divides);
-    ck_assert_ptr_nonnull(h->coupling);
-    ck_assert_uint_eq(h->modes, 2);
-    ck_assert_uint_eq(h->outputs, 1);
-    tribo_modal_free(h);
-    tribo_modal_whole_free(&whole);
+    tribo_modal_forget(&known);
     tribo_system_destroy(sys);
 }
 
@@ -407,5 +344,5 @@ TEST(exponential_from_one)
     }
 }
 
-TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {parts, 10}, {kept, 5}, {coupled_part, 1},
-          {one_sided, 1}, {free_motions, 1}, {moved_alike, 1}, {exponential_from_one, 5})
+TEST_MAIN("modal", {both_hold, 17}, {upper_holds, 17}, {lever, 1}, {too_many_hold, 1}, {kept, 10}, {one_sided, 1},
+          {free_motions, 1}, {moved_alike, 1}, {exponential_from_one, 5})
