@@ -95,7 +95,7 @@ static size_t fixed_by(const struct group *g)
 
 static size_t kept_by(const struct group *g)
 {
-    return 3 * g->size + (g->sparse ? 7 * g->size + tribo_sparse_slots(g->sparse) : (g->graded ? 2 : 1) * g->size * g->size);
+    return 3 * g->size + (g->sparse ? 3 * g->size + tribo_sparse_slots(g->sparse) : (g->graded ? 2 : 1) * g->size * g->size);
 }
 
 struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m, size_t k)
@@ -119,7 +119,7 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
     p->l_low = p->l + size * size;
     if (g->sparse) {
         p->sparse =
-            (struct sparse_factor){p->l + 7 * size, p->l, p->l + size, (void *)(p->l + 2 * size), (void *)(p->l + 3 * size)};
+            (struct sparse_factor){p->l + 3 * size, p->l, p->l + size, (void *)(p->l + 2 * size)};
     }
     p->redundant = op->basis / size;
     return p;

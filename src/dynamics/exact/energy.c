@@ -151,8 +151,8 @@ static double sampled_work(struct modal_motion *x, size_t i, const struct output
         const size_t point = k % 8;
         tribo_modal_motion_go(x, half * ((double)(2 * (k / 8) + 1) + (point % 2 ? at[point / 2] : -at[point / 2])));
         tribo_course_look(x, &c);
-        const double force = x->contacts->slip[i] * tribo_modal_motion_limit(x, i).g - x->steady[i];
-        work += weight[point / 2] * greater(force * c.at.g, 0.0);
+        const double limit = x->sys->given_limit[i] + tribo_modal_motion_limit(x, i).g;
+        work += weight[point / 2] * greater(limit, 0.0) * greater(x->contacts->slip[i] * c.at.g, 0.0);
     }
     tribo_modal_motion_go(x, tau);
     return half * work;

@@ -3,7 +3,7 @@
  *
  *   factor.c          the rows of R, and its factor over the free contacts, whichever way they are kept:
  *   factor_dense.c    as square blocks, kept from call to call and changed row by row
- *   factor_sparse.c   the same for large groups with few entries; supernodes.c makes it anew
+ *   factor_sparse.c   the same for large groups with few entries
  *   factor_graded.c   for light bodies between heavy ones, with twice as many digits
  *   sets.c            which contacts are free and which at a bound, and what makes them change
  *   newton.c          gradients, their rounding, and the step that takes them to zero
@@ -71,7 +71,6 @@ struct sparse_factor {
     double *l, *d; /* [slots]; [size] 1/d, 0 for contacts that are not in the factor */
     double *w;     /* [size] workspace, zero between calls */
     size_t *index; /* [size] where a free contact stands in the problem's order */
-    size_t *work;  /* [4][size] workspace */
 };
 
 /* A group at work: views of what is kept, and workspace. */

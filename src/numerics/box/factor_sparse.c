@@ -3,7 +3,7 @@
  * or leaves changes its row and column of L, and what lies behind it on the way to the root of the elimination tree (Davis and
  * Hager 2005, SIAM J. Matrix Anal. Appl. 26, 621, doi:10.1137/S089547980343641X).
  *
- *     all anew     supernodes.c
+ *     all anew     row by row
  *     k enters     row k so; column k from R and those rows; L D L' -= pivot times the square of column k, behind k
  *     k leaves     L D L' += pivot times the square of column k, behind k; row and column k become zero
  *     += a w w'    for j on the way from k to the root: a new pivot and column j, and w without what column j takes of it
@@ -27,7 +27,6 @@ void tribo_sparse_free(struct sparse *s)
         free(s->position);
         free(s->column);
         free(s->row_of);
-        free(s->supernode);
         free(s);
     }
 }
@@ -37,11 +36,9 @@ static int allocate_contacts(struct sparse *s, size_t size)
 {
     s->position = malloc(2 * size * sizeof *s->position);
     s->column = calloc(2 * (size + 1), sizeof *s->column);
-    s->supernode = malloc((2 * size + 1) * sizeof *s->supernode);
-    if (!s->position || !s->column || !s->supernode) {
+    if (!s->position || !s->column) {
         return 0;
     }
-    s->member_of = s->supernode + size + 1;
     s->place = s->position + size;
     s->row = s->column + size + 1;
     return 1;
@@ -143,7 +140,7 @@ static void sparse_estimate(struct sparse *s, const size_t *parent, double *path
         const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
         path[j] = entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
         s->change += path[j] / (double)s->r.n;
-        s->rebuild += (0.12 * entries + 11.0) * entries + 25.0;
+        s->rebuild += (0.5 * entries + 4.0) * entries + 6.0;
     }
     s->change += 1000.0;
 }
@@ -171,7 +168,6 @@ static int find_pattern(struct sparse *s)
     if (good > 0) {
         sparse_walk(s, parent, seen, count, 1);
         fill_rows(s, count);
-        tribo_supernodes_find(s, parent);
         sparse_estimate(s, parent, path);
     }
     free(parent);
@@ -253,16 +249,29 @@ double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
 {
     const struct group *g = p->group;
     const struct sparse *s = g->sparse;
-    size_t waiting = g->size, who = 0; /* dependents gather at the end of order */
+    size_t waiting = g->size; /* dependents gather at the end of order */
+    double left = 0.0;
     p->work.factorizations++;
-    const double left = tribo_supernodes_factorize(p, &who);
     p->sets->rank = 0;
     for (size_t k = 0; k < g->size; k++) {
         const size_t i = s->place[k];
-        if (p->sparse.d[k] != 0.0) {
+        const double before = left;
+        double pivot = 0.0;
+        p->sparse.d[k] = 0.0;
+        if (p->at[i] == FREE) {
+            pivot = sparse_eliminate(p, k, &left);
+            left = pivot > TRIBO_SPARSE_ZERO ? left : greater(left, fabs(pivot));
+        }
+        if (pivot > TRIBO_SPARSE_ZERO) {
+            p->sparse.d[k] = 1.0 / pivot;
             p->order[p->sets->rank++] = i;
         } else if (p->at[i] == FREE) {
             p->order[--waiting] = i;
+        } else {
+            sparse_clear_row(p, k);
+        }
+        if (where && left > before) {
+            *where = i;
         }
     }
     p->sets->dependents = g->size - waiting;
@@ -272,9 +281,6 @@ double tribo_sparse_rebuild(struct box_qp *p, size_t *where)
     }
     for (size_t k = 0; k < p->sets->rank + p->sets->dependents; k++) {
         p->sparse.index[p->order[k]] = k;
-    }
-    if (where && left > 0.0) {
-        *where = who;
     }
     return left;
 }
@@ -454,13 +460,13 @@ static int well_conditioned(struct sparse *s)
     struct sets sets = {0};
     double least = 1.0, most = 1.0; /* of 1/pivot, which is 0 where there is none */
     double *values = calloc(tribo_sparse_slots(s) + 3 * size, sizeof *values);
-    size_t *places = malloc(6 * size * sizeof *places);
+    size_t *places = malloc(2 * size * sizeof *places);
     signed char *at = calloc(size, 1);
     const int memory = values && places && at;
     if (memory) {
         double *scale = values + 2 * size;
         const struct sparse_factor factor = {
-            .l = values + 3 * size, .d = values, .w = values + size, .index = places, .work = places + 2 * size};
+            .l = values + 3 * size, .d = values, .w = values + size, .index = places};
         struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .at = at, .order = places + size, .sparse = factor};
         for (size_t i = 0; i < size; i++) {
             const double *diagonal = tribo_csr_entry(&s->r, i, i);

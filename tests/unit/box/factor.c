@@ -44,7 +44,7 @@ static void open(struct workshop *w, const struct csr *r)
     *w = (struct workshop){.group = {.size = n}};
     require(tribo_sparse_create(&w->group.sparse, r) && w->group.sparse, "no sparse factor");
     w->values = calloc(tribo_sparse_slots(w->group.sparse) + 4 * n, sizeof *w->values);
-    w->places = malloc(6 * n * sizeof *w->places);
+    w->places = malloc(2 * n * sizeof *w->places);
     w->at = malloc(n);
     require(w->values && w->places && w->at, "no memory");
     double *scale = w->values + 3 * n;
@@ -58,7 +58,7 @@ static void open(struct workshop *w, const struct csr *r)
         .at = w->at,
         .row = w->values + 2 * n,
         .order = w->places + n,
-        .sparse = {.l = w->values + 4 * n, .d = w->values, .w = w->values + n, .index = w->places, .work = w->places + 2 * n}};
+        .sparse = {.l = w->values + 4 * n, .d = w->values, .w = w->values + n, .index = w->places}};
 }
 
 static void close(struct workshop *w)
