@@ -130,20 +130,15 @@ static void find_all(tribo_context *ctx, const struct call *call, double *f)
 
 /* -------------------------------------------------------------------------------------------------------------- balance */
 
-/* Whether the law reads f_eq of a contact of chunk k, of which v is the first. */
-static int reads_feq(const tribo_context *ctx, size_t k, size_t n, const double *v)
-{
-    const double band = tribo_widest_band(ctx, k);
-    return ctx->set.law->uses_feq && (fabs(*v) <= band || tribo_any_in_band(n, v, band));
-}
-
 static int balance_chunk(const tribo_context *ctx, const struct call *call, size_t k, double *f)
 {
     const size_t i = k * TRIBO_CHUNK, n = tribo_chunk_size(ctx, i);
     const struct contacts c = tribo_chunk_contacts(ctx, i);
     const double *v = call->v + i;
     double room[TRIBO_CHUNK], *feq = call->feq ? call->feq + i : room;
-    const int reads = reads_feq(ctx, k, n, v);
+    /* Whether the law reads f_eq of a contact of chunk k, of which v is the first. */
+    const double band = tribo_widest_band(ctx, k);
+    const int reads = ctx->set.law->uses_feq && (fabs(*v) <= band || tribo_any_in_band(n, v, band));
     if (reads && !call->feq && call->plain && ctx->follow.chunk[k].plain) {
         ctx->set.law->balance(&c, n, v, call->a + i, tribo_inverses(ctx, k), f);
         return 0;

@@ -72,27 +72,11 @@ struct box_qp *tribo_collect(tribo_context *ctx, size_t k)
  * is at least that of an underflow. */
 static double missed_part(const tribo_context *ctx, const struct box_qp *p, size_t k, double error)
 {
-    const double beyond = fabs(p->gradient[k]) - TRIBO_SETTLED * greater(error, DBL_MIN), sure = beyond < 0.0 ? 0.0 : copysign(beyond, p->gradient[k]);
+    const double beyond = fabs(p->gradient[k]) - TRIBO_SETTLED * greater(error, DBL_MIN),
+                 sure = beyond < 0.0 ? 0.0 : copysign(beyond, p->gradient[k]);
     const double f = clamp(p->x[k], p->lo[k], p->hi[k]);
     const double to = clamp(p->x[k] - quotient(sure, ctx->op->diagonal[p->member[k]]), p->lo[k], p->hi[k]);
     return quotient(fabs(f - to), greater(greater(fabs(p->lo[k]), fabs(p->hi[k])), DBL_MIN));
-}
-
-/* Keeps the largest part of its limit by which a force misses the balance of its contact beyond rounding of all forces. Each
- * contact is measured in its own unit: beside a light body's accelerations those of a heavy one count, too. */
-static int check_balance(tribo_context *ctx, const struct box_qp *p)
-{
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t k = p->near[e], i = p->member[k];
-        double missed = missed_part(ctx, p, k, p->noise[k]);
-        missed = missed > TRIBO_MISSED ? missed_part(ctx, p, k, tribo_box_doubt(p, k)) : missed;
-        ctx->last.residual = greater(ctx->last.residual, missed);
-        if (!(missed <= TRIBO_MISSED)) {
-            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "the forces found miss the balance of contact %zu by %g of its limit", i,
-                              missed);
-        }
-    }
-    return TRIBO_OK;
 }
 
 /* Solves the problem of a group; q, lo and hi are set. */
@@ -115,7 +99,19 @@ int tribo_solve_group(tribo_context *ctx, struct box_qp *p)
     }
     ctx->count.reused += p->work.factorizations == before.factorizations && p->work.updates == before.updates;
     ctx->last.rank += p->sets->rank;
-    return check_balance(ctx, p);
+    /* Keeps the largest part of its limit by which a force misses the balance of its contact beyond rounding of all forces. Each
+     * contact is measured in its own unit: beside a light body's accelerations those of a heavy one count, too. */
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t k = p->near[e], i = p->member[k];
+        double missed = missed_part(ctx, p, k, p->noise[k]);
+        missed = missed > TRIBO_MISSED ? missed_part(ctx, p, k, tribo_box_doubt(p, k)) : missed;
+        ctx->last.residual = greater(ctx->last.residual, missed);
+        if (!(missed <= TRIBO_MISSED)) {
+            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE,
+                              "the forces found miss the balance of contact %zu by %g of its limit", i, missed);
+        }
+    }
+    return TRIBO_OK;
 }
 
 /* kappa, see above. */
@@ -143,15 +139,6 @@ static int solve_bounded(tribo_context *ctx, struct box_qp *p, const double *v, 
         ctx->last.feq[i] = cut(p->x[k] + relaxation(ctx, i, v) - (p->at[k] == FREE ? 0.0 : beyond));
     }
     return status;
-}
-
-/* The limits by which near contacts go, each by its own f_eq. */
-static void limit_near(const tribo_context *ctx, const struct box_qp *p, const double *v)
-{
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->member[p->near[e]];
-        tribo_find_limits(ctx, i, 1, v + i, ctx->last.feq + i, ctx->follow.now + i);
-    }
 }
 
 /* Where limits are static, until nobody breaks away any more. */
@@ -190,7 +177,11 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
     }
     ctx->last.rank += p->sets->rank;
     if (ctx->set.breaking) {
-        limit_near(ctx, p, v);
+        /* The limits by which near contacts go, each by its own f_eq. */
+        for (size_t e = 0; e < p->count; e++) {
+            const size_t i = p->member[p->near[e]];
+            tribo_find_limits(ctx, i, 1, v + i, ctx->last.feq + i, ctx->follow.now + i);
+        }
     }
     if (consistent) {
         return TRIBO_OK;
@@ -198,38 +189,6 @@ static int solve_partition(tribo_context *ctx, struct box_qp *p, const double *v
     return tribo_fail(ctx, TRIBO_ERR_INCONSISTENT,
                       "no f_eq balances the %zu contact%s near stick around contact %zu: rank %zu, and a is outside its range",
                       p->count, plural(p->count), member[p->near[0]], p->sets->rank);
-}
-
-/* The law's forces of the near contacts of a group, run by run of neighbours. */
-static void near_forces(tribo_context *ctx, const struct box_qp *p, const double *v)
-{
-    const size_t *member = p->member;
-    for (size_t e = 0, run; e < p->count; e += run) {
-        const size_t i = member[p->near[e]];
-        const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
-        for (run = 1; e + run < p->count && member[p->near[e + run]] == i + run;) {
-            run++;
-        }
-        ctx->set.law->force(&c, run, v + i, ctx->last.feq + i, ctx->last.f + i);
-    }
-}
-
-/* f_eq of the contacts in groups that no solver saw. */
-static void feq_of_others(tribo_context *ctx, const double *a)
-{
-    for (size_t g = 0; g < ctx->op->groups; g++) {
-        struct box_qp *p = tribo_problem(ctx, g);
-        const size_t *member = p->member, size = p->group->size;
-        for (size_t k = 0; k < size; k++) {
-            p->step[k] = tribo_carried(ctx, p, k);
-        }
-        for (size_t k = 0; k < size; k++) {
-            const size_t i = member[k];
-            if (!(ctx->memory.solved[g] && ctx->last.did.of[i] == STORED) && ctx->follow.contacts.limit[i] > 0.0) {
-                ctx->last.feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
-            }
-        }
-    }
 }
 
 static int balance_all(tribo_context *ctx, const double *v, const double *a, int wanted)
@@ -252,7 +211,16 @@ static int balance_all(tribo_context *ctx, const double *v, const double *a, int
             return one;
         }
         status = one ? one : status;
-        near_forces(ctx, p, v);
+        /* The law's forces of the near contacts of a group, run by run of neighbours. */
+        const size_t *member = p->member;
+        for (size_t e = 0, run; e < p->count; e += run) {
+            const size_t i = member[p->near[e]];
+            const struct contacts c = tribo_contacts_from(&ctx->follow.contacts, i);
+            for (run = 1; e + run < p->count && member[p->near[e + run]] == i + run;) {
+                run++;
+            }
+            ctx->set.law->force(&c, run, v + i, ctx->last.feq + i, ctx->last.f + i);
+        }
     }
     return status || !ctx->planar ? status : tribo_planar_balance(ctx, v, a);
 }
@@ -282,7 +250,20 @@ int tribo_balance(tribo_context *ctx, const double *v, const double *a, double *
     ctx->last.slips = SLIPS_IN_FORCES;
     ctx->last.holds = ctx->set.law->holds;
     if (feq) {
-        feq_of_others(ctx, a);
+        /* f_eq of the contacts in groups that no solver saw. */
+        for (size_t g = 0; g < ctx->op->groups; g++) {
+            struct box_qp *p = tribo_problem(ctx, g);
+            const size_t *member = p->member, size = p->group->size;
+            for (size_t k = 0; k < size; k++) {
+                p->step[k] = tribo_carried(ctx, p, k);
+            }
+            for (size_t k = 0; k < size; k++) {
+                const size_t i = member[k];
+                if (!(ctx->memory.solved[g] && ctx->last.did.of[i] == STORED) && ctx->follow.contacts.limit[i] > 0.0) {
+                    ctx->last.feq[i] = quotient(-(cut(a[i]) + tribo_row_others(p, k, p->step)), ctx->op->diagonal[i]);
+                }
+            }
+        }
         if (ctx->planar) {
             tribo_planar_feq(ctx, a);
         }

@@ -130,23 +130,18 @@ TRIBO_SIMD static void find_bounds(const double *x, struct chunk *chunk)
     chunk->largest = largest[0];
 }
 
-/* The same of a few. */
-static void find_few_bounds(size_t n, const double *x, struct chunk *chunk)
-{
-    chunk->least = chunk->largest = x[0];
-    for (size_t i = 1; i < n; i++) {
-        chunk->least = lesser(chunk->least, x[i]);
-        chunk->largest = greater(chunk->largest, x[i]);
-    }
-}
-
 void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *chunk)
 {
     enum { FEW = 16 };
     double whole[TRIBO_CHUNK];
     memcpy(to, from, n * sizeof *to);
     if (n < FEW) {
-        find_few_bounds(n, from, chunk);
+        /* Few limits are looked at one by one. */
+        chunk->least = chunk->largest = from[0];
+        for (size_t i = 1; i < n; i++) {
+            chunk->least = lesser(chunk->least, from[i]);
+            chunk->largest = greater(chunk->largest, from[i]);
+        }
     } else if (n < TRIBO_CHUNK) {
         memcpy(whole, from, n * sizeof *whole);
         for (size_t k = n; k < TRIBO_CHUNK; k++) {
@@ -273,20 +268,6 @@ void tribo_forces_alone(tribo_context *ctx, const double *v, const double *a, in
     }
 }
 
-/* f [n] of the n contacts of chunk k, from i on, which do not all store it. */
-static void forces_of_slips(const tribo_context *ctx, size_t k, size_t i, size_t n, double *f)
-{
-    const signed char *did = ctx->last.did.of;
-    if (ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest) {
-        force_of_slips(n, did + i, ctx->follow.contacts.limit + i, f + i);
-    } else {
-        force_of_alike_slips(n, did + i, ctx->follow.chunk[k].largest, f + i);
-    }
-    for (size_t j = i, near; ctx->last.did.stored[k] == SOME_STORED && (near = tribo_next_near(did, &j, i + n)) > 0; j += near) {
-        tribo_copy(f + j, ctx->last.f + j, near);
-    }
-}
-
 void tribo_forces(const tribo_context *ctx, double *f)
 {
     if (ctx->last.did.all_stored) {
@@ -299,7 +280,17 @@ void tribo_forces(const tribo_context *ctx, double *f)
         if (ctx->last.did.stored[k] == ALL_STORED) {
             memcpy(f + i, ctx->last.f + i, n * sizeof *f);
         } else {
-            forces_of_slips(ctx, k, i, n, f);
+            /* f [n] of the n contacts of chunk k, from i on, which do not all store it. */
+            const signed char *did = ctx->last.did.of;
+            if (ctx->follow.chunk[k].least < ctx->follow.chunk[k].largest) {
+                force_of_slips(n, did + i, ctx->follow.contacts.limit + i, f + i);
+            } else {
+                force_of_alike_slips(n, did + i, ctx->follow.chunk[k].largest, f + i);
+            }
+            for (size_t j = i, near; ctx->last.did.stored[k] == SOME_STORED && (near = tribo_next_near(did, &j, i + n)) > 0;
+                 j += near) {
+                tribo_copy(f + j, ctx->last.f + j, near);
+            }
         }
     }
 }

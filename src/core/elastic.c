@@ -44,14 +44,6 @@ int tribo_elastic_force(size_t n, const double *dz, const double *stiffness, con
     return status;
 }
 
-/* The derivative of limit to/|to|, to = f + stiffness dz: only what turns the force is left of it. */
-static void turn(const double *direction, double rate, double *d)
-{
-    d[0] = rate * direction[1] * direction[1];
-    d[1] = d[2] = -rate * direction[0] * direction[1];
-    d[3] = rate * direction[0] * direction[0];
-}
-
 int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffness, const double *limit, double *f, double *df_dz)
 {
     const int status = check_all(n, 2, dz, stiffness, limit, f);
@@ -65,7 +57,12 @@ int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffne
         f[2 * i] = slides ? limit[i] * direction[0] : to[0];
         f[2 * i + 1] = slides ? limit[i] * direction[1] : to[1];
         if (df_dz && slides) {
-            turn(direction, k * (room / length), df_dz + 4 * i);
+            /* The derivative of limit to/|to|, to = f + stiffness dz: only what turns the force is left of it. */
+            const double rate = k * (room / length);
+            double *d = df_dz + 4 * i;
+            d[0] = rate * direction[1] * direction[1];
+            d[1] = d[2] = -rate * direction[0] * direction[1];
+            d[3] = rate * direction[0] * direction[0];
         } else if (df_dz) {
             df_dz[4 * i] = df_dz[4 * i + 3] = k;
             df_dz[4 * i + 1] = df_dz[4 * i + 2] = 0.0;

@@ -16,14 +16,6 @@ TRIBO_SIMD static void select_feq(size_t n, const double *restrict v, const doub
     }
 }
 
-/* Of planar contacts something else tells whether it matters. */
-static void skip_planar(const tribo_context *ctx, size_t i, size_t n, double *used)
-{
-    for (size_t k = 0; k < n; k++) {
-        used[k] = ctx->planar->role[i + k] == ROLE_SCALAR ? used[k] : 0.0;
-    }
-}
-
 /* The same for the n contacts from i on. */
 static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *used)
 {
@@ -31,7 +23,10 @@ static void used_feq(const tribo_context *ctx, size_t i, size_t n, const double 
     const double *band = ctx->set.law->sticks_in_band ? tribo_epsilons(&ctx->follow.contacts, i, n, room) : NULL;
     select_feq(n, v + i, band, feq + i, used);
     if (ctx->planar) {
-        skip_planar(ctx, i, n, used);
+        /* Planar contacts have rules of their own for f_eq. */
+        for (size_t k = 0; k < n; k++) {
+            used[k] = ctx->planar->role[i + k] == ROLE_SCALAR ? used[k] : 0.0;
+        }
     }
 }
 
@@ -134,49 +129,40 @@ static inline int goes_on(const struct chunk *chunk)
     return chunk->alike && chunk[-1].alike && chunk->model == chunk[-1].model;
 }
 
-/* Forces where laws take f_eq as it is. Chunks that are alike are one loop: memory is far away where a loop begins. */
-static void evaluate_plain(const tribo_context *ctx, const double *v, const double *feq, double *f)
-{
-    for (size_t i = 0, n; i < ctx->n; i += n) {
-        const struct contacts c = tribo_chunk_contacts(ctx, i);
-        n = tribo_chunk_size(ctx, i);
-        while (i + n < ctx->n && goes_on(&ctx->follow.chunk[(i + n) / TRIBO_CHUNK])) {
-            n += tribo_chunk_size(ctx, i + n);
-        }
-        ctx->set.law->force(&c, n, v + i, legible_feq(ctx, 1, i, n, v, feq, NULL), f + i);
-    }
-}
-
-static void evaluate_chunks(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
-{
-    struct stream to[OUTPUTS];
-    for (int k = 0; k < OUTPUTS; k++) {
-        tribo_stream_begin(&to[k], out[k], ctx->n >= TRIBO_MANY);
-    }
-    for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
-        double room[TRIBO_CHUNK], limit[TRIBO_CHUNK];
-        const size_t n = tribo_chunk_size(ctx, i);
-        const double *used = legible_feq(ctx, plain, i, n, v, feq, room);
-        struct contacts c = tribo_chunk_contacts(ctx, i);
-        if (ctx->set.breaking) {
-            tribo_find_limits(ctx, i, n, v + i, used, limit);
-            c.limit = c.bound = limit;
-        }
-        evaluate_chunk(ctx, &c, i, v + i, used, to);
-        pass_on(ctx, i, v, plain ? feq : NULL, to);
-    }
-    for (int k = 0; k < OUTPUTS; k++) {
-        tribo_stream_end(&to[k]);
-    }
-}
-
 static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
 {
     const int only_f = out[FORCES] && !out[BY_V] && !out[BY_FEQ] && !out[BY_LIMIT];
     if (only_f && plain && !ctx->set.breaking && ctx->n < TRIBO_MANY) {
-        evaluate_plain(ctx, v, feq, out[FORCES]);
+        /* Forces where laws take f_eq as it is. Chunks that are alike are one loop: memory is far away where a loop begins. */
+        double *f = out[FORCES];
+        for (size_t i = 0, n; i < ctx->n; i += n) {
+            const struct contacts c = tribo_chunk_contacts(ctx, i);
+            n = tribo_chunk_size(ctx, i);
+            while (i + n < ctx->n && goes_on(&ctx->follow.chunk[(i + n) / TRIBO_CHUNK])) {
+                n += tribo_chunk_size(ctx, i + n);
+            }
+            ctx->set.law->force(&c, n, v + i, legible_feq(ctx, 1, i, n, v, feq, NULL), f + i);
+        }
     } else {
-        evaluate_chunks(ctx, plain, v, feq, out);
+        struct stream to[OUTPUTS];
+        for (int k = 0; k < OUTPUTS; k++) {
+            tribo_stream_begin(&to[k], out[k], ctx->n >= TRIBO_MANY);
+        }
+        for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
+            double room[TRIBO_CHUNK], limit[TRIBO_CHUNK];
+            const size_t n = tribo_chunk_size(ctx, i);
+            const double *used = legible_feq(ctx, plain, i, n, v, feq, room);
+            struct contacts c = tribo_chunk_contacts(ctx, i);
+            if (ctx->set.breaking) {
+                tribo_find_limits(ctx, i, n, v + i, used, limit);
+                c.limit = c.bound = limit;
+            }
+            evaluate_chunk(ctx, &c, i, v + i, used, to);
+            pass_on(ctx, i, v, plain ? feq : NULL, to);
+        }
+        for (int k = 0; k < OUTPUTS; k++) {
+            tribo_stream_end(&to[k]);
+        }
     }
 }
 

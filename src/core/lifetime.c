@@ -8,10 +8,12 @@
 
 #define DEFAULT_EPSILON 1e-6
 
-/* The arrays of n numbers. Each begins a line of cache, and an odd number of lines behind the last: of arrays that are a power of
- * two apart few would stay in cache. */
-static void lay_out_numbers(tribo_context *ctx, struct layout *b, size_t n)
+/* All arrays. One contact more than asked for, so that none of them is empty. */
+static void lay_out_arrays(tribo_context *ctx, struct layout *b, size_t n)
 {
+    const size_t m = n + 1, chunks = tribo_chunks(m);
+    /* The arrays of n numbers. Each begins a line of cache, and an odd number of lines behind the last: of arrays that are a power of
+     * two apart few would stay in cache. */
     double **const array[] = {&ctx->set.limit,    &ctx->set.width,         &ctx->set.rate,   &ctx->set.ratio,
                               &ctx->set.stribeck, &ctx->follow.cut_limit,  &ctx->follow.now, &ctx->follow.cut_factor,
                               &ctx->follow.hold,  &ctx->follow.hold_width, &ctx->last.f,     &ctx->last.feq,
@@ -22,13 +24,6 @@ static void lay_out_numbers(tribo_context *ctx, struct layout *b, size_t n)
     for (size_t k = 0; numbers && k < ARRAYS; k++) {
         *array[k] = numbers + k * room;
     }
-}
-
-/* All arrays. One contact more than asked for, so that none of them is empty. */
-static void lay_out_arrays(tribo_context *ctx, struct layout *b, size_t n)
-{
-    const size_t m = n + 1, chunks = tribo_chunks(m);
-    lay_out_numbers(ctx, b, n);
     ctx->message = tribo_layout_array(b, 1, tribo_message_size());
     ctx->follow.chunk = tribo_layout_array(b, chunks, sizeof *ctx->follow.chunk);
     ctx->last.tangent = tribo_layout_array(b, m, sizeof *ctx->last.tangent);

@@ -12,31 +12,6 @@ static int epsilon_follows(const tribo_context *ctx)
     return ctx->set.step > 0.0 && ctx->op->diagonal;
 }
 
-/* A planar contact has one epsilon for all directions: for R_ii stands the largest eigenvalue of its own block. */
-static void follow_planar(tribo_context *ctx, size_t k, double time)
-{
-    const double *own = ctx->planar->own[k], turned[2] = {0.5 * own[0] - 0.5 * own[2], own[1]};
-    const double largest = 0.5 * own[0] + 0.5 * own[2] + tribo_length(2, turned), half = greater(product(largest, time), DBL_MIN);
-    for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-        ctx->set.width[i] = 2.0 * half;
-        ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
-    }
-}
-
-/* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
-static void follow_step(tribo_context *ctx)
-{
-    const double time = quotient(ctx->set.step, ctx->set.lambda_dt);
-    for (size_t i = 0; i < ctx->n; i++) {
-        const double half = greater(product(ctx->op->diagonal[i], time), DBL_MIN);
-        ctx->set.width[i] = 2.0 * half;
-        ctx->set.rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
-    }
-    for (size_t k = 0; ctx->planar && k < ctx->planar->count; k++) {
-        follow_planar(ctx, k, time);
-    }
-}
-
 static double largest_of(size_t n, const double *x)
 {
     double largest = x[0];
@@ -66,59 +41,10 @@ static int evenness(const tribo_context *ctx, size_t i, size_t n)
     return i && ctx->follow.chunk[i / TRIBO_CHUNK - 1].even && width[-1] == *width && rate[-1] == *rate ? EVEN_AS_BEFORE : EVEN;
 }
 
-static void find_widths(tribo_context *ctx)
-{
-    const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
-    ctx->follow.steepest = 1.0;
-    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
-        const size_t n = tribo_chunk_size(ctx, i);
-        ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
-        ctx->follow.chunk[k].even = evenness(ctx, i, n);
-        ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
-    }
-}
-
 /* Whether n numbers are the same as those from like on. */
 static int repeats(const double *x, size_t like, size_t i, size_t n)
 {
     return memcmp(x + like, x + i, n * sizeof *x) == 0;
-}
-
-static void find_inertia(tribo_context *ctx)
-{
-    const struct delassus *op = ctx->op;
-    for (size_t i = 0, k = 0; op->diagonal && i < ctx->n; i += TRIBO_CHUNK, k++) {
-        struct chunk *chunk = &ctx->follow.chunk[k];
-        const size_t n = tribo_chunk_size(ctx, i), before = k > 0 ? chunk[-1].like : 0;
-        chunk->quickest = largest_of(n, op->diagonal + i);
-        chunk->plain = largest_of(n, op->inverse + i) <= TRIBO_PLAIN;
-        chunk->like = repeats(op->inverse, before, i, n) ? before : i;
-    }
-}
-
-/* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
-static void cut_far(tribo_context *ctx)
-{
-    struct contacts *c = &ctx->follow.contacts;
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
-    }
-    for (size_t g = 0; g < ctx->op->groups; g++) {
-        const struct box_qp *p = tribo_problem(ctx, g);
-        for (size_t k = 0; k < p->group->size; k++) {
-            ctx->follow.cut_limit[p->member[k]] = lesser(ctx->set.limit[p->member[k]], tribo_most(p, k));
-        }
-    }
-    const double *factor = c->follows ? ctx->set.width : ctx->set.rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
-    for (size_t i = 0; i < ctx->n; i++) {
-        ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
-    }
-    for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
-        ctx->follow.chunk[k].alike = 0;
-        ctx->follow.chunk[k].model = k * TRIBO_CHUNK;
-    }
-    c->bound = ctx->follow.cut_limit;
-    *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
 }
 
 static double band_of(const struct chunk *chunk, int follows)
@@ -153,7 +79,27 @@ void tribo_refresh_limits(tribo_context *ctx)
         chunk->model = !ctx->set.breaking && goes_on(chunk) ? chunk[-1].model : k * TRIBO_CHUNK;
     }
     if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
-        cut_far(ctx);
+        /* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
+        struct contacts *c = &ctx->follow.contacts;
+        for (size_t i = 0; i < ctx->n; i++) {
+            ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
+        }
+        for (size_t g = 0; g < ctx->op->groups; g++) {
+            const struct box_qp *p = tribo_problem(ctx, g);
+            for (size_t k = 0; k < p->group->size; k++) {
+                ctx->follow.cut_limit[p->member[k]] = lesser(ctx->set.limit[p->member[k]], tribo_most(p, k));
+            }
+        }
+        const double *factor = c->follows ? ctx->set.width : ctx->set.rate, far = c->follows ? TRIBO_FAR : 2.0 * TRIBO_FAR;
+        for (size_t i = 0; i < ctx->n; i++) {
+            ctx->follow.cut_factor[i] = lesser(factor[i], far / greater(ctx->follow.cut_limit[i], 1.0));
+        }
+        for (size_t k = 0; k < tribo_chunks(ctx->n); k++) {
+            ctx->follow.chunk[k].alike = 0;
+            ctx->follow.chunk[k].model = k * TRIBO_CHUNK;
+        }
+        c->bound = ctx->follow.cut_limit;
+        *(c->follows ? &c->width : &c->rate) = ctx->follow.cut_factor;
     }
     ctx->last.linearized = 0;
     ctx->revision++;
@@ -163,10 +109,40 @@ void tribo_refresh(tribo_context *ctx)
 {
     ctx->group_of = ctx->planar && ctx->op->diagonal ? ctx->planar->group_of : ctx->op->group_of;
     if (epsilon_follows(ctx)) {
-        follow_step(ctx);
+        /* epsilon = 2 limit R_ii time. What friction cannot move does not relax. */
+        const double time = quotient(ctx->set.step, ctx->set.lambda_dt);
+        for (size_t i = 0; i < ctx->n; i++) {
+            const double half = greater(product(ctx->op->diagonal[i], time), DBL_MIN);
+            ctx->set.width[i] = 2.0 * half;
+            ctx->set.rate[i] = ctx->op->diagonal[i] > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+        }
+        for (size_t k = 0; ctx->planar && k < ctx->planar->count; k++) {
+            /* A planar contact has one epsilon for all directions: for R_ii stands the largest eigenvalue of its own block. */
+            const double *own = ctx->planar->own[k], turned[2] = {0.5 * own[0] - 0.5 * own[2], own[1]};
+            const double largest = 0.5 * own[0] + 0.5 * own[2] + tribo_length(2, turned),
+                         half = greater(product(largest, time), DBL_MIN);
+            for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
+                ctx->set.width[i] = 2.0 * half;
+                ctx->set.rate[i] = largest > TRIBO_IMMOVABLE ? 1.0 / half : 0.0;
+            }
+        }
     }
-    find_widths(ctx);
-    find_inertia(ctx);
+    const double *factor = epsilon_follows(ctx) ? ctx->set.width : ctx->set.rate;
+    ctx->follow.steepest = 1.0;
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        const size_t n = tribo_chunk_size(ctx, i);
+        ctx->follow.chunk[k].widest = largest_of(n, ctx->set.width + i);
+        ctx->follow.chunk[k].even = evenness(ctx, i, n);
+        ctx->follow.steepest = greater(ctx->follow.steepest, largest_of(n, factor + i));
+    }
+    const struct delassus *op = ctx->op;
+    for (size_t i = 0, k = 0; op->diagonal && i < ctx->n; i += TRIBO_CHUNK, k++) {
+        struct chunk *chunk = &ctx->follow.chunk[k];
+        const size_t n = tribo_chunk_size(ctx, i), before = k > 0 ? chunk[-1].like : 0;
+        chunk->quickest = largest_of(n, op->diagonal + i);
+        chunk->plain = largest_of(n, op->inverse + i) <= TRIBO_PLAIN;
+        chunk->like = repeats(op->inverse, before, i, n) ? before : i;
+    }
     tribo_refresh_limits(ctx);
 }
 

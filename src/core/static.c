@@ -169,9 +169,11 @@ void tribo_law_tangents(const tribo_context *ctx, const struct contacts *c, size
 
 /* ----------------------------------------------------------------------------------------------------------- settings */
 
-/* Limits to slide and to stick, as far as the solver tells them apart. */
-static void find_both_limits(tribo_context *ctx)
+void tribo_refresh_static(tribo_context *ctx)
 {
+    struct contacts *c = &ctx->follow.contacts;
+    double *rate = ctx->follow.cut_factor;
+    /* Limits to slide and to stick, as far as the solver tells them apart. */
     for (size_t i = 0; i < ctx->n; i++) {
         ctx->follow.cut_limit[i] = lesser(ctx->set.limit[i], TRIBO_FAR);
         ctx->follow.hold[i] = product(ctx->set.ratio[i], ctx->set.limit[i]);
@@ -184,13 +186,6 @@ static void find_both_limits(tribo_context *ctx)
             ctx->follow.hold[i] = lesser(ctx->follow.hold[i], tribo_most(p, k));
         }
     }
-}
-
-void tribo_refresh_static(tribo_context *ctx)
-{
-    struct contacts *c = &ctx->follow.contacts;
-    double *rate = ctx->follow.cut_factor;
-    find_both_limits(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
         const double hold = ctx->follow.hold[i];
         ctx->follow.hold_width[i] = c->follows ? greater(product(c->width[i], hold), DBL_MIN) : c->width[i];

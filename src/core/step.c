@@ -163,29 +163,6 @@ static int solve_for(tribo_context *ctx, struct box_qp *p, const struct call *c)
     return status;
 }
 
-/* Solves for the groups that are candidates, of which those stay that a contact takes part in; after a failure none of the rest.
- */
-static int solve_candidates(tribo_context *ctx, const struct call *c)
-{
-    struct memory *m = &ctx->memory;
-    const size_t candidates = m->nsolved;
-    int status = TRIBO_OK;
-    m->nsolved = 0;
-    for (size_t k = 0; k < candidates; k++) {
-        const size_t g = m->solved_list[k];
-        if (k + 2 < candidates) {
-            tribo_memory_expect(ctx->op, m, m->solved_list[k + 2]);
-        }
-        struct box_qp *p = status ? NULL : pose(ctx, g, c);
-        m->solved[g] = p && p->count > 0;
-        if (m->solved[g]) {
-            m->solved_list[m->nsolved++] = g;
-            status = solve_for(ctx, p, c);
-        }
-    }
-    return status;
-}
-
 /* Solves for all contacts, but for clusters. */
 static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, struct bounds b, const size_t *group_of)
 {
@@ -203,7 +180,25 @@ static inline int solve_boxes(tribo_context *ctx, double dt, const double *v, st
     if (ctx->op->groups) {
         find_candidates(ctx, &c);
     }
-    return solve_candidates(ctx, &c);
+    /* Solves for the groups that are candidates, of which those stay that a contact takes part in; after a failure none of the rest.
+     */
+    struct memory *m = &ctx->memory;
+    const size_t candidates = m->nsolved;
+    int status = TRIBO_OK;
+    m->nsolved = 0;
+    for (size_t k = 0; k < candidates; k++) {
+        const size_t g = m->solved_list[k];
+        if (k + 2 < candidates) {
+            tribo_memory_expect(ctx->op, m, m->solved_list[k + 2]);
+        }
+        struct box_qp *p = status ? NULL : pose(ctx, g, &c);
+        m->solved[g] = p && p->count > 0;
+        if (m->solved[g]) {
+            m->solved_list[m->nsolved++] = g;
+            status = solve_for(ctx, p, &c);
+        }
+    }
+    return status;
 }
 
 static inline void hand_out(tribo_context *ctx, double *f)

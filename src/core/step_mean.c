@@ -35,32 +35,6 @@ static void look_at_scalar(tribo_context *ctx, struct step *s, size_t i, double 
     }
 }
 
-static void look_at_group(tribo_context *ctx, struct step *s, size_t g)
-{
-    struct box_qp *p = tribo_problem(ctx, g);
-    const size_t size = p->group->size;
-    for (size_t k = 0; k < size; k++) {
-        p->step[k] = tribo_carried(ctx, p, k);
-    }
-    for (size_t k = 0; k < size; k++) {
-        look_at_scalar(ctx, s, p->member[k], tribo_row_others(p, k, p->step));
-    }
-}
-
-/* Planar contact at place k of a cluster: one that turns back within the step keeps the direction of its end. */
-static void look_at_planar(const tribo_context *ctx, struct step *s, const struct cluster *g, size_t k, size_t i)
-{
-    double forward = 0.0;
-    for (size_t d = 0; d < 2; d++) {
-        const double end = s->vfree[i + d] + product(tribo_planar_feels(ctx, g, k + d, 1), s->dt);
-        forward += product(end, s->v[i + d]);
-    }
-    for (size_t d = 0; forward > 0.0 && d < 2; d++) {
-        s->free[i + d] = s->v[i + d] + s->vfree[i + d];
-    }
-    s->changes += forward > 0.0;
-}
-
 static void look_at_clusters(tribo_context *ctx, struct step *s)
 {
     const struct planar *c = ctx->planar;
@@ -84,30 +58,18 @@ static void look_at_clusters(tribo_context *ctx, struct step *s)
         for (size_t k = 0; k < g->size; k++) {
             const size_t i = c->member[g->member + k];
             if (c->role[i] == ROLE_FIRST && s->reverses[i]) {
-                look_at_planar(ctx, s, g, k, i);
+                /* Planar contact at place k of a cluster: one that turns back within the step keeps the direction of its end. */
+                double forward = 0.0;
+                for (size_t d = 0; d < 2; d++) {
+                    const double end = s->vfree[i + d] + product(tribo_planar_feels(ctx, g, k + d, 1), s->dt);
+                    forward += product(end, s->v[i + d]);
+                }
+                for (size_t d = 0; forward > 0.0 && d < 2; d++) {
+                    s->free[i + d] = s->v[i + d] + s->vfree[i + d];
+                }
+                s->changes += forward > 0.0;
             }
         }
-    }
-}
-
-static void look_at_all(tribo_context *ctx, struct step *s)
-{
-    for (size_t i = 0; i < ctx->n; i++) {
-        s->upper[i] = ctx->set.limit[i];
-        s->lower[i] = -s->upper[i];
-        s->reverses[i] = 0;
-        if (!(ctx->op->groups && ctx->op->group_of[i] != TRIBO_ALONE) && !(ctx->planar && ctx->planar->role[i] != ROLE_SCALAR)) {
-            look_at_scalar(ctx, s, i, 0.0);
-        }
-    }
-    for (size_t g = 0; g < ctx->op->groups; g++) {
-        if (ctx->group_of[ctx->op->member[ctx->op->group[g].first]] != TRIBO_ALONE) {
-            look_at_group(ctx, s, g);
-        }
-    }
-    if (ctx->planar) {
-        tribo_copy(s->free, s->vfree, ctx->n);
-        look_at_clusters(ctx, s);
     }
 }
 
@@ -138,7 +100,31 @@ static int solve_both(tribo_context *ctx, struct step *s, double *f)
     }
     ctx->last.holds = 1.0;
     if (ctx->planar || any_slip_ends(ctx->n, s->v, ctx->last.f, ctx->set.limit)) {
-        look_at_all(ctx, s);
+        for (size_t i = 0; i < ctx->n; i++) {
+            s->upper[i] = ctx->set.limit[i];
+            s->lower[i] = -s->upper[i];
+            s->reverses[i] = 0;
+            if (!(ctx->op->groups && ctx->op->group_of[i] != TRIBO_ALONE) &&
+                !(ctx->planar && ctx->planar->role[i] != ROLE_SCALAR)) {
+                look_at_scalar(ctx, s, i, 0.0);
+            }
+        }
+        for (size_t g = 0; g < ctx->op->groups; g++) {
+            if (ctx->group_of[ctx->op->member[ctx->op->group[g].first]] != TRIBO_ALONE) {
+                struct box_qp *p = tribo_problem(ctx, g);
+                const size_t size = p->group->size;
+                for (size_t k = 0; k < size; k++) {
+                    p->step[k] = tribo_carried(ctx, p, k);
+                }
+                for (size_t k = 0; k < size; k++) {
+                    look_at_scalar(ctx, s, p->member[k], tribo_row_others(p, k, p->step));
+                }
+            }
+        }
+        if (ctx->planar) {
+            tribo_copy(s->free, s->vfree, ctx->n);
+            look_at_clusters(ctx, s);
+        }
     }
     if (!s->changes) {
         tribo_copy(f, ctx->last.f, ctx->n);

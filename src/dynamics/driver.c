@@ -84,18 +84,6 @@ static int check_parameters(const tribo_system *sys, const struct method *method
     return TRIBO_OK;
 }
 
-/* Motions in closed form are those of scalar contacts only; and contacts may become planar at any time. */
-static int check_planar(const tribo_system *sys, const struct method *m)
-{
-    const int scalar_only = m == &tribo_method_exact || sys->massless.count;
-    const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
-    return !planar ? TRIBO_OK
-                   : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
-                                       "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
-                                       sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
-                                       sys->massless.count ? "" : ": take event");
-}
-
 /* What has no mass follows statically in methods that know the stiffness, and not only what it accelerates. */
 static int check_mass(const tribo_system *sys, const struct method *m)
 {
@@ -126,7 +114,14 @@ static int check_static(const tribo_system *sys)
 /* What the contacts are, which may change at any time. */
 static int check_contacts(const tribo_system *sys, const struct method *m)
 {
-    const int status = check_planar(sys, m);
+    /* Motions in closed form are those of scalar contacts only; and contacts may become planar at any time. */
+    const int scalar_only = m == &tribo_method_exact || sys->massless.count;
+    const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
+    const int status = !planar ? TRIBO_OK
+                               : tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                                                   "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
+                                                   sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
+                                                   sys->massless.count ? "" : ": take event");
     return status || sys->massless.count == 0 ? status : check_static(sys);
 }
 
@@ -442,25 +437,6 @@ struct task {
     int finds;
 };
 
-static int carry_out(tribo_driver *inner, const struct task *x)
-{
-    return x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y)
-                    : tribo_driver_advance(inner, x->t, x->t1, x->y);
-}
-
-/* Adds what inner has counted since it was what before says. Evaluations in an advance are counted by the caller. */
-static void add_counts(tribo_driver *drv, const tribo_driver *inner, const tribo_driver *before, int finds)
-{
-    drv->steps += inner->steps - before->steps;
-    drv->rejected += inner->rejected - before->rejected;
-    drv->events += inner->events - before->events;
-    drv->periods += inner->periods - before->periods;
-    drv->newton += inner->newton - before->newton;
-    drv->evaluations += finds ? inner->evaluations - before->evaluations : 0;
-    drv->excess = greater(drv->excess, inner->excess);
-    drv->backslip = greater(drv->backslip, inner->backslip);
-}
-
 /* A task for one of the two, which sees for itself whether an advance continues. */
 static int delegate(tribo_driver *drv, int which, const struct task *x)
 {
@@ -473,8 +449,17 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     const tribo_driver before = *inner;
     inner->seen = drv->seen;
     inner->data = drv->data;
-    status = carry_out(inner, x);
-    add_counts(drv, inner, &before, x->finds);
+    status =
+        x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y) : tribo_driver_advance(inner, x->t, x->t1, x->y);
+    /* Adds what inner has counted since it was what before says. Evaluations in an advance are counted by the caller. */
+    drv->steps += inner->steps - before.steps;
+    drv->rejected += inner->rejected - before.rejected;
+    drv->events += inner->events - before.events;
+    drv->periods += inner->periods - before.periods;
+    drv->newton += inner->newton - before.newton;
+    drv->evaluations += x->finds ? inner->evaluations - before.evaluations : 0;
+    drv->excess = greater(drv->excess, inner->excess);
+    drv->backslip = greater(drv->backslip, inner->backslip);
     if (x->finds) {
         drv->shooting = inner->shooting;
         drv->find_freedom = inner->find_freedom;

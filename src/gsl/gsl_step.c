@@ -121,19 +121,6 @@ static int passes_a_change(const struct gsl_step *g, double part)
     return 0;
 }
 
-/* Slopes that are nothing beside the tolerance, and beside the state, are left out for Newton's method, which as GSL has it takes
- * rounding that does not decrease for divergence. */
-static void leave_out_rounding(const struct gsl_step *g, const double *y, double *slope)
-{
-    const size_t n = g->sys->ndof;
-    const double way = tribo_largest(y, n) + g->h * tribo_largest(y + n, n);
-    const double size[] = {way, way / g->h, fabs(y[2 * n]) + way * tribo_largest(g->sys->f, g->sys->ncontact)};
-    for (size_t i = 0; i <= 2 * n; i++) {
-        const double least = NEGLIGIBLE * lesser(g->tolerance[i], ROUNDING * size[i / n]);
-        slope[i] = fabs(slope[i]) * g->h < least ? 0.0 : slope[i];
-    }
-}
-
 /* Where GSL factorizes, one of these two has come before it and nothing allocates in between. */
 static int guarded_function(double t, const double y[], double dydt[], void *params)
 {
@@ -146,7 +133,15 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
         return GSL_FAILURE;
     }
     if (g->kind->newton) {
-        leave_out_rounding(g, y, dydt);
+        /* Slopes that are nothing beside the tolerance, and beside the state, are left out for Newton's method, which as GSL has it takes
+         * rounding that does not decrease for divergence. */
+        const size_t n = g->sys->ndof;
+        const double way = tribo_largest(y, n) + g->h * tribo_largest(y + n, n);
+        const double size[] = {way, way / g->h, fabs(y[2 * n]) + way * tribo_largest(g->sys->f, g->sys->ncontact)};
+        for (size_t i = 0; i <= 2 * n; i++) {
+            const double least = NEGLIGIBLE * lesser(g->tolerance[i], ROUNDING * size[i / n]);
+            dydt[i] = fabs(dydt[i]) * g->h < least ? 0.0 : dydt[i];
+        }
     }
     return memory_to_factorize(g) ? GSL_SUCCESS : out_of_memory(g->sys);
 }
@@ -299,16 +294,6 @@ static int has_stuck(const struct gsl_step *g)
     return found;
 }
 
-/* Half steps see nothing of a force that jumps before or after all of their stages, nor of a contact that breaks away after them;
- * slopes at both ends do. */
-static void add_jump(const struct gsl_step *g, const double *y, const double *slope, const double *to, double *error)
-{
-    const int jumps = has_stuck(g);
-    for (size_t i = 0; jumps && i < g->sys->odeiv2.dimension; i++) {
-        error[i] = fabs(error[i]) + fabs(0.5 * g->h * (slope[i] + g->end[i]) - (to[i] - y[i]));
-    }
-}
-
 static int apply(struct gsl_step *g, double t, const double *slope, double *to, double *error)
 {
     if (g->kind->matrices && !memory_to_factorize(g)) {
@@ -332,7 +317,12 @@ int tribo_gsl_step_try(struct gsl_step *g, double t, double h, const double *y, 
     feholdexcept(&callers);
     const int status = apply(g, t, slope, to, error);
     if (!status && g->kind->newton) {
-        add_jump(g, y, slope, to, error);
+        /* Half steps see nothing of a force that jumps before or after all of their stages, nor of a contact that breaks away after them;
+         * slopes at both ends do. */
+        const int jumps = has_stuck(g);
+        for (size_t i = 0; jumps && i < g->sys->odeiv2.dimension; i++) {
+            error[i] = fabs(error[i]) + fabs(0.5 * g->h * (slope[i] + g->end[i]) - (to[i] - y[i]));
+        }
     }
     fesetenv(&callers);
     return status;

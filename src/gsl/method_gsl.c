@@ -73,19 +73,6 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* Contact i changes its force by 2 limit_i in epsilon_i: errors of velocities that matter little beside the largest limit. */
-static void find_cap(struct adaptive *a, const tribo_system *sys, size_t i, double error)
-{
-    const struct matrix *j = &sys->direction;
-    double sum = 0.0;
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        sum += fabs(j->val[k]);
-    }
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        a->cap[j->col[k]] = lesser(a->cap[j->col[k]], error / sum);
-    }
-}
-
 /* What the contacts ask of velocities and steps, with the limits that they have. */
 static void find_bands(struct adaptive *a, tribo_system *sys)
 {
@@ -105,7 +92,16 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (limit[i] > 0.0) {
-            find_cap(a, sys, i, law == TRIBO_COULOMB ? HUGE_VAL : PART_OF_EPSILON * a->band[i] * (most / limit[i]));
+            /* Contact i changes its force by 2 limit_i in epsilon_i: errors of velocities that matter little beside the largest limit. */
+            const double error = law == TRIBO_COULOMB ? HUGE_VAL : PART_OF_EPSILON * a->band[i] * (most / limit[i]);
+            const struct matrix *j = &sys->direction;
+            double sum = 0.0;
+            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+                sum += fabs(j->val[k]);
+            }
+            for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
+                a->cap[j->col[k]] = lesser(a->cap[j->col[k]], error / sum);
+            }
             a->rate[i] = limit[i] / a->band[i] * tribo_system_delassus(sys, i, i);
             fastest = greater(fastest, a->rate[i]);
         }
@@ -149,26 +145,6 @@ static double longest(const struct adaptive *a, const tribo_driver *drv)
         }
     }
     return h;
-}
-
-/* Displacements, velocities and the energy, each relative to the largest of their kind. A status: no step is short enough for an
- * error below rounding. */
-static int find_tolerance(const struct adaptive *a, tribo_driver *drv, double t, const double *y)
-{
-    const size_t n = drv->sys->ndof, dimension = tribo_system_dimension(drv->sys);
-    const double q = drv->abstol + drv->reltol * tribo_largest(y, n), u = drv->abstol + drv->reltol * tribo_largest(y + n, n);
-    for (size_t d = 0; d < n; d++) {
-        a->tolerance[d] = q;
-        a->tolerance[n + d] = lesser(u, a->cap[d]);
-    }
-    a->tolerance[2 * n] = drv->abstol + drv->reltol * fabs(y[2 * n]);
-    for (size_t i = 0; i < dimension; i++) {
-        if (a->tolerance[i] < DBL_EPSILON * fabs(y[i])) {
-            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g no step is so short that y[%zu] = %g is found to %g", t,
-                                     i, y[i], a->tolerance[i]);
-        }
-    }
-    return TRIBO_OK;
 }
 
 /* The largest error in terms of the tolerance; infinite if something is not finite. */
@@ -258,7 +234,22 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     if (tribo_system_limits_vary(drv->sys)) {
         find_bands(a, drv->sys);
     }
-    return find_tolerance(a, drv, t, y);
+    /* Displacements, velocities and the energy, each relative to the largest of their kind. A status: no step is short enough for an
+     * error below rounding. */
+    const size_t n = drv->sys->ndof, dimension = tribo_system_dimension(drv->sys);
+    const double q = drv->abstol + drv->reltol * tribo_largest(y, n), u = drv->abstol + drv->reltol * tribo_largest(y + n, n);
+    for (size_t d = 0; d < n; d++) {
+        a->tolerance[d] = q;
+        a->tolerance[n + d] = lesser(u, a->cap[d]);
+    }
+    a->tolerance[2 * n] = drv->abstol + drv->reltol * fabs(y[2 * n]);
+    for (size_t i = 0; i < dimension; i++) {
+        if (a->tolerance[i] < DBL_EPSILON * fabs(y[i])) {
+            return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g no step is so short that y[%zu] = %g is found to %g", t,
+                                     i, y[i], a->tolerance[i]);
+        }
+    }
+    return TRIBO_OK;
 }
 
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)

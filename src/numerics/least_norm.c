@@ -33,20 +33,6 @@ static int separate(double *a, double *v, size_t n, size_t p, size_t q)
     return 1;
 }
 
-/* Rows of a become A v_k, rows of v the orthonormal v_k; a is A^T before. */
-static void make_orthogonal(double *a, double *v, size_t n)
-{
-    size_t turned = 1;
-    for (int sweep = 0; turned && sweep < MOST_SWEEPS; sweep++) {
-        turned = 0;
-        for (size_t p = 0; p < n; p++) {
-            for (size_t q = p + 1; q < n; q++) {
-                turned += (size_t)separate(a, v, n, p, q);
-            }
-        }
-    }
-}
-
 int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *kernel)
 {
     double *v = calloc(2 * n * n + n + 1, sizeof *v);
@@ -61,7 +47,16 @@ int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *k
     for (size_t i = 0; i < n; i++) {
         v[i * n + i] = 1.0;
     }
-    make_orthogonal(columns, v, n);
+    /* Rows of a become A v_k, rows of v the orthonormal v_k; a is A^T before. */
+    size_t turned = 1;
+    for (int sweep = 0; turned && sweep < MOST_SWEEPS; sweep++) {
+        turned = 0;
+        for (size_t p = 0; p < n; p++) {
+            for (size_t q = p + 1; q < n; q++) {
+                turned += (size_t)separate(columns, v, n, p, q);
+            }
+        }
+    }
     for (size_t k = 0; k < n; k++) {
         const double *row = columns + k * n, square = tribo_dot(row, row, n);
         const int zero = square < cut * cut;

@@ -53,29 +53,25 @@ static size_t blocks_of(const struct matrix *a)
     return (a->rows + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
 }
 
-/* to [diagonals][MATRIX_BLOCK] = block b of the diagonals. */
-static void take_block(const struct matrix *a, size_t b, double *to)
-{
-    const size_t begin = b * MATRIX_BLOCK, end = begin + MATRIX_BLOCK < a->rows ? begin + MATRIX_BLOCK : a->rows;
-    memset(to, 0, a->diagonals * MATRIX_BLOCK * sizeof *to);
-    for (size_t i = begin; i < end; i++) {
-        size_t d = 0;
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            while (a->offset[d] != (ptrdiff_t)a->col[k] - (ptrdiff_t)i) {
-                d++;
-            }
-            to[d * MATRIX_BLOCK + i - begin] = a->val[k];
-        }
-    }
-}
-
 /* A block that is like the one before it is not stored again: what is not stored is not read either. */
 static void take_diagonals(struct matrix *a)
 {
     const size_t size = a->diagonals * MATRIX_BLOCK;
     size_t used = (size_t)(tribo_aligned(a->fast) - a->fast);
     for (size_t b = 0; b < blocks_of(a); b++) {
-        take_block(a, b, a->fast + used);
+        /* to [diagonals][MATRIX_BLOCK] = block b of the diagonals. */
+        double *to = a->fast + used;
+        const size_t begin = b * MATRIX_BLOCK, end = begin + MATRIX_BLOCK < a->rows ? begin + MATRIX_BLOCK : a->rows;
+        memset(to, 0, a->diagonals * MATRIX_BLOCK * sizeof *to);
+        for (size_t i = begin; i < end; i++) {
+            size_t d = 0;
+            for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+                while (a->offset[d] != (ptrdiff_t)a->col[k] - (ptrdiff_t)i) {
+                    d++;
+                }
+                to[d * MATRIX_BLOCK + i - begin] = a->val[k];
+            }
+        }
         const int same = b > 0 && memcmp(a->fast + a->block[b - 1], a->fast + used, size * sizeof *a->fast) == 0;
         a->block[b] = same ? a->block[b - 1] : used;
         used += same ? 0 : size;
@@ -356,18 +352,6 @@ double *tribo_matrix_transpose_to_dense(const struct matrix *a)
     return dense;
 }
 
-/* Gives back the memory of all but the first so many entries, if it can be had in a smaller piece. */
-static void shrink(struct matrix *a, size_t entries)
-{
-    const double *val = a->val;
-    struct layout l = {(char *)a->first, 0};
-    lay_out_matrix(a, &l, entries);
-    memmove(a->val, val, entries * sizeof *val);
-    char *less = realloc(l.memory, l.used + 1);
-    l = (struct layout){less ? less : l.memory, 0};
-    lay_out_matrix(a, &l, entries);
-}
-
 void tribo_matrix_keep_lower(struct matrix *a)
 {
     size_t count = 0;
@@ -380,7 +364,14 @@ void tribo_matrix_keep_lower(struct matrix *a)
         }
         a->first[i + 1] = count;
     }
-    shrink(a, count);
+    /* Memory behind the entries kept is given back where a smaller piece is to be had. */
+    const double *val = a->val;
+    struct layout l = {(char *)a->first, 0};
+    lay_out_matrix(a, &l, count);
+    memmove(a->val, val, count * sizeof *val);
+    char *less = realloc(l.memory, l.used + 1);
+    l = (struct layout){less ? less : l.memory, 0};
+    lay_out_matrix(a, &l, count);
     free(a->offset);
     free(a->block);
     free(a->fast);

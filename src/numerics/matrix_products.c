@@ -286,18 +286,6 @@ static size_t row_end(const struct matrix *a, size_t i)
     return a->rows ? a->first[i + 1] : i + 1;
 }
 
-/* to += row i of A Z. */
-static void add_row(const struct matrix *a, const struct matrix *z, size_t i, double *to)
-{
-    for (size_t k = row_begin(a, i); k < row_end(a, i); k++) {
-        const size_t j = a->rows ? a->col[k] : i;
-        const double x = a->rows ? a->val[k] : 1.0;
-        for (size_t e = row_begin(z, j); e < row_end(z, j); e++) {
-            to[z->rows ? z->col[e] : j] += z->rows ? x * z->val[e] : x;
-        }
-    }
-}
-
 int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, double *to)
 {
     const size_t n = z->rows ? z->rows : a->rows, m = z->rows ? z->cols : n;
@@ -309,7 +297,14 @@ int tribo_matrix_congruent(const struct matrix *a, const struct matrix *z, doubl
     memset(to, 0, m * m * sizeof *to);
     for (size_t i = 0; i < n; i++) {
         memset(row, 0, m * sizeof *row);
-        add_row(a, z, i, row);
+        /* to += row i of A Z. */
+        for (size_t k = row_begin(a, i); k < row_end(a, i); k++) {
+            const size_t j = a->rows ? a->col[k] : i;
+            const double x = a->rows ? a->val[k] : 1.0;
+            for (size_t e = row_begin(z, j); e < row_end(z, j); e++) {
+                row[z->rows ? z->col[e] : j] += z->rows ? x * z->val[e] : x;
+            }
+        }
         for (size_t e = row_begin(z, i); e < row_end(z, i); e++) {
             double *at = to + (z->rows ? z->col[e] : i) * m;
             const double x = z->rows ? z->val[e] : 1.0;

@@ -118,8 +118,7 @@ struct box_qp *tribo_memory_problem(const struct delassus *op, struct memory *m,
     p->l = p->x + 3 * size;
     p->l_low = p->l + size * size;
     if (g->sparse) {
-        p->sparse =
-            (struct sparse_factor){p->l + 3 * size, p->l, p->l + size, (void *)(p->l + 2 * size)};
+        p->sparse = (struct sparse_factor){p->l + 3 * size, p->l, p->l + size, (void *)(p->l + 2 * size)};
     }
     p->redundant = op->basis / size;
     return p;
@@ -133,28 +132,25 @@ void tribo_memory_expect(const struct delassus *op, const struct memory *m, size
     tribo_expect(m->store + op->group[k].kept, kept < MOST ? kept : MOST, 0);
 }
 
-static void lay_out_problem(struct box_qp *p, struct layout *b, size_t largest)
-{
-    double **const vector[] = {&p->q,    &p->lo,   &p->hi,       &p->gradient, &p->noise,    &p->low,     &p->terms,
-                               &p->unit, &p->step, &p->step_low, &p->row,      &p->spare[0], &p->spare[1]};
-    enum { VECTORS = sizeof vector / sizeof *vector };
-    const size_t s = largest + 1;
-    double *numbers = tribo_layout_array(b, VECTORS * s, sizeof *numbers);
-    for (size_t k = 0; numbers && k < VECTORS; k++) {
-        *vector[k] = numbers + k * s;
-    }
-    p->near = tribo_layout_array(b, s, sizeof *p->near);
-    p->held = tribo_layout_array(b, s, sizeof *p->held);
-    p->to = tribo_layout_array(b, s, 1);
-}
-
 static void lay_out_memory(struct memory *m, struct layout *b, const struct delassus *op)
 {
     m->store = tribo_layout_array(b, op->kept_size + 1, sizeof *m->store);
     m->sets = tribo_layout_array(b, op->groups, sizeof *m->sets);
     m->solved_list = tribo_layout_array(b, op->groups, sizeof *m->solved_list);
     m->solved = tribo_layout_array(b, op->groups, 1);
-    lay_out_problem(&m->problem, b, op->largest);
+    double **const vector[] = {&m->problem.q,       &m->problem.lo,       &m->problem.hi,    &m->problem.gradient,
+                               &m->problem.noise,   &m->problem.low,      &m->problem.terms, &m->problem.unit,
+                               &m->problem.step,    &m->problem.step_low, &m->problem.row,   &m->problem.spare[0],
+                               &m->problem.spare[1]};
+    enum { VECTORS = sizeof vector / sizeof *vector };
+    const size_t s = op->largest + 1;
+    double *numbers = tribo_layout_array(b, VECTORS * s, sizeof *numbers);
+    for (size_t k = 0; numbers && k < VECTORS; k++) {
+        *vector[k] = numbers + k * s;
+    }
+    m->problem.near = tribo_layout_array(b, s, sizeof *m->problem.near);
+    m->problem.held = tribo_layout_array(b, s, sizeof *m->problem.held);
+    m->problem.to = tribo_layout_array(b, s, 1);
 }
 
 /* A memory of nothing yet, but for room for null vectors, which is known when ranks are. */
@@ -173,18 +169,6 @@ static int allocate_basis(struct memory *m, const struct delassus *op)
 {
     m->problem.basis = op->basis ? malloc(op->basis * sizeof *m->problem.basis) : NULL;
     return m->problem.basis || !op->basis;
-}
-
-static void find_basis(struct delassus *op)
-{
-    for (size_t k = 0; k < op->groups; k++) {
-        const struct group *g = &op->group[k];
-        size_t redundant = g->nullity;
-        if (g->sparse && redundant > TRIBO_SPARSE_REDUNDANT) {
-            redundant = TRIBO_SPARSE_REDUNDANT;
-        }
-        op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
-    }
 }
 
 static void lay_out_groups(struct delassus *op, struct layout *b, size_t n, size_t groups)
@@ -233,27 +217,6 @@ static size_t root_of(size_t *parent, size_t i)
         i = parent[i];
     }
     return i;
-}
-
-/* Numbers the islands in the order of their first contact: label [n]. parent [n] is workspace. */
-static size_t find_islands(const struct csr *a, size_t *label, size_t *parent)
-{
-    for (size_t i = 0; i < a->n; i++) {
-        parent[i] = i;
-    }
-    for (size_t i = 0; i < a->n; i++) {
-        for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
-            if (a->val[k] != 0.0) {
-                const size_t p = root_of(parent, i), q = root_of(parent, a->col[k]);
-                parent[p > q ? p : q] = p > q ? q : p;
-            }
-        }
-    }
-    size_t islands = 0;
-    for (size_t i = 0; i < a->n; i++) {
-        label[i] = parent[i] == i ? islands++ : label[root_of(parent, i)];
-    }
-    return islands;
 }
 
 /* Makes groups of the islands of more than one contact. place [n] gets where a contact stands in its group; count [islands] is
@@ -487,7 +450,14 @@ static int check_definite(struct delassus *op, struct memory *m, struct flaw *fl
         tribo_factor_rebuild(p, NULL);
     }
     m->problem.work.factorizations = 0;
-    find_basis(op);
+    for (size_t k = 0; k < op->groups; k++) {
+        const struct group *g = &op->group[k];
+        size_t redundant = g->nullity;
+        if (g->sparse && redundant > TRIBO_SPARSE_REDUNDANT) {
+            redundant = TRIBO_SPARSE_REDUNDANT;
+        }
+        op->basis = redundant * g->size > op->basis ? redundant * g->size : op->basis;
+    }
     return TRIBO_OK;
 }
 
@@ -528,7 +498,23 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
     struct delassus *op = NULL;
     *m = (struct memory){0};
     if (label && tribo_operator_diagonal(&op, n, diagonal)) {
-        op->islands = find_islands(a, label, place);
+        /* label [n]: numbers of islands, in the order of their first contacts; place [n]: parents in a forest of islands. */
+        for (size_t i = 0; i < a->n; i++) {
+            place[i] = i;
+        }
+        for (size_t i = 0; i < a->n; i++) {
+            for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
+                if (a->val[k] != 0.0) {
+                    const size_t p = root_of(place, i), q = root_of(place, a->col[k]);
+                    place[p > q ? p : q] = p > q ? q : p;
+                }
+            }
+        }
+        size_t islands = 0;
+        for (size_t i = 0; i < a->n; i++) {
+            label[i] = place[i] == i ? islands++ : label[root_of(place, i)];
+        }
+        op->islands = islands;
         if (op->islands == n) {
             status = TRIBO_OK;
         } else if (find_growth(op, a) && find_groups(op, n, label, place, count)) {

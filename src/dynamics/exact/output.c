@@ -152,41 +152,6 @@ int tribo_modal_hold(struct modal_build *b)
     return 1;
 }
 
-/* A harmonic load. */
-static void hold_load(const struct modal_build *b, struct holding *f, const struct harmonic *wave)
-{
-    for (int part = 0; part < 2; part++) {
-        memset(f->load, 0, b->n * sizeof *f->load);
-        for (size_t e = 0; e < wave->count; e++) {
-            f->load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
-        }
-        tribo_system_add_mass(b->shared->sys, 1.0, f->load, f->force[part]);
-    }
-}
-
-/* Belts that move y [2][ndof], displaced by y/(i Omega), accelerated by i Omega y. */
-static void hold_motion(const struct modal_build *b, struct holding *f, double omega, const double *const *y)
-{
-    for (int part = 0; part < 2; part++) {
-        const double turn = part ? 1.0 : -1.0;
-        if (b->shared->damping) {
-            tribo_matrix_multiply_add(b->shared->damping, 1.0, y[part], f->force[part]);
-        }
-        tribo_matrix_multiply_add(b->shared->stiffness, turn / omega, y[part], f->force[1 - part]);
-        tribo_system_add_mass(b->shared->sys, -turn * omega, y[part], f->force[1 - part]);
-    }
-}
-
-/* The force of another contact, which follows its limit. */
-static void hold_limit(const struct modal_build *b, struct holding *f, const struct harmonic *limit, size_t i)
-{
-    const struct matrix *j = &b->shared->sys->direction;
-    for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
-        f->force[0][j->col[e]] = -j->val[e] * limit->cosine[i];
-        f->force[1][j->col[e]] = j->val[e] * limit->sine[i];
-    }
-}
-
 static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t w)
 {
     const struct forcing *forcing = &b->h->forcing[w];
@@ -195,11 +160,34 @@ static void hold_harmonic(const struct modal_build *b, struct holding *f, size_t
     memset(f->force[0], 0, n * sizeof **f->force);
     memset(f->force[1], 0, n * sizeof **f->force);
     if (forcing->contact < b->shared->sys->ncontact) {
-        hold_limit(b, f, wave, forcing->contact);
+        /* The force of another contact, which follows its limit. */
+        const size_t i = forcing->contact;
+        const struct matrix *j = &b->shared->sys->direction;
+        for (size_t e = j->first[i]; e < j->first[i + 1]; e++) {
+            f->force[0][j->col[e]] = -j->val[e] * wave->cosine[i];
+            f->force[1][j->col[e]] = j->val[e] * wave->sine[i];
+        }
     } else if (wave->drives == DRIVES_BASE) {
-        hold_motion(b, f, wave->omega, (const double *const[]){b->yr + w * n, b->yi + w * n});
+        /* Belts that move y [2][ndof], displaced by y/(i Omega), accelerated by i Omega y. */
+        const double omega = wave->omega;
+        const double *const *y = (const double *const[]){b->yr + w * n, b->yi + w * n};
+        for (int part = 0; part < 2; part++) {
+            const double turn = part ? 1.0 : -1.0;
+            if (b->shared->damping) {
+                tribo_matrix_multiply_add(b->shared->damping, 1.0, y[part], f->force[part]);
+            }
+            tribo_matrix_multiply_add(b->shared->stiffness, turn / omega, y[part], f->force[1 - part]);
+            tribo_system_add_mass(b->shared->sys, -turn * omega, y[part], f->force[1 - part]);
+        }
     } else if (wave->drives == DRIVES_LOAD) {
-        hold_load(b, f, wave);
+        /* A harmonic load. */
+        for (int part = 0; part < 2; part++) {
+            memset(f->load, 0, b->n * sizeof *f->load);
+            for (size_t e = 0; e < wave->count; e++) {
+                f->load[wave->index[e]] = part ? wave->sine[e] : -wave->cosine[e];
+            }
+            tribo_system_add_mass(b->shared->sys, 1.0, f->load, f->force[part]);
+        }
     }
     tribo_modal_react(b, f->force[0], f->wave_r + w * s);
     tribo_modal_react(b, f->force[1], f->wave_i + w * s);
@@ -324,7 +312,7 @@ int tribo_modal_outputs(struct modal_build *b)
     for (size_t i = 0; i < c; i++) {
         const int done = b->h->key[i] == 0   ? output_sliding(b, &h->output[h->outputs++], i)
                          : b->h->key[i] == 1 ? output_parting(b, h->output, &h->outputs, i)
-                                          : 1;
+                                             : 1;
         if (!done) {
             return 0;
         }

@@ -63,34 +63,6 @@ static int list_forcing(struct modal_build *b)
     return 1;
 }
 
-/* Forcing of eta by a limit. */
-static void force_by_limit(struct modal_build *b, size_t w)
-{
-    struct modal *h = b->h;
-    const size_t m = h->modes, i = h->forcing[w].contact;
-    const struct harmonic *limit = &b->shared->sys->harmonic[h->forcing[w].harmonic];
-    for (size_t k = 0; k < m; k++) {
-        const double push = tribo_modal_shape(b, i, k);
-        h->gr[w * m + k] = push * limit->cosine[i];
-        h->gi[w * m + k] = -push * limit->sine[i];
-    }
-}
-
-/* Forcing of eta by a load. */
-static void force_by_load(struct modal_build *b, size_t w)
-{
-    struct modal *h = b->h;
-    const size_t m = h->modes;
-    const struct harmonic *load = &b->shared->sys->harmonic[w];
-    for (size_t k = 0; k < m; k++) {
-        const double *psi = b->psi + k * b->n;
-        for (size_t i = 0; i < load->count; i++) {
-            h->gr[w * m + k] += load->cosine[i] * psi[load->index[i]];
-            h->gi[w * m + k] += -load->sine[i] * psi[load->index[i]];
-        }
-    }
-}
-
 /* pull = -K y by, drag = -C y: the forces of stiffness and of damping where degrees of freedom move as y [ndof] says. */
 static void resist(const struct modal_build *b, const double *y, double by, double *pull, double *drag)
 {
@@ -154,18 +126,6 @@ static void force_by_constants(struct modal_build *b, double *pull, double *drag
     }
 }
 
-/* Belts of constant speed move modes with stiffness, whose damping resists that: a constant force. Modes that damping couples all
- * have stiffness. */
-static void drag_by_ramps(struct modal *h)
-{
-    const size_t m = h->modes;
-    for (size_t k = 0; k < m; k++) {
-        for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
-            h->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (h->ramp[l] / h->omega2[l]);
-        }
-    }
-}
-
 static int create_forcing(struct modal_build *b)
 {
     struct modal *h = b->h;
@@ -188,22 +148,46 @@ int tribo_modal_forcing(struct modal_build *b)
     if (!list_forcing(b) || !create_forcing(b)) {
         return 0;
     }
+    struct modal *h = b->h;
+    const tribo_system *sys = b->shared->sys;
+    const size_t m = h->modes;
     double *pull = tribo_modal_scratch(b, 2 * b->n + b->rests), *drag = pull ? pull + b->n : NULL, *x = pull ? drag + b->n : NULL;
     int done = pull != NULL;
-    for (size_t w = 0; done && w < b->shared->sys->harmonics; w++) {
-        const enum drives drives = b->shared->sys->harmonic[w].drives;
+    for (size_t w = 0; done && w < sys->harmonics; w++) {
+        const enum drives drives = sys->harmonic[w].drives;
         if (drives == DRIVES_LOAD) {
-            force_by_load(b, w);
+            /* Forcing of eta by a load. */
+            const struct harmonic *load = &sys->harmonic[w];
+            for (size_t k = 0; k < m; k++) {
+                const double *psi = b->psi + k * b->n;
+                for (size_t i = 0; i < load->count; i++) {
+                    h->gr[w * m + k] += load->cosine[i] * psi[load->index[i]];
+                    h->gi[w * m + k] += -load->sine[i] * psi[load->index[i]];
+                }
+            }
         } else if (drives == DRIVES_BASE) {
             done = force_by_base(b, w, x, pull, drag);
         }
     }
-    for (size_t w = b->shared->sys->harmonics; done && w < b->h->harmonics; w++) {
-        force_by_limit(b, w);
+    for (size_t w = sys->harmonics; done && w < h->harmonics; w++) {
+        /* Forcing of eta by a limit. */
+        const size_t i = h->forcing[w].contact;
+        const struct harmonic *limit = &sys->harmonic[h->forcing[w].harmonic];
+        for (size_t k = 0; k < m; k++) {
+            const double push = tribo_modal_shape(b, i, k);
+            h->gr[w * m + k] = push * limit->cosine[i];
+            h->gi[w * m + k] = -push * limit->sine[i];
+        }
     }
     if (done) {
         force_by_constants(b, pull, drag);
-        drag_by_ramps(b->h);
+        /* Belts of constant speed move modes with stiffness, whose damping resists that: a constant force. Modes that damping couples all
+         * have stiffness. */
+        for (size_t k = 0; k < m; k++) {
+            for (size_t l = h->coupling ? 0 : k; l < (h->coupling ? m : k + 1) && h->omega2[l] != 0.0; l++) {
+                h->constant[k] -= (h->coupling ? h->coupling[k * m + l] : h->damping[k]) * (h->ramp[l] / h->omega2[l]);
+            }
+        }
     }
     return done;
 }

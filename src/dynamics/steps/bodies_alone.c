@@ -85,21 +85,6 @@ static void note_all(const struct map *m, const tribo_system *sys, size_t blocks
     }
 }
 
-/* The map of the blocks: counted first, then written. mark [2 blocks] is workspace, all 0. While it is written first[k + 1] is
- * where block k goes on, and in the end where it ends. */
-static int find_map(struct bodies_alone *b, const tribo_system *sys, size_t *mark)
-{
-    note_all(&(struct map){b->first + 2, mark, NULL}, sys, b->blocks);
-    for (size_t k = 0; k < b->blocks; k++) {
-        b->first[k + 2] += b->first[k + 1];
-    }
-    b->pulled = malloc((b->first[b->blocks + 1] + 1) * sizeof *b->pulled);
-    if (b->pulled) {
-        note_all(&(struct map){b->first + 1, mark + b->blocks, b->pulled}, sys, b->blocks);
-    }
-    return b->pulled != NULL;
-}
-
 /* How many blocks there are. */
 static size_t blocks_of(size_t n)
 {
@@ -153,7 +138,17 @@ int tribo_bodies_create(struct bodies_alone *b, const tribo_system *sys)
         if (!find_bodies(b, sys, single)) {
             tribo_bodies_free(b);
         } else {
-            done = find_map(b, sys, mark);
+            /* The map of the blocks: counted first, then written. mark [2 blocks] is workspace, all 0. While it is written first[k + 1] is
+             * where block k goes on, and in the end where it ends. */
+            note_all(&(struct map){b->first + 2, mark, NULL}, sys, b->blocks);
+            for (size_t k = 0; k < b->blocks; k++) {
+                b->first[k + 2] += b->first[k + 1];
+            }
+            b->pulled = malloc((b->first[b->blocks + 1] + 1) * sizeof *b->pulled);
+            if (b->pulled) {
+                note_all(&(struct map){b->first + 1, mark + b->blocks, b->pulled}, sys, b->blocks);
+            }
+            done = b->pulled != NULL;
         }
     }
     free(single);
@@ -175,19 +170,6 @@ static int plain_contacts(struct bodies_alone *b, const tribo_system *sys)
     return !planar;
 }
 
-/* Where the masses and brakes of block k are read: where those of the block before are, if they are the same. What is not read
- * need not come from memory. */
-static void share_rows(struct bodies_alone *b, const tribo_system *sys)
-{
-    for (size_t k = 0, i = 0; k < b->blocks; k++, i += MATRIX_BLOCK) {
-        const struct body_rows own = {b->mass + i, b->brake + i};
-        const struct body_rows *last = k ? &b->rows[k - 1] : &own;
-        const size_t bytes = tribo_bodies_of_block(sys, k) * sizeof *own.mass;
-        const int same = memcmp(last->mass, own.mass, bytes) == 0 && memcmp(last->brake, own.brake, bytes) == 0;
-        b->rows[k] = same ? *last : own;
-    }
-}
-
 static void take_limits(struct bodies_alone *b, const tribo_system *sys)
 {
     tribo_get_limit(sys->contacts, b->room);
@@ -195,27 +177,14 @@ static void take_limits(struct bodies_alone *b, const tribo_system *sys)
         const size_t d = b->body[i];
         b->brake[d] = product(fabs(tribo_matrix_get(&sys->response, d, i)), lesser(b->room[i], TRIBO_FAR));
     }
-    share_rows(b, sys);
-}
-
-/* Blocks on which something acts that changes with time, or moves; and those with a load. */
-static void find_driven(struct bodies_alone *b, const tribo_system *sys)
-{
-    memset(b->driven, tribo_system_limits_vary(sys), b->blocks);
-    memset(b->loaded, 0, b->blocks);
-    for (size_t s = 0; s < sys->harmonics; s++) {
-        const struct harmonic *h = &sys->harmonic[s];
-        for (size_t k = 0; k < h->count; k++) {
-            const size_t d = h->drives == DRIVES_LOAD ? h->index[k] : b->body[h->index[k]];
-            b->driven[d / MATRIX_BLOCK] |= h->drives == DRIVES_BASE || h->omega != 0.0;
-            b->loaded[d / MATRIX_BLOCK] |= h->drives == DRIVES_LOAD;
-        }
-    }
-    for (size_t s = 0; s < sys->tables; s++) {
-        for (size_t d = 0; d < sys->ndof; d++) {
-            b->driven[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
-            b->loaded[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
-        }
+    /* Where the masses and brakes of block k are read: where those of the block before are, if they are the same. What is not read
+     * need not come from memory. */
+    for (size_t k = 0, i = 0; k < b->blocks; k++, i += MATRIX_BLOCK) {
+        const struct body_rows own = {b->mass + i, b->brake + i};
+        const struct body_rows *last = k ? &b->rows[k - 1] : &own;
+        const size_t bytes = tribo_bodies_of_block(sys, k) * sizeof *own.mass;
+        const int same = memcmp(last->mass, own.mass, bytes) == 0 && memcmp(last->brake, own.brake, bytes) == 0;
+        b->rows[k] = same ? *last : own;
     }
 }
 
@@ -228,7 +197,23 @@ int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
         memset(b->awake, 1, b->blocks);
         memset(b->wakes, 0, b->blocks);
         memset(b->load, 0, sys->ndof * sizeof *b->load);
-        find_driven(b, sys);
+        /* Blocks on which something acts that changes with time, or moves; and those with a load. */
+        memset(b->driven, tribo_system_limits_vary(sys), b->blocks);
+        memset(b->loaded, 0, b->blocks);
+        for (size_t s = 0; s < sys->harmonics; s++) {
+            const struct harmonic *h = &sys->harmonic[s];
+            for (size_t k = 0; k < h->count; k++) {
+                const size_t d = h->drives == DRIVES_LOAD ? h->index[k] : b->body[h->index[k]];
+                b->driven[d / MATRIX_BLOCK] |= h->drives == DRIVES_BASE || h->omega != 0.0;
+                b->loaded[d / MATRIX_BLOCK] |= h->drives == DRIVES_LOAD;
+            }
+        }
+        for (size_t s = 0; s < sys->tables; s++) {
+            for (size_t d = 0; d < sys->ndof; d++) {
+                b->driven[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
+                b->loaded[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
+            }
+        }
         take_limits(b, sys);
     }
     return b->fits;
@@ -246,20 +231,9 @@ static void find_bases(struct bodies_alone *b, tribo_system *sys, double t, doub
     }
 }
 
-/* What tables say, of the blocks that they drive. Other loads there are forgotten. */
-static void find_tabulated(struct bodies_alone *b, const tribo_system *sys)
+void tribo_bodies_set_time(struct bodies_alone *b, tribo_system *sys, double t)
 {
-    for (size_t k = 0; k < b->blocks; k++) {
-        if (b->driven[k]) {
-            const size_t begin = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
-            memset(b->load + begin, 0, n * sizeof *b->load);
-            tribo_system_tables(sys, 0, 1.0, begin, begin + n, b->load);
-        }
-    }
-}
-
-static inline void find_loads(struct bodies_alone *b, const tribo_system *sys)
-{
+    tribo_system_set_time(sys, t);
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *h = &sys->harmonic[s];
         for (size_t k = 0; h->drives == DRIVES_LOAD && k < h->count; k++) {
@@ -267,7 +241,14 @@ static inline void find_loads(struct bodies_alone *b, const tribo_system *sys)
         }
     }
     if (sys->tables) {
-        find_tabulated(b, sys);
+        /* What tables say, of the blocks that they drive. Other loads there are forgotten. */
+        for (size_t k = 0; k < b->blocks; k++) {
+            if (b->driven[k]) {
+                const size_t begin = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
+                memset(b->load + begin, 0, n * sizeof *b->load);
+                tribo_system_tables(sys, 0, 1.0, begin, begin + n, b->load);
+            }
+        }
     }
     for (size_t s = 0; s < sys->harmonics; s++) {
         const struct harmonic *h = &sys->harmonic[s];
@@ -278,31 +259,6 @@ static inline void find_loads(struct bodies_alone *b, const tribo_system *sys)
             b->load[h->index[k]] += h->cosine[k] * h->cos_t + h->sine[k] * h->sin_t;
         }
     }
-}
-
-void tribo_bodies_set_time(struct bodies_alone *b, tribo_system *sys, double t)
-{
-    tribo_system_set_time(sys, t);
-    find_loads(b, sys);
-}
-
-/* All that acts from outside, at the times of the step. */
-static void prepare(struct bodies_alone *b, tribo_system *sys, const struct body_step *s)
-{
-    tribo_bodies_set_time(b, sys, s->t);
-    if (tribo_system_limits_vary(sys)) {
-        take_limits(b, sys);
-    }
-    if (sys->base_harmonics) {
-        double *first = b->before;
-        b->before = b->after;
-        b->after = first;
-        if (!b->goes_on) {
-            find_bases(b, sys, s->from, b->before);
-        }
-        find_bases(b, sys, s->to, b->after);
-    }
-    b->goes_on = 1;
 }
 
 /* What came of a step. */
@@ -343,11 +299,6 @@ static inline void note(struct fate *f, double u, const struct moved *m)
     f->grows |= fabs(m->u) + fabs(m->q) <= DBL_MAX ? 0 : -1;
 }
 
-static inline int told(const struct fate *f)
-{
-    return (f->speeds & INT64_MAX ? STIRS : 0) | (f->grows ? GROWS : 0);
-}
-
 /* n degrees of freedom, from the first of those that all arrays begin with. a: accelerations, which become what friction does. */
 TRIBO_SIMD static int move(size_t n, double time, double h, const double *restrict mass, const double *restrict brake,
                            const double *restrict before, const double *restrict after, const double *restrict q,
@@ -361,7 +312,7 @@ TRIBO_SIMD static int move(size_t n, double time, double h, const double *restri
         u_to[i] = to.u;
         q_to[i] = to.q;
     }
-    return told(&fate);
+    return (fate.speeds & INT64_MAX ? STIRS : 0) | (fate.grows ? GROWS : 0);
 }
 
 /* The acceleration of degree of freedom i without friction, by its rows. */
@@ -369,13 +320,6 @@ static inline double free_one(const struct bodies_alone *b, const tribo_system *
 {
     const double a = b->load[i] - tribo_matrix_row_dot(&sys->stiffness, i, q);
     return sys->damping.rows ? a - tribo_matrix_row_dot(&sys->damping, i, u) : a;
-}
-
-static void accelerate_few(const struct bodies_alone *b, const tribo_system *sys, const double *q, const double *u, double *a)
-{
-    for (size_t i = 0; i < sys->ndof; i++) {
-        a[i] = free_one(b, sys, i, q, u);
-    }
 }
 
 static void accelerate_block(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u,
@@ -393,7 +337,9 @@ void tribo_bodies_accelerate(const struct bodies_alone *b, const tribo_system *s
                              double *a)
 {
     if (sys->ndof <= FEW) {
-        accelerate_few(b, sys, q, u, a);
+        for (size_t i = 0; i < sys->ndof; i++) {
+            a[i] = free_one(b, sys, i, q, u);
+        }
     } else {
         accelerate_block(b, sys, k, q, u, a);
     }
@@ -424,21 +370,6 @@ static inline size_t next_awake(const struct bodies_alone *b, size_t k)
     return found ? (size_t)(found - b->awake) : b->blocks;
 }
 
-/* What the next step looks at since it has looked at block k: all that this pulls at, if it has moved. */
-static inline void wake(struct bodies_alone *b, size_t k, int moved)
-{
-    b->awake[k] = 0;
-    if (moved) {
-        for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
-            b->wakes[b->pulled[e]] = 1;
-        }
-    } else if (b->driven[k]) {
-        b->wakes[k] = 1;
-    } else {
-        b->still[b->stills++] = k;
-    }
-}
-
 /* Whether contacts hold all of block k, which is at rest, in steps of any length. */
 static int holds(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u)
 {
@@ -466,12 +397,37 @@ int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct bo
 {
     int all = 0;
     size_t left = sys->ndof;
-    prepare(b, sys, s);
+    /* All that acts from outside, at the times of the step. */
+    tribo_bodies_set_time(b, sys, s->t);
+    if (tribo_system_limits_vary(sys)) {
+        take_limits(b, sys);
+    }
+    if (sys->base_harmonics) {
+        double *first = b->before;
+        b->before = b->after;
+        b->after = first;
+        if (!b->goes_on) {
+            find_bases(b, sys, s->from, b->before);
+        }
+        find_bases(b, sys, s->to, b->after);
+    }
+    b->goes_on = 1;
     for (size_t k = next_awake(b, 0); k < b->blocks; k = next_awake(b, k + 1)) {
         const int did = step_block(b, sys, s, k, energy);
         all |= did;
         left -= tribo_bodies_of_block(sys, k);
-        wake(b, k, did & STIRS);
+        /* What the next step looks at since it has looked at block k: all that this pulls at, if it has moved. */
+        const int moved = did & STIRS;
+        b->awake[k] = 0;
+        if (moved) {
+            for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
+                b->wakes[b->pulled[e]] = 1;
+            }
+        } else if (b->driven[k]) {
+            b->wakes[k] = 1;
+        } else {
+            b->still[b->stills++] = k;
+        }
     }
     b->skipped += left;
     let_rest(b, sys, s);

@@ -70,30 +70,6 @@ static int take_operator(struct few_bodies *b, const tribo_system *sys)
     return fits;
 }
 
-static struct few_snap snap_of(const struct few_bodies *b, const struct snap *from)
-{
-    struct few_snap x = {.contact = from->contact, .to = from->to};
-    memcpy(x.rest, b->direction[x.contact], sizeof x.rest);
-    x.turn = x.rest[x.to];
-    x.rest[x.to] = 0.0;
-    return x;
-}
-
-static void take_snaps(struct few_bodies *b, const tribo_system *sys)
-{
-    for (unsigned set = 0; set < 1u << b->c; set++) {
-        struct snap list[FEW];
-        signed char loose[FEW];
-        for (size_t i = 0; i < b->c; i++) {
-            loose[i] = !(set >> i & 1u);
-        }
-        b->snaps[set] = tribo_system_list_snaps(sys, loose, list);
-        for (size_t k = 0; k < b->snaps[set]; k++) {
-            b->snap[set][k] = snap_of(b, &list[k]);
-        }
-    }
-}
-
 /* Whether Coulomb's law of scalar contacts with one limit, which is a plain number, is all that there is. */
 static int take_contacts(struct few_bodies *b, const tribo_system *sys)
 {
@@ -120,7 +96,22 @@ static int take_all(struct few_bodies *b, const tribo_system *sys)
     take_matrix(&sys->direction, b->direction);
     take_matrix(&sys->response, b->response);
     b->slip = (struct few_slip){.resting = (1u << b->c) - 1};
-    take_snaps(b, sys);
+    for (unsigned set = 0; set < 1u << b->c; set++) {
+        struct snap list[FEW];
+        signed char loose[FEW];
+        for (size_t i = 0; i < b->c; i++) {
+            loose[i] = !(set >> i & 1u);
+        }
+        b->snaps[set] = tribo_system_list_snaps(sys, loose, list);
+        for (size_t k = 0; k < b->snaps[set]; k++) {
+            const struct snap *from = &list[k];
+            struct few_snap x = {.contact = from->contact, .to = from->to};
+            memcpy(x.rest, b->direction[x.contact], sizeof x.rest);
+            x.turn = x.rest[x.to];
+            x.rest[x.to] = 0.0;
+            b->snap[set][k] = x;
+        }
+    }
     return take_contacts(b, sys) && take_operator(b, sys);
 }
 
@@ -156,18 +147,6 @@ static void clear(size_t n, size_t count, double to[FEW][FORESIGHT])
     }
 }
 
-/* place: of the first step among the times foreseen. */
-static void find_loads(struct few_bodies *b, const tribo_system *sys, size_t count, size_t place)
-{
-    clear(b->n, count, b->load);
-    for (size_t k = 0; k < sys->harmonics; k++) {
-        const struct harmonic *h = &sys->harmonic[k];
-        if (h->drives == DRIVES_LOAD) {
-            add_harmonic(h, count, h->cos_ahead + place, h->sin_ahead + place, b->load);
-        }
-    }
-}
-
 /* last: the length of the step before. */
 static void find_times(struct few_bodies *b, size_t count, const double *restrict t, double last)
 {
@@ -182,23 +161,36 @@ static void find_times(struct few_bodies *b, size_t count, const double *restric
     }
 }
 
-/* At the ends of the steps. */
-static void find_bases(struct few_bodies *b, const tribo_system *sys, size_t count)
+/* 0 if not all can be found. */
+static int find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
 {
-    double cosine[FORESIGHT], sine[FORESIGHT];
-    clear(b->c, count, b->base);
+    const size_t harmonic_loads = sys->harmonics - sys->base_harmonics - sys->limit_harmonics;
+    /* the place of the first step among the times foreseen */
+    const size_t place = harmonic_loads ? tribo_system_place(sys, t[0]) : 0;
+    if (place + count > (harmonic_loads ? sys->foreseen : FORESIGHT)) {
+        return 0;
+    }
+    find_times(b, count, t, last);
+    clear(b->n, count, b->load);
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *h = &sys->harmonic[k];
-        if (h->drives == DRIVES_BASE) {
-            tribo_cos_sin_all(h->omega, count, b->to, cosine, sine);
-            add_harmonic(h, count, cosine, sine, b->base);
+        if (h->drives == DRIVES_LOAD) {
+            add_harmonic(h, count, h->cos_ahead + place, h->sin_ahead + place, b->load);
         }
     }
-}
-
-/* What is not looked up for many times at once. 0 if a limit is too large. */
-static int find_others(struct few_bodies *b, tribo_system *sys, size_t count, const double *t)
-{
+    if (sys->base_harmonics) {
+        /* At the ends of the steps. */
+        double cosine[FORESIGHT], sine[FORESIGHT];
+        clear(b->c, count, b->base);
+        for (size_t k = 0; k < sys->harmonics; k++) {
+            const struct harmonic *h = &sys->harmonic[k];
+            if (h->drives == DRIVES_BASE) {
+                tribo_cos_sin_all(h->omega, count, b->to, cosine, sine);
+                add_harmonic(h, count, cosine, sine, b->base);
+            }
+        }
+    }
+    /* What is not looked up for many times at once. 0 if a limit is too large. */
     const int vary = tribo_system_limits_vary(sys);
     int fits = 1;
     for (size_t s = 0; (vary || sys->tables) && s < count; s++) {
@@ -215,22 +207,6 @@ static int find_others(struct few_bodies *b, tribo_system *sys, size_t count, co
         }
     }
     return fits;
-}
-
-/* 0 if not all can be found. */
-static int find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
-{
-    const size_t harmonic_loads = sys->harmonics - sys->base_harmonics - sys->limit_harmonics;
-    const size_t place = harmonic_loads ? tribo_system_place(sys, t[0]) : 0;
-    if (place + count > (harmonic_loads ? sys->foreseen : FORESIGHT)) {
-        return 0;
-    }
-    find_times(b, count, t, last);
-    find_loads(b, sys, count, place);
-    if (sys->base_harmonics) {
-        find_bases(b, sys, count);
-    }
-    return find_others(b, sys, count, t);
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- runs */

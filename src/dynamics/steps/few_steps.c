@@ -56,32 +56,27 @@ static inline int revise(const struct few_bodies *b, size_t c, const struct impu
     return changed;
 }
 
-/* Impulses and velocities at the end, of contacts that do this. */
-static inline void push(const struct few_bodies *b, size_t c, const struct few_slip *slip, struct impulses *x)
-{
-    double held[FEW] = {0.0};
-    for (size_t i = 0; i < c; i++) {
-        x->p[i] = slip->side[i] * x->most[i];
-    }
-    for (size_t i = 0; i < c; i++) {
-        x->end[i] = x->v[i] + row_times(c, b->r[i], x->p);
-    }
-    for (size_t i = 0; slip->resting && i < c; i++) {
-        held[i] = row_times(c, b->inverse[slip->resting][i], x->end);
-    }
-    for (size_t i = 0; slip->resting && i < c; i++) {
-        x->p[i] -= held[i];
-        x->end[i] = rests(slip, i) ? 0.0 : x->end[i] - row_times(c, b->r[i], held);
-    }
-}
-
 /* 0 if no end comes of it. */
 static inline int settle(const struct few_bodies *b, size_t c, struct few_slip *slip, struct impulses *x)
 {
     enum { ROUNDS = 2 * FEW + 2 };
     int changed = 1;
     for (int round = 0; changed && round < ROUNDS; round++) {
-        push(b, c, slip, x);
+        /* Impulses and velocities at the end, of contacts that do this. */
+        double held[FEW] = {0.0};
+        for (size_t i = 0; i < c; i++) {
+            x->p[i] = slip->side[i] * x->most[i];
+        }
+        for (size_t i = 0; i < c; i++) {
+            x->end[i] = x->v[i] + row_times(c, b->r[i], x->p);
+        }
+        for (size_t i = 0; slip->resting && i < c; i++) {
+            held[i] = row_times(c, b->inverse[slip->resting][i], x->end);
+        }
+        for (size_t i = 0; slip->resting && i < c; i++) {
+            x->p[i] -= held[i];
+            x->end[i] = rests(slip, i) ? 0.0 : x->end[i] - row_times(c, b->r[i], held);
+        }
         changed = revise(b, c, x, slip);
     }
     return !changed;
@@ -104,21 +99,16 @@ static inline void snap(const struct few_bodies *b, struct few_parts has, size_t
     }
 }
 
-/* The velocities u without friction. */
-static inline void kick_freely(const struct few_bodies *b, struct few_parts has, size_t s, const struct few_carried *m, double *u)
-{
-    for (size_t d = 0; d < has.n; d++) {
-        const double a = b->load[d][s] - row_times(has.n, b->stiffness[d], m->q);
-        u[d] = m->u[d] + b->time[s] * (has.damped ? a - row_times(has.n, b->damping[d], m->u) : a);
-    }
-}
-
 /* 0, and nothing is changed but slip, if the step is for others. */
 static inline int step(const struct few_bodies *b, struct few_parts has, size_t s, struct few_carried *m)
 {
     struct impulses x = {{0.0}, {0.0}, {0.0}, {0.0}};
     double u[FEW] = {0.0}, work = 0.0;
-    kick_freely(b, has, s, m, u);
+    /* The velocities u without friction. */
+    for (size_t d = 0; d < has.n; d++) {
+        const double a = b->load[d][s] - row_times(has.n, b->stiffness[d], m->q);
+        u[d] = m->u[d] + b->time[s] * (has.damped ? a - row_times(has.n, b->damping[d], m->u) : a);
+    }
     for (size_t i = 0; i < has.c; i++) {
         x.v[i] = row_times(has.n, b->direction[i], u) - (has.bases ? b->base[i][s] : 0.0);
         x.most[i] = b->time[s] * (has.vary ? b->limits[i][s] : b->limit[i]);

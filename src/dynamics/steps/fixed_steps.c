@@ -24,22 +24,6 @@ static void find_times(struct march m, double begin, double k, size_t count, dou
     }
 }
 
-/* The system foresees what steps between these times ask it for. */
-static void foresee(tribo_system *sys, const struct fixed_method *method, size_t count, const double *t)
-{
-    double times[FORESIGHT];
-    const size_t each = method->times;
-    for (size_t i = 0; i < each; i++) {
-        const double part = method->part[i];
-        for (size_t s = 0; s < count; s++) {
-            times[s * each + i] = t[s] + part * (t[s + 1] - t[s]);
-        }
-    }
-    if (sys->harmonics > sys->base_harmonics + sys->limit_harmonics) {
-        tribo_system_foresee(sys, each * count, times);
-    }
-}
-
 /* Steps between these times until loads have to be looked up again: from and to take each other's place after each. */
 static void take_steps(tribo_driver *drv, size_t count, const double *t, double **from, double **to,
                        const struct fixed_method *method, int *status)
@@ -70,7 +54,19 @@ static double *march(tribo_driver *drv, const struct march *m, double *from, dou
         const double left = m->steps - k + 1.0;
         const size_t ahead = left < AHEAD ? (size_t)left + 1 : AHEAD; /* loads at the end are asked for, too */
         find_times(*m, drv->time, k, ahead, t);
-        foresee(drv->sys, method, ahead, t);
+        /* The system foresees what steps between these times ask it for. */
+        tribo_system *sys = drv->sys;
+        double times[FORESIGHT];
+        const size_t each = method->times;
+        for (size_t i = 0; i < each; i++) {
+            const double part = method->part[i];
+            for (size_t s = 0; s < ahead; s++) {
+                times[s * each + i] = t[s] + part * (t[s + 1] - t[s]);
+            }
+        }
+        if (sys->harmonics > sys->base_harmonics + sys->limit_harmonics) {
+            tribo_system_foresee(sys, each * ahead, times);
+        }
         take_steps(drv, left < AHEAD ? (size_t)left : AHEAD, t, &from, &to, method, status);
     }
     return from;

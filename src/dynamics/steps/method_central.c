@@ -48,9 +48,14 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* What u, the velocity at the time from, becomes at the time to without friction: forces at t and q. */
-static void kick_freely(struct step_form *s, tribo_system *sys, const struct body_step *k)
+/* What u, the velocity at the time from, becomes at the time to. Adds to the energy. */
+static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
 {
+    struct central *x = drv->own;
+    struct step_form *s = &x->common;
+    tribo_system *sys = drv->sys;
+    tribo_step_form_begin(s, sys, k->from, k->u);
+    /* without friction: forces at t and q */
     tribo_system_set_time(sys, k->t);
     memset(s->a, 0, sys->ndof * sizeof *s->a);
     tribo_system_loads(sys, DRIVES_LOAD, 0, 1.0, s->a);
@@ -61,16 +66,6 @@ static void kick_freely(struct step_form *s, tribo_system *sys, const struct bod
     for (size_t i = 0; i < sys->ndof; i++) {
         k->u_to[i] = k->u[i] + k->time * s->a[i];
     }
-}
-
-/* The same with friction. Adds to the energy. */
-static int kick(tribo_driver *drv, const struct body_step *k, double *energy)
-{
-    struct central *x = drv->own;
-    struct step_form *s = &x->common;
-    tribo_system *sys = drv->sys;
-    tribo_step_form_begin(s, sys, k->from, k->u);
-    kick_freely(s, sys, k);
     sys->evaluations++;
     tribo_step_form_find_base(s, sys, k->to);
     tribo_step_form_relative(s, sys, k->u_to, s->end);
@@ -106,13 +101,6 @@ static int synchronise(tribo_driver *drv, double t, double *y)
     return status;
 }
 
-static void drift(size_t n, double h, const double *q, const double *u, double *q_to)
-{
-    for (size_t i = 0; i < n; i++) {
-        q_to[i] = q[i] + h * u[i];
-    }
-}
-
 /* A step of all contacts together. */
 static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
 {
@@ -122,7 +110,9 @@ static int step_all(tribo_driver *drv, const struct body_step *k, double *y)
     const int status = kick(drv, k, &x->energy);
     s->goes_on = 1;
     if (!status) {
-        drift(n, k->h, k->q, k->u_to, k->q_to);
+        for (size_t i = 0; i < n; i++) {
+            k->q_to[i] = k->q[i] + k->h * k->u_to[i];
+        }
         memcpy(y + n, k->u_to, n * sizeof *y);
         y[2 * n] = x->energy;
     }

@@ -144,29 +144,6 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     return !status;
 }
 
-/* S^-1 J' is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
-static int keeps_response(const struct moreau *m, const tribo_system *sys)
-{
-    return !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
-}
-
-/* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] = S^-1 J'. */
-static void find_by_halves(const struct moreau *m, const tribo_system *sys, double *x, double *r, double *own)
-{
-    const size_t n = sys->ndof, c = sys->ncontact;
-    for (size_t i = 0; i < c; i++) {
-        tribo_delassus_put_row(&sys->direction, i, x + i * n);
-        tribo_step_matrix_half_solve(&m->matrix, x + i * n);
-        for (size_t k = 0; k <= i; k++) {
-            r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
-        }
-    }
-    for (size_t i = 0; i < c; i++) {
-        tribo_step_matrix_half_solve_back(&m->matrix, x + i * n);
-        tribo_delassus_note_own(&sys->direction, i, x + i * n, own);
-    }
-}
-
 static int solve_steps(const void *matrix, size_t count, double *x)
 {
     return tribo_step_matrix_solve(matrix, count, x);
@@ -177,7 +154,20 @@ static int find_operator(const struct moreau *m, const tribo_system *sys, double
 {
     const int symmetric = tribo_step_matrix_has_halves(&m->matrix);
     if (symmetric && m->response) {
-        find_by_halves(m, sys, m->response, r, own);
+        /* r = W'W with W = H^-1 J', S = H H', as symmetric and semidefinite as rounding lets it be, and x [ncontact][ndof] = S^-1 J'. */
+        double *x = m->response;
+        const size_t n = sys->ndof, c = sys->ncontact;
+        for (size_t i = 0; i < c; i++) {
+            tribo_delassus_put_row(&sys->direction, i, x + i * n);
+            tribo_step_matrix_half_solve(&m->matrix, x + i * n);
+            for (size_t k = 0; k <= i; k++) {
+                r[i * c + k] = r[k * c + i] = tribo_dot(x + i * n, x + k * n, n);
+            }
+        }
+        for (size_t i = 0; i < c; i++) {
+            tribo_step_matrix_half_solve_back(&m->matrix, x + i * n);
+            tribo_delassus_note_own(&sys->direction, i, x + i * n, own);
+        }
         return 1;
     }
     const int done = tribo_delassus_by_columns(&sys->direction, solve_steps, &m->matrix, m->response, r, own);
@@ -195,7 +185,9 @@ static int prepare_whole(struct moreau *m, const tribo_system *sys, double h)
     if (status) {
         return status;
     }
-    const int keeps = keeps_response(m, sys);
+    /* S^-1 J' is kept unless it is more than a fifth of a sparse factor: then a step is one solve. */
+    const int keeps =
+        !m->matrix.sparse.sparse || sys->ncontact * sys->ndof <= tribo_sparse_factor_entries(m->matrix.sparse.sparse) / 5;
     free(m->response);
     m->response = keeps ? malloc((c * sys->ndof + 1) * sizeof *m->response) : NULL;
     double *r = calloc(c * c + 1, sizeof *r), *own = malloc((sys->direction.first[c] + 1) * sizeof *own);
@@ -274,15 +266,6 @@ static void take_limits(struct moreau *m, const tribo_system *sys)
     }
 }
 
-static void give_limits(struct moreau *m, const tribo_system *sys)
-{
-    if (m->tell) {
-        tribo_set_limit(m->contacts, m->limit);
-        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
-        m->tell = 0;
-    }
-}
-
 /* -------------------------------------------------------------------------------------------------------- without mass */
 
 static void begin_elastic(struct moreau *m, tribo_system *sys, double *y)
@@ -303,33 +286,6 @@ static void keep_half(const struct moreau *m, const tribo_system *sys, double h,
         if (tribo_massless_touches(&sys->massless, i)) {
             tribo_add(u, 0.5 * h * m->spring[i], m->response + i * sys->ndof, sys->ndof);
         }
-    }
-}
-
-/* What decides about elastic contacts is all that J moves over the step. */
-static void take_both_ends(struct step_form *s, const tribo_system *sys)
-{
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        s->end[i] += tribo_massless_touches(&sys->massless, i) ? s->v[i] : 0.0;
-    }
-}
-
-static void note_slip(struct moreau *m, const tribo_system *sys)
-{
-    tribo_get_slip(m->contacts, m->common.mode);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        m->loose[i] = (signed char)(tribo_massless_touches(&sys->massless, i) ? 1 : m->common.mode[i]);
-    }
-}
-
-/* Forces at the end of the step; what has no mass, there. */
-static void end_elastic(struct moreau *m, const tribo_system *sys, double *y)
-{
-    double *f = m->common.f;
-    if (sys->massless.count) {
-        memcpy(m->spring, f, sys->ncontact * sizeof *f);
-        tribo_elastic_give(sys, f, y);
-        tribo_elastic_move(sys, m->common.mode, m->common.base, y + sys->ndof, m->rate);
     }
 }
 
@@ -384,8 +340,15 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     }
     keep_half(m, sys, h, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);
-    take_both_ends(s, sys);
-    give_limits(m, sys);
+    /* What decides about elastic contacts is all that J moves over the step. */
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        s->end[i] += tribo_massless_touches(&sys->massless, i) ? s->v[i] : 0.0;
+    }
+    if (m->tell) {
+        tribo_set_limit(m->contacts, m->limit);
+        tribo_set_static(m->contacts, m->ratio, tribo_system_falls(sys) ? m->velocity : NULL);
+        m->tell = 0;
+    }
     const int status = tribo_step_form_force(s, sys, m->contacts, h);
     if (status) {
         return status;
@@ -394,7 +357,10 @@ static int respond_whole(struct moreau *m, const tribo_system *sys, double h, co
     for (size_t i = 0; i < sys->ncontact; i++) {
         s->f[i] *= tribo_massless_touches(&sys->massless, i) ? 2.0 : 1.0;
     }
-    note_slip(m, sys);
+    tribo_get_slip(m->contacts, m->common.mode);
+    for (size_t i = 0; i < sys->ncontact; i++) {
+        m->loose[i] = (signed char)(tribo_massless_touches(&sys->massless, i) ? 1 : m->common.mode[i]);
+    }
     return TRIBO_OK;
 }
 
@@ -462,7 +428,13 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         y[n + i] = s->u[i];
     }
     y[2 * n] = from[2 * n] + h * tribo_step_form_power(sys, s->f, s->v, s->end);
-    end_elastic(m, sys, y);
+    /* Forces at the end of the step; what has no mass, there. */
+    double *f = m->common.f;
+    if (sys->massless.count) {
+        memcpy(m->spring, f, sys->ncontact * sizeof *f);
+        tribo_elastic_give(sys, f, y);
+        tribo_elastic_move(sys, m->common.mode, m->common.base, y + sys->ndof, m->rate);
+    }
     return tribo_driver_check(drv, y);
 }
 

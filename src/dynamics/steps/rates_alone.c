@@ -29,17 +29,6 @@ static size_t apart(size_t x, size_t y)
     return x > y ? x - y : y - x;
 }
 
-static size_t find_reach(const struct bodies_alone *b)
-{
-    size_t reach = 0;
-    for (size_t k = 0; k < b->blocks; k++) {
-        for (size_t e = b->first[k]; e < b->first[k + 1]; e++) {
-            reach = apart(k, b->pulled[e]) > reach ? apart(k, b->pulled[e]) : reach;
-        }
-    }
-    return reach;
-}
-
 int tribo_rates_create(struct rates_alone *r, const tribo_system *sys)
 {
     const size_t n = stride_of(sys);
@@ -56,7 +45,13 @@ int tribo_rates_create(struct rates_alone *r, const tribo_system *sys)
         return 0;
     }
     r->blocks = r->bodies.blocks;
-    r->reach = find_reach(&r->bodies);
+    size_t reach = 0;
+    for (size_t k = 0; k < r->bodies.blocks; k++) {
+        for (size_t e = r->bodies.first[k]; e < r->bodies.first[k + 1]; e++) {
+            reach = apart(k, r->bodies.pulled[e]) > reach ? apart(k, r->bodies.pulled[e]) : reach;
+        }
+    }
+    r->reach = reach;
     r->own = tribo_aligned(r->memory);
     for (size_t k = 0; k < RATES_TIMES; k++) {
         r->load[k] = r->own + (4 + k) * n;
@@ -127,16 +122,6 @@ static int alike(const struct rates_block *x, const struct rates_block *y, size_
            same_row(x->rate, y->rate, n);
 }
 
-/* Blocks, which are read where the one before is if they are alike. */
-static void share_blocks(struct rates_alone *r, const tribo_system *sys)
-{
-    for (size_t k = 0; k < r->blocks; k++) {
-        const struct rates_block own = own_block(r, sys, k);
-        const int same = k && alike(&r->block[k - 1], &own, tribo_bodies_of_block(sys, k));
-        r->block[k] = same ? r->block[k - 1] : own;
-    }
-}
-
 void tribo_rates_prepare(struct rates_alone *r, tribo_system *sys)
 {
     int law;
@@ -146,7 +131,12 @@ void tribo_rates_prepare(struct rates_alone *r, tribo_system *sys)
               !tribo_system_limits_vary(sys) && take_contacts(r, sys, law);
     if (r->fits) {
         memset(r->load[0], 0, RATES_TIMES * stride_of(sys) * sizeof *r->load[0]);
-        share_blocks(r, sys);
+        /* Blocks, which are read where the one before is if they are alike. */
+        for (size_t k = 0; k < r->blocks; k++) {
+            const struct rates_block own = own_block(r, sys, k);
+            const int same = k && alike(&r->block[k - 1], &own, tribo_bodies_of_block(sys, k));
+            r->block[k] = same ? r->block[k - 1] : own;
+        }
     }
 }
 

@@ -40,14 +40,6 @@ void tribo_step_band_free(struct step_band *b)
 
 /* ---------------------------------------------------------------------------------------------------- whether it applies */
 
-static size_t width_of(const tribo_system *sys)
-{
-    size_t below = 0, above = 0;
-    tribo_matrix_widen(&sys->stiffness, &below, &above);
-    tribo_matrix_widen(&sys->damping, &below, &above);
-    return below > above ? below : above;
-}
-
 /* Each contact touches one body, and each body one contact at most. seen [ndof] is workspace, all zero. */
 static int each_its_own(const struct matrix *j, signed char *seen)
 {
@@ -108,7 +100,10 @@ static int applies(struct step_band *b, const tribo_system *sys)
     for (size_t i = 0; i < n; i++) {
         b->mass[i] = tribo_matrix_get(&sys->mass, i, i);
     }
-    b->width = width_of(sys);
+    size_t below = 0, above = 0;
+    tribo_matrix_widen(&sys->stiffness, &below, &above);
+    tribo_matrix_widen(&sys->damping, &below, &above);
+    b->width = below > above ? below : above;
     memset(b->held, 0, n);
     return 2 * b->width <= sys->ncontact && each_its_own(&sys->direction, b->held) && symmetric(&sys->stiffness, b->mass) &&
            symmetric(&sys->damping, b->mass);
@@ -184,16 +179,6 @@ static double row_dot(const struct step_band *b, size_t i, const double *x, doub
     return sum;
 }
 
-/* Marks the bodies that contacts hold; the factor is of no more use if these are others than before. */
-static void hold(struct step_band *b)
-{
-    for (size_t i = 0; i < b->count; i++) {
-        const signed char holds = b->at[i] ? FREE : HOLDS;
-        b->factored &= b->held[b->body[i]] == holds;
-        b->held[b->body[i]] = holds;
-    }
-}
-
 /* Moves by which held bodies stay with the base; whether there are any. */
 static int find_moves(struct step_band *b, const double *base, const double *u)
 {
@@ -206,24 +191,17 @@ static int find_moves(struct step_band *b, const double *base, const double *u)
     return any;
 }
 
-/* What of x comes from the moves of held bodies, and those near them, goes to the other side. */
-static void take_moves(const struct step_band *b, double *x)
-{
-    const size_t w = b->width;
-    for (size_t i = 0; i < b->count; i++) {
-        const size_t d = b->body[i], end = d + w < b->n ? d + w : b->n - 1;
-        for (size_t j = begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
-            x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
-        }
-    }
-}
-
 /* x = du and the forces with the sets as they are. */
 static void solve_sets(struct step_band *b, double h, const double *limit, const double *base, const double *u, double *x,
                        double *f)
 {
     const double doubt = 8.0 * DBL_EPSILON;
-    hold(b);
+    /* Marks the bodies that contacts hold; the factor is of no more use if these are others than before. */
+    for (size_t i = 0; i < b->count; i++) {
+        const signed char holds = b->at[i] ? FREE : HOLDS;
+        b->factored &= b->held[b->body[i]] == holds;
+        b->held[b->body[i]] = holds;
+    }
     if (!b->factored) {
         factorize(b);
     }
@@ -233,7 +211,14 @@ static void solve_sets(struct step_band *b, double h, const double *limit, const
         x[b->body[i]] += h * b->lever[i] * f[i];
     }
     if (find_moves(b, base, u)) {
-        take_moves(b, x);
+        /* What of x comes from the moves of held bodies, and those near them, goes to the other side. */
+        const size_t w = b->width;
+        for (size_t i = 0; i < b->count; i++) {
+            const size_t d = b->body[i], end = d + w < b->n ? d + w : b->n - 1;
+            for (size_t j = begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
+                x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
+            }
+        }
     }
     for (size_t d = 0; d < b->n; d++) {
         x[d] = b->held[d] ? 0.0 : x[d];
@@ -299,13 +284,6 @@ static void sweep(struct step_band *b, size_t reach, int upwards)
     }
 }
 
-static void clamp_all(const struct step_band *b, const double *limit, double *f)
-{
-    for (size_t i = 0; i < b->count; i++) {
-        f[i] = clamp(f[i], -limit[i], limit[i]);
-    }
-}
-
 int tribo_step_band_solve(struct step_band *b, double h, const double *limit, const double *base, const double *u, double *du,
                           double *f)
 {
@@ -315,7 +293,9 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
         solve_sets(b, h, limit, base, u, du, f);
         revise(b, h, limit, base, u, du, f, &freed, &caught);
         if (freed + caught == 0) {
-            clamp_all(b, limit, f);
+            for (size_t i = 0; i < b->count; i++) {
+                f[i] = clamp(f[i], -limit[i], limit[i]);
+            }
             return 1;
         }
         reach = caught ? 0 : 2 * reach + 1;

@@ -157,14 +157,6 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
 
 /* ------------------------------------------------------------------------------------------------------------- solutions */
 
-static void solve_lopsided(const struct step_matrix *m, double *x)
-{
-    gsl_matrix_view a = gsl_matrix_view_array(m->band, m->n, 2 * m->below + m->above + 1);
-    gsl_vector_view b = gsl_vector_view_array(x, m->n);
-    const gsl_vector_uint pivot = {m->n, 1, m->pivot, NULL, 0};
-    gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
-}
-
 int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x)
 {
     if (m->sparse.n) {
@@ -172,7 +164,10 @@ int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x
     }
     for (size_t k = 0; k < count; k++) {
         if (m->pivot) {
-            solve_lopsided(m, x + k * m->n);
+            gsl_matrix_view a = gsl_matrix_view_array(m->band, m->n, 2 * m->below + m->above + 1);
+            gsl_vector_view b = gsl_vector_view_array((x + k * m->n), m->n);
+            const gsl_vector_uint pivot = {m->n, 1, m->pivot, NULL, 0};
+            gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
         } else {
             tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
         }

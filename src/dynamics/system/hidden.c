@@ -15,20 +15,6 @@
 /* Contacts whose bodies differ by less have small pivots for another reason. */
 #define APART 1e3
 
-/* How much more the body that gives way most in contact i does than the one that does least. */
-static double spread_of(const struct matrix *j, const double *own, size_t i)
-{
-    double least = HUGE_VAL, most = 0.0;
-    for (size_t k = j->first[i]; k < j->first[i + 1]; k++) {
-        const double share = fabs(product(j->val[k], own[k]));
-        if (share > 0.0) {
-            least = lesser(least, share);
-            most = greater(most, share);
-        }
-    }
-    return most > 0.0 ? quotient(most, least) : 1.0;
-}
-
 /* How many pivots of the Cholesky factorization of r, with the largest first and the diagonal scaled to 1, are not small; r is
  * used up. */
 static size_t large_pivots(double *r, size_t n)
@@ -72,7 +58,16 @@ int tribo_hidden(const struct matrix *direction, const struct matrix *mass, cons
     const size_t n = direction->rows;
     where->spread = 1.0;
     for (size_t i = 0; i < n; i++) {
-        const double spread = spread_of(direction, own, i);
+        /* How much more the body that gives way most in contact i does than the one that does least. */
+        double least = HUGE_VAL, most = 0.0;
+        for (size_t k = direction->first[i]; k < direction->first[i + 1]; k++) {
+            const double share = fabs(product(direction->val[k], own[k]));
+            if (share > 0.0) {
+                least = lesser(least, share);
+                most = greater(most, share);
+            }
+        }
+        const double spread = most > 0.0 ? quotient(most, least) : 1.0;
         if (spread > where->spread) {
             *where = (struct hidden){i, spread};
         }

@@ -76,14 +76,6 @@ static int find_limit_rates(tribo_system *sys, double *df_dt)
     return status;
 }
 
-/* Contacts at a state: forces in sys->f, how they follow v and a, and df_dt, as find_limit_rates has it. Returns a status. */
-static int find_contacts(tribo_system *sys, double t, const double y[], const struct dense *d, double *df_dt)
-{
-    tribo_system_free_motion(sys, t, y, d->load, sys->v, sys->a);
-    const int status = find_limit_rates(sys, df_dt);
-    return status ? status : tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d->df_dv, d->df_da);
-}
-
 /* pull = (df/da) J,  df/dq = -pull AK,  df/du = (df/dv) J - pull AC */
 static void follow_state(size_t n, size_t m, const struct dense *d)
 {
@@ -157,7 +149,10 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     }
     const struct dense d = dense_of(sys);
     double *df_dt = sys->feq;
-    sys->status = find_contacts(sys, t, y, &d, df_dt);
+    /* Contacts at a state: forces in sys->f, how they follow v and a, and df_dt, as find_limit_rates has it. Returns a status. */
+    tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
+    const int status = find_limit_rates(sys, df_dt);
+    sys->status = status ? status : tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
     if (sys->status) {
         return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
     }

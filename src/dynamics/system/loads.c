@@ -156,16 +156,6 @@ void tribo_system_put_limits(tribo_system *sys, double later)
     sys->ours += sys->seen - before;
 }
 
-/* Makes the limits of the context those of the time set. */
-static void follow_limits(tribo_system *sys)
-{
-    if (sys->seen != tribo_revision(sys->contacts)) {
-        find_given_limits(sys);
-    }
-    sys->limits.at = knot_at(&sys->limits, sys->time);
-    tribo_system_put_limits(sys, 0.0);
-}
-
 void tribo_system_set_low(tribo_system *sys, double low)
 {
     if (low != sys->low) {
@@ -184,7 +174,12 @@ void tribo_system_set_time(tribo_system *sys, double t)
         }
     }
     if (tribo_system_limits_vary(sys) && (moves || sys->seen != tribo_revision(sys->contacts))) {
-        follow_limits(sys);
+        /* Makes the limits of the context those of the time set. */
+        if (sys->seen != tribo_revision(sys->contacts)) {
+            find_given_limits(sys);
+        }
+        sys->limits.at = knot_at(&sys->limits, sys->time);
+        tribo_system_put_limits(sys, 0.0);
     }
 }
 

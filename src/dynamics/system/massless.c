@@ -111,14 +111,6 @@ struct statics {
     double *x;              /* [n] */
 };
 
-static void free_statics(struct statics *s)
-{
-    tribo_cholesky_free(&s->factor);
-    free(s->dof);
-    free(s->place);
-    free(s->x);
-}
-
 static int no_hold(const struct model *m, size_t dof, double pivot)
 {
     return tribo_model_fail(m, TRIBO_ERR_INDEFINITE,
@@ -316,7 +308,10 @@ static int find_statics(const struct model *m, struct massless *w)
     if (!status && (!respond(m, w, &s, &m->stiffness, -1.0, &w->follow) || !respond(m, w, &s, &m->direction, 1.0, &w->give))) {
         status = tribo_model_no_memory(m);
     }
-    free_statics(&s);
+    tribo_cholesky_free(&s.factor);
+    free(s.dof);
+    free(s.place);
+    free(s.x);
     return status;
 }
 
@@ -410,17 +405,6 @@ static int build(struct model *m, struct massless *w, int (*build_massive)(struc
     return status;
 }
 
-/* Without accelerations nobody knows what follows statically. */
-static int check_size(const struct model *m, const struct massless *w)
-{
-    return m->ndof <= DENSE_MOST || tribo_matrix_is_diagonal(&m->mass)
-               ? TRIBO_OK
-               : tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                  "%zu degree%s of freedom have no mass: with a mass matrix that is not diagonal there may be %d "
-                                  "in all, not %zu degree%s of freedom",
-                                  w->count, plural(w->count), DENSE_MOST, m->ndof, plural(m->ndof));
-}
-
 int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)
 {
     struct massless w = {0};
@@ -428,7 +412,14 @@ int tribo_model_build_massless(struct model *m, int (*build_massive)(struct mode
     if (status || w.count == 0 || w.count == m->ndof) {
         status = status ? status : build_massive(m, sys);
     } else {
-        status = check_size(m, &w);
+        /* Without accelerations nobody knows what follows statically. */
+        status = m->ndof <= DENSE_MOST || tribo_matrix_is_diagonal(&m->mass)
+                     ? TRIBO_OK
+                     : tribo_model_fail(
+                           m, TRIBO_ERR_UNSUPPORTED,
+                           "%zu degree%s of freedom have no mass: with a mass matrix that is not diagonal there may be %d "
+                           "in all, not %zu degree%s of freedom",
+                           w.count, plural(w.count), DENSE_MOST, m->ndof, plural(m->ndof));
         status = status ? status : check_damping(m, &w);
         status = status ? status : find_statics(m, &w);
         status = status ? status : build(m, &w, build_massive, sys);

@@ -51,19 +51,6 @@ static void take(struct snapping *s, size_t i, size_t to, size_t from)
     }
 }
 
-/* What one contact alone stops is known. */
-static void mark_single(struct snapping *s)
-{
-    const struct matrix *j = &s->sys->direction;
-    memset(s->known, 0, s->sys->ndof * sizeof *s->known);
-    for (size_t i = 0; i < s->sys->ncontact; i++) {
-        const size_t first = j->first[i];
-        if (!s->loose[i] && j->first[i + 1] - first == 1) {
-            s->known[j->col[first]] = 1.0;
-        }
-    }
-}
-
 /* Entry `to` of row i, a pair, follows the other one. */
 static void snap_pair(struct snapping *s, size_t i, size_t to)
 {
@@ -76,20 +63,6 @@ static void snap_pair(struct snapping *s, size_t i, size_t to)
 static int knows(const struct snapping *s, size_t entry)
 {
     return s->known[s->sys->direction.col[entry]] != 0.0;
-}
-
-/* What is known takes along what is not; returns how often. */
-static size_t snap_known(struct snapping *s)
-{
-    size_t found = 0;
-    for (size_t i = 0; i < s->sys->ncontact; i++) {
-        const size_t first = s->sys->direction.first[i];
-        if (is_pair(s, i) && knows(s, first) != knows(s, first + 1)) {
-            snap_pair(s, i, first + (size_t)knows(s, first));
-            found++;
-        }
-    }
-    return found;
 }
 
 /* Where nothing is known, the pair with the heaviest body makes a beginning; returns 0 if there is none. */
@@ -112,15 +85,6 @@ static size_t snap_heaviest(struct snapping *s)
     return found < s->sys->ncontact;
 }
 
-static void snap_pairs(struct snapping *s)
-{
-    mark_single(s);
-    for (size_t done = 1; done;) {
-        done = snap_known(s);
-        done = done ? done : snap_heaviest(s);
-    }
-}
-
 /* No contact moves what an earlier one touches. */
 void tribo_system_order_snaps(tribo_system *sys)
 {
@@ -138,16 +102,6 @@ void tribo_system_order_snaps(tribo_system *sys)
     }
 }
 
-/* The same for entry `to` alone, which each step asks for of many. */
-static inline void take_alone(struct snapping *s, size_t i, size_t to)
-{
-    if (s->list) {
-        take(s, i, to, to);
-    } else {
-        s->x[s->sys->direction.col[to]] = s->base[i] / s->sys->direction.val[to];
-    }
-}
-
 /* Whoever has one degree of freedom; in order, all. Returns whether any are left. */
 static int snap_first(struct snapping *s)
 {
@@ -155,7 +109,13 @@ static int snap_first(struct snapping *s)
     int left = 0;
     for (size_t i = 0, n = s->sys->ncontact; i < n; i++) {
         if (!s->loose[i] && first[i + 1] - first[i] == 1) {
-            take_alone(s, i, first[i]);
+            /* The same for entry `to` alone, which each step asks for of many. */
+            const size_t to = first[i];
+            if (s->list) {
+                take(s, i, to, to);
+            } else {
+                s->x[s->sys->direction.col[to]] = s->base[i] / s->sys->direction.val[to];
+            }
         } else if (s->sys->snaps_in_order && is_pair(s, i)) {
             const size_t to = first[i] + follows(s->sys, i, first[i]);
             take(s, i, to, 2 * first[i] + 1 - to);
@@ -169,7 +129,28 @@ static int snap_first(struct snapping *s)
 static void snap(struct snapping *s)
 {
     if (snap_first(s) && !s->sys->snaps_in_order) {
-        snap_pairs(s);
+        /* What one contact alone stops is known. */
+        const struct matrix *j = &s->sys->direction;
+        memset(s->known, 0, s->sys->ndof * sizeof *s->known);
+        for (size_t i = 0; i < s->sys->ncontact; i++) {
+            const size_t first = j->first[i];
+            if (!s->loose[i] && j->first[i + 1] - first == 1) {
+                s->known[j->col[first]] = 1.0;
+            }
+        }
+        for (size_t done = 1; done;) {
+            /* What is known takes along what is not; returns how often. */
+            size_t found = 0;
+            for (size_t i = 0; i < s->sys->ncontact; i++) {
+                const size_t first = s->sys->direction.first[i];
+                if (is_pair(s, i) && knows(s, first) != knows(s, first + 1)) {
+                    snap_pair(s, i, first + (size_t)knows(s, first));
+                    found++;
+                }
+            }
+            done = found;
+            done = done ? done : snap_heaviest(s);
+        }
     }
 }
 

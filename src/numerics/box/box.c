@@ -59,19 +59,6 @@ static int box_revise(struct box_qp *p)
     return memcmp(p->to, p->at, g->size) == 0;
 }
 
-static void put_at_bounds(struct box_qp *p)
-{
-    tribo_box_forget_low(p);
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->near[e];
-        p->x[i] = p->at[i] == AT_LOWER ? p->lo[i] : p->at[i] == AT_UPPER ? p->hi[i] : p->x[i];
-    }
-    for (size_t d = 0; d < p->sets->dependents; d++) {
-        const size_t i = p->order[p->sets->rank + d];
-        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
-    }
-}
-
 /* Forces of earlier calls go, which may have been so large that their rounding is what is left of them. */
 static void box_forget(struct box_qp *p)
 {
@@ -85,7 +72,15 @@ static void box_forget(struct box_qp *p)
 /* x with the sets and the factor as they are. Returns whether it is found to rounding. */
 static int box_solve_sets(struct box_qp *p)
 {
-    put_at_bounds(p);
+    tribo_box_forget_low(p);
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        p->x[i] = p->at[i] == AT_LOWER ? p->lo[i] : p->at[i] == AT_UPPER ? p->hi[i] : p->x[i];
+    }
+    for (size_t d = 0; d < p->sets->dependents; d++) {
+        const size_t i = p->order[p->sets->rank + d];
+        p->x[i] = clamp(p->x[i], p->lo[i], p->hi[i]);
+    }
     tribo_box_gradients(p);
     box_refine(p);
     return tribo_box_settled(p, TRIBO_SETTLED);
@@ -261,21 +256,6 @@ static int box_primal(struct box_qp *p)
     return 0;
 }
 
-/* How far x is from the fixed point, in parts of the tolerances: by the acceleration that the contact is free to follow; by all of
- * its gradient where x misses by more than a trace of its box, which may be less than the tolerance altogether. */
-static double box_violation(const struct box_qp *p)
-{
-    double most = 0.0;
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->near[e];
-        const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
-        const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
-        const double counts = fabs(off) > TRIBO_MISSED * p->unit[i] ? fabs(p->gradient[i]) : fabs(off);
-        most = greater(most, quotient(counts, greater(tribo_box_tolerance(p, i), DBL_MIN)));
-    }
-    return most;
-}
-
 static void box_restore(struct box_qp *p, const double *x)
 {
     tribo_box_forget_low(p);
@@ -323,7 +303,17 @@ static double box_share_once(struct box_qp *p, double *before, double *after)
         box_restore(p, after);
     }
     memcpy(after, p->x, p->group->size * sizeof *after);
-    return box_violation(p);
+    /* How far x is from the fixed point, in parts of the tolerances: by the acceleration that the contact is free to follow; by all of
+     * its gradient where x misses by more than a trace of its box, which may be less than the tolerance altogether. */
+    double most = 0.0;
+    for (size_t e = 0; e < p->count; e++) {
+        const size_t i = p->near[e];
+        const double r = p->unit[i] / greater(0.5 * p->hi[i] - 0.5 * p->lo[i], DBL_MIN);
+        const double off = clamp(-p->gradient[i], r * (p->lo[i] - p->x[i]), r * (p->hi[i] - p->x[i]));
+        const double counts = fabs(off) > TRIBO_MISSED * p->unit[i] ? fabs(p->gradient[i]) : fabs(off);
+        most = greater(most, quotient(counts, greater(tribo_box_tolerance(p, i), DBL_MIN)));
+    }
+    return most;
 }
 
 /* A solution as without earlier calls. Returns 0 if none is found with patience. */

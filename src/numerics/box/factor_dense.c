@@ -69,10 +69,20 @@ void tribo_dense_add(struct box_qp *p, size_t i)
     }
 }
 
-/* Row at leaves the factor: the rows below move up, their diagonal to the right of the new one, and rotations of neighbouring
- * columns make the matrix triangular again. */
-static void dense_take_out(struct box_qp *p, size_t at)
+void tribo_dense_remove(struct box_qp *p, size_t i)
 {
+    const size_t all = p->sets->rank + p->sets->dependents;
+    size_t at = 0;
+    while (p->order[at] != i) {
+        at++;
+    }
+    memmove(p->order + at, p->order + at + 1, (all - at - 1) * sizeof *p->order);
+    if (at >= p->sets->rank) {
+        p->sets->dependents--;
+        return;
+    }
+    /* Row at leaves the factor: the rows below move up, their diagonal to the right of the new one, and rotations of neighbouring
+     * columns make the matrix triangular again. */
     const struct group *g = p->group;
     const size_t size = g->size;
     p->sets->rank--;
@@ -90,21 +100,6 @@ static void dense_take_out(struct box_qp *p, size_t at)
             m[k + 1] = c * y - s * x;
         }
     }
-}
-
-void tribo_dense_remove(struct box_qp *p, size_t i)
-{
-    const size_t all = p->sets->rank + p->sets->dependents;
-    size_t at = 0;
-    while (p->order[at] != i) {
-        at++;
-    }
-    memmove(p->order + at, p->order + at + 1, (all - at - 1) * sizeof *p->order);
-    if (at >= p->sets->rank) {
-        p->sets->dependents--;
-        return;
-    }
-    dense_take_out(p, at);
     /* what depended on the one that left may be independent now */
     const size_t waiting = p->sets->dependents;
     p->sets->dependents = 0;

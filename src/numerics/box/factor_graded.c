@@ -35,37 +35,17 @@ static void graded_set_factor(const struct box_qp *p, size_t i, size_t j, struct
 
 /* ---------------------------------------------------------------------------------------------------------- rebuild */
 
-static void graded_load(struct box_qp *p, size_t all)
-{
-    for (size_t i = 0; i < all; i++) {
-        for (size_t j = 0; j <= i; j++) {
-            graded_set_factor(p, i, j, graded_entry(p, p->order[i], p->order[j]));
-        }
-    }
-}
-
-static void graded_eliminate(struct box_qp *p, size_t all, size_t k)
-{
-    const struct twofold inverse = twofold_inverse_root(graded_factor(p, k, k));
-    graded_set_factor(p, k, k, inverse);
-    for (size_t i = k + 1; i < all; i++) {
-        graded_set_factor(p, i, k, twofold_times(graded_factor(p, i, k), inverse));
-    }
-    for (size_t i = k + 1; i < all; i++) {
-        const struct twofold x = graded_factor(p, i, k);
-        for (size_t j = k + 1; x.hi != 0.0 && j <= i; j++) {
-            graded_set_factor(p, i, j, twofold_minus(graded_factor(p, i, j), twofold_times(x, graded_factor(p, j, k))));
-        }
-    }
-}
-
 double tribo_graded_rebuild(struct box_qp *p, size_t *where)
 {
     const struct group *g = p->group;
     const size_t size = g->size, all = tribo_dense_order(p);
     size_t k = 0;
     p->work.factorizations++;
-    graded_load(p, all);
+    for (size_t i = 0; i < all; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            graded_set_factor(p, i, j, graded_entry(p, p->order[i], p->order[j]));
+        }
+    }
     for (; k < all; k++) {
         size_t best = k;
         for (size_t i = k + 1; i < all; i++) {
@@ -81,7 +61,17 @@ double tribo_graded_rebuild(struct box_qp *p, size_t *where)
             p->order[k] = p->order[best];
             p->order[best] = i;
         }
-        graded_eliminate(p, all, k);
+        const struct twofold inverse = twofold_inverse_root(graded_factor(p, k, k));
+        graded_set_factor(p, k, k, inverse);
+        for (size_t i = k + 1; i < all; i++) {
+            graded_set_factor(p, i, k, twofold_times(graded_factor(p, i, k), inverse));
+        }
+        for (size_t i = k + 1; i < all; i++) {
+            const struct twofold x = graded_factor(p, i, k);
+            for (size_t j = k + 1; x.hi != 0.0 && j <= i; j++) {
+                graded_set_factor(p, i, j, twofold_minus(graded_factor(p, i, j), twofold_times(x, graded_factor(p, j, k))));
+            }
+        }
     }
     p->sets->rank = k;
     p->sets->dependents = all - k;
@@ -96,9 +86,10 @@ static struct twofold graded_subtract(const struct box_qp *p, struct twofold y, 
     return twofold_minus(y, twofold_times(graded_factor(p, k, j), x));
 }
 
-/* A power of 2 that brings step to sizes that may be worked with. */
-static double graded_unit(const struct box_qp *p, const double *step)
+void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
 {
+    const size_t rank = p->sets->rank;
+    /* A power of 2 that brings step to sizes that may be worked with. */
     double most = 1.0;
     int e;
     for (size_t k = 0; k < p->sets->rank; k++) {
@@ -106,13 +97,7 @@ static double graded_unit(const struct box_qp *p, const double *step)
         most = greater(most, product(fabs(step[i]), greater(p->scale[i], 1.0)));
     }
     frexp(most, &e);
-    return most > FITS ? ldexp(1.0, -e) : 1.0;
-}
-
-void tribo_graded_solve(const struct box_qp *p, double *step, double *low)
-{
-    const size_t rank = p->sets->rank;
-    const double unit = graded_unit(p, step);
+    const double unit = most > FITS ? ldexp(1.0, -e) : 1.0;
     for (size_t k = 0; k < rank; k++) {
         const size_t i = p->order[k];
         struct twofold y = twofold_scale((struct twofold){unit * step[i], unit * low[i]}, p->scale[i]);

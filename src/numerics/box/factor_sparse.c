@@ -74,24 +74,6 @@ static int copy_rows(struct csr *to, const struct csr *from)
 
 /* ---------------------------------------------------------------------------------------------------------- pattern of L */
 
-/* parent [size] of the elimination tree, NONE for roots (Liu 1990). ancestor [size] is workspace. */
-static void find_tree(const struct sparse *s, size_t *parent, size_t *ancestor)
-{
-    for (size_t k = 0; k < s->r.n; k++) {
-        const size_t i = s->place[k];
-        parent[k] = ancestor[k] = NONE;
-        for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
-            size_t j = s->position[s->r.col[e]];
-            while (j < k && ancestor[j] != k) {
-                const size_t next = ancestor[j];
-                ancestor[j] = k;
-                parent[j] = next == NONE ? k : parent[j];
-                j = next == NONE ? k : next;
-            }
-        }
-    }
-}
-
 /* Walks the entries of L row by row: counts those of every column in count [size] (added to what is there), or if fill puts them
  * at these slots, and counts on. seen [size] is workspace. */
 static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, size_t *count, int fill)
@@ -132,19 +114,6 @@ static void fill_rows(struct sparse *s, size_t *count)
     }
 }
 
-/* What a change and a new factor cost, in nanoseconds, of which only the ratio counts: measured on carpets and chains of 400 to
- * 100,000 contacts. A change goes from its column to the root. */
-static void sparse_estimate(struct sparse *s, const size_t *parent, double *path)
-{
-    for (size_t j = s->r.n; j-- > 0;) {
-        const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
-        path[j] = entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
-        s->change += path[j] / (double)s->r.n;
-        s->rebuild += (0.5 * entries + 4.0) * entries + 6.0;
-    }
-    s->change += 1000.0;
-}
-
 /* 1; 0 if a dense factor is better; -1 if out of memory. */
 static int find_pattern(struct sparse *s)
 {
@@ -157,7 +126,20 @@ static int find_pattern(struct sparse *s)
         return -1;
     }
     size_t *seen = parent + size, *count = parent + 2 * size;
-    find_tree(s, parent, seen);
+    /* parent [size] of the elimination tree, NONE for roots (Liu 1990); seen [size]: ancestors found so far. */
+    for (size_t k = 0; k < s->r.n; k++) {
+        const size_t i = s->place[k];
+        parent[k] = seen[k] = NONE;
+        for (size_t e = s->r.first[i]; e < s->r.first[i + 1]; e++) {
+            size_t j = s->position[s->r.col[e]];
+            while (j < k && seen[j] != k) {
+                const size_t next = seen[j];
+                seen[j] = k;
+                parent[j] = next == NONE ? k : parent[j];
+                j = next == NONE ? k : next;
+            }
+        }
+    }
     memset(count, 0, size * sizeof *count);
     sparse_walk(s, parent, seen, count, 0);
     for (size_t j = 0; j < size; j++) {
@@ -168,7 +150,15 @@ static int find_pattern(struct sparse *s)
     if (good > 0) {
         sparse_walk(s, parent, seen, count, 1);
         fill_rows(s, count);
-        sparse_estimate(s, parent, path);
+        /* What a change and a new factor cost, in nanoseconds, of which only the ratio counts: measured on carpets and chains of 400 to
+         * 100,000 contacts. A change goes from its column to the root. */
+        for (size_t j = s->r.n; j-- > 0;) {
+            const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
+            path[j] = entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
+            s->change += path[j] / (double)s->r.n;
+            s->rebuild += (0.5 * entries + 4.0) * entries + 6.0;
+        }
+        s->change += 1000.0;
     }
     free(parent);
     free(path);
@@ -465,8 +455,7 @@ static int well_conditioned(struct sparse *s)
     const int memory = values && places && at;
     if (memory) {
         double *scale = values + 2 * size;
-        const struct sparse_factor factor = {
-            .l = values + 3 * size, .d = values, .w = values + size, .index = places};
+        const struct sparse_factor factor = {.l = values + 3 * size, .d = values, .w = values + size, .index = places};
         struct box_qp p = {.group = &group, .sets = &sets, .scale = scale, .at = at, .order = places + size, .sparse = factor};
         for (size_t i = 0; i < size; i++) {
             const double *diagonal = tribo_csr_entry(&s->r, i, i);

@@ -68,27 +68,22 @@ void tribo_box_newton(struct box_qp *p)
     }
 }
 
-/* What the gradient consists of where each contact carries what it would alone: forces of earlier calls have no part in it. */
-static void find_terms(struct box_qp *p, int bounded)
-{
-    double *alone = p->step, size;
-    for (size_t e = 0; e < p->group->size; e++) {
-        const size_t i = p->near[e];
-        const double stops = -product(p->q[i], p->scale[i] * p->scale[i]);
-        alone[i] = e >= p->count ? p->x[i] : bounded ? clamp(stops, p->lo[i], p->hi[i]) : stops;
-    }
-    for (size_t e = 0; e < p->count; e++) {
-        const size_t i = p->near[e];
-        tribo_row_dot(p, i, alone, &size);
-        p->terms[i] = size + fabs(p->q[i]);
-    }
-}
-
 void tribo_box_begin(struct box_qp *p, int bounded)
 {
     p->twofold = p->group->graded && tribo_graded_fits(p, bounded);
     if (p->group->nullity && !p->twofold) {
-        find_terms(p, bounded);
+        /* What the gradient consists of where each contact carries what it would alone: forces of earlier calls have no part in it. */
+        double *alone = p->step, size;
+        for (size_t e = 0; e < p->group->size; e++) {
+            const size_t i = p->near[e];
+            const double stops = -product(p->q[i], p->scale[i] * p->scale[i]);
+            alone[i] = e >= p->count ? p->x[i] : bounded ? clamp(stops, p->lo[i], p->hi[i]) : stops;
+        }
+        for (size_t e = 0; e < p->count; e++) {
+            const size_t i = p->near[e];
+            tribo_row_dot(p, i, alone, &size);
+            p->terms[i] = size + fabs(p->q[i]);
+        }
     }
 }
 
