@@ -21,24 +21,24 @@ struct call {
 /* ---------------------------------------------------------------------------------------------------------------- calls */
 
 /* Which way a contact slides by its force: that reaches its limit, or the part of it at which the law lets go. */
-static inline signed char slip_of(double f, double edge)
+static inline signed char alone_slip_of(double f, double edge)
 {
     const double forth = f <= -edge ? FORTH : 0.0, back = f >= edge ? -BACK : 0.0;
     return (signed char)(int)(forth - back); /* numbers as wide as f: vectors of them stay whole */
 }
 
-TRIBO_SIMD static void find_slips(size_t n, double holds, const double *restrict limit, const double *restrict f,
-                                  signed char *restrict slip)
+TRIBO_SIMD static void alone_find_slips(size_t n, double holds, const double *restrict limit, const double *restrict f,
+                                        signed char *restrict slip)
 {
     for (size_t i = 0; i < n; i++) {
-        slip[i] = slip_of(f[i], holds * limit[i]);
+        slip[i] = alone_slip_of(f[i], holds * limit[i]);
     }
 }
 
 TRIBO_SIMD static void find_alike_slips(size_t n, double edge, const double *restrict f, signed char *restrict slip)
 {
     for (size_t i = 0; i < n; i++) {
-        slip[i] = slip_of(f[i], edge);
+        slip[i] = alone_slip_of(f[i], edge);
     }
 }
 
@@ -50,7 +50,7 @@ TRIBO_SIMD static void find_open(size_t n, const double *restrict limit, signed 
 }
 
 /* What the contacts of chunk k did, by their forces f [n]. */
-static void write_slips(const tribo_context *ctx, double holds, size_t k, const double *f, signed char *slip)
+static void alone_write_slips(const tribo_context *ctx, double holds, size_t k, const double *f, signed char *slip)
 {
     const struct chunk *chunk = &ctx->follow.chunk[k];
     const size_t n = tribo_chunk_size(ctx, k * TRIBO_CHUNK);
@@ -59,13 +59,13 @@ static void write_slips(const tribo_context *ctx, double holds, size_t k, const 
         find_alike_slips(n, holds * chunk->largest, f, slip);
         return;
     }
-    find_slips(n, holds, limit, f, slip);
+    alone_find_slips(n, holds, limit, f, slip);
     if (chunk->least == 0.0) {
         find_open(n, limit, slip);
     }
 }
 
-static void keep_forces(tribo_context *ctx, double holds)
+static void alone_keep_forces(tribo_context *ctx, double holds)
 {
     tribo_store_all(ctx);
     ctx->last.slips = SLIPS_IN_FORCES;
@@ -73,7 +73,7 @@ static void keep_forces(tribo_context *ctx, double holds)
 }
 
 /* What calls have found besides forces. */
-static void finish(tribo_context *ctx)
+static void alone_finish(tribo_context *ctx)
 {
     ctx->last.rank = 0;
     ctx->last.linearized = 0;
@@ -87,8 +87,8 @@ static void put_one(tribo_context *ctx, double force, double holds, double *f)
     if (f) {
         *f = force;
     }
-    keep_forces(ctx, holds);
-    finish(ctx);
+    alone_keep_forces(ctx, holds);
+    alone_finish(ctx);
 }
 
 /* The forces of a few contacts are kept. */
@@ -98,7 +98,7 @@ static void find_few(tribo_context *ctx, const struct call *call, double *f)
         call->find(ctx, call, k, ctx->last.f + i);
         tribo_copy(f ? f + i : NULL, ctx->last.f + i, f ? tribo_chunk_size(ctx, i) : 0);
     }
-    keep_forces(ctx, call->holds);
+    alone_keep_forces(ctx, call->holds);
 }
 
 /* Those of many would have to be written to memory and read again: what each contact did is written down while its force is at
@@ -113,7 +113,7 @@ static void find_many(tribo_context *ctx, const struct call *call, double *f)
         if (slide && ctx->follow.chunk[k].least > 0.0) {
             tribo_find_directions(tribo_chunk_size(ctx, i), call->v + i, ctx->last.did.of + i);
         } else {
-            write_slips(ctx, call->holds, k, force, ctx->last.did.of + i);
+            alone_write_slips(ctx, call->holds, k, force, ctx->last.did.of + i);
         }
         tribo_stream_put(&to, tribo_chunk_size(ctx, i));
     }
@@ -122,10 +122,10 @@ static void find_many(tribo_context *ctx, const struct call *call, double *f)
     ctx->last.slips = SLIPS_WRITTEN;
 }
 
-static void find_all(tribo_context *ctx, const struct call *call, double *f)
+static void alone_find_all(tribo_context *ctx, const struct call *call, double *f)
 {
     (ctx->n <= FEW ? find_few : find_many)(ctx, call, f);
-    finish(ctx);
+    alone_finish(ctx);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- balance */
@@ -174,7 +174,7 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
     if (ctx->n == 1) {
         put_one(ctx, balance_one(ctx, *v, *a, plain, feq), holds, f);
     } else {
-        find_all(ctx, &(const struct call){balance_chunk, holds, v, a, feq, 0.0, plain}, f);
+        alone_find_all(ctx, &(const struct call){balance_chunk, holds, v, a, feq, 0.0, plain}, f);
     }
     ctx->last.residual = 0.0;
     return TRIBO_OK;
@@ -183,8 +183,8 @@ int tribo_balance_alone(tribo_context *ctx, const double *v, const double *a, do
 /* ----------------------------------------------------------------------------------------------------------------- step */
 
 /* What stops contacts, scale being 1/dt, within bounds. */
-TRIBO_SIMD static void stop(size_t n, double scale, const double *restrict v, const double *restrict inverse, const double *lower,
-                            const double *upper, double *restrict f)
+TRIBO_SIMD static void alone_stop(size_t n, double scale, const double *restrict v, const double *restrict inverse,
+                                  const double *lower, const double *upper, double *restrict f)
 {
     for (size_t i = 0; lower && i < n; i++) {
         f[i] = clamp(tribo_alone(v[i] * scale, inverse[i]), lower[i], upper[i]);
@@ -224,7 +224,7 @@ void tribo_stop_alone(const tribo_context *ctx, size_t k, double dt, const doubl
     } else if (chunk->alike && !b.lower && b.upper == ctx->follow.contacts.limit + k * TRIBO_CHUNK) {
         stop_alike(n, scale, v, inverse, chunk->largest, f);
     } else {
-        stop(n, scale, v, inverse, b.lower, b.upper, f);
+        alone_stop(n, scale, v, inverse, b.lower, b.upper, f);
     }
 }
 
@@ -275,7 +275,7 @@ int tribo_step_alone(tribo_context *ctx, double dt, const double *v, double *f)
     if (ctx->n == 1) {
         put_one(ctx, step_one(ctx, dt, *v), 1.0, f);
     } else {
-        find_all(ctx, &(const struct call){.find = step_chunk, .holds = 1.0, .v = v, .dt = dt}, f);
+        alone_find_all(ctx, &(const struct call){.find = step_chunk, .holds = 1.0, .v = v, .dt = dt}, f);
     }
     return TRIBO_OK;
 }

@@ -5,37 +5,37 @@
 
 /* The size of a number as one that compares alike: infinity and NaN are larger than all others. As integers they raise no
  * exception. */
-static inline int64_t bits_of(const double *x)
+static inline int64_t check_bits_of(const double *x)
 {
     int64_t bits;
     memcpy(&bits, x, sizeof bits);
     return bits;
 }
 
-static inline int64_t size_of(int64_t bits)
+static inline int64_t check_size_of(int64_t bits)
 {
     return bits & INT64_MAX;
 }
 
 TRIBO_SIMD int tribo_all_within(const double *x, size_t n, double most)
 {
-    const int64_t limit = bits_of(&most);
+    const int64_t limit = check_bits_of(&most);
     int64_t room = 0; /* negative once one is */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        room |= limit - size_of(bits_of(x + i));
+        room |= limit - check_size_of(check_bits_of(x + i));
     }
     return room >= 0;
 }
 
 TRIBO_SIMD int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n)
 {
-    const int64_t limit_x = bits_of(&most_x), limit_y = bits_of(&most_y);
+    const int64_t limit_x = check_bits_of(&most_x), limit_y = check_bits_of(&most_y);
     int64_t room_x = 0, room_y = 0;
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        room_x |= limit_x - size_of(bits_of(x + i));
-        room_y |= limit_y - size_of(bits_of(y + i));
+        room_x |= limit_x - check_size_of(check_bits_of(x + i));
+        room_y |= limit_y - check_size_of(check_bits_of(y + i));
     }
     return (room_x >= 0 ? 1 : 0) | (room_y >= 0 ? 2 : 0);
 }
@@ -54,14 +54,14 @@ int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const doub
 }
 
 /* Whether no sign is set, and all are finite. */
-TRIBO_SIMD static int all_positive(const double *x, size_t n)
+TRIBO_SIMD static int check_all_positive(const double *x, size_t n)
 {
     const double most = DBL_MAX;
-    const uint64_t limit = (uint64_t)bits_of(&most), sign = (uint64_t)1 << 63;
+    const uint64_t limit = (uint64_t)check_bits_of(&most), sign = (uint64_t)1 << 63;
     uint64_t beyond = 0; /* has that sign once one is */
     TRIBO_UNROLLED
     for (size_t i = 0; i < n; i++) {
-        const uint64_t bits = (uint64_t)bits_of(x + i);
+        const uint64_t bits = (uint64_t)check_bits_of(x + i);
         beyond |= bits | (limit - bits);
     }
     return !(beyond & sign);
@@ -70,7 +70,7 @@ TRIBO_SIMD static int all_positive(const double *x, size_t n)
 /* -0 is not negative. */
 int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n)
 {
-    if (x && all_positive(x, n)) {
+    if (x && check_all_positive(x, n)) {
         return TRIBO_OK;
     }
     const int status = tribo_fail_not_finite(ctx, name, x, n);

@@ -94,7 +94,7 @@ TRIBO_SIMD static void force_of_alike_slips(size_t n, const signed char *restric
 }
 
 /* The chunk after next will soon be read, or written. */
-static void expect(const tribo_context *ctx, const double *x, size_t i, int written)
+static void classify_expect(const tribo_context *ctx, const double *x, size_t i, int written)
 {
     if (ctx->n - i > 2 * TRIBO_CHUNK) {
         tribo_expect(x + i + 2 * TRIBO_CHUNK, tribo_chunk_size(ctx, i + 2 * TRIBO_CHUNK) * sizeof *x, written);
@@ -111,7 +111,7 @@ static inline void fold(size_t half, double *least, double *largest)
 }
 
 /* Of a whole chunk, half upon half: one after the other they would have to be looked at in order. */
-TRIBO_SIMD static void find_bounds(const double *x, struct chunk *chunk)
+TRIBO_SIMD static void classify_find_bounds(const double *x, struct chunk *chunk)
 {
     enum { HALF = TRIBO_CHUNK / 2, FEW = 8 };
     double least[HALF], largest[HALF];
@@ -147,9 +147,9 @@ void tribo_take_limits(size_t n, const double *from, double *to, struct chunk *c
         for (size_t k = n; k < TRIBO_CHUNK; k++) {
             whole[k] = from[0];
         }
-        find_bounds(whole, chunk);
+        classify_find_bounds(whole, chunk);
     } else {
-        find_bounds(from, chunk);
+        classify_find_bounds(from, chunk);
     }
 }
 
@@ -188,7 +188,7 @@ size_t tribo_next_near(const signed char *did, size_t *i, size_t end)
 }
 
 /* Of the contacts of a chunk that are in its band those that are near stick. */
-static void narrow(const tribo_context *ctx, const double *v, size_t i, size_t end, signed char *did)
+static void classify_narrow(const tribo_context *ctx, const double *v, size_t i, size_t end, signed char *did)
 {
     double room[TRIBO_CHUNK];
     for (size_t n; (n = tribo_next_near(did, &i, end)) > 0; i += n) {
@@ -226,8 +226,8 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
         const double band = tribo_widest_band(ctx, k);
-        expect(ctx, v, i, 0);
-        expect(ctx, a, i, 0);
+        classify_expect(ctx, v, i, 0);
+        classify_expect(ctx, a, i, 0);
         if (!tribo_all_finite(v + i, n) || !tribo_all_finite(a + i, n)) {
             return check_motion(ctx, v, a);
         }
@@ -237,7 +237,7 @@ int tribo_classify(tribo_context *ctx, const double *v, const double *a)
             memset(now.of + i, STORED, n); /* or not: the law will tell */
         } else if (now.stored[k] == SOME_STORED) {
             find_states(n, v + i, band, now.of + i);
-            narrow(ctx, v, i, i + n, now.of);
+            classify_narrow(ctx, v, i, i + n, now.of);
         } else {
             tribo_find_directions(n, v + i, now.of + i);
         }
@@ -276,7 +276,7 @@ void tribo_forces(const tribo_context *ctx, double *f)
     }
     for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
         const size_t n = tribo_chunk_size(ctx, i);
-        expect(ctx, f, i, 1);
+        classify_expect(ctx, f, i, 1);
         if (ctx->last.did.stored[k] == ALL_STORED) {
             memcpy(f + i, ctx->last.f + i, n * sizeof *f);
         } else {

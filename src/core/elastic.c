@@ -3,7 +3,7 @@
 #include "check.h"
 
 /* TRIBO_OK, or what is wrong with count numbers. */
-static int check(const double *x, size_t count, int nonnegative)
+static int elastic_check(const double *x, size_t count, int nonnegative)
 {
     if (!x && count) {
         return TRIBO_ERR_NULL;
@@ -25,10 +25,10 @@ static int check_all(size_t n, size_t directions, const double *dz, const double
     if (n >= SIZE_MAX / 64) {
         return TRIBO_ERR_SIZE;
     }
-    int status = check(dz, n * directions, 0);
-    status = status ? status : check(stiffness, n, 1);
-    status = status ? status : check(limit, n, 1);
-    return status ? status : check(f, n * directions, 0);
+    int status = elastic_check(dz, n * directions, 0);
+    status = status ? status : elastic_check(stiffness, n, 1);
+    status = status ? status : elastic_check(limit, n, 1);
+    return status ? status : elastic_check(f, n * directions, 0);
 }
 
 int tribo_elastic_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f, double *df_dz)

@@ -124,12 +124,12 @@ static void evaluate_chunk(const tribo_context *ctx, const struct contacts *c, s
 }
 
 /* Whether all contacts of a chunk and of the one before are alike. */
-static inline int goes_on(const struct chunk *chunk)
+static inline int force_goes_on(const struct chunk *chunk)
 {
     return chunk->alike && chunk[-1].alike && chunk->model == chunk[-1].model;
 }
 
-static void evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
+static void force_evaluate(const tribo_context *ctx, int plain, const double *v, const double *feq, double *const *out)
 {
     const int only_f = out[FORCES] && !out[BY_V] && !out[BY_FEQ] && !out[BY_LIMIT];
     if (only_f && plain && !ctx->set.breaking && ctx->n < TRIBO_MANY) {
@@ -138,7 +138,7 @@ static void evaluate(const tribo_context *ctx, int plain, const double *v, const
         for (size_t i = 0, n; i < ctx->n; i += n) {
             const struct contacts c = tribo_chunk_contacts(ctx, i);
             n = tribo_chunk_size(ctx, i);
-            while (i + n < ctx->n && goes_on(&ctx->follow.chunk[(i + n) / TRIBO_CHUNK])) {
+            while (i + n < ctx->n && force_goes_on(&ctx->follow.chunk[(i + n) / TRIBO_CHUNK])) {
                 n += tribo_chunk_size(ctx, i + n);
             }
             ctx->set.law->force(&c, n, v + i, legible_feq(ctx, 1, i, n, v, feq, NULL), f + i);
@@ -183,7 +183,7 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
         *f = ctx->set.law->force_of_one(&ctx->follow.contacts, *v, ctx->set.law->uses_feq ? *feq : 0.0);
         return TRIBO_OK;
     }
-    evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, NULL, NULL, NULL});
+    force_evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, NULL, NULL, NULL});
     return ctx->planar ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
@@ -203,12 +203,12 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
                           "derivatives of planar contact %zu are no diagonals: see tribo_force_tangent_planar",
                           ctx->planar->first[0]);
     }
-    evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
+    force_evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
 }
 
 /* block [n][2] of n numbers that begin it: a scalar contact has nothing beside its own derivative. */
-static void spread(size_t n, double *block)
+static void force_spread(size_t n, double *block)
 {
     for (size_t i = n; block && i-- > 0;) {
         const double own = block[i];
@@ -228,10 +228,10 @@ int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const 
     if (status) {
         return status;
     }
-    evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
-    spread(ctx->n, df_dv);
-    spread(ctx->n, df_dfeq);
-    spread(ctx->n, df_dlimit);
+    force_evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
+    force_spread(ctx->n, df_dv);
+    force_spread(ctx->n, df_dfeq);
+    force_spread(ctx->n, df_dlimit);
     status = ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
     return status || !ctx->planar ? status : tribo_planar_blocks(ctx, v, feq, df_dv, df_dfeq, df_dlimit);
 }

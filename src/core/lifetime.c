@@ -9,7 +9,7 @@
 #define DEFAULT_EPSILON 1e-6
 
 /* All arrays. One contact more than asked for, so that none of them is empty. */
-static void lay_out_arrays(tribo_context *ctx, struct layout *b, size_t n)
+static void context_lay_out_arrays(tribo_context *ctx, struct layout *b, size_t n)
 {
     const size_t m = n + 1, chunks = tribo_chunks(m);
     /* The arrays of n numbers. Each begins a line of cache, and an odd number of lines behind the last: of arrays that are a power of
@@ -35,12 +35,12 @@ static void lay_out_arrays(tribo_context *ctx, struct layout *b, size_t n)
 }
 
 /* A context with arrays of zeros, and all else as in another one; NULL if out of memory. */
-static tribo_context *allocate(size_t n, const tribo_context *like)
+static tribo_context *context_allocate(size_t n, const tribo_context *like)
 {
     struct layout b = {0};
     tribo_context measured, *ctx = tribo_layout_array(&b, 1, sizeof *ctx);
     const size_t begin = b.used;
-    lay_out_arrays(&measured, &b, n);
+    context_lay_out_arrays(&measured, &b, n);
     const size_t end = b.used;
     if (!tribo_layout_create(&b)) {
         return NULL;
@@ -48,7 +48,7 @@ static tribo_context *allocate(size_t n, const tribo_context *like)
     ctx = tribo_layout_array(&b, 1, sizeof *ctx);
     memcpy(ctx, like, sizeof *ctx);
     memset(b.memory + begin, 0, end - begin);
-    lay_out_arrays(ctx, &b, n);
+    context_lay_out_arrays(ctx, &b, n);
     ctx->n = n;
     return ctx;
 }
@@ -62,7 +62,7 @@ int tribo_create(tribo_context **ctx, size_t ncontact)
         return TRIBO_ERR_SIZE;
     }
     static const tribo_context blank;
-    tribo_context *c = allocate(ncontact, &blank);
+    tribo_context *c = context_allocate(ncontact, &blank);
     if (!c || !tribo_operator_diagonal(&c->op, ncontact, NULL)) {
         tribo_destroy(c);
         return TRIBO_ERR_MEMORY;
@@ -91,7 +91,7 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         return tribo_fail(ctx, TRIBO_ERR_NULL, "copy is NULL");
     }
     const size_t n = ctx->n;
-    tribo_context *c = allocate(n, ctx);
+    tribo_context *c = context_allocate(n, ctx);
     if (!c) {
         return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
     }

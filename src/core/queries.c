@@ -18,7 +18,7 @@ int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
 
 /* The force alone tells: only where a law holds the contact is it less than the limit. (The smooth law never reaches the limit;
  * it counts as holding where |v| < epsilon.) */
-static inline signed char slip_of(signed char did, double f, double limit, double holds)
+static inline signed char queries_slip_of(signed char did, double f, double limit, double holds)
 {
     const double edge = holds * limit;
     const int open = !(limit > 0.0), stored = (f <= -edge) - (f >= edge), slip = did + (did == STORED) * stored;
@@ -26,11 +26,11 @@ static inline signed char slip_of(signed char did, double f, double limit, doubl
 }
 
 /* Slips take the place of what contacts did. */
-TRIBO_SIMD static void find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
-                                  signed char *restrict did)
+TRIBO_SIMD static void queries_find_slips(size_t n, const double *restrict f, const double *restrict limit, double holds,
+                                          signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
-        did[i] = slip_of(did[i], f[i], limit[i], holds);
+        did[i] = queries_slip_of(did[i], f[i], limit[i], holds);
     }
 }
 
@@ -38,8 +38,8 @@ void tribo_write_slips(tribo_context *ctx)
 {
     for (size_t i = 0, k = 0; ctx->last.slips == SLIPS_IN_FORCES && i < ctx->n; i += TRIBO_CHUNK, k++) {
         if (ctx->last.did.stored[k] != NONE_STORED || ctx->follow.chunk[k].least == 0.0) {
-            find_slips(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds,
-                       ctx->last.did.of + i);
+            queries_find_slips(tribo_chunk_size(ctx, i), ctx->last.f + i, ctx->follow.contacts.limit + i, ctx->last.holds,
+                               ctx->last.did.of + i);
             ctx->last.did.stored[k] = SOME_STORED;
             ctx->last.did.all_stored = 0;
         }
@@ -66,7 +66,7 @@ int tribo_get_slip(const tribo_context *ctx, signed char *slip)
         memcpy(slip, ctx->last.did.of, ctx->n);
     }
     if (ctx->last.slips == SLIPS_IN_FORCES) {
-        find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
+        queries_find_slips(ctx->n, ctx->last.f, ctx->follow.contacts.limit, ctx->last.holds, slip);
         if (ctx->planar) {
             tribo_planar_slips(ctx, slip);
         }
@@ -78,11 +78,11 @@ static size_t count_stuck(const tribo_context *ctx)
 {
     size_t stuck = 0;
     for (size_t i = 0; ctx->last.slips == SLIPS_IN_FORCES && i < ctx->n; i++) {
-        stuck += slip_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
+        stuck += queries_slip_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
     }
     for (size_t k = 0; ctx->planar && ctx->last.slips == SLIPS_IN_FORCES && k < ctx->planar->count; k++) {
         for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-            stuck -= slip_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
+            stuck -= queries_slip_of(ctx->last.did.of[i], ctx->last.f[i], ctx->follow.contacts.limit[i], ctx->last.holds) == 0;
             stuck += tribo_planar_slip(ctx, k) == 0;
         }
     }

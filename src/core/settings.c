@@ -57,7 +57,7 @@ static double band_of(const struct chunk *chunk, int follows)
 }
 
 /* Whether a chunk's contacts are as those of the one before, in width and rate, and if they are alike in limit too. */
-static inline int goes_on(const struct chunk *chunk)
+static inline int settings_goes_on(const struct chunk *chunk)
 {
     return chunk->even == EVEN_AS_BEFORE && (!chunk->alike || (chunk[-1].alike && chunk->largest == chunk[-1].largest));
 }
@@ -76,7 +76,7 @@ void tribo_refresh_limits(tribo_context *ctx)
         ctx->follow.largest = greater(ctx->follow.largest, chunk->largest);
         chunk->band = band_of(chunk, follows);
         chunk->alike = !ctx->set.breaking && chunk->even && chunk->least == chunk->largest && chunk->largest > 0.0;
-        chunk->model = !ctx->set.breaking && goes_on(chunk) ? chunk[-1].model : k * TRIBO_CHUNK;
+        chunk->model = !ctx->set.breaking && settings_goes_on(chunk) ? chunk[-1].model : k * TRIBO_CHUNK;
     }
     if (!ctx->set.breaking && ctx->follow.largest > lesser(ctx->op->most, TRIBO_FAR / ctx->follow.steepest)) {
         /* Far limits are cut to what the solver tells apart, and the factors to what makes epsilon and slope numbers. */
@@ -396,7 +396,7 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
 /* ------------------------------------------------------------------------------------------------------ static limits */
 
 /* Where a ratio is above 1, or n; either of ratio and velocity may be NULL. */
-static int check_static(const tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
+static int settings_check_static(const tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
 {
     int status = ratio ? tribo_check_finite(ctx, "ratio", ratio, ctx->n) : TRIBO_OK;
     status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
@@ -416,7 +416,7 @@ int tribo_set_static(tribo_context *ctx, const double *ratio, const double *velo
         return TRIBO_ERR_NULL;
     }
     size_t above = ctx->n;
-    int status = check_static(ctx, ratio, velocity, &above);
+    int status = settings_check_static(ctx, ratio, velocity, &above);
     const int breaking = above == ctx->n ? NEVER : velocity ? FALLS : DROPS;
     status = status ? status : tribo_check_breaking(ctx, ctx->set.law, breaking, ratio);
     if (!status && breaking && ctx->planar) {

@@ -7,7 +7,7 @@ struct pull {
     double times, most;
 };
 
-static inline double pull_of(struct pull p, double v)
+static inline double step_pull_of(struct pull p, double v)
 {
     return p.times * clamp(v, -p.most, p.most);
 }
@@ -30,7 +30,7 @@ struct call {
 /* Whether a contact is pulled harder than forces of this limit can hold it, through a row of R with this sum. */
 static inline int out_of_reach(struct pull pull, double v, double row_sum, double limit)
 {
-    return fabs(pull_of(pull, v)) > row_sum * limit;
+    return fabs(step_pull_of(pull, v)) > row_sum * limit;
 }
 
 TRIBO_SIMD static int any_within_reach(size_t n, struct pull pull, const double *restrict v, const double *restrict row_sum,
@@ -104,7 +104,7 @@ static int within_reach(const tribo_context *ctx, const struct box_qp *p, size_t
         return may;
     }
     tribo_row_dot(p, k, l->of, &reach);
-    return !(fabs(pull_of(c->pull, v)) > reach);
+    return !(fabs(step_pull_of(c->pull, v)) > reach);
 }
 
 /* Sets the problem of a group: its contacts in the problem's order, those that take part first. Contacts whose bounds leave no
@@ -123,7 +123,7 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
             p->near[p->count++] = k;
             p->lo[k] = ctx->last.far ? tribo_cut(p, k, lo) : lo;
             p->hi[k] = ctx->last.far ? tribo_cut(p, k, hi) : hi;
-            p->q[k] = pull_of(c->pull, c->v[i]);
+            p->q[k] = step_pull_of(c->pull, c->v[i]);
         } else {
             p->near[--behind] = k;
             p->x[k] = tribo_carried(ctx, p, k);
@@ -133,7 +133,7 @@ static struct box_qp *pose(tribo_context *ctx, size_t g, const struct call *c)
 }
 
 /* Where limits are static: which contacts of a group break away. Returns how many, with their new bounds. */
-static size_t let_go(tribo_context *ctx, struct box_qp *p, double dt)
+static size_t step_let_go(tribo_context *ctx, struct box_qp *p, double dt)
 {
     for (size_t e = 0; e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
@@ -155,7 +155,7 @@ static int solve_for(tribo_context *ctx, struct box_qp *p, const struct call *c)
     int status;
     do {
         status = tribo_solve_group(ctx, p);
-    } while (!status && c->breaks && let_go(ctx, p, c->dt));
+    } while (!status && c->breaks && step_let_go(ctx, p, c->dt));
     for (size_t e = 0; !status && e < p->count; e++) {
         const size_t k = p->near[e], i = p->member[k];
         ctx->last.f[i] = clamp(p->x[k], tribo_lower(b, i), b->upper[i]);

@@ -84,7 +84,7 @@ TRIBO_SIMD static int any_slip_ends(size_t n, const double *restrict v, const do
 }
 
 /* Forces do not tell the slip of contacts that reverse. */
-static void write_slips(tribo_context *ctx, const struct step *s)
+static void step_mean_write_slips(tribo_context *ctx, const struct step *s)
 {
     tribo_write_slips(ctx);
     for (size_t i = 0; i < ctx->n; i++) {
@@ -153,7 +153,7 @@ int tribo_step_force_mean(tribo_context *ctx, double dt, const double *v, const 
         ctx->last.slips = SLIPS_IN_FORCES;
     }
     if (!status && (s.changes || ctx->planar)) {
-        write_slips(ctx, &s);
+        step_mean_write_slips(ctx, &s);
     }
     return status;
 }

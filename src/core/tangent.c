@@ -178,7 +178,7 @@ int tribo_balance_tangent(tribo_context *ctx, const double *v, const double *a, 
 }
 
 /* df [n] of all contacts. */
-static int product_of(tribo_context *ctx, const struct change *d, double *df)
+static int tangent_product_of(tribo_context *ctx, const struct change *d, double *df)
 {
     if (!df && ctx->n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "df is NULL");
@@ -214,7 +214,7 @@ int tribo_tangent_product(tribo_context *ctx, const double *dv, const double *da
     }
     int status = dv ? tribo_check_finite(ctx, "dv", dv, ctx->n) : TRIBO_OK;
     status = status || !da ? status : tribo_check_finite(ctx, "da", da, ctx->n);
-    return status ? status : product_of(ctx, &(struct change){dv, da, NULL}, df);
+    return status ? status : tangent_product_of(ctx, &(struct change){dv, da, NULL}, df);
 }
 
 int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df)
@@ -224,5 +224,5 @@ int tribo_limit_product(tribo_context *ctx, const double *dlimit, double *df)
     }
     int status = tribo_check_finite(ctx, "dlimit", dlimit, ctx->n);
     status = status ? status : tribo_refuse_static(ctx, "tribo_limit_product knows no");
-    return status ? status : product_of(ctx, &(struct change){NULL, NULL, dlimit}, df);
+    return status ? status : tangent_product_of(ctx, &(struct change){NULL, NULL, dlimit}, df);
 }

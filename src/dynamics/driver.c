@@ -29,24 +29,24 @@ const char *tribo_method_name(int method)
     return method >= 0 && method < tribo_method_count() ? methods[method]->name : NULL;
 }
 
-static int lower(char c)
+static int driver_lower(char c)
 {
     return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
 }
 
-static int same_name(const char *a, const char *b)
+static int driver_same_name(const char *a, const char *b)
 {
-    while (*a && lower(*a) == lower(*b)) {
+    while (*a && driver_lower(*a) == driver_lower(*b)) {
         a++;
         b++;
     }
-    return lower(*a) == lower(*b);
+    return driver_lower(*a) == driver_lower(*b);
 }
 
-static const struct method *find(const char *name)
+static const struct method *driver_find(const char *name)
 {
     for (int i = 0; i < tribo_method_count(); i++) {
-        if (same_name(methods[i]->name, name)) {
+        if (driver_same_name(methods[i]->name, name)) {
             return methods[i];
         }
     }
@@ -85,7 +85,7 @@ static int check_parameters(const tribo_system *sys, const struct method *method
 }
 
 /* What has no mass follows statically in methods that know the stiffness, and not only what it accelerates. */
-static int check_mass(const tribo_system *sys, const struct method *m)
+static int driver_check_mass(const tribo_system *sys, const struct method *m)
 {
     const int able = m == &tribo_method_exact || m == &tribo_method_event || m == &tribo_method_moreau_fixed || m == &automatic;
     char who[40];
@@ -97,7 +97,7 @@ static int check_mass(const tribo_system *sys, const struct method *m)
 }
 
 /* Elastic contacts hold up to the limit by which they slide; and static limits may be set at any time. */
-static int check_static(const tribo_system *sys)
+static int driver_check_static(const tribo_system *sys)
 {
     double *ratio = sys->feq;
     size_t i = 0;
@@ -122,14 +122,14 @@ static int check_contacts(const tribo_system *sys, const struct method *m)
                                                    "method %s knows no planar contacts%s, of which the system has %zu%s", m->name,
                                                    sys->massless.count ? " where degrees of freedom have no mass" : "", planar,
                                                    sys->massless.count ? "" : ": take event");
-    return status || sys->massless.count == 0 ? status : check_static(sys);
+    return status || sys->massless.count == 0 ? status : driver_check_static(sys);
 }
 
-static int create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
+static int driver_create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
 {
     int status = check_parameters(sys, m, dt, abstol, reltol);
     status = status ? status : check_contacts(sys, m);
-    status = status ? status : check_mass(sys, m);
+    status = status ? status : driver_check_mass(sys, m);
     status = status || m == &tribo_method_moreau_fixed ? status : tribo_system_check_solved(sys, m->name);
     if (status) {
         return status;
@@ -167,8 +167,8 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
     if (!drv || !method) {
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
     }
-    const struct method *m = find(method);
-    return m ? create(drv, sys, m, dt, abstol, reltol) : unknown(sys, method);
+    const struct method *m = driver_find(method);
+    return m ? driver_create(drv, sys, m, dt, abstol, reltol) : unknown(sys, method);
 }
 
 void tribo_driver_destroy(tribo_driver *drv)
@@ -396,7 +396,7 @@ struct choice {
 };
 
 /* Exact pays while modes are found in no time. */
-static int choose(const tribo_driver *drv)
+static int driver_choose(const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
     const struct choice *c = drv->own;
@@ -411,14 +411,15 @@ static int provide(tribo_driver *drv, int which)
     static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
     struct choice *c = drv->own;
     drv->at_work = of[which];
-    return c->inner[which] ? TRIBO_OK : create(&c->inner[which], drv->sys, of[which], drv->dt, drv->abstol, drv->reltol);
+    return c->inner[which] ? TRIBO_OK : driver_create(&c->inner[which], drv->sys, of[which], drv->dt, drv->abstol, drv->reltol);
 }
 
 static int create_choice(tribo_driver *drv)
 {
     drv->own = tribo_zeros(1, sizeof(struct choice));
     drv->excess = drv->backslip = 0.0;
-    return drv->own ? provide(drv, choose(drv)) : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
+    return drv->own ? provide(drv, driver_choose(drv))
+                    : tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method auto");
 }
 
 static void destroy_choice(tribo_driver *drv)
@@ -474,7 +475,7 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
 static int choose_and_delegate(tribo_driver *drv, const struct task *x)
 {
     struct choice *c = drv->own;
-    if (choose(drv) == EXACT) {
+    if (driver_choose(drv) == EXACT) {
         const int status = delegate(drv, EXACT, x);
         if (status != TRIBO_ERR_UNSUPPORTED) {
             return status;

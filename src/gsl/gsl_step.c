@@ -91,7 +91,7 @@ static int memory_to_factorize(const struct gsl_step *g)
     return memory_for(all, sizeof all / sizeof *all);
 }
 
-static int out_of_memory(tribo_system *sys)
+static int gsl_step_out_of_memory(tribo_system *sys)
 {
     sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for an implicit step");
     return GSL_EBADFUNC;
@@ -143,7 +143,7 @@ static int guarded_function(double t, const double y[], double dydt[], void *par
             dydt[i] = fabs(dydt[i]) * g->h < least ? 0.0 : dydt[i];
         }
     }
-    return memory_to_factorize(g) ? GSL_SUCCESS : out_of_memory(g->sys);
+    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g->sys);
 }
 
 /* matrix = I - h A x J, row by row, as GSL has it. */
@@ -214,7 +214,7 @@ static int guarded_jacobian(double t, const double y[], double *dfdy, double dfd
     if (!tribo_dense_finite(dfdt, n) || !is_regular(g)) {
         return GSL_FAILURE;
     }
-    return memory_to_factorize(g) ? GSL_SUCCESS : out_of_memory(g->sys);
+    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g->sys);
 }
 
 static int tell_tolerance(void *state, const double y, const double dydt, const double h, const size_t i, double *level)
@@ -294,10 +294,10 @@ static int has_stuck(const struct gsl_step *g)
     return found;
 }
 
-static int apply(struct gsl_step *g, double t, const double *slope, double *to, double *error)
+static int gsl_step_apply(struct gsl_step *g, double t, const double *slope, double *to, double *error)
 {
     if (g->kind->matrices && !memory_to_factorize(g)) {
-        return out_of_memory(g->sys);
+        return gsl_step_out_of_memory(g->sys);
     }
     if (g->known && !is_regular(g)) {
         tribo_gsl_step_restart(g); /* which makes it ask for another Jacobian before it factorizes */
@@ -315,7 +315,7 @@ int tribo_gsl_step_try(struct gsl_step *g, double t, double h, const double *y, 
     g->tolerance = tolerance;
     g->rate = rate;
     feholdexcept(&callers);
-    const int status = apply(g, t, slope, to, error);
+    const int status = gsl_step_apply(g, t, slope, to, error);
     if (!status && g->kind->newton) {
         /* Half steps see nothing of a force that jumps before or after all of their stages, nor of a contact that breaks away after them;
          * slopes at both ends do. */

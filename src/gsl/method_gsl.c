@@ -112,7 +112,7 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
 }
 
 /* Brings all that up to date that follows from the system. */
-static int prepare(struct adaptive *a, tribo_driver *drv)
+static int gsl_prepare(struct adaptive *a, tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
     const size_t revision = tribo_system_revision(sys);
@@ -135,7 +135,7 @@ static int prepare(struct adaptive *a, tribo_driver *drv)
 
 /* The longest step from here, sys->v being the velocities of the contacts: where one is about to stick, an explicit method jumps
  * about in its band if a step is longer than is stable, and now and then its estimate happens to see nothing. */
-static double longest(const struct adaptive *a, const tribo_driver *drv)
+static double gsl_longest(const struct adaptive *a, const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
     double h = drv->max_step > 0.0 ? drv->max_step : a->largest;
@@ -148,7 +148,7 @@ static double longest(const struct adaptive *a, const tribo_driver *drv)
 }
 
 /* The largest error in terms of the tolerance; infinite if something is not finite. */
-static double size_of(const struct adaptive *a, size_t n)
+static double gsl_size_of(const struct adaptive *a, size_t n)
 {
     double most = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -161,7 +161,7 @@ static double size_of(const struct adaptive *a, size_t n)
 }
 
 /* Why a step failed however short it was. */
-static int give_up(tribo_driver *drv, int gsl_status, double t, double h, double size)
+static int gsl_give_up(tribo_driver *drv, int gsl_status, double t, double h, double size)
 {
     if (gsl_status && drv->sys->status) {
         return tribo_driver_explain(drv, t, h);
@@ -189,7 +189,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
 {
     struct adaptive *a = drv->own;
     const size_t n = tribo_system_dimension(drv->sys);
-    a->h = lesser(a->h, longest(a, drv));
+    a->h = lesser(a->h, gsl_longest(a, drv));
     for (;;) {
         const double left = end - *t, h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* no tiny rest */
         if (!(*t + h > *t)) {
@@ -199,7 +199,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
         if (status == GSL_EBADFUNC) {
             return tribo_driver_explain(drv, *t, h);
         }
-        const double size = status ? HUGE_VAL : size_of(a, n);
+        const double size = status ? HUGE_VAL : gsl_size_of(a, n);
         if (size <= 1.0) {
             const double next = next_step(a, size) * h;
             a->h = h == a->h ? next : greater(a->h, next);
@@ -217,7 +217,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
         }
         a->h = h * (isfinite(size) ? next_step(a, size) : 0.25);
         if (a->h < DBL_EPSILON * greater(fabs(*t), a->span)) {
-            return give_up(drv, status, *t, a->h, size);
+            return gsl_give_up(drv, status, *t, a->h, size);
         }
     }
 }
@@ -255,7 +255,7 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct adaptive *a = drv->own;
-    int status = prepare(a, drv);
+    int status = gsl_prepare(a, drv);
     if (!continues) {
         tribo_gsl_step_restart(a->step);
         a->h = drv->dt;

@@ -87,7 +87,7 @@ void tribo_band_solve(size_t n, size_t width, const double *l, double *x)
     back(n, width, l, x);
 }
 
-static void divide_by_root(size_t n, size_t width, const double *l, double *x)
+static void band_divide_by_root(size_t n, size_t width, const double *l, double *x)
 {
     for (size_t i = 0; i < n; i++) {
         x[i] /= sqrt(l[i * (width + 1) + width]);
@@ -97,11 +97,11 @@ static void divide_by_root(size_t n, size_t width, const double *l, double *x)
 void tribo_band_half_solve(size_t n, size_t width, const double *l, double *x)
 {
     forward(n, width, l, x);
-    divide_by_root(n, width, l, x);
+    band_divide_by_root(n, width, l, x);
 }
 
 void tribo_band_half_solve_back(size_t n, size_t width, const double *l, double *x)
 {
-    divide_by_root(n, width, l, x);
+    band_divide_by_root(n, width, l, x);
     back(n, width, l, x);
 }

@@ -20,7 +20,7 @@ static void rotate(double *x, double *y, size_t n, double c, double s)
 }
 
 /* Makes two rows orthogonal, and turns those of v likewise; 1 if they were not. */
-static int separate(double *a, double *v, size_t n, size_t p, size_t q)
+static int least_norm_separate(double *a, double *v, size_t n, size_t p, size_t q)
 {
     double *x = a + p * n, *y = a + q * n;
     const double xx = tribo_dot(x, x, n), yy = tribo_dot(y, y, n), xy = tribo_dot(x, y, n);
@@ -53,7 +53,7 @@ int tribo_least_norm_solve(double *a, size_t n, double cut, double *x, size_t *k
         turned = 0;
         for (size_t p = 0; p < n; p++) {
             for (size_t q = p + 1; q < n; q++) {
-                turned += (size_t)separate(columns, v, n, p, q);
+                turned += (size_t)least_norm_separate(columns, v, n, p, q);
             }
         }
     }

@@ -28,7 +28,7 @@ static void lay_out_matrix(struct matrix *a, struct layout *l, size_t entries)
     a->val = tribo_layout_array(l, entries + 1, sizeof *a->val);
 }
 
-static int create(struct matrix *a, size_t rows, size_t cols, size_t entries)
+static int matrix_create(struct matrix *a, size_t rows, size_t cols, size_t entries)
 {
     struct layout l = {0};
     *a = (struct matrix){.rows = rows, .cols = cols};
@@ -48,7 +48,7 @@ static size_t diagonal(const struct matrix *a, size_t i, size_t j)
     return j + a->rows - i;
 }
 
-static size_t blocks_of(const struct matrix *a)
+static size_t matrix_blocks_of(const struct matrix *a)
 {
     return (a->rows + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
 }
@@ -58,7 +58,7 @@ static void take_diagonals(struct matrix *a)
 {
     const size_t size = a->diagonals * MATRIX_BLOCK;
     size_t used = (size_t)(tribo_aligned(a->fast) - a->fast);
-    for (size_t b = 0; b < blocks_of(a); b++) {
+    for (size_t b = 0; b < matrix_blocks_of(a); b++) {
         /* to [diagonals][MATRIX_BLOCK] = block b of the diagonals. */
         double *to = a->fast + used;
         const size_t begin = b * MATRIX_BLOCK, end = begin + MATRIX_BLOCK < a->rows ? begin + MATRIX_BLOCK : a->rows;
@@ -94,8 +94,8 @@ static int create_diagonals(struct matrix *a, size_t diagonals, const size_t *pl
             a->offset[place[d] - 1] = (ptrdiff_t)d - (ptrdiff_t)a->rows;
         }
     }
-    a->block = malloc(blocks_of(a) * sizeof *a->block);
-    a->fast = malloc((blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
+    a->block = malloc(matrix_blocks_of(a) * sizeof *a->block);
+    a->fast = malloc((matrix_blocks_of(a) * diagonals * MATRIX_BLOCK + TRIBO_LINE) * sizeof *a->fast);
     if (!a->block || !a->fast) {
         return 0;
     }
@@ -137,7 +137,7 @@ static int speed_up(struct matrix *a)
 }
 
 /* With what speeds up products. */
-static int finish(struct matrix *a)
+static int matrix_finish(struct matrix *a)
 {
     if (!speed_up(a)) {
         return 0;
@@ -155,7 +155,7 @@ int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const do
     for (size_t k = 0; k < rows * cols; k++) {
         count += entries[k] != 0.0;
     }
-    if (!create(a, rows, cols, count)) {
+    if (!matrix_create(a, rows, cols, count)) {
         return 0;
     }
     size_t k = 0;
@@ -168,12 +168,12 @@ int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const do
         }
         a->first[i + 1] = k;
     }
-    return finish(a);
+    return matrix_finish(a);
 }
 
 int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
 {
-    if (!create(a, n, n, n)) {
+    if (!matrix_create(a, n, n, n)) {
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
@@ -181,7 +181,7 @@ int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries)
         a->col[i] = i;
         a->val[i] = entries ? entries[i] : 1.0;
     }
-    return finish(a);
+    return matrix_finish(a);
 }
 
 void *tribo_copy_of(const void *from, size_t count, size_t size, int *done)
@@ -201,18 +201,18 @@ int tribo_matrix_copy(struct matrix *a, const struct matrix *from)
         return 1;
     }
     const size_t entries = from->first[from->rows];
-    if (!create(a, from->rows, from->cols, entries)) {
+    if (!matrix_create(a, from->rows, from->cols, entries)) {
         return 0;
     }
     memcpy(a->first, from->first, (from->rows + 1) * sizeof *a->first);
     memcpy(a->col, from->col, entries * sizeof *a->col);
     memcpy(a->val, from->val, entries * sizeof *a->val);
-    return finish(a);
+    return matrix_finish(a);
 }
 
 int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, double other, const struct matrix *b)
 {
-    if (!create(to, a->rows, a->cols, a->first[a->rows] + b->first[b->rows])) {
+    if (!matrix_create(to, a->rows, a->cols, a->first[a->rows] + b->first[b->rows])) {
         return 0;
     }
     size_t count = 0;
@@ -226,7 +226,7 @@ int tribo_matrix_sum(struct matrix *to, double factor, const struct matrix *a, d
         }
         to->first[i + 1] = count;
     }
-    return finish(to);
+    return matrix_finish(to);
 }
 
 /* order_out = order_in (NULL: 0, 1, ...), stably sorted by key. start [keys + 1] is workspace. */
@@ -249,7 +249,7 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
                                const double *v)
 {
     size_t *by_col = malloc((2 * n + (rows > cols ? rows : cols) + 1) * sizeof *by_col);
-    const int done = by_col && create(a, rows, cols, n);
+    const int done = by_col && matrix_create(a, rows, cols, n);
     if (done) {
         size_t *by_row = by_col + n, *start = by_row + n;
         counting_sort(cols, n, j, NULL, by_col, start);
@@ -266,13 +266,13 @@ int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_
         memset(a, 0, sizeof *a);
     }
     free(by_col);
-    return done && finish(a);
+    return done && matrix_finish(a);
 }
 
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
 {
     const size_t entries = from->first[from->rows];
-    if (!create(a, from->cols, from->rows, entries)) {
+    if (!matrix_create(a, from->cols, from->rows, entries)) {
         return 0;
     }
     size_t *next = a->first + 1; /* where the next entry of a row goes: at last, where the next row begins */
@@ -288,7 +288,7 @@ int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
             a->val[next[from->col[k]]++] = from->val[k];
         }
     }
-    return finish(a);
+    return matrix_finish(a);
 }
 
 int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
@@ -412,7 +412,7 @@ double tribo_matrix_get(const struct matrix *a, size_t i, size_t j)
 }
 
 /* What entry (i, j) is to be seen beside: its own size, or that of the diagonal. */
-static double size_at(const struct matrix *a, size_t i, size_t j, double own)
+static double matrix_size_at(const struct matrix *a, size_t i, size_t j, double own)
 {
     return greater(own, sqrt(fabs(tribo_matrix_get(a, i, i))) * sqrt(fabs(tribo_matrix_get(a, j, j))));
 }
@@ -430,7 +430,7 @@ int tribo_matrix_flaw(const struct matrix *a, int symmetric, size_t *row, size_t
                 return 1;
             }
             if (*value != *mirror &&
-                fabs(*value - *mirror) > ASYMMETRY * size_at(a, i, j, greater(fabs(*value), fabs(*mirror)))) {
+                fabs(*value - *mirror) > ASYMMETRY * matrix_size_at(a, i, j, greater(fabs(*value), fabs(*mirror)))) {
                 return 1;
             }
         }

@@ -80,7 +80,7 @@ static size_t inner_end(const struct matrix *a)
     return room < 0 ? 0 : (size_t)room < a->rows ? (size_t)room : a->rows;
 }
 
-static size_t between(size_t i, size_t least, size_t most)
+static size_t product_between(size_t i, size_t least, size_t most)
 {
     return i < least ? least : i > most ? most : i;
 }
@@ -97,13 +97,13 @@ static void add_outer_rows(const struct matrix *a, size_t begin, size_t end, dou
 
 static void add_banded_rows(const struct matrix *a, size_t begin, size_t end, double factor, const double *x, double *y)
 {
-    const size_t first = between(inner_begin(a), begin, end), last = between(inner_end(a), first, end);
+    const size_t first = product_between(inner_begin(a), begin, end), last = product_between(inner_end(a), first, end);
     add_outer_rows(a, begin, first, factor, x, y);
     add_inner_rows(a, 0, first, last - first, factor, x, y + (first - begin));
     add_outer_rows(a, last, end, factor, x, y + (last - begin));
 }
 
-static double dense_dot(size_t n, const double *restrict val, const double *restrict x)
+static double product_dense_dot(size_t n, const double *restrict val, const double *restrict x)
 {
     double sum = 0.0;
     for (size_t j = 0; j < n; j++) {
@@ -119,7 +119,7 @@ void tribo_matrix_add_rows(const struct matrix *a, size_t begin, size_t end, dou
         return;
     }
     for (size_t i = begin; i < end; i++) {
-        y[i - begin] += factor * (a->fast ? dense_dot(a->cols, a->fast + i * a->cols, x) : tribo_matrix_row_dot(a, i, x));
+        y[i - begin] += factor * (a->fast ? product_dense_dot(a->cols, a->fast + i * a->cols, x) : tribo_matrix_row_dot(a, i, x));
     }
 }
 
@@ -136,11 +136,11 @@ static void subtract_outer_rows(const struct matrix *a, size_t begin, size_t end
 void tribo_matrix_subtract_rows(const struct matrix *a, size_t begin, size_t end, const double *x, const double *z, double *y)
 {
     const int banded = a->diagonals && end - begin > MATRIX_FEW;
-    const size_t first = banded ? between(inner_begin(a), begin, end) : end,
-                 last = banded ? between(inner_end(a), first, end) : end;
+    const size_t first = banded ? product_between(inner_begin(a), begin, end) : end,
+                 last = banded ? product_between(inner_end(a), first, end) : end;
     if (!banded && a->fast && !a->diagonals) {
         for (size_t i = begin; i < end; i++) {
-            y[i - begin] = z[i - begin] - dense_dot(a->cols, a->fast + i * a->cols, x);
+            y[i - begin] = z[i - begin] - product_dense_dot(a->cols, a->fast + i * a->cols, x);
         }
         return;
     }

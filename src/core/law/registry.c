@@ -35,16 +35,16 @@ const char *tribo_law_reference(int law)
 }
 
 /* Without locales, of which names know nothing. */
-static char lower(char c)
+static char registry_lower(char c)
 {
     static const char upper_case[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ", lower_case[] = "abcdefghijklmnopqrstuvwxyz";
     const char *found = c ? strchr(upper_case, c) : NULL;
     return found ? lower_case[found - upper_case] : c;
 }
 
-static int same_name(const char *x, const char *y)
+static int registry_same_name(const char *x, const char *y)
 {
-    while (*x && lower(*x) == lower(*y)) {
+    while (*x && registry_lower(*x) == registry_lower(*y)) {
         x++;
         y++;
     }
@@ -57,7 +57,7 @@ int tribo_law_find(const char *name, int *law)
         return TRIBO_ERR_NULL;
     }
     for (int i = 0; i < tribo_law_count(); i++) {
-        if (same_name(laws[i]->name, name)) {
+        if (registry_same_name(laws[i]->name, name)) {
             *law = i;
             return TRIBO_OK;
         }

@@ -53,7 +53,7 @@ static int symmetrize(const tribo_context *ctx, const struct csr *a, double *dia
     return TRIBO_OK;
 }
 
-static int out_of_memory(const tribo_context *ctx)
+static int input_out_of_memory(const tribo_context *ctx)
 {
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contact%s", ctx->n, plural(ctx->n));
 }
@@ -108,7 +108,7 @@ int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
     }
     if (!tribo_operator_diagonal(&op, ctx->n, r ? r : &none)) {
         tribo_operator_release(op);
-        return out_of_memory(ctx);
+        return input_out_of_memory(ctx);
     }
     return install(ctx, op, &m);
 }
@@ -120,7 +120,7 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
     struct memory m;
     struct flaw flaw;
     double *diagonal = malloc((ctx->n + 1) * sizeof *diagonal);
-    int status = diagonal ? symmetrize(ctx, a, diagonal) : out_of_memory(ctx);
+    int status = diagonal ? symmetrize(ctx, a, diagonal) : input_out_of_memory(ctx);
     if (!status) {
         status = tribo_operator_create(&op, &m, a, diagonal, from, &flaw);
         if (status == TRIBO_ERR_UNSUPPORTED) {
@@ -131,7 +131,7 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
             tribo_fail(ctx, status, "r is indefinite: relative pivot %g at contact %zu, in a group of %zu coupled contact%s",
                        flaw.pivot, flaw.contact, flaw.group, plural(flaw.group));
         } else {
-            status = status ? out_of_memory(ctx) : install(ctx, op, &m);
+            status = status ? input_out_of_memory(ctx) : install(ctx, op, &m);
         }
     }
     free(diagonal);
@@ -162,7 +162,7 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
     }
     struct csr a;
     if (!tribo_csr_create(&a, n, entries)) {
-        return out_of_memory(ctx);
+        return input_out_of_memory(ctx);
     }
     size_t k = 0;
     for (size_t i = 0; i < n; i++) {
@@ -178,8 +178,8 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 }
 
 /* Checks the compressed rows of an [n][columns] matrix called name. */
-static int check_rows(const tribo_context *ctx, size_t n, size_t columns, const size_t *rowptr, const size_t *col,
-                      const double *val)
+static int input_check_rows(const tribo_context *ctx, size_t n, size_t columns, const size_t *rowptr, const size_t *col,
+                            const double *val)
 {
     if (!rowptr) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "rowptr is NULL");
@@ -225,32 +225,32 @@ static int check_duplicates(const tribo_context *ctx, const struct csr *t)
 int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val)
 {
     int status = check_owner(ctx);
-    status = status ? status : check_rows(ctx, ctx->n, ctx->n, rowptr, col, val);
+    status = status ? status : input_check_rows(ctx, ctx->n, ctx->n, rowptr, col, val);
     if (status) {
         return status;
     }
     struct csr t, a;
     if (!tribo_csr_transpose(&t, ctx->n, ctx->n, rowptr, col, val)) {
-        return out_of_memory(ctx);
+        return input_out_of_memory(ctx);
     }
     status = check_duplicates(ctx, &t);
     if (!status && !tribo_csr_transpose(&a, t.n, t.n, t.first, t.col, t.val)) {
-        status = out_of_memory(ctx);
+        status = input_out_of_memory(ctx);
     }
     tribo_csr_free(&t);
     return status ? status : install_rows(ctx, &a, NULL);
 }
 
 /* J [n][ndof] in compressed rows is right; t is J'. */
-static int read_direction(const tribo_context *ctx, size_t ndof, const size_t *rowptr, const size_t *col, const double *val,
-                          struct csr *t)
+static int input_read_direction(const tribo_context *ctx, size_t ndof, const size_t *rowptr, const size_t *col, const double *val,
+                                struct csr *t)
 {
-    int status = check_rows(ctx, ctx->n, ndof, rowptr, col, val);
+    int status = input_check_rows(ctx, ctx->n, ndof, rowptr, col, val);
     if (status) {
         return status;
     }
     if (!tribo_csr_transpose(t, ctx->n, ndof, rowptr, col, val)) {
-        return out_of_memory(ctx);
+        return input_out_of_memory(ctx);
     }
     status = check_duplicates(ctx, t);
     if (status) {
@@ -271,13 +271,13 @@ int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inver
     }
     struct csr t, a;
     status = tribo_check_nonnegative(ctx, "inverse_mass", inverse_mass, ndof);
-    status = status ? status : read_direction(ctx, ndof, rowptr, col, val, &t);
+    status = status ? status : input_read_direction(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
     const struct inertia from = {inverse_mass, rowptr, col, val, &t};
     const int done = tribo_csr_product(&a, ctx->n, &t, inverse_mass, rowptr, col, val);
-    status = done ? install_rows(ctx, &a, &from) : out_of_memory(ctx);
+    status = done ? install_rows(ctx, &a, &from) : input_out_of_memory(ctx);
     tribo_csr_free(&t);
     return status;
 }
@@ -387,7 +387,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
         return tribo_fail(ctx, TRIBO_ERR_SIZE, "ndof = %zu is too large", ndof);
     }
     struct csr t, a;
-    status = read_direction(ctx, ndof, rowptr, col, val, &t);
+    status = input_read_direction(ctx, ndof, rowptr, col, val, &t);
     if (status) {
         return status;
     }
@@ -396,14 +396,14 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
     double *work = calloc(2 * ndof + ctx->n + 1, sizeof *work);
     if (!work || !tribo_csr_create(&a, ctx->n, room)) {
         free(work);
-        return out_of_memory(ctx);
+        return input_out_of_memory(ctx);
     }
     double *column = work + 2 * ndof;
     const struct solver m = {ndof, apply, data, work, work + ndof};
     for (size_t j = 0; !status && j < ctx->n; j++) {
         status = find_column(ctx, &m, j, rowptr, col, val, column);
         if (!status && !append_column(&a, &room, j, column)) {
-            status = out_of_memory(ctx);
+            status = input_out_of_memory(ctx);
         }
     }
     if (status) {

@@ -210,7 +210,7 @@ int tribo_memory_copy(struct memory *to, const struct memory *from, const struct
 
 /* ------------------------------------------------------------------------------------------------------ finding them */
 
-static size_t root_of(size_t *parent, size_t i)
+static size_t operator_root_of(size_t *parent, size_t i)
 {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
@@ -284,7 +284,7 @@ static int make_sparse(struct group *g, const struct csr *a, const size_t *membe
 
 /* y = D^-1 |R| x, x [n] being positive. Returns the largest y_i/x_i, which bounds the eigenvalues of D^-1 R from above (Collatz
  * 1942), more closely with every call on the last y. */
-static double grow(const struct delassus *op, const struct csr *a, const double *x, double *y)
+static double operator_grow(const struct delassus *op, const struct csr *a, const double *x, double *y)
 {
     double most = 1.0;
     for (size_t i = 0; i < a->n; i++) {
@@ -308,7 +308,7 @@ static int find_growth(struct delassus *op, const struct csr *a)
     }
     for (int k = 0; x && (k < FEW || (k < MANY && op->growth < 0.999 * before)); k++) {
         before = op->growth;
-        op->growth = k % 2 ? grow(op, a, x + a->n, x) : grow(op, a, x, x + a->n);
+        op->growth = k % 2 ? operator_grow(op, a, x + a->n, x) : operator_grow(op, a, x, x + a->n);
     }
     free(x);
     return x != NULL;
@@ -505,14 +505,14 @@ int tribo_operator_create(struct delassus **created, struct memory *m, const str
         for (size_t i = 0; i < a->n; i++) {
             for (size_t k = a->first[i]; k < a->first[i + 1]; k++) {
                 if (a->val[k] != 0.0) {
-                    const size_t p = root_of(place, i), q = root_of(place, a->col[k]);
+                    const size_t p = operator_root_of(place, i), q = operator_root_of(place, a->col[k]);
                     place[p > q ? p : q] = p > q ? q : p;
                 }
             }
         }
         size_t islands = 0;
         for (size_t i = 0; i < a->n; i++) {
-            label[i] = place[i] == i ? islands++ : label[root_of(place, i)];
+            label[i] = place[i] == i ? islands++ : label[operator_root_of(place, i)];
         }
         op->islands = islands;
         if (op->islands == n) {

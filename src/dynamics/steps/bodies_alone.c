@@ -86,14 +86,14 @@ static void note_all(const struct map *m, const tribo_system *sys, size_t blocks
 }
 
 /* How many blocks there are. */
-static size_t blocks_of(size_t n)
+static size_t bodies_blocks_of(size_t n)
 {
     return (n + MATRIX_BLOCK - 1) / MATRIX_BLOCK;
 }
 
-static int allocate(struct bodies_alone *b, size_t n, size_t c)
+static int bodies_allocate(struct bodies_alone *b, size_t n, size_t c)
 {
-    b->blocks = blocks_of(n);
+    b->blocks = bodies_blocks_of(n);
     b->body = malloc((c + 1) * sizeof *b->body);
     b->rows = calloc(b->blocks + 1, sizeof *b->rows);
     b->mass = calloc(5 * n + 2 * c + 1, sizeof *b->mass);
@@ -131,8 +131,8 @@ int tribo_bodies_create(struct bodies_alone *b, const tribo_system *sys)
     const size_t n = sys->ndof;
     memset(b, 0, sizeof *b);
     unsigned char *single = malloc(n);
-    size_t *mark = calloc(2 * blocks_of(n), sizeof *mark);
-    int done = single && mark && allocate(b, n, sys->ncontact);
+    size_t *mark = calloc(2 * bodies_blocks_of(n), sizeof *mark);
+    int done = single && mark && bodies_allocate(b, n, sys->ncontact);
     if (done) {
         memset(single, 1, n);
         if (!find_bodies(b, sys, single)) {
@@ -170,7 +170,7 @@ static int plain_contacts(struct bodies_alone *b, const tribo_system *sys)
     return !planar;
 }
 
-static void take_limits(struct bodies_alone *b, const tribo_system *sys)
+static void bodies_take_limits(struct bodies_alone *b, const tribo_system *sys)
 {
     tribo_get_limit(sys->contacts, b->room);
     for (size_t i = 0; i < sys->ncontact; i++) {
@@ -214,7 +214,7 @@ int tribo_bodies_begin(struct bodies_alone *b, tribo_system *sys)
                 b->loaded[d / MATRIX_BLOCK] |= sys->table[s].pattern[d] != 0.0;
             }
         }
-        take_limits(b, sys);
+        bodies_take_limits(b, sys);
     }
     return b->fits;
 }
@@ -265,7 +265,7 @@ void tribo_bodies_set_time(struct bodies_alone *b, tribo_system *sys, double t)
 enum { STIRS = 1, GROWS = 2 };
 
 /* Its bits, of which only the sign may be set where x is 0. */
-static inline int64_t bits_of(double x)
+static inline int64_t bodies_bits_of(double x)
 {
     int64_t bits;
     memcpy(&bits, &x, sizeof bits);
@@ -295,7 +295,7 @@ struct fate {
 
 static inline void note(struct fate *f, double u, const struct moved *m)
 {
-    f->speeds |= bits_of(u) | bits_of(m->u);
+    f->speeds |= bodies_bits_of(u) | bodies_bits_of(m->u);
     f->grows |= fabs(m->u) + fabs(m->q) <= DBL_MAX ? 0 : -1;
 }
 
@@ -371,7 +371,7 @@ static inline size_t next_awake(const struct bodies_alone *b, size_t k)
 }
 
 /* Whether contacts hold all of block k, which is at rest, in steps of any length. */
-static int holds(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u)
+static int bodies_holds(const struct bodies_alone *b, const tribo_system *sys, size_t k, const double *q, const double *u)
 {
     double a[MATRIX_BLOCK];
     int all = 1;
@@ -387,7 +387,7 @@ static void let_rest(struct bodies_alone *b, const tribo_system *sys, const stru
 {
     while (b->stills > 0) {
         const size_t k = b->still[--b->stills];
-        if (!b->wakes[k] && !holds(b, sys, k, s->q_to, s->u_to)) {
+        if (!b->wakes[k] && !bodies_holds(b, sys, k, s->q_to, s->u_to)) {
             b->wakes[k] = 1;
         }
     }
@@ -400,7 +400,7 @@ int tribo_bodies_step(struct bodies_alone *b, tribo_system *sys, const struct bo
     /* All that acts from outside, at the times of the step. */
     tribo_bodies_set_time(b, sys, s->t);
     if (tribo_system_limits_vary(sys)) {
-        take_limits(b, sys);
+        bodies_take_limits(b, sys);
     }
     if (sys->base_harmonics) {
         double *first = b->before;

@@ -29,7 +29,7 @@ static void take_matrix(const struct matrix *a, double to[FEW][FEW])
 
 /* The inverse over a set of contacts, from that over all of them but the last one, i: rank one more. 0 if R is nearly
  * singular. */
-static int invert(struct few_bodies *b, unsigned set, size_t i)
+static int few_invert(struct few_bodies *b, unsigned set, size_t i)
 {
     double(*to)[FEW] = b->inverse[set], (*less)[FEW] = b->inverse[set & ~(1u << i)];
     double z[FEW] = {0.0}, pivot = 0.0;
@@ -64,14 +64,14 @@ static int take_operator(struct few_bodies *b, const tribo_system *sys)
     memset(b->inverse[0], 0, sizeof b->inverse[0]);
     for (size_t i = 0; fits && i < b->c; i++) {
         for (unsigned set = 1u << i; fits && set < 2u << i; set++) {
-            fits = invert(b, set, i);
+            fits = few_invert(b, set, i);
         }
     }
     return fits;
 }
 
 /* Whether Coulomb's law of scalar contacts with one limit, which is a plain number, is all that there is. */
-static int take_contacts(struct few_bodies *b, const tribo_system *sys)
+static int few_take_contacts(struct few_bodies *b, const tribo_system *sys)
 {
     double ratio[FEW];
     int fits = !tribo_system_planar(sys);
@@ -112,7 +112,7 @@ static int take_all(struct few_bodies *b, const tribo_system *sys)
             b->snap[set][k] = x;
         }
     }
-    return take_contacts(b, sys) && take_operator(b, sys);
+    return few_take_contacts(b, sys) && take_operator(b, sys);
 }
 
 int tribo_few_take(struct few_bodies *b, tribo_system *sys)
@@ -128,8 +128,8 @@ int tribo_few_take(struct few_bodies *b, tribo_system *sys)
 /* ---------------------------------------------------------------------------------------------------- what acts in a run */
 
 /* The harmonic's part of rows, at count times. */
-static void add_harmonic(const struct harmonic *h, size_t count, const double *restrict cosine, const double *restrict sine,
-                         double to[FEW][FORESIGHT])
+static void few_add_harmonic(const struct harmonic *h, size_t count, const double *restrict cosine, const double *restrict sine,
+                             double to[FEW][FORESIGHT])
 {
     for (size_t e = 0; e < h->count; e++) {
         const double c = h->cosine[e], d = h->sine[e];
@@ -140,7 +140,7 @@ static void add_harmonic(const struct harmonic *h, size_t count, const double *r
     }
 }
 
-static void clear(size_t n, size_t count, double to[FEW][FORESIGHT])
+static void few_clear(size_t n, size_t count, double to[FEW][FORESIGHT])
 {
     for (size_t i = 0; i < n; i++) {
         memset(to[i], 0, count * sizeof *to[i]);
@@ -148,7 +148,7 @@ static void clear(size_t n, size_t count, double to[FEW][FORESIGHT])
 }
 
 /* last: the length of the step before. */
-static void find_times(struct few_bodies *b, size_t count, const double *restrict t, double last)
+static void few_find_times(struct few_bodies *b, size_t count, const double *restrict t, double last)
 {
     double *restrict h = b->h, *restrict to = b->to, *restrict time = b->time;
     h[0] = last;
@@ -162,7 +162,7 @@ static void find_times(struct few_bodies *b, size_t count, const double *restric
 }
 
 /* 0 if not all can be found. */
-static int find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
+static int few_find_all(struct few_bodies *b, tribo_system *sys, size_t count, const double *t, double last)
 {
     const size_t harmonic_loads = sys->harmonics - sys->base_harmonics - sys->limit_harmonics;
     /* the place of the first step among the times foreseen */
@@ -170,23 +170,23 @@ static int find_all(struct few_bodies *b, tribo_system *sys, size_t count, const
     if (place + count > (harmonic_loads ? sys->foreseen : FORESIGHT)) {
         return 0;
     }
-    find_times(b, count, t, last);
-    clear(b->n, count, b->load);
+    few_find_times(b, count, t, last);
+    few_clear(b->n, count, b->load);
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *h = &sys->harmonic[k];
         if (h->drives == DRIVES_LOAD) {
-            add_harmonic(h, count, h->cos_ahead + place, h->sin_ahead + place, b->load);
+            few_add_harmonic(h, count, h->cos_ahead + place, h->sin_ahead + place, b->load);
         }
     }
     if (sys->base_harmonics) {
         /* At the ends of the steps. */
         double cosine[FORESIGHT], sine[FORESIGHT];
-        clear(b->c, count, b->base);
+        few_clear(b->c, count, b->base);
         for (size_t k = 0; k < sys->harmonics; k++) {
             const struct harmonic *h = &sys->harmonic[k];
             if (h->drives == DRIVES_BASE) {
                 tribo_cos_sin_all(h->omega, count, b->to, cosine, sine);
-                add_harmonic(h, count, cosine, sine, b->base);
+                few_add_harmonic(h, count, cosine, sine, b->base);
             }
         }
     }
@@ -234,7 +234,7 @@ size_t tribo_few_run(struct few_bodies *b, tribo_system *sys, size_t count, cons
     const size_t n = b->n, c = b->c;
     const struct few_parts has = {n, c, sys->damping.rows > 0, sys->base_harmonics > 0, tribo_system_limits_vary(sys)};
     struct few_carried x;
-    if (!find_all(b, sys, count, t, m->last)) {
+    if (!few_find_all(b, sys, count, t, m->last)) {
         return 0;
     }
     copy_few(n, m->q, x.q);

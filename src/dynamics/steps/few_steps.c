@@ -21,7 +21,7 @@ static inline double row_times(size_t m, const double a[FEW], const double *x)
     return sum;
 }
 
-static inline int rests(const struct few_slip *slip, size_t i)
+static inline int few_rests(const struct few_slip *slip, size_t i)
 {
     return slip->resting >> i & 1;
 }
@@ -38,12 +38,12 @@ static inline double noise_of(const struct few_bodies *b, size_t c, size_t i, co
 
 /* Contacts whose impulse is beyond its bound slide; those that move where friction pushes them hold. Returns whether any
  * changes. */
-static inline int revise(const struct few_bodies *b, size_t c, const struct impulses *x, struct few_slip *slip)
+static inline int few_revise(const struct few_bodies *b, size_t c, const struct impulses *x, struct few_slip *slip)
 {
     int changed = 0;
     for (size_t i = 0; i < c; i++) {
         const double along = slip->side[i] * x->end[i];
-        if (rests(slip, i) && fabs(x->p[i]) > x->most[i]) {
+        if (few_rests(slip, i) && fabs(x->p[i]) > x->most[i]) {
             slip->side[i] = x->p[i] > 0.0 ? 1.0 : -1.0;
             slip->resting &= ~(1u << i);
             changed = 1;
@@ -57,7 +57,7 @@ static inline int revise(const struct few_bodies *b, size_t c, const struct impu
 }
 
 /* 0 if no end comes of it. */
-static inline int settle(const struct few_bodies *b, size_t c, struct few_slip *slip, struct impulses *x)
+static inline int few_settle(const struct few_bodies *b, size_t c, struct few_slip *slip, struct impulses *x)
 {
     enum { ROUNDS = 2 * FEW + 2 };
     int changed = 1;
@@ -75,9 +75,9 @@ static inline int settle(const struct few_bodies *b, size_t c, struct few_slip *
         }
         for (size_t i = 0; slip->resting && i < c; i++) {
             x->p[i] -= held[i];
-            x->end[i] = rests(slip, i) ? 0.0 : x->end[i] - row_times(c, b->r[i], held);
+            x->end[i] = few_rests(slip, i) ? 0.0 : x->end[i] - row_times(c, b->r[i], held);
         }
-        changed = revise(b, c, x, slip);
+        changed = few_revise(b, c, x, slip);
     }
     return !changed;
 }
@@ -88,7 +88,7 @@ static inline void snap(const struct few_bodies *b, struct few_parts has, size_t
 {
     unsigned set = 0;
     for (size_t i = 0; i < has.c; i++) {
-        set |= (unsigned)(rests(slip, i) && fabs(x->p[i]) < x->most[i]) << i;
+        set |= (unsigned)(few_rests(slip, i) && fabs(x->p[i]) < x->most[i]) << i;
     }
     for (size_t k = 0; k < has.c && k < b->snaps[set]; k++) {
         const struct few_snap *to = &b->snap[set][k];
@@ -100,7 +100,7 @@ static inline void snap(const struct few_bodies *b, struct few_parts has, size_t
 }
 
 /* 0, and nothing is changed but slip, if the step is for others. */
-static inline int step(const struct few_bodies *b, struct few_parts has, size_t s, struct few_carried *m)
+static inline int few_step(const struct few_bodies *b, struct few_parts has, size_t s, struct few_carried *m)
 {
     struct impulses x = {{0.0}, {0.0}, {0.0}, {0.0}};
     double u[FEW] = {0.0}, work = 0.0;
@@ -113,7 +113,7 @@ static inline int step(const struct few_bodies *b, struct few_parts has, size_t 
         x.v[i] = row_times(has.n, b->direction[i], u) - (has.bases ? b->base[i][s] : 0.0);
         x.most[i] = b->time[s] * (has.vary ? b->limits[i][s] : b->limit[i]);
     }
-    if (!settle(b, has.c, &m->slip, &x)) {
+    if (!few_settle(b, has.c, &m->slip, &x)) {
         return 0;
     }
     for (size_t d = 0; d < has.n; d++) {
@@ -138,7 +138,7 @@ static inline size_t steps(const struct few_bodies *b, struct few_parts has, siz
 {
     struct few_carried m = *to;
     size_t s = 0;
-    while (s < count && step(b, has, s, &m)) {
+    while (s < count && few_step(b, has, s, &m)) {
         s++;
     }
     *to = m;

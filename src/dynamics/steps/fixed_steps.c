@@ -15,7 +15,7 @@ struct march {
 enum { AHEAD = FORESIGHT / 2 };
 
 /* t [count + 1] = when the k-th step begins, it ends, and the next ones end. */
-static void find_times(struct march m, double begin, double k, size_t count, double *t)
+static void fixed_find_times(struct march m, double begin, double k, size_t count, double *t)
 {
     t[0] = begin;
     for (size_t s = 0; s < count; s++) {
@@ -53,7 +53,7 @@ static double *march(tribo_driver *drv, const struct march *m, double *from, dou
         double t[AHEAD + 1];
         const double left = m->steps - k + 1.0;
         const size_t ahead = left < AHEAD ? (size_t)left + 1 : AHEAD; /* loads at the end are asked for, too */
-        find_times(*m, drv->time, k, ahead, t);
+        fixed_find_times(*m, drv->time, k, ahead, t);
         /* The system foresees what steps between these times ask it for. */
         tribo_system *sys = drv->sys;
         double times[FORESIGHT];

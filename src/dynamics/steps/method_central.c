@@ -23,7 +23,7 @@ struct central {
     double stable;       /* a step found to be stable; 0: none */
 };
 
-static void destroy(tribo_driver *drv)
+static void central_destroy(tribo_driver *drv)
 {
     struct central *x = drv->own;
     if (x) {
@@ -34,7 +34,7 @@ static void destroy(tribo_driver *drv)
     }
 }
 
-static int create(tribo_driver *drv)
+static int central_create(tribo_driver *drv)
 {
     struct central *x = tribo_zeros(1, sizeof *x);
     drv->own = x;
@@ -257,4 +257,4 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
 }
 
 const struct method tribo_method_central_fixed = {
-    "central/fixed", WITHOUT_TOLERANCES, create, destroy, central_advance, NULL, NULL, NULL};
+    "central/fixed", WITHOUT_TOLERANCES, central_create, central_destroy, central_advance, NULL, NULL, NULL};

@@ -38,7 +38,7 @@ struct moreau {
     size_t settings; /* revision of the system's contacts that these came from, if planar ones are among them */
 };
 
-static void destroy(tribo_driver *drv)
+static void moreau_destroy(tribo_driver *drv)
 {
     struct moreau *m = drv->own;
     if (m) {
@@ -53,7 +53,7 @@ static void destroy(tribo_driver *drv)
     }
 }
 
-static int create(tribo_driver *drv)
+static int moreau_create(tribo_driver *drv)
 {
     const size_t n = drv->sys->ndof, c = drv->sys->ncontact;
     struct moreau *m = calloc(1, sizeof *m);
@@ -223,7 +223,7 @@ static void push(struct moreau *m, const tribo_system *sys, double h, const doub
 }
 
 /* Prepares steps of length h. */
-static int prepare(struct moreau *m, const tribo_system *sys, double h)
+static int moreau_prepare(struct moreau *m, const tribo_system *sys, double h)
 {
     size_t where = 0;
     m->h = 0.0;
@@ -249,7 +249,7 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
 }
 
 /* Limits as the contacts of a step have them, and static ones, if they may be others than in the step before. */
-static void take_limits(struct moreau *m, const tribo_system *sys)
+static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
 {
     const size_t revision = tribo_revision(sys->contacts);
     if (m->taken && m->settings_taken == revision) {
@@ -379,7 +379,7 @@ static int respond_in_band(struct moreau *m, const tribo_system *sys, double h, 
     return 1;
 }
 
-static int respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
+static int moreau_respond(struct moreau *m, const tribo_system *sys, double h, const double *u, double *du)
 {
     if (respond_in_band(m, sys, h, u, du)) {
         return tribo_dense_finite(m->common.f, sys->ncontact) ? TRIBO_OK : TRIBO_ERR_NOT_FINITE;
@@ -397,7 +397,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     const double h = next - t, *u = from + n;
     /* steps of equal length differ by the rounding of time only */
     if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
-        const int status = prepare(m, sys, h);
+        const int status = moreau_prepare(m, sys, h);
         if (status) {
             return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
         }
@@ -412,8 +412,8 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     find_push(m, sys, t, next, from, s->a);
     tribo_step_form_find_base(s, sys, next);
     tribo_step_form_set_limits(sys, t + 0.5 * h);
-    take_limits(m, sys);
-    const int status = respond(m, sys, h, u, s->a);
+    moreau_take_limits(m, sys);
+    const int status = moreau_respond(m, sys, h, u, s->a);
     if (status == TRIBO_ERR_NOT_FINITE) {
         return tribo_step_form_grew(drv, t);
     }
@@ -449,4 +449,4 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
 }
 
 const struct method tribo_method_moreau_fixed = {
-    "moreau/fixed", WITHOUT_TOLERANCES, create, destroy, moreau_advance, NULL, NULL, NULL};
+    "moreau/fixed", WITHOUT_TOLERANCES, moreau_create, moreau_destroy, moreau_advance, NULL, NULL, NULL};

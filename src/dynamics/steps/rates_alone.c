@@ -89,7 +89,7 @@ static double rate_of(double part, double brake, double band)
 #define MOST 1e100
 
 /* What all degrees of freedom have by their contacts: 1, or 0 if that is beyond what can be reckoned with. */
-static int take_contacts(struct rates_alone *r, tribo_system *sys, int law)
+static int rates_take_contacts(struct rates_alone *r, tribo_system *sys, int law)
 {
     const struct bodies_alone *b = &r->bodies;
     const struct rates_block all = own_block(r, sys, 0);
@@ -128,7 +128,7 @@ void tribo_rates_prepare(struct rates_alone *r, tribo_system *sys)
     tribo_get_law(sys->contacts, &law);
     r->revision = tribo_system_revision(sys);
     r->fits = tribo_bodies_begin(&r->bodies, sys) && find_grip(law, &r->grip) && !sys->base_harmonics &&
-              !tribo_system_limits_vary(sys) && take_contacts(r, sys, law);
+              !tribo_system_limits_vary(sys) && rates_take_contacts(r, sys, law);
     if (r->fits) {
         memset(r->load[0], 0, RATES_TIMES * stride_of(sys) * sizeof *r->load[0]);
         /* Blocks, which are read where the one before is if they are alike. */
@@ -166,8 +166,9 @@ TRIBO_SIMD static void relax(size_t n, const double *restrict mass, const double
     }
 }
 
-TRIBO_SIMD static void creep(size_t n, const double *restrict mass, const double *restrict brake, const double *restrict band,
-                             const double *restrict rate, const double *restrict u, double *restrict a, double *restrict heat)
+TRIBO_SIMD static void rates_creep(size_t n, const double *restrict mass, const double *restrict brake,
+                                   const double *restrict band, const double *restrict rate, const double *restrict u,
+                                   double *restrict a, double *restrict heat)
 {
     for (size_t i = 0; i < n; i++) {
         const double taken = clamp(rate[i] * clamp(u[i], -band[i], band[i]), -brake[i], brake[i]);
@@ -199,7 +200,7 @@ double tribo_rates_block(struct rates_alone *r, const tribo_system *sys, size_t 
     if (r->grip == RELAXES) {
         relax(n, b->mass, b->brake, b->band, b->rate, v, a, heat);
     } else if (r->grip == CREEPS) {
-        creep(n, b->mass, b->brake, b->band, b->rate, v, a, heat);
+        rates_creep(n, b->mass, b->brake, b->band, b->rate, v, a, heat);
     } else {
         hold(n, b->mass, b->brake, b->band, v, a, heat);
     }

@@ -76,9 +76,10 @@ TRIBO_SIMD static void next_stage(size_t n, double h, const double *restrict q, 
 }
 
 /* The end of the step, v_1 to v_3 being the velocities of the states between, and a the accelerations of the last one. */
-TRIBO_SIMD static void finish(size_t n, double h, const double *restrict q, const double *restrict u, const double *restrict v_1,
-                              const double *restrict v_2, const double *restrict v_3, const double *restrict sum,
-                              const double *restrict a, double *restrict to_q, double *restrict to_u)
+TRIBO_SIMD static void rk4_finish(size_t n, double h, const double *restrict q, const double *restrict u,
+                                  const double *restrict v_1, const double *restrict v_2, const double *restrict v_3,
+                                  const double *restrict sum, const double *restrict a, double *restrict to_q,
+                                  double *restrict to_u)
 {
     for (size_t i = 0; i < n; i++) {
         to_q[i] = q[i] + h * (((u[i] + 2.0 * v_1[i]) + 2.0 * v_2[i]) + v_3[i]);
@@ -96,7 +97,7 @@ struct evaluation {
 };
 
 /* n degrees of freedom from i on, their accelerations being a. */
-static void proceed(const struct rk4 *r, size_t ndof, const struct evaluation *e, size_t i, size_t n, const double *a)
+static void rk4_proceed(const struct rk4 *r, size_t ndof, const struct evaluation *e, size_t i, size_t n, const double *a)
 {
     const double *q = e->from + i, *u = q + ndof, *v = e->at + ndof + i;
     double *sum = r->sum + i, *to_q = e->to + i, *to_u = to_q + ndof;
@@ -105,7 +106,7 @@ static void proceed(const struct rk4 *r, size_t ndof, const struct evaluation *e
     } else if (e->number < STAGES - 1) {
         next_stage(n, e->h, q, u, v, a, sum, to_q, to_u);
     } else {
-        finish(n, e->h, q, u, r->stage[0] + ndof + i, r->stage[1] + ndof + i, v, sum, a, to_q, to_u);
+        rk4_finish(n, e->h, q, u, r->stage[0] + ndof + i, r->stage[1] + ndof + i, v, sum, a, to_q, to_u);
     }
 }
 
@@ -114,7 +115,7 @@ static int evaluate_block(struct rk4 *r, const tribo_system *sys, const struct e
 {
     const size_t ndof = sys->ndof, i = k * MATRIX_BLOCK, n = tribo_bodies_of_block(sys, k);
     r->power[e->number] += tribo_rates_block(&r->alone, sys, e->time, k, e->at, e->at + ndof, r->k);
-    proceed(r, ndof, e, i, n, r->k);
+    rk4_proceed(r, ndof, e, i, n, r->k);
     return e->number < STAGES - 1 || (tribo_dense_finite(e->to + i, n) && tribo_dense_finite(e->to + ndof + i, n));
 }
 
@@ -147,7 +148,7 @@ static int evaluate_all(struct rk4 *r, tribo_system *sys, const struct evaluatio
     for (size_t s = 0; !status && s < STAGES; s++) {
         const struct evaluation *e = &all[s];
         status = (s ? tribo_system_rates : tribo_system_begin_rates)(sys, e->t, e->at, r->k, &r->power[s]);
-        proceed(r, sys->ndof, e, 0, status ? 0 : sys->ndof, r->k);
+        rk4_proceed(r, sys->ndof, e, 0, status ? 0 : sys->ndof, r->k);
     }
     return status;
 }
@@ -171,7 +172,7 @@ static double energy_of(const struct rk4 *r, double h, double from)
 }
 
 /* What cannot be done block by block can all at once, or tells why not. */
-static int evaluate(tribo_driver *drv, const struct evaluation *all, double h, const double *from, double *y)
+static int rk4_evaluate(tribo_driver *drv, const struct evaluation *all, double h, const double *from, double *y)
 {
     struct rk4 *r = drv->own;
     const size_t place = 2 * drv->sys->ndof;
@@ -198,7 +199,7 @@ static int step(tribo_driver *drv, double t, double next, const double *from, do
         r->blockwise = tribo_rates_fit(&r->alone, drv->sys);
     }
     r->time = t + h;
-    const int status = evaluate(drv, all, h, from, y);
+    const int status = rk4_evaluate(drv, all, h, from, y);
     if (!status && drv->seen && tell_contacts(drv)) {
         return tribo_driver_explain(drv, t, h);
     }

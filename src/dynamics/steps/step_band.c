@@ -24,7 +24,7 @@ enum { FREE, HOLDS, FOLLOWS };
 enum { ROUNDS = 100 };
 
 /* The first column of row i. */
-static size_t begin_of(const struct step_band *b, size_t i)
+static size_t band_begin_of(const struct step_band *b, size_t i)
 {
     return i > b->width ? i - b->width : 0;
 }
@@ -67,7 +67,7 @@ static int symmetric(const struct matrix *a, const double *mass)
     return 1;
 }
 
-static int allocate(struct step_band *b, size_t n, size_t count)
+static int band_allocate(struct step_band *b, size_t n, size_t count)
 {
     if (b->body) {
         return 1;
@@ -112,7 +112,7 @@ static int applies(struct step_band *b, const tribo_system *sys)
 /* ------------------------------------------------------------------------------------------------------------ the factor */
 
 /* Of A without who is held; the place of a pivot that is not positive, or n. */
-static size_t factorize(struct step_band *b)
+static size_t band_factorize(struct step_band *b)
 {
     const size_t where = tribo_band_factorize(b->n, b->width, b->a, b->held, b->l);
     b->factored = where == b->n;
@@ -123,7 +123,7 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
 {
     const size_t n = sys->ndof;
     b->n = 0;
-    if (!allocate(b, n, sys->ncontact)) {
+    if (!band_allocate(b, n, sys->ncontact)) {
         return TRIBO_ERR_MEMORY;
     }
     if (!applies(b, sys)) {
@@ -153,7 +153,7 @@ int tribo_step_band_create(struct step_band *b, const tribo_system *sys, double 
     b->n = n;
     memset(b->held, 0, n);
     b->factored = 0;
-    *where = factorize(b); /* with nobody held: A is definite if and only if all these pivots are */
+    *where = band_factorize(b); /* with nobody held: A is definite if and only if all these pivots are */
     return *where < n ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 
@@ -165,7 +165,7 @@ static double row_dot(const struct step_band *b, size_t i, const double *x, doub
     const size_t w = b->width, end = i + w < b->n ? i + w : b->n - 1;
     const double *row = b->a + i * (w + 1);
     double sum = 0.0, sizes = 0.0;
-    for (size_t j = begin_of(b, i); j <= i; j++) {
+    for (size_t j = band_begin_of(b, i); j <= i; j++) {
         const double term = x[j] * row[j + w - i];
         sum += term;
         sizes += fabs(term);
@@ -180,7 +180,7 @@ static double row_dot(const struct step_band *b, size_t i, const double *x, doub
 }
 
 /* Moves by which held bodies stay with the base; whether there are any. */
-static int find_moves(struct step_band *b, const double *base, const double *u)
+static int band_find_moves(struct step_band *b, const double *base, const double *u)
 {
     int any = 0;
     for (size_t i = 0; i < b->count; i++) {
@@ -203,19 +203,19 @@ static void solve_sets(struct step_band *b, double h, const double *limit, const
         b->held[b->body[i]] = holds;
     }
     if (!b->factored) {
-        factorize(b);
+        band_factorize(b);
     }
     memcpy(x, b->push, b->n * sizeof *x);
     for (size_t i = 0; i < b->count; i++) {
         f[i] = b->at[i] * limit[i];
         x[b->body[i]] += h * b->lever[i] * f[i];
     }
-    if (find_moves(b, base, u)) {
+    if (band_find_moves(b, base, u)) {
         /* What of x comes from the moves of held bodies, and those near them, goes to the other side. */
         const size_t w = b->width;
         for (size_t i = 0; i < b->count; i++) {
             const size_t d = b->body[i], end = d + w < b->n ? d + w : b->n - 1;
-            for (size_t j = begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
+            for (size_t j = band_begin_of(b, d); b->move[d] != 0.0 && j <= end; j++) {
                 x[j] -= b->move[d] * (j <= d ? b->a[d * (w + 1) + j + w - d] : b->a[j * (w + 1) + d + w - j]);
             }
         }
@@ -249,8 +249,8 @@ static signed char wants(const struct step_band *b, size_t i, double rate, doubl
 }
 
 /* Puts contacts where they want to be: *freed of them begin to slide, *caught of them hold. */
-static void revise(struct step_band *b, double h, const double *limit, const double *base, const double *u, const double *du,
-                   const double *f, size_t *freed, size_t *caught)
+static void band_revise(struct step_band *b, double h, const double *limit, const double *base, const double *u, const double *du,
+                        const double *f, size_t *freed, size_t *caught)
 {
     const double rate = 1.0 / h;
     *freed = *caught = 0;
@@ -264,7 +264,7 @@ static void revise(struct step_band *b, double h, const double *limit, const dou
 }
 
 /* One body after the other, upwards or downwards: who held slides along if one of the last `reach` begins to. */
-static void sweep(struct step_band *b, size_t reach, int upwards)
+static void band_sweep(struct step_band *b, size_t reach, int upwards)
 {
     size_t left = 0;
     double way = 0.0;
@@ -291,7 +291,7 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
     memcpy(b->push, du, b->n * sizeof *du);
     for (int round = 0; round < ROUNDS; round++) {
         solve_sets(b, h, limit, base, u, du, f);
-        revise(b, h, limit, base, u, du, f, &freed, &caught);
+        band_revise(b, h, limit, base, u, du, f, &freed, &caught);
         if (freed + caught == 0) {
             for (size_t i = 0; i < b->count; i++) {
                 f[i] = clamp(f[i], -limit[i], limit[i]);
@@ -300,8 +300,8 @@ int tribo_step_band_solve(struct step_band *b, double h, const double *limit, co
         }
         reach = caught ? 0 : 2 * reach + 1;
         if (reach > 1) {
-            sweep(b, reach, 1);
-            sweep(b, reach, 0);
+            band_sweep(b, reach, 1);
+            band_sweep(b, reach, 0);
         }
     }
     memcpy(du, b->push, b->n * sizeof *du);

@@ -56,7 +56,7 @@ static int add(struct matrix *a, double factor, const struct matrix *b)
 }
 
 /* a = M a for a diagonal M. */
-static int weigh(struct matrix *a, const struct matrix *mass)
+static int step_matrix_weigh(struct matrix *a, const struct matrix *mass)
 {
     double *factor = malloc((a->rows + 1) * sizeof *factor);
     for (size_t i = 0; factor && i < a->rows; i++) {
@@ -70,14 +70,14 @@ static int weigh(struct matrix *a, const struct matrix *mass)
 }
 
 /* a = S: what is weighed begins as a sum with the identity. Zeroed if out of memory. */
-static int sum_up(const tribo_system *sys, double h, struct matrix *a)
+static int step_matrix_sum_up(const tribo_system *sys, double h, struct matrix *a)
 {
     const struct step_part k = tribo_step_stiffness(sys), c = tribo_step_damping(sys);
     const double of_k = 0.25 * h * h, of_c = 0.5 * h;
     const int weighed = !sys->mass.rows || (k.weighed && k.of->rows) || (c.weighed && c.of->rows);
     int done = weighed ? tribo_matrix_diagonal(a, sys->ndof, NULL) : tribo_matrix_copy(a, &sys->mass);
     done = done && (!k.weighed || add(a, of_k, k.of)) && (!c.weighed || add(a, of_c, c.of));
-    done = done && (!weighed || !sys->mass.rows || weigh(a, &sys->mass));
+    done = done && (!weighed || !sys->mass.rows || step_matrix_weigh(a, &sys->mass));
     done = done && (k.weighed || add(a, of_k, k.of)) && (c.weighed || add(a, of_c, c.of));
     if (!done) {
         tribo_matrix_free(a);
@@ -140,7 +140,7 @@ int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, 
     size_t where = 0, j;
     double x, y;
     tribo_step_matrix_free(m);
-    if (!sum_up(sys, h, &a)) {
+    if (!step_matrix_sum_up(sys, h, &a)) {
         return tribo_step_matrix_no_memory(sys);
     }
     m->n = sys->ndof;

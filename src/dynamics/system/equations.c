@@ -63,7 +63,8 @@ static struct seen see(tribo_system *sys, double t, const double *y, double *acc
 
 enum { LANES = 8 }; /* side by side, since one sum would wait for itself */
 
-TRIBO_SIMD static double power_of(size_t n, const double *restrict tally, const double *restrict f, const double *restrict v)
+TRIBO_SIMD static double equations_power_of(size_t n, const double *restrict tally, const double *restrict f,
+                                            const double *restrict v)
 {
     double part[LANES] = {0.0}, sum = 0.0;
     size_t i = 0;
@@ -80,7 +81,7 @@ TRIBO_SIMD static double power_of(size_t n, const double *restrict tally, const 
 
 static void add_forces(const tribo_system *sys, const double *v, double *acceleration, double *power)
 {
-    *power = power_of(sys->ncontact, sys->tally, sys->f, v);
+    *power = equations_power_of(sys->ncontact, sys->tally, sys->f, v);
     tribo_matrix_multiply_add(&sys->response, 1.0, sys->f, acceleration);
 }
 
@@ -114,7 +115,7 @@ int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, doubl
 }
 
 /* What the steppers of GSL take besides accelerations and power; sys->v has the velocities for the driver. */
-static void complete(tribo_system *sys, const double *y, double *dydt)
+static void equations_complete(tribo_system *sys, const double *y, double *dydt)
 {
     const double *u = y + sys->ndof;
     memcpy(dydt, u, sys->ndof * sizeof *dydt);
@@ -126,7 +127,7 @@ static void complete(tribo_system *sys, const double *y, double *dydt)
 int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double *dydt)
 {
     const size_t n = sys->ndof;
-    complete(sys, y, dydt);
+    equations_complete(sys, y, dydt);
     return tribo_system_begin_rates(sys, t, y, dydt + n, dydt + 2 * n);
 }
 
@@ -138,7 +139,7 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
     if (sys->status) {
         return GSL_EBADFUNC;
     }
-    complete(sys, y, dydt);
+    equations_complete(sys, y, dydt);
     if (tribo_system_rates(sys, t, y, dydt + n, dydt + 2 * n)) {
         /* a step that is too long may overflow, and a shorter one not */
         return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
@@ -173,7 +174,7 @@ static int check_apart(const tribo_system *sys)
 }
 
 /* to [ncontact], or NULL: forces of elastic contacts, by the state. */
-static void put_springs(tribo_system *sys, const double *y, double *to)
+static void equations_put_springs(tribo_system *sys, const double *y, double *to)
 {
     if (sys->massless.count && to) {
         tribo_elastic_forces(sys, y, sys->acceleration, sys->feq, NULL);
@@ -193,8 +194,8 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
         status = tribo_balance(sys->contacts, sys->v, sys->a, feq, f);
     }
     if (!status) {
-        put_springs(sys, y, feq);
-        put_springs(sys, y, f);
+        equations_put_springs(sys, y, feq);
+        equations_put_springs(sys, y, f);
     }
     if (!status && v) {
         memcpy(v, sys->v, sys->ncontact * sizeof *v);

@@ -28,7 +28,7 @@ static struct dense dense_of(const tribo_system *sys)
     return d;
 }
 
-static int expand(const struct matrix *a, double *to)
+static int jacobian_expand(const struct matrix *a, double *to)
 {
     double *from = tribo_matrix_to_dense(a);
     if (from) {
@@ -46,8 +46,8 @@ static int create_dense(tribo_system *sys)
         return 0;
     }
     const struct dense d = dense_of(sys);
-    if (expand(&sys->stiffness, d.stiffness) && (!sys->damping.rows || expand(&sys->damping, d.damping)) &&
-        expand(&sys->direction, d.direction) && expand(&sys->response, d.response)) {
+    if (jacobian_expand(&sys->stiffness, d.stiffness) && (!sys->damping.rows || jacobian_expand(&sys->damping, d.damping)) &&
+        jacobian_expand(&sys->direction, d.direction) && jacobian_expand(&sys->response, d.response)) {
         return 1;
     }
     free(sys->dense);

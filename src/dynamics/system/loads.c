@@ -212,7 +212,7 @@ void tribo_system_tables(const tribo_system *sys, int order, double factor, size
 }
 
 /* The order-th derivatives of cos(omega t) and sin(omega t) at the time set. */
-static inline void differentiate(const struct harmonic *h, int order, double *c, double *s)
+static inline void loads_differentiate(const struct harmonic *h, int order, double *c, double *s)
 {
     *c = h->cos_t;
     *s = h->sin_t;
@@ -232,7 +232,7 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
         }
         double c, s;
         tribo_system_turn_to(sys, h);
-        differentiate(h, order, &c, &s);
+        loads_differentiate(h, order, &c, &s);
         for (size_t i = 0; i < h->count; i++) {
             to[h->index[i]] += factor * (h->cosine[i] * c + h->sine[i] * s);
         }
@@ -245,7 +245,7 @@ void tribo_system_loads(const tribo_system *sys, enum drives drives, int order, 
 /* ------------------------------------------------------------------------------------------------------------------- limits */
 
 /* The order-th derivative of the limit of contact i without harmonics. */
-static double steady_limit(const tribo_system *sys, size_t i, int order)
+static double loads_steady_limit(const tribo_system *sys, size_t i, int order)
 {
     if (sys->limits.knots) {
         return order < 2 ? look_up(sys, &sys->limits, sys->ncontact, i, order) : 0.0;
@@ -261,8 +261,8 @@ void tribo_system_limits(const tribo_system *sys, double *limit, double *rate)
         return;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        limit[i] = steady_limit(sys, i, 0);
-        rate[i] = steady_limit(sys, i, 1);
+        limit[i] = loads_steady_limit(sys, i, 0);
+        rate[i] = loads_steady_limit(sys, i, 1);
     }
     tribo_system_loads(sys, DRIVES_LIMIT, 0, 1.0, limit);
     tribo_system_loads(sys, DRIVES_LIMIT, 1, 1.0, rate);
@@ -299,13 +299,13 @@ void tribo_system_most_limits(const tribo_system *sys, double *most)
 int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 {
     for (int order = 0; order < DERIVATIVES; order++) {
-        double sum = steady_limit(sys, i, order), size = fabs(sum);
+        double sum = loads_steady_limit(sys, i, order), size = fabs(sum);
         for (size_t k = 0; k < sys->harmonics; k++) {
             const struct harmonic *h = &sys->harmonic[k];
             double c, s;
             if (h->drives == DRIVES_LIMIT) {
                 tribo_system_turn(sys, k);
-                differentiate(h, order, &c, &s);
+                loads_differentiate(h, order, &c, &s);
                 sum += h->cosine[i] * c + h->sine[i] * s;
                 size += hypot(h->cosine[i], h->sine[i]) * hypot(c, s);
             }
@@ -320,7 +320,7 @@ int tribo_system_presses(const tribo_system *sys, size_t i, double doubt)
 /* ------------------------------------------------------------------------------------------------------------------ harmonics */
 
 /* Keeps only entries in which cosine or sine is not zero, but all those of limits, which are looked up contact by contact. */
-static int compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
+static int loads_compress(struct harmonic *h, size_t n, const double *cosine, const double *sine)
 {
     if (!create_harmonic(h, n)) {
         return 0;
@@ -346,7 +346,7 @@ static int check_amplitudes(const tribo_system *sys, const char *name, const dou
 }
 
 /* What has no mass takes no load, and elastic contacts limits that are constant: else w would move by itself. */
-static int check_massless(const tribo_system *sys, enum drives drives, const char *name, const double *x)
+static int loads_check_massless(const tribo_system *sys, enum drives drives, const char *name, const double *x)
 {
     const struct massless *w = &sys->massless;
     const int of_load = drives == DRIVES_LOAD;
@@ -368,7 +368,7 @@ static int check_massless(const tribo_system *sys, enum drives drives, const cha
 /* Limits, and what is computed from them, are to remain numbers. */
 #define MOST_LIMIT 1e300
 
-static int check_limits(const tribo_system *sys, const double *cosine, const double *sine)
+static int loads_check_limits(const tribo_system *sys, const double *cosine, const double *sine)
 {
     for (size_t i = 0; i < sys->ncontact; i++) {
         const double most =
@@ -404,7 +404,7 @@ static int append_harmonic(tribo_system *sys, enum drives drives, double omega, 
     struct harmonic h = {.omega = omega, .drives = drives, .time = NAN};
     struct harmonic *all = realloc(sys->harmonic, (sys->harmonics + 1) * sizeof *all);
     sys->harmonic = all ? all : sys->harmonic;
-    if (!all || !compress(&h, n, parts, parts + n)) {
+    if (!all || !loads_compress(&h, n, parts, parts + n)) {
         return 0;
     }
     sys->harmonic[sys->harmonics++] = h;
@@ -436,7 +436,7 @@ static int append_bend(tribo_system *sys, double omega, double *way)
     return 1;
 }
 
-static int add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
+static int loads_add_harmonic(tribo_system *sys, enum drives drives, double omega, const double *cosine, const double *sine)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
@@ -448,9 +448,9 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
     }
     int status = check_amplitudes(sys, "cosine", cosine, given);
     status = status ? status : check_amplitudes(sys, "sine", sine, given);
-    status = status ? status : check_massless(sys, drives, "cosine", cosine);
-    status = status ? status : check_massless(sys, drives, "sine", sine);
-    status = status || drives != DRIVES_LIMIT ? status : check_limits(sys, cosine, sine);
+    status = status ? status : loads_check_massless(sys, drives, "cosine", cosine);
+    status = status ? status : loads_check_massless(sys, drives, "sine", sine);
+    status = status || drives != DRIVES_LIMIT ? status : loads_check_limits(sys, cosine, sine);
     if (status) {
         return status;
     }
@@ -474,7 +474,7 @@ static int add_harmonic(tribo_system *sys, enum drives drives, double omega, con
 
 int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
+    return loads_add_harmonic(sys, DRIVES_LOAD, omega, cosine, sine);
 }
 
 static void remove_harmonics(tribo_system *sys, enum drives drives)
@@ -509,7 +509,7 @@ int tribo_system_clear_loads(tribo_system *sys)
 
 int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    return add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
+    return loads_add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
 }
 
 int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
@@ -518,7 +518,7 @@ int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine
         return TRIBO_ERR_NULL;
     }
     find_given_limits(sys);
-    return add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
+    return loads_add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- tables */
@@ -556,7 +556,7 @@ static int check_limit_table(const tribo_system *sys, size_t knots, const double
         }
     }
     for (size_t k = 0; !status && k < knots; k++) {
-        status = check_massless(sys, DRIVES_LIMIT, "limit", limit + k * n);
+        status = loads_check_massless(sys, DRIVES_LIMIT, "limit", limit + k * n);
     }
     return status;
 }
@@ -573,7 +573,7 @@ int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *t
     int status = check_knots(sys, knots, time, "value", value);
     status = status ? status : check_amplitudes(sys, "value", value, knots);
     status = status ? status : check_amplitudes(sys, "pattern", pattern, sys->given);
-    status = status ? status : check_massless(sys, DRIVES_LOAD, "pattern", pattern);
+    status = status ? status : loads_check_massless(sys, DRIVES_LOAD, "pattern", pattern);
     if (status) {
         return status;
     }

@@ -120,7 +120,7 @@ static int no_hold(const struct model *m, size_t dof, double pivot)
 }
 
 /* Factors of K_ww, of which no pivot is rounding. */
-static int factorize(const struct model *m, struct statics *s, const struct matrix *kww)
+static int massless_factorize(const struct model *m, struct statics *s, const struct matrix *kww)
 {
     size_t where;
     double pivot;
@@ -158,7 +158,7 @@ static void free_triplets(struct triplets *t)
     free(t->v);
 }
 
-static void put(struct triplets *t, size_t i, size_t j, double v)
+static void massless_put(struct triplets *t, size_t i, size_t j, double v)
 {
     if (v != 0.0) {
         t->i[t->count] = i;
@@ -185,12 +185,12 @@ static int begin_statics(const struct model *m, const struct massless *w, struct
     for (size_t a = 0; done && a < s->n; a++) {
         for (size_t e = k->first[s->dof[a]]; e < k->first[s->dof[a] + 1]; e++) {
             if (w->is[k->col[e]]) {
-                put(&t, a, s->place[k->col[e]], k->val[e]);
+                massless_put(&t, a, s->place[k->col[e]], k->val[e]);
             }
         }
     }
     done = done && tribo_matrix_from_triplets(&kww, s->n, s->n, t.count, t.i, t.j, t.v);
-    const int status = done ? factorize(m, s, &kww) : tribo_model_no_memory(m);
+    const int status = done ? massless_factorize(m, s, &kww) : tribo_model_no_memory(m);
     tribo_matrix_free(&kww);
     free_triplets(&t);
     return status;
@@ -228,8 +228,8 @@ static size_t touching(const struct massless *w, const struct matrix *a, int mas
 }
 
 /* to [ndof][rows of a] = factor K_ww^-1 (columns of a')_w. 0 if out of memory. */
-static int respond(const struct model *m, const struct massless *w, struct statics *s, const struct matrix *a, double factor,
-                   struct matrix *to)
+static int massless_respond(const struct model *m, const struct massless *w, struct statics *s, const struct matrix *a,
+                            double factor, struct matrix *to)
 {
     const int of_stiffness = a == &m->stiffness;
     struct triplets t;
@@ -237,7 +237,7 @@ static int respond(const struct model *m, const struct massless *w, struct stati
     for (size_t i = 0; done && i < a->rows; i++) {
         if (!(of_stiffness && w->is[i]) && solve_row(w, s, a, i)) {
             for (size_t k = 0; k < s->n; k++) {
-                put(&t, s->dof[k], i, factor * s->x[k]);
+                massless_put(&t, s->dof[k], i, factor * s->x[k]);
             }
         }
     }
@@ -300,12 +300,13 @@ static int find_compliance(const struct model *m, struct massless *w, struct sta
     return status;
 }
 
-static int find_statics(const struct model *m, struct massless *w)
+static int massless_find_statics(const struct model *m, struct massless *w)
 {
     struct statics s = {.n = 0};
     int status = begin_statics(m, w, &s);
     status = status ? status : find_compliance(m, w, &s);
-    if (!status && (!respond(m, w, &s, &m->stiffness, -1.0, &w->follow) || !respond(m, w, &s, &m->direction, 1.0, &w->give))) {
+    if (!status && (!massless_respond(m, w, &s, &m->stiffness, -1.0, &w->follow) ||
+                    !massless_respond(m, w, &s, &m->direction, 1.0, &w->give))) {
         status = tribo_model_no_memory(m);
     }
     tribo_cholesky_free(&s.factor);
@@ -325,7 +326,7 @@ static int without(const struct massless *w, const struct matrix *a, int rows, s
     for (size_t i = 0; done && i < a->rows; i++) {
         for (size_t e = a->first[i]; e < a->first[i + 1]; e++) {
             if (!w->is[rows ? i : a->col[e]]) {
-                put(&t, i, a->col[e], a->val[e]);
+                massless_put(&t, i, a->col[e], a->val[e]);
             }
         }
     }
@@ -349,7 +350,7 @@ static int fill_mass(const struct massless *w, const struct matrix *mass, struct
     return done;
 }
 
-static void exchange(struct matrix *a, struct matrix *b)
+static void massless_exchange(struct matrix *a, struct matrix *b)
 {
     const struct matrix c = *a;
     *a = *b;
@@ -382,19 +383,20 @@ static int find_stiffest(tribo_system *s)
 }
 
 /* A system that accelerates w by nothing; then it is told all of mass, stiffness and direction, and how w follows. */
-static int build(struct model *m, struct massless *w, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys)
+static int massless_build(struct model *m, struct massless *w, int (*build_massive)(struct model *, tribo_system **),
+                          tribo_system **sys)
 {
     struct matrix mass = {0}, stiffness = {0}, direction = {0};
     const int done =
         fill_mass(w, &m->mass, &mass) && without(w, &m->stiffness, 1, &stiffness) && without(w, &m->direction, 0, &direction);
-    exchange(&m->mass, &mass);
-    exchange(&m->stiffness, &stiffness);
-    exchange(&m->direction, &direction);
+    massless_exchange(&m->mass, &mass);
+    massless_exchange(&m->stiffness, &stiffness);
+    massless_exchange(&m->direction, &direction);
     int status = done ? build_massive(m, sys) : tribo_model_no_memory(m);
     if (!status) {
-        exchange(&(*sys)->mass, &mass);
-        exchange(&(*sys)->elastic, &stiffness);
-        exchange(&(*sys)->direction, &direction);
+        massless_exchange(&(*sys)->mass, &mass);
+        massless_exchange(&(*sys)->elastic, &stiffness);
+        massless_exchange(&(*sys)->direction, &direction);
         (*sys)->massless = *w;
         *w = (struct massless){0};
         status = find_stiffest(*sys) ? TRIBO_OK : tribo_model_no_memory(m);
@@ -421,8 +423,8 @@ int tribo_model_build_massless(struct model *m, int (*build_massive)(struct mode
                            "in all, not %zu degree%s of freedom",
                            w.count, plural(w.count), DENSE_MOST, m->ndof, plural(m->ndof));
         status = status ? status : check_damping(m, &w);
-        status = status ? status : find_statics(m, &w);
-        status = status ? status : build(m, &w, build_massive, sys);
+        status = status ? status : massless_find_statics(m, &w);
+        status = status ? status : massless_build(m, &w, build_massive, sys);
     }
     tribo_massless_free(&w);
     return status;

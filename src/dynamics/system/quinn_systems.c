@@ -6,7 +6,7 @@
 #include "model.h"
 
 /* Hands the system over, or destroys it. */
-static int finish(tribo_system **sys, tribo_system *made, int status)
+static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
 {
     if (status) {
         tribo_system_destroy(made);
@@ -26,7 +26,7 @@ int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, doub
     int status = tribo_system_linear(&s, 1, 1, &one, NULL, &one, &one, 0, NULL, 0);
     status = status ? status : tribo_set_limit(s->contacts, &limit);
     status = status ? status : tribo_system_add_load(s, omega, NULL, &alpha);
-    return finish(sys, s, status);
+    return quinn_finish(sys, s, status);
 }
 
 int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega)
@@ -40,7 +40,7 @@ int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double li
     int status = tribo_system_linear(&s, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0);
     status = status ? status : tribo_set_limit(s->contacts, limit);
     status = status ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
-    return finish(sys, s, status);
+    return quinn_finish(sys, s, status);
 }
 
 /* ----------------------------------------------------------------------------------------------------------------- chain */
@@ -109,5 +109,5 @@ int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha,
         status = tribo_system_add_load(s, omega, NULL, each);
     }
     free(each);
-    return finish(sys, s, status);
+    return quinn_finish(sys, s, status);
 }

@@ -40,7 +40,7 @@ static inline int is_pair(const struct snapping *s, size_t i)
 }
 
 /* Entry `to` of row i follows entry `from`, if that is another one. */
-static void take(struct snapping *s, size_t i, size_t to, size_t from)
+static void snap_take(struct snapping *s, size_t i, size_t to, size_t from)
 {
     const struct matrix *j = &s->sys->direction;
     const struct snap one = {i, j->col[to], j->col[from], j->val[to], to == from ? 0.0 : j->val[from]};
@@ -56,7 +56,7 @@ static void snap_pair(struct snapping *s, size_t i, size_t to)
 {
     const struct matrix *j = &s->sys->direction;
     const size_t from = 2 * j->first[i] + 1 - to;
-    take(s, i, to, from);
+    snap_take(s, i, to, from);
     s->known[j->col[to]] = s->known[j->col[from]] = 1.0;
 }
 
@@ -112,13 +112,13 @@ static int snap_first(struct snapping *s)
             /* The same for entry `to` alone, which each step asks for of many. */
             const size_t to = first[i];
             if (s->list) {
-                take(s, i, to, to);
+                snap_take(s, i, to, to);
             } else {
                 s->x[s->sys->direction.col[to]] = s->base[i] / s->sys->direction.val[to];
             }
         } else if (s->sys->snaps_in_order && is_pair(s, i)) {
             const size_t to = first[i] + follows(s->sys, i, first[i]);
-            take(s, i, to, 2 * first[i] + 1 - to);
+            snap_take(s, i, to, 2 * first[i] + 1 - to);
         } else {
             left |= !s->loose[i];
         }

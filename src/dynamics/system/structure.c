@@ -7,7 +7,7 @@
 #include "delassus.h"
 #include "model.h"
 
-static int check(const struct model *m)
+static int structure_check(const struct model *m)
 {
     const struct {
         const char *name;
@@ -24,8 +24,8 @@ static int check(const struct model *m)
         if (!isfinite(x)) {
             return tribo_model_fail(m, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", all[k].name, i, j, x);
         }
-        return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", all[k].name,
-                                i, j, x, all[k].name, j, i, y);
+        return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC, "%s[%zu][%zu] = %.17g, but %s[%zu][%zu] = %.17g", all[k].name, i, j,
+                                x, all[k].name, j, i, y);
     }
     return TRIBO_OK;
 }
@@ -140,10 +140,11 @@ static int check_unsolved(const struct model *m)
         return tribo_model_too_large(m);
     }
     if (m->damping.rows && tribo_matrix_flaw(&m->damping, 1, &i, &j, &x, &y)) {
-        return tribo_model_fail(m, TRIBO_ERR_NOT_SYMMETRIC,
-                                "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
-                                "mass matrix that is not diagonal it must be symmetric",
-                                i, j, x, j, i, y, DENSE_MOST);
+        return tribo_model_fail(
+            m, TRIBO_ERR_NOT_SYMMETRIC,
+            "damping[%zu][%zu] = %.17g, but damping[%zu][%zu] = %.17g: with more than %d degrees of freedom and a "
+            "mass matrix that is not diagonal it must be symmetric",
+            i, j, x, j, i, y, DENSE_MOST);
     }
     return TRIBO_OK;
 }
@@ -202,7 +203,7 @@ int tribo_model_build_whole(struct model *m, tribo_system **sys)
 int tribo_model_build(struct model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
-    int status = check(m);
+    int status = structure_check(m);
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_whole(m, &s);
     }

@@ -82,7 +82,7 @@ int tribo_factor_many(const struct box_qp *p, size_t changes, size_t free)
 }
 
 /* Sums side by side, since one would have to be added up in order. */
-TRIBO_SIMD static double dense_dot(const double *restrict row, const double *restrict x, size_t n, double *size)
+TRIBO_SIMD static double factor_dense_dot(const double *restrict row, const double *restrict x, size_t n, double *size)
 {
     enum { SUMS = 4 };
     double sum[SUMS] = {0.0}, all[SUMS] = {0.0};
@@ -107,7 +107,7 @@ double tribo_row_dot(const struct box_qp *p, size_t i, const double *x, double *
     if (p->group->sparse) {
         return tribo_sparse_dot(p, i, x, size);
     }
-    return dense_dot(p->r + i * p->group->size, x, p->group->size, size);
+    return factor_dense_dot(p->r + i * p->group->size, x, p->group->size, size);
 }
 
 double tribo_row_others(const struct box_qp *p, size_t i, double *x)

@@ -95,7 +95,7 @@ static void sparse_walk(struct sparse *s, const size_t *parent, size_t *seen, si
 }
 
 /* The same entries by rows. */
-static void fill_rows(struct sparse *s, size_t *count)
+static void sparse_fill_rows(struct sparse *s, size_t *count)
 {
     const size_t size = s->r.n, slots = s->column[size];
     for (size_t q = 0; q < slots; q++) {
@@ -149,7 +149,7 @@ static int find_pattern(struct sparse *s)
     const int good = s->column[size] > size * size / 8 ? 0 : allocate_slots(s, s->column[size]) ? 1 : -1;
     if (good > 0) {
         sparse_walk(s, parent, seen, count, 1);
-        fill_rows(s, count);
+        sparse_fill_rows(s, count);
         /* What a change and a new factor cost, in nanoseconds, of which only the ratio counts: measured on carpets and chains of 400 to
          * 100,000 contacts. A change goes from its column to the root. */
         for (size_t j = s->r.n; j-- > 0;) {
