@@ -58,7 +58,7 @@ static int factorize_mass(struct modal_build *b, const struct matrix *z, struct 
 }
 
 /* What to say of modes that were not found. */
-static int modes_failed(const struct modal_build *b, int status, const struct doubt *doubt)
+static int build_modes_failed(const struct modal_build *b, int status, const struct doubt *doubt)
 {
     switch (status) {
     case TRIBO_ERR_NOT_FINITE:
@@ -93,10 +93,10 @@ static int find_modes(struct modal_build *b)
     if (!status && b->h->modes > 0) {
         status = held ? factorize_mass(b, &z, &own) : TRIBO_OK;
         status = status ? status
-                        : modes_failed(b,
-                                       tribo_normal_modes(b->shared->stiffness, &z, held ? &own : &b->shared->sys->factor, b->h->modes,
-                                                          b->h->omega2, b->phi, &doubt),
-                                       &doubt);
+                        : build_modes_failed(b,
+                                             tribo_normal_modes(b->shared->stiffness, &z, held ? &own : &b->shared->sys->factor,
+                                                                b->h->modes, b->h->omega2, b->phi, &doubt),
+                                             &doubt);
     }
     tribo_matrix_free(&z);
     tribo_cholesky_free(&own);
@@ -187,7 +187,7 @@ static int find_drifts(struct modal_build *b)
 /* ------------------------------------------------------------------------------------------------------- structures */
 
 /* Keeps modes and belt velocities for the degrees of freedom that move. */
-static int compress(struct modal_build *b)
+static int build_compress(struct modal_build *b)
 {
     struct modal *h = b->h;
     const size_t n = b->n, m = h->modes, s = h->given;
@@ -256,7 +256,7 @@ void tribo_modal_forget(struct modal_known *known)
 }
 
 /* Adds a structure that is not known. Returns a status. */
-static int learn(struct modal_build *b, struct modal_known *known)
+static int build_learn(struct modal_build *b, struct modal_known *known)
 {
     const size_t bytes = sizeof(struct modal_piece) + b->rests * sizeof *b->rest;
     struct modal_piece *p = malloc(bytes);
@@ -284,7 +284,7 @@ static int recall_structure(struct modal_build *b, struct modal_known *known)
     while (p && (p->rests != b->rests || memcmp(p->rest, b->rest, b->rests * sizeof *b->rest) != 0)) {
         p = p->next;
     }
-    const int status = p ? TRIBO_OK : learn(b, known);
+    const int status = p ? TRIBO_OK : build_learn(b, known);
     if (status) {
         return status;
     }
@@ -302,7 +302,7 @@ static int recall_structure(struct modal_build *b, struct modal_known *known)
 }
 
 /* Returns a status, TRIBO_ERR_MEMORY if none is in b. */
-static int find_all(struct modal_build *b, const unsigned char *holds)
+static int build_find_all(struct modal_build *b, const unsigned char *holds)
 {
     if (!list_rest(b, holds)) {
         return b->status ? b->status : TRIBO_ERR_MEMORY;
@@ -313,14 +313,14 @@ static int find_all(struct modal_build *b, const unsigned char *holds)
     if (status) {
         return status;
     }
-    return tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && compress(b) ? TRIBO_OK
-           : b->status                                                                                ? b->status
-                                                                                                      : TRIBO_ERR_MEMORY;
+    return tribo_modal_forcing(b) && tribo_modal_response(b) && tribo_modal_outputs(b) && build_compress(b) ? TRIBO_OK
+           : b->status                                                                                      ? b->status
+                                                                                                            : TRIBO_ERR_MEMORY;
 }
 
 int tribo_modal_build(struct modal_build *b, const unsigned char *holds)
 {
-    const int status = find_all(b, holds);
+    const int status = build_find_all(b, holds);
     tribo_constraints_free(&b->ties);
     tribo_matrix_free(&b->slack);
     tribo_cholesky_free(&b->slack_stiffness);

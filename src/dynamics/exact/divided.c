@@ -25,24 +25,19 @@ static double complex between(double complex a, double complex b)
     return creal(a) > creal(b) ? cexp(a) * tribo_exp_1(b - a) : cexp(b) * tribo_exp_1(a - b);
 }
 
-/* The sum of h_k(a, b)/(k + 2)!, h_k being that of all products of k factors a or b. */
-static double complex series(double complex a, double complex b)
-{
-    double complex products = 1.0, power = 1.0, sum = 0.0;
-    double factor = 0.5;
-    for (int k = 0; k < TERMS; k++) {
-        sum += factor * products;
-        factor /= k + 3;
-        power *= b;
-        products = a * products + power;
-    }
-    return sum;
-}
-
 double complex tribo_exp_2(double complex a, double complex b)
 {
     if (cabs(a) < CLOSE && cabs(b) < CLOSE) {
-        return series(a, b);
+        /* The sum of h_k(a, b)/(k + 2)!, h_k being that of all products of k factors a or b. */
+        double complex products = 1.0, power = 1.0, sum = 0.0;
+        double factor = 0.5;
+        for (int k = 0; k < TERMS; k++) {
+            sum += factor * products;
+            factor /= k + 3;
+            power *= b;
+            products = a * products + power;
+        }
+        return sum;
     }
     const double complex far = cabs(a) < cabs(b) ? b : a, other = cabs(a) < cabs(b) ? a : b;
     return (between(far, other) - tribo_exp_1(other)) / far;

@@ -14,7 +14,7 @@
 /* So much of an exponent may be wrong. */
 #define KNOWN 1e-8
 
-static int unsupported(const struct modal_build *b, const char *why)
+static int exponents_unsupported(const struct modal_build *b, const char *why)
 {
     return tribo_system_fail(b->shared->sys, TRIBO_ERR_UNSUPPORTED, "method exact: %s; method event can do it", why);
 }
@@ -36,7 +36,7 @@ static int exponents_decoupled(struct modal_build *b)
             continue;
         }
         if (fabs(square) < CRITICAL * greater(fabs(h->omega2[k]), half * half)) {
-            return unsupported(b, "a mode is critically damped");
+            return exponents_unsupported(b, "a mode is critically damped");
         }
         if (square > 0.0) {
             h->lr[p] = -half;
@@ -73,7 +73,7 @@ static void first_order(const struct modal *h, const double *s, double *a)
 }
 
 /* What is left of A x - lambda x, beside |lambda|, for x of length 1 with parts x [0] and, if lambda is complex, x [1]. */
-static double residual(const struct modal *h, const double *s, double re, double im, const double *const *x)
+static double exponents_residual(const struct modal *h, const double *s, double re, double im, const double *const *x)
 {
     const size_t m = h->modes, parts = im != 0.0 ? 2 : 1;
     double square = 0.0;
@@ -95,7 +95,7 @@ static int all_known(const struct modal *h, const double *s, const double *re, c
     const size_t size = 2 * h->modes;
     for (size_t i = 0; i < size; i++) {
         const double *const parts[] = {x + i * size, im[i] > 0.0 ? x + (i + 1) * size : NULL};
-        if (!(im[i] < 0.0) && !(residual(h, s, re[i], im[i], parts) <= KNOWN)) {
+        if (!(im[i] < 0.0) && !(exponents_residual(h, s, re[i], im[i], parts) <= KNOWN)) {
             return 0;
         }
     }
@@ -151,7 +151,7 @@ static int invert(const struct modal_build *b, const double *x, double *lu, size
         inverse[i * size + i] = 1.0;
     }
     if (!(tribo_lu_create(lu, size, pivot) >= ALIKE)) {
-        return unsupported(b, "two modes have nearly the same exponent and shape");
+        return exponents_unsupported(b, "two modes have nearly the same exponent and shape");
     }
     tribo_lu_solve(lu, size, pivot, inverse, size);
     return TRIBO_OK;
@@ -170,19 +170,19 @@ static int exponents_coupled(struct modal_build *b)
     }
     for (size_t k = 0; k < m; k++) {
         if (!(h->omega2[k] > 0.0)) {
-            return unsupported(b, "coupled damping, and a mode without stiffness");
+            return exponents_unsupported(b, "coupled damping, and a mode without stiffness");
         }
         s[k] = sqrt(h->omega2[k]);
     }
     first_order(h, s, a);
     int status = tribo_eigen(a, size, re, im, x);
     if (status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE) {
-        return tribo_system_fail(b->shared->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m, plural(m),
-                                 tribo_strerror(status));
+        return tribo_system_fail(b->shared->sys, status, "method exact: exponents of %zu mode%s that damping couples: %s", m,
+                                 plural(m), tribo_strerror(status));
     }
     status = status ? status : invert(b, x, a, pivot, inverse);
     if (!status && !all_known(h, s, re, im, x)) {
-        return unsupported(b, "damping couples modes of too different frequencies");
+        return exponents_unsupported(b, "damping couples modes of too different frequencies");
     }
     return status ? status : keep_exponents(b, s, re, im, x, inverse);
 }

@@ -113,40 +113,30 @@ static int find_held(struct exact *x, const struct modal **found)
 
 /* --------------------------------------------------------------------------------------------------------------------- guards */
 
-/* The two sides of an output are computed at once. */
-static void look_at(const struct modal_motion *x, struct guard *g, double tau)
-{
-    struct course *c = g->output;
-    if (c->tau != tau) {
-        tribo_course_look(x, c);
-    }
-    g->middle.g = g->offset + g->side * c->at.g;
-    g->middle.d = g->side * c->at.d;
-    g->middle.e = g->side * c->at.e;
-}
-
-/* Adds what harmonics make of the limit. */
-static void add_limit(const struct modal_motion *x, struct guard *g)
-{
-    const struct sample limit = tribo_modal_motion_limit(x, g->contact);
-    g->middle.g += g->limit * limit.g;
-    g->middle.d += g->limit * limit.d;
-    g->middle.e += g->limit * limit.e;
-}
-
-static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
+static void method_exact_look(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
     struct modal_motion *x = &((struct exact *)motion)->motion;
     tribo_modal_motion_go(x, tau);
     for (size_t k = 0; k < guards; k++) {
         struct guard *g = guard[k];
         if (g->output) {
-            look_at(x, g, tau);
+            /* The two sides of an output are computed at once. */
+            struct course *c = g->output;
+            if (c->tau != tau) {
+                tribo_course_look(x, c);
+            }
+            g->middle.g = g->offset + g->side * c->at.g;
+            g->middle.d = g->side * c->at.d;
+            g->middle.e = g->side * c->at.e;
         } else {
             g->middle = (struct sample){g->offset, 0.0, 0.0};
         }
         if (g->limit != 0.0) {
-            add_limit(x, g);
+            /* Adds what harmonics make of the limit. */
+            const struct sample limit = tribo_modal_motion_limit(x, g->contact);
+            g->middle.g += g->limit * limit.g;
+            g->middle.d += g->limit * limit.d;
+            g->middle.e += g->limit * limit.e;
         }
     }
 }
@@ -185,21 +175,9 @@ static void arrive(void *motion, double t)
     }
 }
 
-/* Of a guard, its course being bounded. */
-static void bound_guard(const struct exact *x, struct guard *g)
-{
-    const struct course *c = g->output;
-    g->size = fabs(g->offset) + (c ? c->size : 0.0);
-    g->bend = c ? c->bend : 0.0;
-    if (g->limit != 0.0) {
-        g->size += fabs(g->limit) * x->events.stick_slip.swing[g->contact];
-        g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
-    }
-}
-
 /* Where exponents decay, bounds are worth finding again after the time of the fastest of them, and after twice that, and so on.
  * Those of courses from the start on come with them. */
-static double bound(void *motion, double tau)
+static double method_exact_bound(void *motion, double tau)
 {
     struct exact *x = motion;
     const double decay = x->motion.h->decay;
@@ -210,7 +188,15 @@ static double bound(void *motion, double tau)
         }
     }
     for (size_t k = 0; k < x->events.search.guards; k++) {
-        bound_guard(x, &x->events.search.guard[k]);
+        /* Of a guard, its course being bounded. */
+        struct guard *g = &x->events.search.guard[k];
+        const struct course *c = g->output;
+        g->size = fabs(g->offset) + (c ? c->size : 0.0);
+        g->bend = c ? c->bend : 0.0;
+        if (g->limit != 0.0) {
+            g->size += fabs(g->limit) * x->events.stick_slip.swing[g->contact];
+            g->bend += fabs(g->limit) * tribo_modal_motion_limit_bend(&x->motion, g->contact);
+        }
     }
     return decay > 0.0 ? greater(2.0 * tau, 1.0 / decay) : HUGE_VAL;
 }
@@ -234,49 +220,7 @@ static void add_stick_guards(struct exact *x, struct course *c)
     }
 }
 
-/* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
- * hold have guards of their forces. */
-static void add_limit_guard(struct exact *x, size_t i)
-{
-    const struct stick_slip *m = &x->events.stick_slip;
-    if (m->swing[i] > 0.0 && !m->holds[i]) {
-        const struct watch g = {.offset = x->sys->given_limit[i], .limit = 1.0};
-        tribo_events_guard_limit(&x->events, i, &g);
-    }
-}
-
-/* Of output k. The velocity of an open contact is not guarded, but when it touches down its rounding counts. */
-static void add_guards(struct exact *x, size_t k, const double *y)
-{
-    struct course *c = &x->course[k];
-    struct stick_slip *m = &x->events.stick_slip;
-    const int of_velocity = k < x->motion.h->sliding;
-    c->output = &x->motion.h->output[k];
-    const size_t i = c->output->contact;
-    const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
-    tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->force[i]);
-    if (m->slip[i] == 2) {
-        m->seen[i] = c->size;
-    } else if (!of_velocity) {
-        add_stick_guards(x, c);
-    } else {
-        const struct watch g = {.output = c};
-        (m->slip[i] == 0 ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
-    }
-}
-
-static void set_guards(struct exact *x, const double *y)
-{
-    tribo_events_clear_guards(&x->events);
-    for (size_t k = 0; k < x->motion.h->outputs; k++) {
-        add_guards(x, k, y);
-    }
-    for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {
-        add_limit_guard(x, i);
-    }
-}
-
-static int begin(void *motion, double t, const double *y, double *reach)
+static int method_exact_begin(void *motion, double t, const double *y, double *reach)
 {
     struct exact *x = motion;
     const struct modal *h = NULL;
@@ -288,7 +232,34 @@ static int begin(void *motion, double t, const double *y, double *reach)
         return tribo_system_fail(x->sys, TRIBO_ERR_MEMORY, "out of memory for %zu term%s", h->terms, plural(h->terms));
     }
     *reach = tribo_modal_motion_start(&x->motion, h, t, y, *reach);
-    set_guards(x, y);
+    tribo_events_clear_guards(&x->events);
+    for (size_t k = 0; k < x->motion.h->outputs; k++) {
+        /* Of output k. The velocity of an open contact is not guarded, but when it touches down its rounding counts. */
+        struct course *c = &x->course[k];
+        struct stick_slip *m = &x->events.stick_slip;
+        const int of_velocity = k < x->motion.h->sliding;
+        c->output = &x->motion.h->output[k];
+        const size_t i = c->output->contact;
+        const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
+        tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->force[i]);
+        if (m->slip[i] == 2) {
+            m->seen[i] = c->size;
+        } else if (!of_velocity) {
+            add_stick_guards(x, c);
+        } else {
+            const struct watch g = {.output = c};
+            (m->slip[i] == 0 ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
+        }
+    }
+    for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {
+        /* One of the limit itself, if harmonics make it so small that it may fall to 0, or to the force that a contact keeps. Those that
+         * hold have guards of their forces. */
+        const struct stick_slip *m = &x->events.stick_slip;
+        if (m->swing[i] > 0.0 && !m->holds[i]) {
+            const struct watch g = {.offset = x->sys->given_limit[i], .limit = 1.0};
+            tribo_events_guard_limit(&x->events, i, &g);
+        }
+    }
     return TRIBO_OK;
 }
 
@@ -302,7 +273,7 @@ static void release_phase(const void *phase)
     tribo_modal_free(phase);
 }
 
-static int transition(void *motion, const void *phase, double tau, size_t columns, double *v)
+static int method_exact_transition(void *motion, const void *phase, double tau, size_t columns, double *v)
 {
     struct exact *x = motion;
     if (columns > x->columns) {
@@ -317,7 +288,7 @@ static int transition(void *motion, const void *phase, double tau, size_t column
     return TRIBO_OK;
 }
 
-static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
+static int method_exact_combine(void *motion, const double *c, double tau, const double *end, struct signal *to)
 {
     return tribo_modal_motion_signal(&((struct exact *)motion)->motion, c, tau, end, to);
 }
@@ -377,17 +348,17 @@ static int create(tribo_driver *drv)
     if (status) {
         return status;
     }
-    x->events.search.look = look;
+    x->events.search.look = method_exact_look;
     x->events.search.further = look_further;
-    x->events.search.bound = bound;
+    x->events.search.bound = method_exact_bound;
     x->events.search.motion = x->events.motion = x;
-    x->events.begin = begin;
+    x->events.begin = method_exact_begin;
     x->events.state = move_to;
     x->events.arrive = arrive;
     x->events.keep = keep_phase;
     x->events.release = release_phase;
-    x->events.transition = transition;
-    x->events.signal = combine;
+    x->events.transition = method_exact_transition;
+    x->events.signal = method_exact_combine;
     x->events.work = work;
     x->events.shows_between = 1;
     if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
@@ -396,7 +367,7 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-static int open_events(tribo_driver *drv, struct events **events)
+static int method_exact_open_events(tribo_driver *drv, struct events **events)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
@@ -415,5 +386,11 @@ static int open_events(tribo_driver *drv, struct events **events)
     return TRIBO_OK;
 }
 
-const struct method tribo_method_exact = {"exact",     WITHOUT_TOLERANCES,        create, destroy, tribo_events_method, NULL,
-                                          open_events, tribo_events_find_periodic};
+const struct method tribo_method_exact = {"exact",
+                                          WITHOUT_TOLERANCES,
+                                          create,
+                                          destroy,
+                                          tribo_events_method,
+                                          NULL,
+                                          method_exact_open_events,
+                                          tribo_events_find_periodic};

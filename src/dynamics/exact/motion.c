@@ -140,16 +140,6 @@ double tribo_modal_motion_limit_bend(const struct modal_motion *x, size_t i)
     return sum;
 }
 
-/* With a load far above the frequency of exponential p the little by which it moves is all of the motion: no difference. */
-static void find_little_move(struct modal_motion *x, size_t p)
-{
-    const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
-    const struct number z = tribo_term_at_start(x, p);
-    const double complex move = (z.re + z.im * I) * lambda_tau * tribo_exp_1(lambda_tau);
-    x->er[p] = creal(move);
-    x->ei[p] = cimag(move);
-}
-
 /* By how much terms have moved from t0 to where go() was: into er, ei. */
 static void find_moves(struct modal_motion *x)
 {
@@ -162,7 +152,12 @@ static void find_moves(struct modal_motion *x)
     }
     for (size_t p = 0; p < e && !h->any_resonant; p++) {
         if (x->tau * h->size[p] < LITTLE) {
-            find_little_move(x, p);
+            /* With a load far above the frequency of exponential p the little by which it moves is all of the motion: no difference. */
+            const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
+            const struct number z = tribo_term_at_start(x, p);
+            const double complex move = (z.re + z.im * I) * lambda_tau * tribo_exp_1(lambda_tau);
+            x->er[p] = creal(move);
+            x->ei[p] = cimag(move);
         }
     }
 }
@@ -171,13 +166,6 @@ static void find_moves(struct modal_motion *x)
 struct amplitude {
     double place, rate;
 };
-
-/* What is linear in time, or quadratic, of mode k. */
-static struct amplitude linear_part(const struct modal_motion *x, size_t k)
-{
-    const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
-    return (struct amplitude){tau * (drift + 0.5 * acc * tau), drift + acc * tau};
-}
 
 /* Adds what term p, times r, has moved a mode by. */
 static inline void add_term(const struct modal_motion *x, size_t p, double rr, double ri, struct amplitude *a)
@@ -200,7 +188,7 @@ static void add_mode(const struct modal_motion *x, size_t k, struct amplitude a,
     }
 }
 
-static void add_modes(struct modal_motion *x, double *velocity)
+static void motion_add_modes(struct modal_motion *x, double *velocity)
 {
     const struct modal *h = x->h;
     const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes;
@@ -208,7 +196,9 @@ static void add_modes(struct modal_motion *x, double *velocity)
     for (size_t k = 0, p = 0; k < modes; k++) {
         struct amplitude a = {0.0, 0.0};
         if (x->runs) {
-            a = linear_part(x, k);
+            /* What is linear in time, or quadratic, of mode k. */
+            const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
+            a = (struct amplitude){tau * (drift + 0.5 * acc * tau), drift + acc * tau};
         }
         for (; h->owner && p < e && h->owner[p] == k; p++) {
             a.place += x->er[p];
@@ -260,7 +250,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
             carry(x, s, velocity);
         }
     }
-    add_modes(x, velocity);
+    motion_add_modes(x, velocity);
     for (size_t i = 0; i < h->moving; i++) {
         to[h->dof[i]] += x->dq[h->dof[i]];
     }
@@ -270,7 +260,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
 /* ------------------------------------------------------------------------------------------------------- the start of a phase */
 
 /* J_i q, less what harmonics of the base have moved it by. */
-static double offset(const tribo_system *sys, size_t i, const double *q)
+static double motion_offset(const tribo_system *sys, size_t i, const double *q)
 {
     double sum = tribo_matrix_row_dot(&sys->direction, i, q);
     for (size_t s = 0; s < sys->harmonics; s++) {
@@ -280,21 +270,6 @@ static double offset(const tribo_system *sys, size_t i, const double *q)
         }
     }
     return sum;
-}
-
-/* The forces of contacts but for harmonics of limits that they follow. */
-static const double *find_steady_forces(const struct modal_motion *x, const tribo_system *sys)
-{
-    double *steady = x->room_for_steady;
-    for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
-        double limit = sys->given_limit[i];
-        for (size_t s = 0; s < sys->harmonics; s++) {
-            const struct harmonic *w = &sys->harmonic[s];
-            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
-        }
-        steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
-    }
-    return sys->limit_harmonics ? steady : x->contacts->force;
 }
 
 /* The harmonics at t0, those of limits as many times as the force of their contact follows them; and the nothing after them. */
@@ -321,7 +296,7 @@ static void find_pushes(struct modal_motion *x, const tribo_system *sys, const d
     const struct modal *h = x->h;
     for (size_t o = 0; h->modes > 0 && o < h->outputs; o++) {
         const size_t i = h->output[o].contact;
-        x->push[o] = o < h->sliding ? x->steady[i] : -offset(sys, i, y);
+        x->push[o] = o < h->sliding ? x->steady[i] : -motion_offset(sys, i, y);
     }
 }
 
@@ -401,7 +376,17 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
 {
     const struct modal *h = x->h;
     start_harmonics(x, sys);
-    x->steady = find_steady_forces(x, sys);
+    /* The forces of contacts but for harmonics of limits that they follow. */
+    double *steady = x->room_for_steady;
+    for (size_t i = 0; sys->limit_harmonics && i < sys->ncontact; i++) {
+        double limit = sys->given_limit[i];
+        for (size_t s = 0; s < sys->harmonics; s++) {
+            const struct harmonic *w = &sys->harmonic[s];
+            limit += w->drives == DRIVES_LIMIT && w->omega == 0.0 ? w->cosine[i] : 0.0;
+        }
+        steady[i] = tribo_stick_slip_follows(x->contacts, i) * limit;
+    }
+    x->steady = sys->limit_harmonics ? steady : x->contacts->force;
     find_pushes(x, sys, y);
     x->runs = 0;
     for (size_t k = 0; k < h->modes; k++) {
@@ -412,34 +397,6 @@ static void split_motion(struct modal_motion *x, tribo_system *sys, const double
     for (size_t p = 0; p < h->exponents; p++) {
         begin_exponent(x, p);
     }
-}
-
-/* At t0 nothing has moved; but what resonates pulls already. */
-static void rest_at_start(struct modal_motion *x)
-{
-    tribo_modal_terms_rest(x);
-    if (x->h->any_resonant) {
-        add_resonances(x, 0.0);
-    }
-}
-
-/* The part of the velocities of sliding contacts that is linear in time. */
-static void find_lines(struct modal_motion *x, const double *y)
-{
-    const struct stick_slip *m = x->contacts;
-    for (size_t o = 0; o < x->h->sliding; o++) {
-        const size_t i = x->h->output[o].contact;
-        struct course c = {.output = &x->h->output[o]};
-        tribo_course_begin(x, &c, 1, m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
-        x->line[i] = c.line;
-    }
-}
-
-/* How long the bounds of a phase can hold: for good, unless something grows. */
-static double longest_phase(const struct modal *h, double longest)
-{
-    const double last = h->growth > 0.0 ? lesser(longest, 1.0 / h->growth) : longest;
-    return h->any_resonant ? lesser(last, 16.0 / h->fastest) : last;
 }
 
 /* What resonances add to the bounds of exponent p, whose frequency is within RESONANCE of theirs. */
@@ -475,11 +432,24 @@ double tribo_modal_motion_start(struct modal_motion *x, const struct modal *h, d
     x->h = h;
     x->t0 = t;
     split_motion(x, x->sys, y);
-    rest_at_start(x);
-    x->longest = longest_phase(h, longest);
+    /* At t0 nothing has moved; but what resonates pulls already. */
+    tribo_modal_terms_rest(x);
+    if (x->h->any_resonant) {
+        add_resonances(x, 0.0);
+    }
+    /* How long the bounds of a phase can hold: for good, unless something grows. */
+    const double last = h->growth > 0.0 ? lesser(longest, 1.0 / h->growth) : longest;
+    x->longest = h->any_resonant ? lesser(last, 16.0 / h->fastest) : last;
     tribo_modal_motion_bound(x, 0.0);
     if (x->sys->limit_harmonics) {
-        find_lines(x, y);
+        /* The part of the velocities of sliding contacts that is linear in time. */
+        const struct stick_slip *m = x->contacts;
+        for (size_t o = 0; o < x->h->sliding; o++) {
+            const size_t i = x->h->output[o].contact;
+            struct course c = {.output = &x->h->output[o]};
+            tribo_course_begin(x, &c, 1, m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y));
+            x->line[i] = c.line;
+        }
     }
     return x->longest;
 }

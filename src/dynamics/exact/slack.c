@@ -6,7 +6,7 @@
 
 /* place [z->cols] = where a displacement stands among those without mass, or, ~ of that, among the others. Returns how many have
  * none. */
-static size_t divide(const struct modal_build *b, const struct matrix *z, ptrdiff_t *place)
+static size_t slack_divide(const struct modal_build *b, const struct matrix *z, ptrdiff_t *place)
 {
     size_t free_ones = 0, others = 0;
     memset(place, 0, z->cols * sizeof *place);
@@ -44,14 +44,15 @@ static int solve_slack(struct modal_build *b, const double *k, size_t cols, cons
     status = status ? status : tribo_cholesky_create(&b->slack_stiffness, &a, &where, &pivot);
     tribo_matrix_free(&a);
     if (status == TRIBO_ERR_INDEFINITE) {
-        return tribo_system_fail(b->shared->sys, status, "with contacts held, the stiffness does not hold what has no mass: pivot %g",
-                                 pivot);
+        return tribo_system_fail(b->shared->sys, status,
+                                 "with contacts held, the stiffness does not hold what has no mass: pivot %g", pivot);
     }
     return status || tribo_cholesky_solve(&b->slack_stiffness, cols - slack, y) ? status : TRIBO_ERR_MEMORY;
 }
 
 /* x [ndof][others] = Z_q - Z_w y'; and slack = Z_w. */
-static int split(struct modal_build *b, const struct matrix *z, const ptrdiff_t *place, size_t slack, const double *y, double *x)
+static int slack_split(struct modal_build *b, const struct matrix *z, const ptrdiff_t *place, size_t slack, const double *y,
+                       double *x)
 {
     const size_t others = z->cols - slack;
     double *w = tribo_modal_scratch(b, z->rows * slack);
@@ -79,12 +80,12 @@ int tribo_modal_condense(struct modal_build *b, struct matrix *z)
     const size_t cols = z->cols;
     ptrdiff_t *place = malloc((cols + 1) * sizeof *place);
     double *k = tribo_modal_scratch(b, cols * cols);
-    const size_t slack = place ? divide(b, z, place) : 0, others = cols - slack;
+    const size_t slack = place ? slack_divide(b, z, place) : 0, others = cols - slack;
     double *y = tribo_modal_scratch(b, others * slack), *x = tribo_modal_scratch(b, b->n * others);
     int status = place && k && y && x && tribo_matrix_congruent(b->shared->stiffness, z, k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
     if (!status && slack) {
         status = solve_slack(b, k, cols, place, slack, y);
-        status = status || split(b, z, place, slack, y, x) ? status : TRIBO_ERR_MEMORY;
+        status = status || slack_split(b, z, place, slack, y, x) ? status : TRIBO_ERR_MEMORY;
         tribo_matrix_free(z);
         status = status || tribo_matrix_from_dense(z, b->n, others, x) ? status : TRIBO_ERR_MEMORY;
     }

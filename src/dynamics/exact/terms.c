@@ -22,7 +22,7 @@ static inline void multiply(const double *restrict ar, const double *restrict ai
 }
 
 /* w = e z, w' and w'' of a lot. */
-static inline void turn(struct lot *lot, const double *lr, const double *li, const double *er, const double *ei)
+static inline void terms_turn(struct lot *lot, const double *lr, const double *li, const double *er, const double *ei)
 {
     multiply(er, ei, lot->zr, lot->zi, lot->wr, lot->wi);
     multiply(lr, li, lot->wr, lot->wi, lot->w1r, lot->w1i);
@@ -46,7 +46,7 @@ TRIBO_SIMD_OF_FOUR static void move_nowhere(size_t n, const double *lr, const do
 {
     static const double one[T] = {1.0, 1.0, 1.0, 1.0}, nothing[T];
     for (size_t p = 0; p < n; p += T) {
-        turn(lot++, lr + p, li + p, one, nothing);
+        terms_turn(lot++, lr + p, li + p, one, nothing);
     }
 }
 
@@ -54,7 +54,7 @@ TRIBO_SIMD_OF_FOUR static void move_far(size_t n, const double *lr, const double
                                         struct lot *lot)
 {
     for (size_t p = 0; p < n; p += T) {
-        turn(lot++, lr + p, li + p, er + p, ei + p);
+        terms_turn(lot++, lr + p, li + p, er + p, ei + p);
     }
 }
 
@@ -67,24 +67,7 @@ TRIBO_SIMD_OF_FOUR static void move_little(const struct modal_motion *x, double 
         double re[T], im[T], er[T], ei[T];
         grow_little(lr + p, li + p, delta, re, im);
         multiply(re, im, x->far_r + p, x->far_i + p, er, ei);
-        turn(lot++, lr + p, li + p, er, ei);
-    }
-}
-
-/* e^{lambda tau} of all terms. */
-static void grow(const struct modal *h, double tau, double *re, double *im)
-{
-    if (fabs(tau) * h->quickest <= COS_SIN_NEAR) {
-        tribo_cos_sin_near(tau, h->terms, h->li, re, im);
-    } else {
-        tribo_cos_sin_all(tau, h->terms, h->li, re, im);
-    }
-    for (size_t p = 0; !h->swings && p < h->exponents; p++) {
-        if (h->lr[p] != 0.0) {
-            const double size = exp(h->lr[p] * tau);
-            re[p] *= size;
-            im[p] *= size;
-        }
+        terms_turn(lot++, lr + p, li + p, er, ei);
     }
 }
 
@@ -120,7 +103,21 @@ void tribo_modal_terms_go(struct modal_motion *x, double tau)
     } else {
         x->looked = 1;
         x->far = tau;
-        grow(h, tau, x->far_r, x->far_i);
+        /* e^{lambda tau} of all terms. */
+        double *re = x->far_r;
+        double *im = x->far_i;
+        if (fabs(tau) * h->quickest <= COS_SIN_NEAR) {
+            tribo_cos_sin_near(tau, h->terms, h->li, re, im);
+        } else {
+            tribo_cos_sin_all(tau, h->terms, h->li, re, im);
+        }
+        for (size_t p = 0; !h->swings && p < h->exponents; p++) {
+            if (h->lr[p] != 0.0) {
+                const double size = exp(h->lr[p] * tau);
+                re[p] *= size;
+                im[p] *= size;
+            }
+        }
         move_far(h->terms, h->lr, h->li, x->far_r, x->far_i, x->lot);
     }
 }

@@ -37,7 +37,7 @@ static void to_modes(const struct transition *x, const double *v)
 }
 
 /* Displacements and velocities v += those of amplitudes. */
-static void add_modes(const struct transition *x, double *v)
+static void transition_add_modes(const struct transition *x, double *v)
 {
     const struct modal *h = x->h;
     double *rows = x->zr;
@@ -52,7 +52,7 @@ static void add_modes(const struct transition *x, double *v)
 }
 
 /* Amplitudes that v has, and pulls of contacts that are held elsewhere. */
-static void split(const struct transition *x, const double *v)
+static void transition_split(const struct transition *x, const double *v)
 {
     const struct modal *h = x->h;
     const size_t c = x->columns;
@@ -125,7 +125,7 @@ static void move_alone(const struct transition *x)
 }
 
 /* Takes away, or adds, where the amplitudes would rest. */
-static void add_rest(const struct transition *x, double factor)
+static void transition_add_rest(const struct transition *x, double factor)
 {
     for (size_t k = 0; k < x->h->modes; k++) {
         tribo_add(x->eta + k * x->columns, factor / x->h->omega2[k], x->pull + k * x->columns, x->columns);
@@ -167,12 +167,12 @@ static void move_exponents(const struct transition *x)
 static void move_together(const struct transition *x)
 {
     const struct modal *h = x->h;
-    add_rest(x, -1.0);
+    transition_add_rest(x, -1.0);
     move_exponents(x);
     memset(x->eta, 0, 2 * x->block * sizeof *x->eta);
     tribo_multiply_two(h->modes, h->exponents, x->columns, h->rr, x->zr, x->next, x->eta, x->block);
     tribo_multiply_two(h->modes, h->exponents, x->columns, h->ri, x->zi, x->next, x->eta, x->block);
-    add_rest(x, 1.0);
+    transition_add_rest(x, 1.0);
 }
 
 void tribo_modal_transition(const struct modal *h, const tribo_system *sys, double tau, size_t columns, double *v, double *work)
@@ -191,7 +191,7 @@ void tribo_modal_transition(const struct modal *h, const tribo_system *sys, doub
                                  .zr = work + 4 * block,
                                  .zi = work + 8 * block,
                                  .row = work + 12 * block};
-    split(&x, v);
+    transition_split(&x, v);
     memcpy(x.change, x.eta, block * sizeof *x.change);
     if (h->coupling) {
         move_together(&x);
@@ -200,5 +200,5 @@ void tribo_modal_transition(const struct modal *h, const tribo_system *sys, doub
     }
     memset(v + block, 0, block * sizeof *v);
     tribo_add(x.eta, -1.0, x.change, h->modes * columns);
-    add_modes(&x, v);
+    transition_add_modes(&x, v);
 }
