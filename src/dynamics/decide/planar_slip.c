@@ -386,6 +386,28 @@ static void set_limits_ahead(struct stick_slip *m)
     }
 }
 
+/* Whether the force that would hold a planar contact a moment later, with forces f and accelerations m->v, goes beyond the tangent to
+ * its limits at the force that it has: what only turns along the limits stays within them, and curvature is of second order. */
+static int goes_beyond(const struct stick_slip *m, const tribo_system *sys, const struct planar_contact *p, const double *f)
+{
+    double r[2][2] = {{0.0}}, beyond = 0.0, noise = 0.0;
+    const struct matrix *j = &sys->direction;
+    for (size_t d = 0; d < 2; d++) {
+        for (size_t e = j->first[p->at + d]; e < j->first[p->at + d + 1]; e++) {
+            r[d][0] += j->val[e] * tribo_matrix_get(&sys->response, j->col[e], p->at);
+            r[d][1] += j->val[e] * tribo_matrix_get(&sys->response, j->col[e], p->at + 1);
+        }
+    }
+    const double *v = m->v + p->at, determinant = r[0][0] * r[1][1] - r[0][1] * r[1][0];
+    const double lacks[2] = {(r[0][1] * v[1] - r[1][1] * v[0]) / determinant, (r[1][0] * v[0] - r[0][0] * v[1]) / determinant};
+    for (size_t d = 0; d < 2; d++) {
+        const double part = m->force[p->at + d] / (p->limit[d] * p->limit[d]);
+        beyond += part * (f[p->at + d] + lacks[d] - m->force[p->at + d]);
+        noise += fabs(part) * m->allowance[p->at + d];
+    }
+    return beyond > noise;
+}
+
 /* Who of those that are tied slides by the forces of a moment later. */
 static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
 {
@@ -406,7 +428,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y)
     }
     for (size_t k = 0; !status && k < m->plane->count; k++) {
         struct planar_contact *p = &m->plane->contact[k];
-        if (m->tied[p->at] && leaves(m, p, m->f)) {
+        if (m->tied[p->at] && leaves(m, p, m->f) && goes_beyond(m, sys, p, m->f)) {
             let_go(m, p, BY_FORCE);
         }
     }

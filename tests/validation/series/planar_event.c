@@ -390,6 +390,30 @@ TEST(fewer_and_more_terms)
     assert_all_close(y[1], y[0], 5, 1e-11);
 }
 
+/* A load that goes around the limit, at 1 + d times its size everywhere: for d <= 0 the contact rests exactly, by however little;
+ * otherwise it creeps as in small steps. Circles and ellipses, with springs, and masses that are coupled. */
+TEST(spinning_edge)
+{
+    static const double far[] = {-1e-3, -1e-8, -1e-11, -1e-13, -1e-15, 0.0,  1e-15, 1e-14,
+                                 1e-13, 1e-12, 1e-10,  1e-8,   1e-6,   1e-4, 1e-2};
+    const double d = far[_i / 4], spring = _i % 2, axis = _i / 2 % 2 ? 2.5 : 1.0, inertia = _i / 2 % 2 ? 0.3 : 0.0;
+    const double m[] = {1.0, inertia, inertia, 2.0}, k[] = {spring, 0.0, 0.0, spring}, limit[] = {1.0, axis};
+    double y[2][5] = {{0.0}, {0.0}};
+    for (int which = 0; which < 2; which++) {
+        tribo_system *s;
+        assert_ok(tribo_system_linear(&s, 2, 2, m, NULL, k, identity, 0, NULL, 0));
+        assert_ok(tribo_set_planar(tribo_system_context(s), 1, (const size_t[]){0}));
+        assert_ok(tribo_set_limit(tribo_system_context(s), limit));
+        assert_ok(tribo_system_add_load(s, 1.1, (const double[]){1.0 + d, 0.0}, (const double[]){0.0, axis * (1.0 + d)}));
+        run(s, which ? "moreau/fixed" : "event", which ? 2e-4 : 0.1, which ? 0.0 : 1e-11, 5.0, y[which]);
+        tribo_system_destroy(s);
+    }
+    if (d <= 0.0) {
+        assert_all_exact(y[0], none, 4);
+    }
+    assert_all_close(y[0], y[1], 2, 1e-6 + 1e-2 * hypot(y[1][0], y[1][1]));
+}
+
 TEST_MAIN("planar_event", {reference, 4}, {whirl, 1}, {incline, 1}, {released, 1}, {reverses_on_line, 40}, {on_line, 9},
           {tolerances, 40}, {agreement, 36}, {equal, 2}, {no_limits, 2}, {parts, 1}, {refused, 1}, {refused_static, 4},
-          {redundant, 1}, {fewer_and_more_terms, 1})
+          {redundant, 1}, {fewer_and_more_terms, 1}, {spinning_edge, 60})
