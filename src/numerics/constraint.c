@@ -1,6 +1,7 @@
 #include "constraint.h"
 #include "common/layout.h"
 #include "common/real.h"
+#include "common/simd.h"
 #include "common/zeros.h"
 
 #include <float.h>
@@ -26,17 +27,16 @@ struct source {
     size_t *number; /* [cols] of a tie, plus 1, at the root of its tree */
 };
 
-/* Gaussian elimination in a tie, of rows that stay where they are: order and slot say who is whose pivot. */
+/* Gaussian elimination in a tie: what is a pivot moves to the first rows and columns that have none. */
 struct elimination {
-    struct tie *tie;
+    struct tie *tie; /* its entries: what is left; multipliers in columns of pivots */
     const unsigned char *last;
-    double *entry, *size; /* [rows][touched] what is left, and what it is the sum of; multipliers in columns of pivots */
-    double *weight;       /* [touched] 1/sqrt(mass) */
-    double *scale;        /* [rows] 1/largest weighted entry */
-    size_t *order;        /* [rows] */
-    size_t *slot;         /* [touched] columns, those of pivots first */
-    size_t *best;         /* [rows] column of the largest entry of a row, touched if there is none */
-    double zero;          /* an entry so much smaller than its size counts as none */
+    double *size;   /* [rows][touched] what an entry is the sum of */
+    double *weight; /* [touched] 1/sqrt(mass) */
+    double *scale;  /* [rows] 1/largest weighted entry */
+    double *most;   /* [rows] the largest weighted entry of a row beside the pivots; 0 if there is none */
+    double *found;  /* [touched] workspace */
+    double zero;    /* an entry so much smaller than its size counts as none */
 };
 
 void tribo_constraints_free(struct constraints *c)
@@ -125,24 +125,31 @@ static void list_ties(const struct source *s, struct constraints *c)
 
 /* --------------------------------------------------------------------------------------------------------- elimination */
 
-static double weighted(const struct elimination *e, size_t i, size_t column)
+/* The weighted entry of row i in a column, 0 if it counts as none. */
+static inline double weighted(const struct elimination *e, size_t i, size_t column)
 {
-    return fabs(e->entry[i * e->tie->touched + column]) * e->weight[column];
+    const size_t at = i * e->tie->touched + column;
+    const double x = fabs(e->tie->entry[at]), y = x * e->weight[column];
+    return x > e->zero * e->size[at] ? y : 0.0;
 }
 
-/* Finds the pivot that row i would have among the slots from first on. */
-static void find_best(struct elimination *e, size_t i, size_t first)
+/* The largest weighted entry of row i from the column of the next pivot on: halves are laid upon each other until one is left. */
+TRIBO_SIMD static double find_most(const struct elimination *e, size_t i)
 {
-    const size_t t = e->tie->touched;
-    double most = 0.0;
-    e->best[i] = t;
-    for (size_t l = first; l < t; l++) {
-        const size_t k = e->slot[l];
-        if (fabs(e->entry[i * t + k]) > e->zero * e->size[i * t + k] && weighted(e, i, k) > most) {
-            most = weighted(e, i, k);
-            e->best[i] = k;
-        }
+    const size_t first = e->tie->rank;
+    double *found = e->found;
+    size_t left = e->tie->touched - first;
+    for (size_t l = 0; l < left; l++) {
+        found[l] = weighted(e, i, first + l);
     }
+    for (size_t half = left / 2; half > 0; half = left / 2) {
+        const double *other = found + (left - half);
+        for (size_t l = 0; l < half; l++) {
+            found[l] = greater(found[l], other[l]);
+        }
+        left -= half;
+    }
+    return left ? found[0] : 0.0;
 }
 
 /* When row i must wait for others. */
@@ -157,14 +164,10 @@ static size_t find_pivot(const struct elimination *e)
     const struct tie *tie = e->tie;
     size_t found = tie->rows;
     double most = 0.0;
-    for (size_t p = tie->rank; p < tie->rows; p++) {
-        const size_t i = e->order[p];
-        if (e->best[i] == tie->touched) {
-            continue;
-        }
-        const double pivot = e->scale[i] * weighted(e, i, e->best[i]);
+    for (size_t i = tie->rank; i < tie->rows; i++) {
+        const double pivot = e->scale[i] * e->most[i];
         const int wait = found < tie->rows ? last_of(e, i) - last_of(e, found) : 0;
-        if (found == tie->rows || wait < 0 || (wait == 0 && pivot > most)) {
+        if (e->most[i] > 0.0 && (found == tie->rows || wait < 0 || (wait == 0 && pivot > most))) {
             found = i;
             most = pivot;
         }
@@ -172,78 +175,75 @@ static size_t find_pivot(const struct elimination *e)
     return found;
 }
 
-/* Brings x, which stands somewhere from place at on, to that place. */
-static void bring(size_t *list, size_t at, size_t x)
+static void exchange_values(double *x, double *y)
 {
-    size_t from = at;
-    while (list[from] != x) {
-        from++;
-    }
-    list[from] = list[at];
-    list[at] = x;
+    const double z = *x;
+    *x = *y;
+    *y = z;
 }
 
-/* Takes pivot row p out of row i. */
-static void eliminate(struct elimination *e, size_t p, size_t i)
+static void exchange_indices(size_t *list, size_t i, size_t k)
 {
-    const size_t t = e->tie->touched, first = e->tie->rank, pivot = e->slot[first];
-    double *row = e->entry + i * t, *size = e->size + i * t;
-    const double *from = e->entry + p * t, *from_size = e->size + p * t;
-    const double factor = row[pivot] / from[pivot];
-    row[pivot] = factor;
-    for (size_t l = first + 1; l < t; l++) {
-        const size_t k = e->slot[l];
-        if (from[k] != 0.0) {
-            row[k] -= factor * from[k];
-            size[k] += fabs(factor) * from_size[k];
-            row[k] = fabs(row[k]) > ROUNDING * size[k] ? row[k] : 0.0;
-        }
+    const size_t x = list[i];
+    list[i] = list[k];
+    list[k] = x;
+}
+
+/* Brings the pivot of row i to where the next one belongs. */
+static void bring(const struct elimination *e, size_t i)
+{
+    const struct tie *tie = e->tie;
+    const size_t t = tie->touched, to = tie->rank;
+    size_t column = to;
+    while (!(weighted(e, i, column) >= e->most[i])) {
+        column++;
+    }
+    for (size_t l = 0; l < t; l++) {
+        exchange_values(&tie->entry[to * t + l], &tie->entry[i * t + l]);
+        exchange_values(&e->size[to * t + l], &e->size[i * t + l]);
+    }
+    for (size_t p = 0; p < tie->rows; p++) {
+        exchange_values(&tie->entry[p * t + to], &tie->entry[p * t + column]);
+        exchange_values(&e->size[p * t + to], &e->size[p * t + column]);
+    }
+    exchange_values(&e->weight[to], &e->weight[column]);
+    exchange_values(&e->scale[to], &e->scale[i]);
+    exchange_values(&e->most[to], &e->most[i]);
+    exchange_indices(tie->order, to, i);
+    exchange_indices(tie->dof, to, column);
+}
+
+/* row -= factor from, entries first to end - 1. */
+TRIBO_SIMD static void eliminate(double *restrict row, double *restrict size, const double *restrict from, double factor,
+                                 size_t first, size_t end)
+{
+    for (size_t l = first; l < end; l++) {
+        const double part = factor * from[l], left = row[l] - part;
+        size[l] += fabs(part);
+        row[l] = fabs(left) > ROUNDING * size[l] ? left : 0.0;
     }
 }
 
 static void eliminate_all(struct elimination *e)
 {
     struct tie *tie = e->tie;
+    const size_t t = tie->touched;
     for (size_t i = 0; i < tie->rows; i++) {
-        find_best(e, i, 0);
+        e->most[i] = find_most(e, i);
     }
     for (size_t p = find_pivot(e); p < tie->rows; p = find_pivot(e)) {
-        const size_t pivot = e->best[p];
-        bring(e->order, tie->rank, p);
-        bring(e->slot, tie->rank, pivot);
-        for (size_t k = tie->rank + 1; k < tie->rows; k++) {
-            const size_t i = e->order[k];
-            if (e->entry[i * tie->touched + pivot] != 0.0) {
-                eliminate(e, p, i);
-                find_best(e, i, tie->rank + 1);
+        bring(e, p);
+        const size_t done = tie->rank++;
+        const double *from = tie->entry + done * t;
+        for (size_t i = tie->rank; i < tie->rows; i++) {
+            double *row = tie->entry + i * t, *size = e->size + i * t;
+            if (row[done] != 0.0) {
+                row[done] /= from[done];
+                eliminate(row, size, from, row[done], tie->rank, t);
+                e->most[i] = find_most(e, i);
             }
         }
-        tie->rank++;
     }
-}
-
-/* list [n] in another order. work [n] */
-static void permute(size_t *list, size_t n, const size_t *order, size_t *work)
-{
-    for (size_t k = 0; k < n; k++) {
-        work[k] = list[order[k]];
-    }
-    memcpy(list, work, n * sizeof *list);
-}
-
-/* Keeps the rows in their order, with columns in theirs. */
-static void arrange(const struct elimination *e)
-{
-    const struct tie *tie = e->tie;
-    const size_t t = tie->touched;
-    for (size_t p = 0; p < tie->rows; p++) {
-        for (size_t l = 0; l < t; l++) {
-            tie->entry[p * t + l] = e->entry[e->order[p] * t + e->slot[l]];
-        }
-    }
-    permute(tie->order, tie->rows, e->order, e->best);
-    memcpy(e->order, e->slot, t * sizeof *e->order);
-    permute(tie->dof, t, e->order, e->slot);
 }
 
 /* U^-1 from the left to what independent rows have beside the slaves. size [touched] */
@@ -275,10 +275,9 @@ static void fill(struct elimination *e, const struct source *s)
     const struct matrix *j = s->direction;
     const size_t t = tie->touched;
     double lightest = DBL_MIN;
-    memset(e->entry, 0, tie->rows * t * sizeof *e->entry);
+    memset(tie->entry, 0, tie->rows * t * sizeof *tie->entry);
     memset(e->size, 0, tie->rows * t * sizeof *e->size);
     for (size_t l = 0; l < t; l++) {
-        e->slot[l] = l;
         const double mass = s->mass->rows ? tribo_matrix_get(s->mass, tie->dof[l], tie->dof[l]) : 1.0;
         e->weight[l] = mass > 0.0 ? 1.0 / sqrt(mass) : 0.0;
         lightest = greater(lightest, e->weight[l]);
@@ -289,13 +288,12 @@ static void fill(struct elimination *e, const struct source *s)
     for (size_t p = 0; p < tie->rows; p++) {
         const size_t row = s->row[tie->order[p]];
         double most = 0.0;
-        e->order[p] = p;
         for (size_t k = j->first[row]; k < j->first[row + 1]; k++) {
             if (j->val[k] != 0.0) {
                 const size_t l = s->place[j->col[k]] - 1;
-                e->entry[p * t + l] = j->val[k];
+                tie->entry[p * t + l] = j->val[k];
                 e->size[p * t + l] = fabs(j->val[k]);
-                most = greater(most, weighted(e, p, l));
+                most = greater(most, e->size[p * t + l] * e->weight[l]);
             }
         }
         e->scale[p] = most > 0.0 ? 1.0 / most : 0.0; /* a row of zeros has no pivot */
@@ -310,8 +308,9 @@ static void eliminate_ties(const struct source *s, struct constraints *c, struct
         e->zero = s->last ? sqrt(4.0 * (double)(tie->rows + 4) * DBL_EPSILON) : ROUNDING;
         fill(e, s);
         eliminate_all(e);
-        arrange(e);
-        solve_rest(tie, e->weight);
+        if (!s->last) {
+            solve_rest(tie, e->weight);
+        }
         c->rank += tie->rank;
     }
 }
@@ -368,15 +367,11 @@ static void lay_out_ties(struct constraints *c, struct elimination *e, struct la
         touched = tie->touched > touched ? tie->touched : touched;
         area = tie->rows * tie->touched > area ? tie->rows * tie->touched : area;
     }
-    e->entry = tribo_layout_array(l, 2 * area + touched + rows, sizeof *e->entry);
-    e->order = tribo_layout_array(l, 3 * (rows + touched), sizeof *e->order);
-    if (e->entry && e->order) {
-        e->size = e->entry + area;
-        e->weight = e->size + area;
-        e->scale = e->weight + touched;
-        e->slot = e->order + rows + touched;
-        e->best = e->slot + rows + touched;
-    }
+    e->size = tribo_layout_array(l, area, sizeof *e->size);
+    e->weight = tribo_layout_array(l, touched, sizeof *e->weight);
+    e->found = tribo_layout_array(l, touched, sizeof *e->found);
+    e->scale = tribo_layout_array(l, rows, sizeof *e->scale);
+    e->most = tribo_layout_array(l, rows, sizeof *e->most);
 }
 
 static int create_ties(struct constraints *c, struct elimination *e)

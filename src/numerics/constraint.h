@@ -40,7 +40,7 @@ void tribo_constraints_free(struct constraints *c);
 /* How many rows of direction are independent, to half the digits; more than there are rows if out of memory. */
 size_t tribo_constraints_rank(const struct matrix *direction, const struct matrix *mass);
 
-/* The following is for rank = count. */
+/* The following is for rank = count, and last = NULL. */
 
 /* z [ndof][ndof - count]: q = z y are the displacements that the constraints allow. Where they tie pairs, its entries are exact.
  * 0 if out of memory. */

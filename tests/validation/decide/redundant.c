@@ -196,4 +196,40 @@ TEST(either_holds)
     assert_all_close(y, other, 3, 1e-10);
 }
 
-TEST_MAIN("redundant", {either_holds, 4}, {hold_as_long_as_they_can, 20}, {steps_agree, 6})
+#define MANY 100
+#define MODES 160
+
+/* Contacts that see all modes, each in its own way, are as many as they are, however many: while they hold, none of them moves. */
+TEST(many_hold)
+{
+    struct random g = random_of(_i);
+    double mass[MODES * MODES] = {0.0}, stiffness[MODES * MODES] = {0.0}, direction[MANY * MODES], load[MODES];
+    double y[2 * MODES + 1] = {0.0}, largest = 0.0;
+    tribo_system *sys;
+    for (size_t d = 0; d < MODES; d++) {
+        mass[d * MODES + d] = 1.0;
+        stiffness[d * MODES + d] = uniform(&g, 1.0, 9.0);
+        load[d] = uniform(&g, -1.0, 1.0);
+    }
+    for (size_t k = 0; k < MANY * MODES; k++) {
+        direction[k] = uniform(&g, -1.0, 1.0);
+    }
+    assert_ok(tribo_system_linear(&sys, MODES, MANY, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(tribo_set_limit_all(tribo_system_context(sys), 1e3));
+    assert_ok(tribo_system_add_load(sys, 0.7, NULL, load));
+    run(sys, "exact", 1.0, 0.0, 3.0, y);
+    for (size_t d = 0; d < MODES; d++) {
+        largest = fmax(largest, fabs(y[d]));
+    }
+    require(largest > 0.1, "nothing moves: %g", largest);
+    for (size_t i = 0; i < MANY; i++) {
+        double moved = 0.0;
+        for (size_t d = 0; d < MODES; d++) {
+            moved += direction[i * MODES + d] * y[d];
+        }
+        require(fabs(moved) <= 1e-11 * largest, "contact %zu has moved by %g of %g", i, moved, largest);
+    }
+    tribo_system_destroy(sys);
+}
+
+TEST_MAIN("redundant", {either_holds, 4}, {many_hold, 3}, {hold_as_long_as_they_can, 20}, {steps_agree, 6})
