@@ -23,21 +23,28 @@
 /* Modes are counted at a place that is this far, relative, from the next ones. */
 #define GAP 1e-3
 
+/* Modes beyond the last wanted one among which that place is looked for. */
+#define FURTHER 30
+
+/* Modes whose omega^2 + shift is the same to this part have one frequency. */
+#define ONE 1e-5
+
 #define MOST_BLOCKS 2000
 #define MOST_SEARCHES 5
 
 struct lanczos {
     const struct matrix *mass;
     const struct cholesky *shifted;
+    double shift;
     size_t n, room, size;      /* of vectors: room for so many, and so many there are */
-    size_t pending;            /* the last ones, of which w holds what (K + shift M)^-1 M makes of them beyond all */
+    size_t pending;            /* the last ones, of which w holds what shift (K + shift M)^-1 M makes of them beyond all */
     int complete;              /* there is nothing beyond */
     double *q;                 /* [room][n] */
     double *w, *mw;            /* [BLOCK][n]; [BLOCK][n] M W */
     double norm[BLOCK];        /* of those of w before anything was taken out of them */
     double *c;                 /* [BLOCK][room] workspace */
-    double *h;                 /* [room][room] Q'M (K + shift M)^-1 M Q */
-    double *theta;             /* [size] its eigenvalues, the largest first */
+    double *h;                 /* [room][room] Q'M shift (K + shift M)^-1 M Q */
+    double *theta;             /* [size] its eigenvalues shift/(omega^2 + shift), the largest first */
     double *s, *work;          /* [size][size] its eigenvectors, one a row; [room][room] workspace */
     double gram[BLOCK][BLOCK]; /* W'M W */
     uint64_t seed;
@@ -150,7 +157,8 @@ static int extend(struct lanczos *l)
         append(l, j);
     }
     l->pending = l->size - first;
-    memcpy(l->w, l->mw, l->pending * l->n * sizeof *l->w);
+    memset(l->w, 0, l->pending * l->n * sizeof *l->w);
+    tribo_add(l->w, l->shift, l->mw, l->pending * l->n);
     if (l->pending && !tribo_cholesky_solve(l->shifted, l->pending, l->w)) {
         return 0;
     }
@@ -187,7 +195,7 @@ static int project(struct lanczos *l)
     return 1;
 }
 
-/* Norm of (K + shift M)^-1 M x - theta x for the k-th. */
+/* Norm of shift (K + shift M)^-1 M x - theta x for the k-th. */
 static double residual(const struct lanczos *l, size_t k)
 {
     const double *s = l->s + k * l->size + l->size - l->pending;
@@ -233,13 +241,19 @@ static void compress(struct lanczos *l, size_t keep)
     l->pending = 0;
 }
 
+/* The best become the basis, keep of them or as many as leave room for two blocks more. */
+static void make_room(struct lanczos *l, size_t keep)
+{
+    compress(l, l->room == l->n || keep < l->room - 2 * BLOCK ? keep : l->room - 2 * BLOCK);
+}
+
 /* Goes on until target modes are found, or all that there are. */
 static int converge(struct lanczos *l, size_t target)
 {
     for (size_t blocks = 0; blocks < MOST_BLOCKS; blocks++) {
         if (l->size + BLOCK > l->room && l->room < l->n) {
-            const size_t found = count_found(l), keep = found + (l->size - found) / 2;
-            compress(l, keep < l->room - 2 * BLOCK ? keep : l->room - 2 * BLOCK);
+            const size_t found = count_found(l);
+            make_room(l, found + (l->size - found) / 2);
         }
         if (!extend(l) || !project(l)) {
             return TRIBO_ERR_MEMORY;
@@ -254,19 +268,31 @@ static int converge(struct lanczos *l, size_t target)
 /* The modes found stay; the search goes on from vectors that have nothing to do with them. */
 static int start_anew(struct lanczos *l)
 {
-    compress(l, count_found(l));
+    make_room(l, count_found(l));
     return draw(l, 0, BLOCK) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 /* -----------------------------------------------------------------------------------------------------------------
  * completeness */
 
-/* A theta that is well between the wanted ones and others: the first such place from the last wanted one on. More may have to be
- * found for that. */
+/* A theta above those of the wanted modes that have one frequency with the last of them: the frequency may have more modes than
+ * there is room for, and any combination of them is one. */
+static double above_frequency(const struct lanczos *l, size_t wanted)
+{
+    size_t first = wanted - 1;
+    while (first > 0 && l->theta[first - 1] - l->theta[wanted - 1] <= ONE * l->theta[wanted - 1]) {
+        first--;
+    }
+    const double above = (1.0 + ONE) * l->theta[first];
+    return first > 0 ? lesser(above, sqrt(l->theta[first - 1] * l->theta[first])) : above;
+}
+
+/* A theta that is well between the wanted ones and others: the first such place from the last wanted one on, within FURTHER; 0 if
+ * there is none. More may have to be found for that. */
 static int find_gap(struct lanczos *l, size_t wanted, double *between)
 {
-    for (size_t p = wanted; !l->complete || p < l->size; p++) {
-        const int status = count_found(l) < p ? converge(l, p) : TRIBO_OK;
+    for (size_t p = wanted; l->complete ? p < l->size : p <= wanted + FURTHER; p++) {
+        const int status = count_found(l) < p || p == l->size ? converge(l, p) : TRIBO_OK;
         if (status) {
             return status;
         }
@@ -276,14 +302,16 @@ static int find_gap(struct lanczos *l, size_t wanted, double *between)
             return TRIBO_OK;
         }
     }
-    *between = 0.5 * l->theta[l->size - 1];
+    *between = l->complete ? 0.5 * l->theta[l->size - 1] : 0.0;
     return TRIBO_OK;
 }
 
-/* How many modes have omega^2 < sigma, and the growth of the factor that shows it. */
-static int count_modes(const struct lanczos *l, const struct matrix *k, double sigma, struct inertia *found)
+/* How many modes have a theta above this one, and the growth of the factor that shows it. */
+static int count_modes(const struct lanczos *l, const struct matrix *k, double theta, struct low_modes *found)
 {
     const struct matrix *m = l->mass;
+    const double sigma = l->shift / theta - l->shift;
+    struct inertia inertia = {0, 0.0};
     struct matrix shifted;
     double *size = malloc((k->rows + 1) * sizeof *size);
     int status = size && tribo_matrix_sum(&shifted, 1.0, k, -sigma, m) ? TRIBO_OK : TRIBO_ERR_MEMORY;
@@ -291,10 +319,13 @@ static int count_modes(const struct lanczos *l, const struct matrix *k, double s
         for (size_t i = 0; i < k->rows; i++) {
             size[i] = tribo_matrix_get(k, i, i) + fabs(sigma) * tribo_matrix_get(m, i, i);
         }
-        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, &shifted, size, found);
+        status = tribo_sparse_inertia(l->shifted->sparse, &shifted, &shifted, size, &inertia);
         tribo_matrix_free(&shifted);
     }
     free(size);
+    found->above = sigma;
+    found->below = inertia.negative;
+    found->growth = inertia.growth;
     return status == TRIBO_ERR_INDEFINITE ? TRIBO_ERR_NO_CONVERGENCE : status;
 }
 
@@ -312,9 +343,6 @@ static size_t count_above(const struct lanczos *l, double theta)
 static int complete(struct lanczos *l, double theta, size_t count)
 {
     for (int search = 0; search < MOST_SEARCHES && count_above(l, theta) < count; search++) {
-        if (count + 2 * BLOCK > l->room && l->room < l->n) {
-            return TRIBO_ERR_NO_CONVERGENCE;
-        }
         int status = search ? start_anew(l) : TRIBO_OK;
         status = status ? status : converge(l, count);
         if (status) {
@@ -322,6 +350,21 @@ static int complete(struct lanczos *l, double theta, size_t count)
         }
     }
     return count_above(l, theta) == count ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
+}
+
+/* Where there is no room for all that have the frequency of the last wanted one: finds all below it. */
+static int complete_below(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
+{
+    for (size_t search = 0; search < MOST_SEARCHES + wanted / BLOCK; search++) {
+        int status = search ? start_anew(l) : TRIBO_OK;
+        status = status ? status : converge(l, wanted);
+        const double theta = status ? 1.0 : above_frequency(l, wanted);
+        status = status ? status : count_modes(l, k, theta, found);
+        if (status || count_above(l, theta) == found->below) {
+            return status;
+        }
+    }
+    return TRIBO_ERR_NO_CONVERGENCE;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------------
@@ -345,16 +388,15 @@ static int take(struct lanczos *l, size_t count, struct low_modes *found)
     }
     for (size_t k = 0; k < count; k++) {
         for (size_t i = 0; i < n; i++) {
-            found->phi[k * n + i] /= l->theta[k];
+            found->phi[k * n + i] *= l->shift / l->theta[k];
         }
     }
     return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-static int find(struct lanczos *l, const struct matrix *k, double shift, size_t wanted, struct low_modes *found)
+static int find(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
 {
-    double theta;
-    struct inertia below = {0, 0.0};
+    double theta = 0.0;
     int status = start_anew(l);
     status = status ? status : converge(l, wanted);
     if (!status && count_found(l) < wanted) {
@@ -362,21 +404,21 @@ static int find(struct lanczos *l, const struct matrix *k, double shift, size_t 
         return TRIBO_ERR_SIZE;
     }
     status = status ? status : find_gap(l, wanted, &theta);
-    if (status) {
-        return status;
+    status = status || theta == 0.0 ? status : count_modes(l, k, theta, found);
+    const int fits = found->below + 2 * BLOCK <= l->room || l->room == l->n;
+    if (!status && (theta == 0.0 || !fits)) {
+        status = complete_below(l, k, wanted, found);
+    } else if (!status) {
+        status = complete(l, theta, found->below);
     }
-    found->above = 1.0 / theta - shift;
-    status = count_modes(l, k, found->above, &below);
-    found->growth = below.growth;
-    status = status ? status : complete(l, theta, below.negative);
-    return status ? status : take(l, below.negative, found);
+    return status ? status : take(l, found->below > wanted ? found->below : wanted, found);
 }
 
 int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift, const struct cholesky *shifted, size_t wanted,
                     struct low_modes *found)
 {
     const size_t n = k->rows, most = 2 * wanted + 20 * BLOCK, room = most < n ? most : n;
-    struct lanczos l = {.mass = m, .shifted = shifted, .n = n, .room = room, .seed = 1};
+    struct lanczos l = {.mass = m, .shifted = shifted, .shift = shift, .n = n, .room = room, .seed = 1};
     memset(found, 0, sizeof *found);
     double *memory = malloc(((room + 2 * BLOCK) * n + 3 * room * room + (BLOCK + 1) * room) * sizeof *memory);
     if (!memory) {
@@ -390,7 +432,7 @@ int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift
     l.h = l.theta + room;
     l.s = l.h + room * room;
     l.work = l.s + room * room;
-    const int status = find(&l, k, shift, wanted, found);
+    const int status = find(&l, k, wanted, found);
     free(memory);
     return status;
 }

@@ -1,7 +1,7 @@
 /* The lowest modes of a large structure, K phi = omega^2 M phi, by Lanczos' method in blocks (Grimes, Lewis and Simon 1994,
- * SIAM J. Matrix Anal. Appl. 15, 228, doi:10.1137/S0895479888151111) for (K + shift M)^-1 M, whose largest eigenvalues
- * 1/(omega^2 + shift) belong to them. Vectors are orthogonal in M, all to all; when there are many, the best combinations of
- * them stay (Wu and Simon 2000, doi:10.1137/S0895479898334605).
+ * SIAM J. Matrix Anal. Appl. 15, 228, doi:10.1137/S0895479888151111) for shift (K + shift M)^-1 M, whose largest
+ * eigenvalues shift/(omega^2 + shift) belong to them. Vectors are orthogonal in M, all to all; when there are many, the best
+ * combinations of them stay (Wu and Simon 2000, doi:10.1137/S0895479898334605).
  *
  * That no mode is missed, though frequencies repeat, is seen by Sylvester's law: K - sigma M has as many negative eigenvalues as
  * there are modes with omega^2 < sigma. Where some are missing, the search goes on from other vectors, orthogonal to those found.
@@ -16,7 +16,8 @@ struct low_modes {
     size_t count;  /* those wanted, and more if they are close to the last of them */
     double *phi;   /* [count][n] in ascending order, modal masses are 1; the caller frees it */
     double above;  /* no other mode has omega^2 below this, */
-    double growth; /* if rounding of the stiffness, times this, does not move that of the last one across it */
+    size_t below;  /* only these, all of them or all but some that have one frequency, */
+    double growth; /* if rounding of the stiffness, times this, does not move any across it */
 };
 
 /* k, m     [n][n] in   symmetric, m semidefinite

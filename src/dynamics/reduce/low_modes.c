@@ -84,7 +84,7 @@ static int search_failed(const struct model *m, int status, const struct low_mod
 
 /* ---------------------------------------------------------------------------------------------------------------- the factors */
 
-/* Of the diagonals, stiffness over mass; 0 if there is no mass. */
+/* Of the diagonals, stiffness over mass, 1 without stiffness; 0 if there is no mass. */
 static double mean_square_frequency(const struct model *m)
 {
     double stiffness = 0.0, mass = 0.0;
@@ -92,7 +92,7 @@ static double mean_square_frequency(const struct model *m)
         stiffness += fabs(tribo_matrix_get(&m->stiffness, i, i));
         mass += fabs(tribo_matrix_get(&m->mass, i, i));
     }
-    return mass > 0.0 ? greater(stiffness, mass * 1e-200) / mass : 0.0;
+    return !(mass > 0.0) ? 0.0 : stiffness > 0.0 ? greater(stiffness / mass, 1e-200) : 1.0;
 }
 
 /* The factor of factor K + other M. */
@@ -228,13 +228,19 @@ static int find_residuals(const struct model *m, const struct shifted *s, const 
     return 1;
 }
 
-/* No mode lies where modes were counted. work [ndof]. */
+/* No mode lies where modes were counted: those next to it are beyond rounding of it. work [ndof]. */
 static int check_gap(const struct model *m, const struct low_modes *low, const struct reduced *r, double *work)
 {
-    const double *last = r->phi + (r->count - 1) * m->ndof;
+    const size_t below = low->below < r->count ? low->below : r->count;
     tribo_matrix_roots(&m->stiffness, work);
-    const double noise = low->growth * tribo_matrix_noise(&m->stiffness, work, last, last);
-    return r->omega2[r->count - 1] + noise < low->above ? TRIBO_OK : TRIBO_ERR_NO_CONVERGENCE;
+    for (size_t k = below ? below - 1 : 0; k <= below && k < r->count; k++) {
+        const double *phi = r->phi + k * m->ndof, distance = low->above - r->omega2[k];
+        const double noise = low->growth * tribo_matrix_noise(&m->stiffness, work, phi, phi);
+        if (!((k < below ? distance : -distance) > noise)) {
+            return TRIBO_ERR_NO_CONVERGENCE;
+        }
+    }
+    return TRIBO_OK;
 }
 
 /* Each mode is one. work [2 CHECKED][ndof]. */
@@ -271,7 +277,7 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
     int status = search_failed(m, tribo_low_modes(&m->stiffness, &m->mass, s->shift, &s->factor, m->nmode, &low), &low);
     status = status ? status : find_among(m, low.count, low.phi, m->nmode, r);
     free(low.phi);
-    r->truncation.above = low.above;
+    r->truncation.above = low.below == m->nmode ? low.above : r->omega2[m->nmode - 1];
     return status ? status : check_modes(m, s, &low, r);
 }
 

@@ -345,7 +345,7 @@ int tribo_system_get_truncation(const tribo_system *sys, double omega, double *e
         return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "omega = %g is not finite", omega);
     }
     const struct truncation *t = &sys->truncation;
-    const double x = (omega * omega + t->shift) / t->above;
+    const double square = omega * omega + t->shift, x = square < t->above ? square / t->above : 1.0;
     *error = x < 1.0 ? t->missing * pow(x, t->order) / (1.0 - x) : HUGE_VAL;
     return TRIBO_OK;
 }
