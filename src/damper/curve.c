@@ -267,6 +267,23 @@ void find_largest(struct curve *c, struct worker *w, double tolerance)
     free(x);
 }
 
+size_t spread_samples(const struct curve *c, size_t most, const struct sample **chosen)
+{
+    const struct sample **all = need_memory(c->count, sizeof *all);
+    size_t count = 0;
+    for (size_t k = 0; k < c->count; k++) {
+        if (c->sample[k].asked && found(c, k)) {
+            all[count++] = &c->sample[k];
+        }
+    }
+    const size_t wanted = count < most ? count : most;
+    for (size_t i = 0; i < wanted; i++) {
+        chosen[i] = all[(2 * i + 1) * count / (2 * wanted)];
+    }
+    free(all);
+    return wanted;
+}
+
 int looked_for(const struct sample *s)
 {
     return s->motion.found || s->motion.message[0] != '\0';

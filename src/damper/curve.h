@@ -39,6 +39,9 @@ const struct sample *largest_of(const struct curve *c);
 /* Finds the largest amplitude to rounding: more samples about every top that may be it, samples being off by the tolerance. */
 void find_largest(struct curve *c, struct worker *w, double tolerance);
 
+/* At most so many of the samples that were asked for and found, spread over the curve, into chosen [most]; returns how many. */
+size_t spread_samples(const struct curve *c, size_t most, const struct sample **chosen);
+
 /* Whether it was found, or not: after an interruption there are others. */
 int looked_for(const struct sample *s);
 

@@ -26,15 +26,52 @@ static struct rows find_rows(const struct options *o, const struct structure *s)
     return r;
 }
 
-static gsl_spmatrix *contact_directions(const struct rows *r, size_t contacts, size_t ndof)
+static gsl_spmatrix *new_matrix(size_t rows, size_t columns)
 {
-    gsl_spmatrix *j = gsl_spmatrix_alloc(contacts, ndof);
+    gsl_spmatrix *matrix = gsl_spmatrix_alloc(rows, columns);
+    if (!matrix) {
+        die("out of memory for %zu times %zu", rows, columns);
+    }
+    return matrix;
+}
+
+/* Zeros are not kept: an entry couples its row and column, whatever its value is. */
+static void set_entry(gsl_spmatrix *matrix, size_t i, size_t j, double value)
+{
+    if (value != 0.0 && gsl_spmatrix_set(matrix, i, j, value)) {
+        die("out of memory for %zu times %zu", matrix->size1, matrix->size2);
+    }
+}
+
+/* Rows of contacts, and with statics one of the load, whose static response is needed as those of contacts. */
+static gsl_spmatrix *directions(const struct rows *r, size_t contacts, size_t ndof, int statics)
+{
+    gsl_spmatrix *j = new_matrix(contacts + (size_t)statics, ndof);
     for (size_t c = 0; c < contacts; c++) {
-        if (!j || gsl_spmatrix_set(j, c, r->at[c], 1.0) || (r->to[c] < ndof && gsl_spmatrix_set(j, c, r->to[c], -1.0))) {
-            die("out of memory for %zu contacts", contacts);
+        set_entry(j, c, r->at[c], 1.0);
+        if (r->to[c] < ndof) {
+            set_entry(j, c, r->to[c], -1.0);
         }
     }
+    if (statics) {
+        set_entry(j, contacts, r->load, 1.0);
+    }
     return j;
+}
+
+/* A mode that moves a contact by less than this part of what the strongest mode does, does not move it: what is left there is
+ * rounding, and counts as a body with an enormous mass. */
+static const double UNMOVED = 1e-8;
+
+static void clean_shape(const struct damper *d, double *shape)
+{
+    double most = 0.0;
+    for (size_t k = 0; k < d->modes; k++) {
+        most = fmax(most, fabs(shape[k]));
+    }
+    for (size_t k = 0; k < d->modes; k++) {
+        shape[k] = fabs(shape[k]) < UNMOVED * most ? 0.0 : shape[k];
+    }
 }
 
 /* What a unit amplitude of each mode does at the load and at the contacts. */
@@ -43,49 +80,36 @@ static void read_shapes(struct damper *d, const struct rows *r)
     double *unit = need_memory(d->modes, sizeof *unit), *full = need_memory(d->ndof + 1, sizeof *full);
     for (size_t k = 0; k < d->modes; k++) {
         unit[k] = 1.0;
-        need(tribo_system_expand(d->sys, unit, full), NULL);
+        need(tribo_system_expand(d->reduced, unit, full), NULL);
         unit[k] = 0.0;
         d->load_shape[k] = full[r->load];
         for (size_t c = 0; c < d->contacts; c++) {
             d->contact_shape[c * d->modes + k] = full[r->at[c]] - full[r->to[c]]; /* full[ndof] = 0 is the ground */
         }
     }
+    for (size_t c = 0; c < d->contacts; c++) {
+        clean_shape(d, d->contact_shape + c * d->modes);
+    }
     free(unit);
     free(full);
 }
 
-static void allocate(struct damper *d)
-{
-    d->omega = need_memory(d->modes, sizeof *d->omega);
-    d->load_shape = need_memory(d->modes, sizeof *d->load_shape);
-    d->contact_shape = need_memory(d->contacts * d->modes, sizeof *d->contact_shape);
-    d->limit = need_memory(d->contacts, sizeof *d->limit);
-    d->mu = need_memory(d->contacts, sizeof *d->mu);
-    d->stiffness = need_memory(d->contacts, sizeof *d->stiffness);
-}
-
 static void reduce(struct damper *d, const struct options *o, const struct structure *s, const struct rows *r)
 {
-    gsl_spmatrix *direction = contact_directions(r, d->contacts, d->ndof);
+    gsl_spmatrix *direction = directions(r, d->contacts, d->ndof, o->statics);
     char message[200] = "";
-    const int status =
-        tribo_system_linear_sparse(&d->sys, s->mass, NULL, s->stiffness, direction, d->modes, message, sizeof message);
-    if (status) {
+    if (tribo_system_reduced(&d->reduced, s->mass, s->stiffness, direction, d->kept,
+                             o->statics ? TRIBO_STATICS_MASS : TRIBO_STATICS_NONE, message, sizeof message)) {
         const int counts = strchr(message, '[') || strstr(message, "degree of freedom ");
         die("%s and %s: %s%s", o->mass, o->stiffness, message, counts ? " (counted from 0)" : "");
     }
     gsl_spmatrix_free(direction);
-    tribo_context *contacts = tribo_system_context(d->sys);
-    need(tribo_system_get_frequencies(d->sys, d->omega), tribo_message(contacts));
-    need(tribo_system_set_damping_ratio(d->sys, d->damping), tribo_message(contacts));
-    need(tribo_set_law(contacts, o->law), tribo_message(contacts));
-    size_t first[MAX_CONTACTS];
-    for (size_t c = 0; c < d->contacts; c++) {
-        if (o->contact[c].planar) {
-            first[d->planar++] = c;
-        }
-    }
-    need(tribo_set_planar(contacts, d->planar, first), tribo_message(contacts));
+    d->modes = tribo_system_ndof(d->reduced);
+    d->omega = need_memory(d->modes, sizeof *d->omega);
+    d->load_shape = need_memory(d->modes, sizeof *d->load_shape);
+    d->contact_shape = need_memory(d->contacts * d->modes, sizeof *d->contact_shape);
+    need(tribo_system_get_frequencies(d->reduced, d->omega), tribo_message(tribo_system_context(d->reduced)));
+    read_shapes(d, r);
 }
 
 /* A spring so many times as stiff as the lowest mode that is no rigid body's leaves of its frequency what is still right. */
@@ -105,77 +129,109 @@ static void check_spring(const struct damper *d, size_t c, const char *origin)
     }
 }
 
-/* Modes with a spring from contact c to the slider in row w. */
-static void add_slider(const struct damper *d, size_t c, size_t w, double *stiffness)
+/* Modes with a spring from contact c to the slider in row w, on top of what springs [modes][modes] has. */
+static void add_slider(const struct damper *d, size_t c, size_t w, double *springs, gsl_spmatrix *stiffness)
 {
     const double *shape = d->contact_shape + c * d->modes, k = d->stiffness[c];
     for (size_t i = 0; i < d->modes; i++) {
         for (size_t j = 0; j < d->modes; j++) {
-            stiffness[i * d->motions + j] += k * shape[i] * shape[j];
+            springs[i * d->modes + j] += k * shape[i] * shape[j];
         }
-        stiffness[i * d->motions + w] = stiffness[w * d->motions + i] = -k * shape[i];
+        set_entry(stiffness, i, w, -k * shape[i]);
+        set_entry(stiffness, w, i, -k * shape[i]);
     }
-    stiffness[w * d->motions + w] = k;
+    set_entry(stiffness, w, w, k);
 }
 
-/* The system of modes and sliders takes the place of that of modes. */
-static void add_sliders(struct damper *d, const struct options *o)
+/* The stiffness of modes and sliders, and the directions of contacts. */
+static void connect(const struct damper *d, const struct options *o, gsl_spmatrix *stiffness, gsl_spmatrix *direction)
 {
-    const size_t n = d->motions;
-    double *mass = need_memory(3 * n * n, sizeof *mass), *damping = mass + n * n, *stiffness = mass + 2 * n * n;
-    double *direction = need_memory(d->contacts * n, sizeof *direction);
-    char message[200] = "";
-    for (size_t k = 0; k < d->modes; k++) {
-        mass[k * n + k] = 1.0;
-        damping[k * n + k] = 2.0 * d->damping * d->omega[k];
-        stiffness[k * n + k] = d->omega[k] * d->omega[k];
-    }
+    const int sliders = d->motions > d->modes;
+    double *springs = need_memory(sliders ? d->modes * d->modes : 1, sizeof *springs);
     for (size_t c = 0, w = d->modes; c < d->contacts; c++) {
         if (d->stiffness[c] > 0.0) {
             check_spring(d, c, o->contact[c].at.origin);
-            add_slider(d, c, w, stiffness);
-            direction[c * n + w++] = 1.0;
-        } else {
-            memcpy(direction + c * n, d->contact_shape + c * d->modes, d->modes * sizeof *direction);
+            add_slider(d, c, w, springs, stiffness);
+            set_entry(direction, c, w++, 1.0);
+            continue;
+        }
+        for (size_t k = 0; k < d->modes; k++) {
+            set_entry(direction, c, k, d->contact_shape[c * d->modes + k]);
         }
     }
-    tribo_system_destroy(d->sys);
-    d->sys = NULL;
-    if (tribo_system_linear(&d->sys, n, d->contacts, mass, damping, stiffness, direction, 0, message, sizeof message)) {
+    for (size_t k = 0; k < d->modes; k++) {
+        for (size_t i = 0; sliders && i < d->modes; i++) {
+            set_entry(stiffness, k, i, springs[k * d->modes + i]);
+        }
+        set_entry(stiffness, k, k, (sliders ? springs[k * d->modes + k] : 0.0) + d->omega[k] * d->omega[k]);
+    }
+    free(springs);
+}
+
+static void set_contacts(struct damper *d, const struct options *o)
+{
+    tribo_context *contacts = tribo_system_context(d->sys);
+    size_t *first = need_memory(d->contacts, sizeof *first);
+    for (size_t c = 0; c < d->contacts; c++) {
+        if (o->contact[c].planar) {
+            first[d->planar++] = c;
+        }
+    }
+    need(tribo_set_law(contacts, o->law), tribo_message(contacts));
+    need(tribo_set_planar(contacts, d->planar, first), tribo_message(contacts));
+    free(first);
+}
+
+/* The system of modes and sliders. */
+static void build(struct damper *d, const struct options *o)
+{
+    const size_t n = d->motions;
+    gsl_spmatrix *mass = new_matrix(n, n), *damping = new_matrix(n, n), *stiffness = new_matrix(n, n),
+                 *direction = new_matrix(d->contacts, n);
+    char message[200] = "";
+    for (size_t k = 0; k < d->modes; k++) {
+        set_entry(mass, k, k, 1.0);
+        set_entry(damping, k, k, 2.0 * d->damping * d->omega[k]);
+    }
+    connect(d, o, stiffness, direction);
+    if (tribo_system_linear_sparse(&d->sys, mass, damping, stiffness, direction, 0, message, sizeof message)) {
         die("modes and sliders: %s", message);
     }
-    need(tribo_set_law(tribo_system_context(d->sys), o->law), tribo_message(tribo_system_context(d->sys)));
-    free(mass);
-    free(direction);
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(damping);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+    set_contacts(d, o);
 }
 
-/* The amplitude of the load, on the structure, or on modes and sliders. */
-static void set_load(struct damper *d, size_t row)
+/* Rigid contacts must not hold all of what the modes let move, unless they hold the structure itself. */
+static void check_freedom(const struct damper *d)
 {
-    const int sliders = d->motions > d->modes;
-    d->load = need_memory(sliders ? d->motions : d->ndof, sizeof *d->load);
-    for (size_t k = 0; sliders && k < d->modes; k++) {
-        d->load[k] = d->force * d->load_shape[k];
+    double *stuck = need_memory(d->modes, sizeof *stuck);
+    if (d->modes < d->ndof && stuck_frequencies(d, stuck) == 0) {
+        die("the contacts, if they stick, hold all that the %zu mode%s of the reduced structure let%s move: keep more --modes",
+            d->modes, d->modes == 1 ? "" : "s", d->modes == 1 ? "s" : "");
     }
-    if (!sliders) {
-        d->load[row] = d->force;
-    }
+    free(stuck);
 }
 
-struct damper create_damper(const struct options *o, const struct structure *s)
+struct damper create_damper(const struct options *o, const struct structure *s, size_t kept)
 {
-    struct damper d = {
-        .ndof = s->ndof, .modes = o->modes, .contacts = o->contacts, .damping = o->damping, .force = o->force, .step = o->step};
-    if (d.modes > s->ndof) {
-        die("option --modes %zu: the structure has %zu degrees of freedom", d.modes, s->ndof);
-    }
-    if (d.modes == 0) {
-        d.modes = s->ndof < DEFAULT_MODES ? s->ndof : DEFAULT_MODES;
+    struct damper d = {.ndof = s->ndof,
+                       .kept = kept,
+                       .contacts = o->contacts,
+                       .damping = o->damping,
+                       .force = o->force,
+                       .step = o->step,
+                       .law = o->law};
+    if (o->modes > s->ndof) {
+        die("option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
     }
     const struct rows rows = find_rows(o, s);
-    allocate(&d);
+    d.limit = need_memory(d.contacts, sizeof *d.limit);
+    d.mu = need_memory(d.contacts, sizeof *d.mu);
+    d.stiffness = need_memory(d.contacts, sizeof *d.stiffness);
     reduce(&d, o, s, &rows);
-    read_shapes(&d, &rows);
     d.motions = d.modes;
     for (size_t c = 0; c < d.contacts; c++) {
         d.limit[c] = o->contact[c].limit;
@@ -183,15 +239,18 @@ struct damper create_damper(const struct options *o, const struct structure *s)
         d.stiffness[c] = o->contact[c].stiffness;
         d.motions += d.stiffness[c] > 0.0;
     }
-    if (d.motions > d.modes) {
-        add_sliders(&d, o);
+    check_freedom(&d);
+    build(&d, o);
+    d.load = need_memory(d.motions, sizeof *d.load);
+    for (size_t k = 0; k < d.modes; k++) {
+        d.load[k] = d.force * d.load_shape[k];
     }
-    set_load(&d, rows.load);
     return d;
 }
 
 void free_damper(struct damper *d)
 {
+    tribo_system_destroy(d->reduced);
     tribo_system_destroy(d->sys);
     free(d->omega);
     free(d->load_shape);
@@ -200,6 +259,16 @@ void free_damper(struct damper *d)
     free(d->limit);
     free(d->mu);
     free(d->stiffness);
+}
+
+double lowest_drive(const struct options *o, const struct damper *d)
+{
+    return o->drive.from > 0.0 ? o->drive.from : d->omega[0] / TURN;
+}
+
+double highest_drive(const struct options *o, const struct damper *d)
+{
+    return o->drive.from > 0.0 ? o->drive.to : d->omega[0] / TURN;
 }
 
 void check_drive(const struct damper *d, double hz)
@@ -229,7 +298,7 @@ double damping_power(const struct damper *d, const double *y)
 {
     double power = 0.0;
     for (size_t k = 0; k < d->modes; k++) {
-        power += 2.0 * d->damping * d->omega[k] * y[d->modes + k] * y[d->modes + k];
+        power += 2.0 * d->damping * d->omega[k] * y[d->motions + k] * y[d->motions + k];
     }
     return power;
 }

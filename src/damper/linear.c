@@ -10,6 +10,11 @@
 
 #include "output.h"
 
+double relative_difference(double a, double b)
+{
+    return a == b ? 0.0 : fabs(a - b) / fmax(fabs(a), fabs(b));
+}
+
 /* What a mode answers to a harmonic force on it is that force by this. */
 static gsl_complex dynamic_stiffness(const struct damper *d, size_t k, double omega)
 {

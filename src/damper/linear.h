@@ -14,6 +14,9 @@ double stuck_amplitude(const struct damper *d, double omega);
 /* Natural frequencies, rad/time, with all contacts stuck for ever, ascending: omega [modes] out; returns their number. */
 size_t stuck_frequencies(const struct damper *d, double *omega);
 
+/* None between zeros. */
+double relative_difference(double a, double b);
+
 /* The motion without friction: amplitude, the most power that the load could put into it, and energy norm of its modes'
  * displacements and velocities at their largest. So much of it is nothing: less is rounding. */
 struct scale {

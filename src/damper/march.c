@@ -15,6 +15,7 @@
 enum { BLOCK = 16, KEEP = 8, BLOCKS = 250, QUIET = 5 };
 static const double TOLERANCE = 1e-6;
 static const double LEAST_STEPS = 400, MOST_STEPS = 1e5; /* a period; an amplitude is the largest of the values there */
+static const double COULOMB_STEPS = 1000;                /* a period in steps of 1 */
 
 /* A system that is marched. */
 struct run {
@@ -27,18 +28,20 @@ struct run {
 
 /* ---------------------------------------------------------------------------------------------------------------- steps */
 
-/* rk4 damps a mode by (omega dt)^5/144 of critical, and follows it up to omega dt = 2.8. */
+/* Steps a period. rk4 damps a mode by (omega dt)^5/144 of critical, and follows it up to omega dt = 2.8; the implicit midpoint
+ * rule, of Coulomb's law, is stable with any. */
 static double steps_of(const struct damper *d, double hz)
 {
     const double highest = fmax(d->omega[d->modes - 1], TURN * hz);
-    return fmax(LEAST_STEPS, ceil(highest / (hz * d->step)));
+    const double radians = d->law == TRIBO_COULOMB ? COULOMB_STEPS : highest / hz;
+    return fmax(LEAST_STEPS, ceil(radians / d->step));
 }
 
 void check_steps(const struct damper *d, double hz)
 {
     if (!(steps_of(d, hz) <= MOST_STEPS)) {
-        die("a period of %g Hz would take %g steps, more than %g: keep fewer --modes, or take a larger --step", hz,
-            steps_of(d, hz), MOST_STEPS);
+        die("a period of %g Hz would take %g steps, more than %g: take a larger --step%s", hz, steps_of(d, hz), MOST_STEPS,
+            d->law == TRIBO_COULOMB ? "" : ", fewer --modes, --statics off, or --law coulomb");
     }
 }
 
@@ -48,9 +51,11 @@ tribo_driver *create_marcher(struct worker *w, double limit, double hz)
     tribo_context *contacts = tribo_system_context(w->sys);
     tribo_driver *drv;
     set_point(w, limit, hz);
-    /* stuck contacts relax within a step or so, which rk4 still follows; epsilon then goes along with each limit */
-    need(tribo_set_epsilon_step(contacts, dt, 1.0), tribo_message(contacts));
-    need(tribo_driver_create(&drv, w->sys, "rk4/fixed", dt, 0.0, 0.0), tribo_message(contacts));
+    const int coulomb = w->d->law == TRIBO_COULOMB;
+    if (!coulomb) { /* stuck contacts relax within a step or so, which rk4 still follows; epsilon follows each limit */
+        need(tribo_set_epsilon_step(contacts, dt, 1.0), tribo_message(contacts));
+    }
+    need(tribo_driver_create(&drv, w->sys, coulomb ? "moreau/fixed" : "rk4/fixed", dt, 0.0, 0.0), tribo_message(contacts));
     return drv;
 }
 
@@ -68,17 +73,17 @@ static struct motion run_cycle(const struct run *r, double *y)
     const struct damper *d = r->d;
     struct motion m = {.hz = 1.0 / r->period};
     double t = 0.0, least = HUGE_VAL, most = -HUGE_VAL;
-    y[2 * d->modes] = 0.0;
+    y[2 * d->motions] = 0.0;
     for (size_t i = 1; i <= r->steps; i++) {
         need(tribo_driver_advance(r->drv, &t, r->period * (double)i / (double)r->steps, y), tribo_driver_message(r->drv));
         const double x = load_displacement(d, y);
         least = fmin(least, x);
         most = fmax(most, x);
         m.damped += damping_power(d, y) / (double)r->steps;
-        m.input += d->force * sin(r->omega * t) * load_displacement(d, y + d->modes) / (double)r->steps;
+        m.input += d->force * sin(r->omega * t) * load_displacement(d, y + d->motions) / (double)r->steps;
     }
     m.amplitude = 0.5 * (most - least);
-    m.friction = y[2 * d->modes] / r->period;
+    m.friction = y[2 * d->motions] / r->period;
     return m;
 }
 
@@ -88,9 +93,9 @@ static struct motion run_cycle(const struct run *r, double *y)
 static double distance(const struct damper *d, const double *a, const double *b)
 {
     double sum = 0.0;
-    for (size_t k = 0; k < 2 * d->modes; k++) {
-        const double x = (k < d->modes ? d->omega[k] : 1.0) * (a[k] - (b ? b[k] : 0.0));
-        sum += x * x;
+    for (size_t k = 0; k < d->modes; k++) {
+        const double x = d->omega[k] * (a[k] - (b ? b[k] : 0.0)), v = a[d->motions + k] - (b ? b[d->motions + k] : 0.0);
+        sum += x * x + v * v;
     }
     return sqrt(sum);
 }
@@ -100,7 +105,7 @@ static double distance(const struct damper *d, const double *a, const double *b)
  * 1977). Plain repetition would do too, but a mode with a damping ratio of 0.2% takes a thousand cycles. */
 static void extrapolate(const struct damper *d, double *const *y, size_t keep, double *to)
 {
-    const size_t n = 2 * d->modes;
+    const size_t n = 2 * d->motions;
     gsl_matrix *second = gsl_matrix_alloc(n, keep), *covariance = gsl_matrix_alloc(keep, keep);
     gsl_vector *first = gsl_vector_alloc(n), *c = gsl_vector_alloc(keep);
     gsl_multifit_linear_workspace *work = gsl_multifit_linear_alloc(n, keep);
@@ -110,7 +115,7 @@ static void extrapolate(const struct damper *d, double *const *y, size_t keep, d
         die("out of memory for %zu modes", d->modes);
     }
     for (size_t i = 0; i < n; i++) {
-        const double weight = i < d->modes ? d->omega[i] : 1.0;
+        const double weight = i < d->modes ? d->omega[i] : i < d->motions ? d->omega[0] : 1.0;
         gsl_vector_set(first, i, weight * (y[1][i] - y[0][i]));
         for (size_t k = 0; k < keep; k++) {
             gsl_matrix_set(second, i, k, weight * (y[k + 2][i] - 2.0 * y[k + 1][i] + y[k][i]));
@@ -150,7 +155,7 @@ static int quiet(const struct scale *free, const struct motion *m)
 static void run_block(const struct run *r, double *const *state, struct motion *m)
 {
     for (size_t k = 0; k < BLOCK; k++) {
-        memcpy(state[k + 1], state[k], (2 * r->d->modes + 1) * sizeof *state[k]);
+        memcpy(state[k + 1], state[k], (2 * r->d->motions + 1) * sizeof *state[k]);
         m[k] = run_cycle(r, state[k + 1]);
     }
 }
@@ -159,7 +164,7 @@ static void run_block(const struct run *r, double *const *state, struct motion *
 static struct motion settle(const struct run *r, double *const *state)
 {
     const struct damper *d = r->d;
-    const size_t n = 2 * d->modes + 1, keep = n - 1 < KEEP ? n - 1 : KEEP;
+    const size_t n = 2 * d->motions + 1, keep = n - 1 < KEEP ? n - 1 : KEEP;
     double *ahead = state[BLOCK + 1], change = HUGE_VAL;
     struct motion m[BLOCK];
     size_t cycles = 0, pause = 0, wait = 0;

@@ -9,7 +9,7 @@
 #include "tribo/tribo.h"
 
 static const struct options standard = {
-    .out = ".", .name = "damper", .damping = 0.002, .force = 1.0, .step = 0.25, .law = TRIBO_QUINN};
+    .out = ".", .name = "damper", .damping = 0.002, .force = 1.0, .statics = 1, .step = 0.25, .law = TRIBO_COULOMB};
 static const double LIMIT_FROM = 1e-3, LIMIT_TO = 10.0; /* times the load */
 enum { CURVE_LIMITS = 33, FAMILY_LIMITS = 9 };
 
@@ -21,6 +21,14 @@ typedef void setter(const char *origin, const char *value, struct options *o);
 static void set_modes(const char *origin, const char *value, struct options *o)
 {
     o->modes = read_whole(origin, value, 1);
+}
+
+static void set_statics(const char *origin, const char *value, struct options *o)
+{
+    o->statics = strcmp(value, "on") == 0;
+    if (!o->statics && strcmp(value, "off") != 0) {
+        die("%s: must be on or off", origin);
+    }
 }
 
 static void set_damping(const char *origin, const char *value, struct options *o)
@@ -95,9 +103,9 @@ static void set_law(const char *origin, const char *value, struct options *o)
         die("%s: no law has this name; there are%s", origin, names);
     }
     /* nothing holds a velocity at 0 in rk4, whose four stages meet forces of either sign that may cancel */
-    if (o->law == TRIBO_COULOMB || o->law == TRIBO_KARNOPP) {
-        die("%s: the contacts of this law rest at velocities that are exactly zero, which marching does not make: take quinn, "
-            "quinn-reversal, velocity-limited or smooth, or --method exact, which needs no law",
+    if (o->law == TRIBO_KARNOPP) {
+        die("%s: the contacts of this law rest at velocities that are exactly zero, which marching does not make: take coulomb, "
+            "quinn, quinn-reversal, velocity-limited or smooth",
             origin);
     }
 }
@@ -129,7 +137,7 @@ static const struct option {
     {FILE_OPTION(mass)}, {FILE_OPTION(stiffness)},
     {FILE_OPTION(dofs)}, {FILE_OPTION(frequencies)},
     {FILE_OPTION(out)},  {OPTION(name)},
-    {OPTION(modes)},     {OPTION(damping)},
+    {OPTION(modes)},     {OPTION(statics)}, {OPTION(damping)},
     {OPTION(contact)},   {"--contacts", set_contacts, 0, 1},
     {OPTION(load)},      {OPTION(force)},
     {OPTION(drive)},     {OPTION(limits)},
@@ -227,9 +235,9 @@ int limits_vary(const struct options *o)
 static void check_method(const struct options *o)
 {
     for (size_t c = 0; c < o->contacts; c++) {
-        if (o->contact[c].stiffness > 0.0 && (o->march || o->check)) {
-            die("%s: marching takes rigid contacts only: leave out stiffness=, or %s", o->contact[c].at.origin,
-                o->march ? "--method march" : "--check");
+        if (o->contact[c].stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
+            die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law", o->contact[c].at.origin,
+                tribo_law_name(o->law));
         }
         if (o->contact[c].planar && !o->march) {
             die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only",

@@ -10,7 +10,8 @@ struct options {
     const char *mass, *stiffness, *dofs;
     const char *out, *name;  /* folder of the tables, and how their names begin */
     const char *frequencies; /* NULL for none */
-    size_t modes;            /* 0: the default, as far as there are so many */
+    size_t modes;            /* 0: as many as the answer needs */
+    int statics;             /* beside the modes, static responses of contacts and load */
     double damping;
     struct contact contact[MAX_CONTACTS];
     struct place load;

@@ -6,8 +6,9 @@
 /* value [count] out: of limit [count]. */
 typedef void evaluate(void *data, const double *limit, double *value, size_t count);
 
-/* The limit between low and high where the value is least, to that part of it, for a value that falls and then rises. Takes the
+/* The limit between low and high where the value is least, to that part of it, for a value that falls and then rises; *least is
+ * the value. Takes the
  * values of a few limits at a time, for those to share the work. */
-double find_least(double low, double high, double part, evaluate *values, void *data);
+double find_least(double low, double high, double part, evaluate *values, void *data, double *least);
 
 #endif

@@ -1,15 +1,22 @@
 #ifndef DAMPER_STUDY_H
 #define DAMPER_STUDY_H
 
-#include "tables.h"
+#include "model.h"
 
 /* What a run has at hand. */
 struct study {
     const struct options *options;
-    const struct damper *damper;
+    struct model *model;
+    const struct damper *damper; /* that of the model */
     struct tables *tables;
     size_t gaps; /* points that were not found */
 };
+
+/* Takes twice the modes and empties the tables, if the model error is too large; returns whether it did. */
+int begin_again(struct study *s, double error);
+
+/* Modes and model, before a study: to be shown again where there are more of them. */
+void show_model(const struct study *s);
 
 /* The response over the limits at one frequency, the limit of most power, and the motion there. */
 void study_limits(struct study *s);
@@ -22,6 +29,9 @@ double limit_of(const struct range *limits, size_t k);
 
 /* Without friction, and with so much that nothing slips: both are known. */
 void check_extremes(const struct study *s, double hz);
+
+/* A few points of each curve with twice the modes, too: prints what that changes. Returns the model error, or NaN. */
+double show_model_error(const struct study *s, const struct curve *c, size_t curves);
 
 /* Some points of a curve by marching: writes the table, and the largest differences. */
 void check_by_marching(const struct study *s, const struct curve *c);

@@ -26,7 +26,7 @@ static void ask_band(const struct study *s, struct curve *c)
     for (size_t k = 0; k < band->points; k++) {
         ask_sample(c, band->from + (band->to - band->from) * ((double)k / (double)(band->points - 1)), 1);
     }
-    for (size_t k = 0; k < s->damper->modes + held; k++) {
+    for (size_t k = 0; k < s->damper->kept + held; k++) {
         const double hz = (k < held ? stuck[k] : s->damper->omega[k - held]) / TURN;
         if (hz > band->from && hz < band->to) {
             ask_sample(c, hz, 0);
@@ -107,37 +107,54 @@ static const char *first_message(const struct family *f, size_t count)
             }
         }
     }
-    return "nobody looked";
+    return "not looked for";
+}
+
+/* Largest amplitudes over the limits may have several valleys, of which each that is not far above the lowest is searched. */
+static const double NEAR_LOWEST = 1.25;
+
+/* The limit with the least value, between the neighbours of limits with low ones; 0 if the least is at an end. */
+static double search_valleys(struct study *s, const double *limit, const double *value, size_t count)
+{
+    double least = HUGE_VAL, best = 0.0, lowest = HUGE_VAL;
+    for (size_t k = 0; k < count; k++) {
+        lowest = fmin(lowest, value[k]);
+    }
+    for (size_t k = 1; k + 1 < count; k++) {
+        if (value[k] <= value[k - 1] && value[k] <= value[k + 1] && value[k] <= NEAR_LOWEST * lowest) {
+            double found;
+            const double there = find_least(limit[k - 1], limit[k + 1], LEAST_PART, largest_amplitudes, s, &found);
+            best = found < least ? there : best;
+            least = fmin(found, least);
+        }
+    }
+    return least <= value[0] && least <= value[count - 1] ? best : 0.0;
 }
 
 static void find_best(struct study *s, const struct family *f, const double *limit, size_t count)
 {
-    size_t best = count;
-    double least = HUGE_VAL;
+    double *value = need_memory(count, sizeof *value), least = HUGE_VAL;
     for (size_t k = 0; k < count; k++) {
         const struct sample *top = largest_of(&f->curve[k]);
-        if (top && top->motion.amplitude < least) {
-            least = top->motion.amplitude;
-            best = k;
-        }
+        value[k] = top ? top->motion.amplitude : HUGE_VAL;
+        least = fmin(least, value[k]);
     }
-    if (best == count) {
+    const double found = least < HUGE_VAL ? search_valleys(s, limit, value, count) : 0.0;
+    end_telling();
+    if (least == HUGE_VAL) {
         printf("no motion was found at any of these limits: %s\n", first_message(f, count));
-        return;
-    }
-    if (best == 0 || best + 1 == count) {
+    } else if (found == 0.0 && !interrupted()) {
         printf("no limit within the range is better than its ends: widen --limits to find the best\n");
-        return;
-    }
-    const double found = find_least(limit[best - 1], limit[best + 1], LEAST_PART, largest_amplitudes, s);
-    if (!interrupted()) {
+    } else if (!interrupted()) {
         report_best(s, found);
     }
+    free(value);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- family */
 
-static void write_family(struct study *s, const struct family *f, size_t count)
+/* Returns the model error. */
+static double write_family(struct study *s, const struct family *f, size_t count)
 {
     FILE *table = create_table(s->tables, "family");
     write_motion_head(table, s->damper->contacts);
@@ -153,7 +170,7 @@ static void write_family(struct study *s, const struct family *f, size_t count)
         s->gaps += gaps_of(c);
     }
     close_table(s->tables, table, "family");
-    fflush(stdout);
+    return show_model_error(s, f->curve, count);
 }
 
 void study_band(struct study *s)
@@ -164,10 +181,18 @@ void study_band(struct study *s)
     for (size_t k = 0; k < count; k++) {
         limit[k] = limit_of(limits, k);
     }
-    check_extremes(s, s->options->drive.from);
-    struct family f = run_family(s, limit, count);
-    end_telling();
-    write_family(s, &f, count);
+    struct family f;
+    int again;
+    do {
+        show_model(s);
+        check_extremes(s, lowest_drive(s->options, s->damper));
+        f = run_family(s, limit, count);
+        end_telling();
+        again = begin_again(s, write_family(s, &f, count));
+        if (again) {
+            free_family(&f, count);
+        }
+    } while (again);
     write_linear(s->tables, s->damper, &s->options->drive);
     if (!interrupted() && count > 1) {
         find_best(s, &f, limit, count);

@@ -7,12 +7,6 @@
 #include "study.h"
 #include "team.h"
 
-/* Relative difference; none between zeros. */
-static double difference(double a, double b)
-{
-    return a == b ? 0.0 : fabs(a - b) / fmax(fabs(a), fabs(b));
-}
-
 static void compare(const struct study *s, const struct motion *m, double known, const char *key, const char *what)
 {
     if (!m->found) {
@@ -33,6 +27,23 @@ static void follow_all(struct damper *d)
         d->limit[c] = (double)NAN;
         d->mu[c] = 1.0;
     }
+}
+
+int begin_again(struct study *s, double error)
+{
+    const int again = take_more_modes(s->model, error);
+    if (again) {
+        close_tables(s->tables);
+        *s->tables = open_tables(s->options);
+        s->gaps = 0;
+    }
+    return again;
+}
+
+void show_model(const struct study *s)
+{
+    write_frequencies(s->tables, s->damper, s->options->frequencies);
+    report_model(s->tables, s->model);
 }
 
 void check_extremes(const struct study *s, double hz)
@@ -60,6 +71,46 @@ void check_extremes(const struct study *s, double hz)
     free(each);
 }
 
+/* --------------------------------------------------------------------------------------------------------- more modes */
+
+enum { EVEN_POINTS = 5, CURVE_POINTS = 3 /* of one curve, and of each of several: with the largest amplitude */ };
+
+/* Points of a curve to be found again; returns how many. */
+static size_t place_points(const struct curve *c, size_t most, struct point *point)
+{
+    const struct sample *chosen[EVEN_POINTS], *largest = largest_of(c);
+    size_t count = spread_samples(c, most - 1, chosen);
+    for (size_t k = 0; k < count; k++) {
+        largest = chosen[k] == largest ? NULL : largest;
+    }
+    if (largest) {
+        chosen[count++] = largest;
+    }
+    for (size_t k = 0; k < count; k++) {
+        point[k] = (struct point){.limit = chosen[k]->motion.limit, .hz = chosen[k]->motion.hz};
+    }
+    return count;
+}
+
+double show_model_error(const struct study *s, const struct curve *c, size_t curves)
+{
+    const size_t most = curves > 1 ? CURVE_POINTS : EVEN_POINTS;
+    struct point *point = need_memory(curves * most, sizeof *point);
+    size_t count = 0;
+    for (size_t k = 0; k < curves; k++) {
+        count += place_points(&c[k], most, point + count);
+    }
+    compare_models(s->model, s->options->threads, point, count);
+    end_telling();
+    if (!interrupted()) {
+        report_error(s->tables, s->model, point, count);
+    }
+    fflush(stdout);
+    const double error = model_error(point, count);
+    free(point);
+    return error;
+}
+
 /* ------------------------------------------------------------------------------------------------------------- marching */
 
 /* Those of a curve that are marched, and what comes of it. */
@@ -80,31 +131,13 @@ static void march_one(void *data, size_t k)
     free_worker(&w);
 }
 
-/* So many of those that were asked for and found, spread over the curve; returns how many there are. */
-static size_t choose(const struct curve *c, size_t most, const struct sample **chosen)
-{
-    const struct sample **all = need_memory(c->count, sizeof *all);
-    size_t count = 0;
-    for (size_t k = 0; k < c->count; k++) {
-        if (c->sample[k].asked && c->sample[k].motion.found) {
-            all[count++] = &c->sample[k];
-        }
-    }
-    const size_t wanted = count < most ? count : most;
-    for (size_t i = 0; i < wanted; i++) {
-        chosen[i] = all[(2 * i + 1) * count / (2 * wanted)];
-    }
-    free(all);
-    return wanted;
-}
-
 static void report(const struct study *s, const struct marched *m, size_t count)
 {
     FILE *table = create_table(s->tables, "check");
     double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
     write_motion_head(table, 0);
-    printf("by marching (rk4, %s)\n         limit    frequency    amplitude   difference  periods\n",
-           tribo_law_name(s->options->law));
+    printf("by marching in time (%s, %s)\n         limit    frequency    amplitude   difference  periods\n",
+           s->options->law == TRIBO_COULOMB ? "midpoint rule" : "rk4", tribo_law_name(s->options->law));
     for (size_t k = 0; k < count; k++) {
         const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
         write_motion(table, here, 0);
@@ -112,12 +145,12 @@ static void report(const struct study *s, const struct marched *m, size_t count)
             printf("  %12.5g %12.5g  %s\n", here->limit, here->hz, here->message);
             continue;
         }
-        const double off = difference(here->amplitude, known->amplitude);
+        const double off = relative_difference(here->amplitude, known->amplitude);
         printf("  %12.5g %12.5g %12.5g %12.1e %8zu\n", here->limit, here->hz, here->amplitude, off, here->periods);
         amplitude = fmax(amplitude, off);
         power = fmax(power, fabs(here->friction - known->friction));
         most = fmax(most, known->friction);
-        unbalanced = fmax(unbalanced, difference(here->input, here->friction + here->damped));
+        unbalanced = fmax(unbalanced, relative_difference(here->input, here->friction + here->damped));
     }
     write_result(s->tables, "check.amplitude", amplitude);
     write_result(s->tables, "check.power", power > 0.0 ? power / most : 0.0);
@@ -132,7 +165,7 @@ void check_by_marching(const struct study *s, const struct curve *c)
         return;
     }
     struct marched m = {s->damper, need_memory(most, sizeof *m.sample), need_memory(most, sizeof *m.motion)};
-    const size_t count = choose(c, most, m.sample);
+    const size_t count = spread_samples(c, most, m.sample);
     run_jobs(s->options->threads, count, march_one, &m);
     end_telling();
     if (!interrupted()) {

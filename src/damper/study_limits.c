@@ -100,7 +100,9 @@ static void find_most_power(struct study *s, struct curve *c)
         return;
     }
     struct trial t = {.study = s, .from = &c->sample[at]};
-    const double limit = find_least(c->sample[at - 1].motion.limit, c->sample[at + 1].motion.limit, LEAST_PART, try_limits, &t);
+    double power;
+    const double limit =
+        find_least(c->sample[at - 1].motion.limit, c->sample[at + 1].motion.limit, LEAST_PART, try_limits, &t, &power);
     if (!interrupted()) {
         const struct motion best = show_motion(s, c, limit, "history");
         /* above the optimum contacts rest for a part of each period */
@@ -140,21 +142,32 @@ static void print_curve(const struct curve *c)
     }
 }
 
-void study_limits(struct study *s)
+/* The curve with the modes that there are; returns the model error. */
+static double follow_limits(struct study *s, struct curve *c)
 {
-    const struct options *o = s->options;
-    const double hz = o->drive.from > 0.0 ? o->drive.from : s->damper->omega[0] / TURN;
-    struct curve c = create_curve(1, hz, 2 * s->damper->motions + 1);
-    struct limits_job j = {s, &c};
+    const struct range *limits = &s->options->limits;
+    const double hz = lowest_drive(s->options, s->damper);
+    struct limits_job j = {s, c};
+    *c = create_curve(1, hz, 2 * s->damper->motions + 1);
+    show_model(s);
     check_extremes(s, hz);
-    for (size_t k = 0; k < o->limits.points; k++) {
-        ask_sample(&c, log(limit_of(&o->limits, k)), 1);
+    for (size_t k = 0; k < limits->points; k++) {
+        ask_sample(c, log(limit_of(limits, k)), 1);
     }
     run_jobs(1, 1, run_curve, &j);
     end_telling();
-    print_curve(&c);
+    print_curve(c);
+    return show_model_error(s, c, 1);
+}
+
+void study_limits(struct study *s)
+{
+    struct curve c;
+    while (begin_again(s, follow_limits(s, &c))) {
+        free_curve(&c);
+    }
     check_by_marching(s, &c);
-    if (!interrupted() && o->limits.points > 1) {
+    if (!interrupted() && s->options->limits.points > 1) {
         find_most_power(s, &c);
     }
     FILE *table = create_table(s->tables, "curve");

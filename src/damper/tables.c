@@ -99,12 +99,12 @@ void write_curve(FILE *file, const struct curve *c, size_t contacts)
 void write_frequencies(const struct tables *t, const struct damper *d, const char *given)
 {
     double *hz = need_memory(2 * d->modes, sizeof *hz), *stuck = hz + d->modes, worst = 0.0;
-    const size_t known = given ? read_frequencies(given, hz, d->modes) : 0, held = stuck_frequencies(d, stuck);
+    const size_t known = given ? read_frequencies(given, hz, d->kept) : 0, held = stuck_frequencies(d, stuck);
     FILE *table = create_table(t, "frequencies");
     fprintf(table, "mode,frequency,given,relative difference,stuck\n");
     printf("natural frequencies, Hz; the last with all contacts stuck\n  mode         here%s        stuck\n",
            known ? "        given  relative difference" : "");
-    for (size_t k = 0; k < d->modes; k++) {
+    for (size_t k = 0; k < d->kept; k++) {
         const double here = d->omega[k] / TURN, off = k < known ? here / hz[k] - 1.0 : 0.0;
         char *seen = k < known ? new_text("%12.7g  %19.1e", hz[k], off) : new_text("%*s", known ? 33 : 0, "");
         char *kept = k < known ? new_text("%.10g,%.3g", hz[k], off) : new_text(",");
@@ -130,8 +130,8 @@ static double *linear_frequencies(const struct damper *d, const struct range *ba
 {
     enum { EVEN = 2001 };
     double *omega = need_memory(EVEN + 2 * d->modes, sizeof *omega);
-    const size_t resonances = d->modes + stuck_frequencies(d, omega);
-    memcpy(omega + resonances - d->modes, d->omega, d->modes * sizeof *omega);
+    const size_t resonances = d->kept + stuck_frequencies(d, omega);
+    memcpy(omega + resonances - d->kept, d->omega, d->kept * sizeof *omega);
     *count = 0;
     for (size_t k = 0; k < resonances; k++) {
         if (omega[k] > TURN * band->from && omega[k] < TURN * band->to) {

@@ -334,7 +334,8 @@ TEST(options)
         {"--drive", "-1 nan inf 5Hz 1:2 1:2:0 2:1:3 1:1:2 0:1:3 1:2:x"},
         {"--limits", "0 1:2 1:2:0 1:2:1.5 2:1:3 1:1:2 0:1:3 -1:1:3 nan:1:3 1:inf:3 1:2:3:4 1:2:1e300 :: 1;2;3"},
         {"--step", "0 -1 1.1 nan 1/4"},
-        {"--law", "quin quinnn 4 coulomb karnopp"},
+        {"--law", "quin quinnn 4 karnopp"},
+        {"--statics", "none ON 1"},
         {"--contact",
          "2,0,0 2,0,0, 2,0,0,w 2,0,0,4 2,0,0,y 2,0,x 2.1,0,0,x nan,0,0,x 2,0,0,xx , x 1e300,0,0,x 2,0,0,xy 2,0,0,x:stiffness=0 "
          "2,0,0,x:stiffness=nan "
@@ -359,6 +360,7 @@ TEST(options)
     }
     /* what only the structure can tell: too much work, or nothing to work with */
     assert_refused(CHAIN " --check 1 --step 1e-300", "step", "--step");
+    assert_refused(CHAIN " --check 1 --law quinn --step 1e-300", "step", "--step");
     assert_refused(CHAIN " --drive 1e-9", "drive", "1e-09 Hz");
     assert_refused(CHAIN " --drive 1e200", "drive", "without friction");
     assert_refused(CHAIN " --force 1e-300", "force", "--force");
