@@ -24,5 +24,5 @@ set label 2 'no friction' at 1.5e-4, 25 left textcolor '#0072b2'
 set label 3 'all contacts stuck' at 0.9, 4.5e-4 right textcolor '#0072b2'
 plot file using 1:3 with lines linecolor '#0072b2' title 'amplitude', \
      file using 1:4 axes x1y2 with lines linecolor '#d55e00' dashtype (10, 5) title 'power', \
-     marched using 1:3 with points linecolor '#0072b2' pointtype 6 pointsize 1.1 title 'marched (rk4, Quinn’s law)', \
+     marched using 1:3 with points linecolor '#0072b2' pointtype 6 pointsize 1.1 title 'marched (midpoint rule)', \
      marched using 1:4 axes x1y2 with points linecolor '#d55e00' pointtype 4 pointsize 1.1 notitle
