@@ -125,6 +125,9 @@ void tribo_stick_slip_begin_decision(struct stick_slip *m, tribo_system *sys, do
 void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sys, const double *y);
 int tribo_stick_slip_find_resting(struct stick_slip *m, const tribo_system *sys, double *y);
 
+/* Forces at rest that are not unique go on from those found last, but for this. */
+void tribo_stick_slip_forget_shares(struct stick_slip *m);
+
 /* How large b, its rate, and accelerations by loads ever are, and how far decisions look ahead. */
 void tribo_stick_slip_find_scales(struct stick_slip *m, const tribo_system *sys);
 

@@ -187,8 +187,7 @@ static void start_anew(struct stick_slip *m, const tribo_system *sys, const doub
     }
 }
 
-/* Forces at rest that are not unique go on from those found last: without these a run does not depend on another one. */
-static void forget_shares(struct stick_slip *m)
+void tribo_stick_slip_forget_shares(struct stick_slip *m)
 {
     if (!m->independent && !m->uncoupled) {
         tribo_solve_box(m->box, m->still, m->still, m->still, m->f);
@@ -211,7 +210,7 @@ void tribo_stick_slip_start(struct stick_slip *m, tribo_system *sys, double t, d
     }
     if (!continues) {
         start_anew(m, sys, y);
-        forget_shares(m);
+        tribo_stick_slip_forget_shares(m);
         tribo_elastic_start(m, sys, y);
     }
     m->fresh = m->hold_differs = 1;

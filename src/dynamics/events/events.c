@@ -215,14 +215,14 @@ static void forget(struct events *e, int continues)
     }
 }
 
-/* What the search has learnt of the size of velocities, and how far the phase strayed from the law. */
-static void learn(struct events *e, tribo_driver *drv)
+/* What the search has learnt of the size of velocities, and how far the phase, which was brief or not, strayed from the law. */
+static void learn(struct events *e, tribo_driver *drv, int brief, double when)
 {
     struct stick_slip *m = &e->stick_slip;
     for (size_t k = 0; k < e->search.guards; k++) {
         const struct guard *g = &e->search.guard[k];
         if (g->slides == SLIDES) {
-            m->seen[g->contact] = g->size;
+            m->seen[g->contact] = brief ? fabs(g->left.g) + when * fabs(g->left.d) : g->size;
             drv->backslip = greater(drv->backslip, g->lowest);
         } else if (g->slides == HOLDS) {
             drv->excess = greater(drv->excess, g->lowest + m->excess[g->contact]);
@@ -305,6 +305,49 @@ static int show_decided(struct events *e, tribo_driver *drv, const struct guard 
     return seen ? tribo_driver_accept(drv, t, y, event || stops) : tribo_driver_keep(drv, t, y);
 }
 
+/* Over this part of the time of the fastest motion accelerations do not change; nor do they where the second derivative of a
+ * velocity changes its first one by no more than that part. */
+#define BRIEF 1e-9
+#define STEADY 1e-8
+
+/* A limit far above all other forces stops a contact in such a time: small differences to a motion that, if it went on, would
+ * become so large that they are lost in its rounding. */
+static int is_brief(const struct events *e, const tribo_system *sys, const struct guard *event, double reach, double when)
+{
+    const int simple = !e->stick_slip.plane && !e->stick_slip.breakaway.falls && !sys->massless.count;
+    const int brief = when * tribo_system_fastest(sys) <= BRIEF && (!(sys->tables || sys->limits.knots) || when <= BRIEF * reach);
+    return event && e->search.at_once && simple && brief && when * fabs(event->left.e) <= STEADY * fabs(event->left.d);
+}
+
+/* y after a brief phase from (t, y), by the accelerations and forces there; contacts that stop do not hold against each other by
+ * such forces. Returns a status. */
+static int go_brief(struct stick_slip *m, tribo_system *sys, double t, double tau, double *y)
+{
+    const size_t n = sys->ndof;
+    const int status = tribo_stick_slip_acceleration(m, sys, t, y, m->acceleration, m->force);
+    for (size_t i = 0; i < n; i++) {
+        y[n + i] += 0.5 * tau * m->acceleration[i];
+        y[i] += tau * y[n + i];
+    }
+    for (size_t i = 0; i < m->contacts; i++) {
+        const double power = m->slip[i] ? -m->force[i] * tribo_stick_slip_velocity(m, sys, i, y) : 0.0;
+        y[2 * n] += sys->tally[i] * tau * power;
+    }
+    for (size_t i = 0; i < n; i++) {
+        y[n + i] += 0.5 * tau * m->acceleration[i];
+    }
+    tribo_stick_slip_forget_shares(m);
+    return status;
+}
+
+/* y at the end of a phase from (t, y), to which the method's own motion goes too. Returns a status. */
+static int go(struct events *e, tribo_driver *drv, int brief, double t, double when, double *y)
+{
+    e->state(e->motion, when, y, brief ? drv->slope : y);
+    const int status = brief ? on_context(drv, go_brief(&e->stick_slip, drv->sys, t, when, y)) : TRIBO_OK;
+    return status ? status : tribo_driver_check(drv, y);
+}
+
 /* One phase, from (t, y) to its end and the decision there. What y is after a failure is nobody's: the driver has kept the state
  * that the phase began with. */
 static int phase(struct events *e, tribo_driver *drv, double begin, double *shown, double *t, double t1, double *y,
@@ -331,8 +374,8 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     if (status) {
         return status;
     }
-    e->state(e->motion, when, y, y);
-    status = tribo_driver_check(drv, y);
+    const int brief = is_brief(e, sys, event, reach, when);
+    status = go(e, drv, brief, *t, when, y);
     if (status) {
         return status;
     }
@@ -346,7 +389,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
         return status;
     }
     drv->steps++;
-    learn(e, drv);
+    learn(e, drv, brief, when);
     event = event && event->slides != SLOWS ? event : NULL;
     sys->evaluations += e->shows_between ? e->search.looks : 0;
     if (event) {

@@ -451,20 +451,54 @@ static void ask_all(struct first_zero *s)
     s->positive_until = HUGE_VAL;
 }
 
-/* Looks at the start: one that is zero there, or NULL. */
-static const struct guard *start(struct first_zero *s)
+/* The velocity that is the first to fall to zero so soon after the start that derivatives there see it, and when; NULL if none
+ * does. What the motion becomes until longest may be so large that this is lost in the rounding of it. A velocity that is
+ * rounding beside others does not count. */
+static const struct guard *stops_at_once(struct first_zero *s, double *when)
 {
     const struct guard *first = NULL;
+    double step = lesser(s->reach, s->longest), fastest = 0.0;
+    for (size_t k = 0; k < s->guards; k++) {
+        const struct guard *g = &s->guard[k];
+        fastest = g->slides == SLIDES ? greater(fastest, g->left.g - g->allowance) : fastest;
+    }
+    for (size_t k = 0; k < s->guards; k++) {
+        const struct guard *g = &s->guard[k];
+        const struct sample begins = {g->left.g - g->allowance, g->left.d, g->left.e};
+        const int moves = g->slides == SLIDES && begins.g > ALLOWED * fastest;
+        const double own = moves ? parabola_fall(&begins, step) : HUGE_VAL;
+        if (own <= step) {
+            first = g;
+            step = own;
+        }
+    }
+    s->at_once = first && is_first(s, first, step);
+    *when = s->at_once ? step : *when;
+    return s->at_once ? first : NULL;
+}
+
+/* Looks at the start: one that is zero there, or at once, or NULL. */
+static const struct guard *start(struct first_zero *s, double *when)
+{
     ask_all(s);
     watch_all(s);
     for (size_t k = 0; k < s->guards; k++) {
-        struct guard *g = s->watched[k] = &s->guard[k];
-        g->allowance = greater(g->allowance, greater(ALLOWED * g->size, DBL_MIN));
+        s->watched[k] = &s->guard[k];
     }
     sample(s, 0.0);
-    keep_left(s);
-    for (size_t k = 0; s->falls && !first && k < s->guards; k++) {
-        first = s->guard[k].left.g <= 0.0 ? &s->guard[k] : NULL;
+    for (size_t k = 0; k < s->guards; k++) {
+        s->guard[k].left = s->guard[k].middle;
+    }
+    const struct guard *first = stops_at_once(s, when);
+    for (size_t k = 0; !first && k < s->guards; k++) {
+        struct guard *g = &s->guard[k];
+        const double more = greater(greater(ALLOWED * g->size, DBL_MIN) - g->allowance, 0.0);
+        g->allowance += more;
+        g->middle.g += more;
+        first = g->middle.g <= 0.0 ? g : NULL;
+    }
+    if (!first) {
+        keep_left(s);
     }
     return first;
 }
@@ -551,7 +585,7 @@ int tribo_first_zero(struct first_zero *s, double longest, const struct guard **
     find_bounds(s);
     s->most = STRETCH * s->h;
     s->lost = (double)MOST_LOOKS * s->h < HOPELESS * lesser(s->better, longest);
-    *first = start(s);
+    *first = start(s, when);
     if (!*first && !(s->expected > 0.0)) {
         predict(s);
     }

@@ -51,6 +51,7 @@ struct first_zero {
     double longest; /* the end of the search */
     double better;  /* when smaller bounds will be worth the work */
     int falls;      /* a guard is not positive where it was looked at last */
+    int at_once;    /* a velocity falls to zero so soon after the start that derivatives there tell when */
     int lost;       /* there is no end of looks, or what they see is not finite */
 };
 
