@@ -90,7 +90,13 @@ static void read_word(const char *origin, char *word, struct contact *c, struct 
     }
 }
 
-size_t read_contact(const char *origin, const char *text, struct contact *contact, size_t count)
+static void add_contact(struct contacts *all, const struct contact *c)
+{
+    all->contact = need_room(all->contact, all->count, &all->room, sizeof *all->contact);
+    all->contact[all->count++] = *c;
+}
+
+void read_contact(const char *origin, const char *text, struct contacts *all)
 {
     struct contact c = {.mu = 1.0};
     int second;
@@ -120,16 +126,12 @@ size_t read_contact(const char *origin, const char *text, struct contact *contac
     c.to.direction = c.at.direction;
     c.to.origin = origin;
     c.planar = second != 0;
-    if (count + (second ? 2 : 1) > MAX_CONTACTS) {
-        die("%s: there are %zu contacts already of %d, and one in a plane counts twice", origin, count, (int)MAX_CONTACTS);
-    }
-    contact[count++] = c;
+    add_contact(all, &c);
     if (second) {
         c.planar = 0;
         c.at.direction = c.to.direction = second;
-        contact[count++] = c;
+        add_contact(all, &c);
     }
-    return count;
 }
 
 static void cut_blanks(char *text)
@@ -139,18 +141,17 @@ static void cut_blanks(char *text)
     }
 }
 
-size_t read_contacts(const char *path, struct contact *contact, size_t count)
+void read_contacts(const char *path, struct contacts *all)
 {
     struct lines l = open_lines(path);
-    const size_t before = count;
+    const size_t before = all->count;
     while (next_data(&l)) {
         l.at[strcspn(l.at, "\r")] = '\0';
         cut_blanks(make_printable(l.at));
-        count = read_contact(new_text("%s:%zu: contact %s", path, l.line, l.at), l.at, contact, count);
+        read_contact(new_text("%s:%zu: contact %s", path, l.line, l.at), l.at, all);
     }
     close_lines(&l);
-    if (count == before) {
+    if (all->count == before) {
         die("%s: there is no contact in it", path);
     }
-    return count;
 }

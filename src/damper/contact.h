@@ -3,8 +3,6 @@
 
 #include <stddef.h>
 
-enum { MAX_CONTACTS = 32 };
-
 /* A degree of freedom as the user names it: a node by its coordinates, and a direction (1, 2, 3 for x, y, z). */
 struct place {
     double at[3];
@@ -25,11 +23,16 @@ struct contact {
 /* "X,Y,Z,DIR" */
 struct place read_place(const char *origin, const char *text);
 
-/* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind
- * it, parted by colons or blanks, into contact [MAX_CONTACTS], of which count are there already; returns how many then are. */
-size_t read_contact(const char *origin, const char *text, struct contact *contact, size_t count);
+struct contacts {
+    struct contact *contact;
+    size_t count, room;
+};
 
-/* One contact a line, from the file into contact [MAX_CONTACTS], of which count are there already; returns how many then are. */
-size_t read_contacts(const char *path, struct contact *contact, size_t count);
+/* "X,Y,Z,DIR", where DIR may be two directions, and words to=X,Y,Z limit=FORCE mu=NUMBER load=FORCE stiffness=NUMBER behind
+ * it, parted by colons or blanks: adds the contact, or the two directions of a planar one. */
+void read_contact(const char *origin, const char *text, struct contacts *all);
+
+/* Adds the contacts of a file, one a line. */
+void read_contacts(const char *path, struct contacts *all);
 
 #endif

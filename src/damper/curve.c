@@ -14,9 +14,9 @@ static const double LEAST_AMPLITUDE = 1e-5;      /* of the largest one: below, i
 
 /* -------------------------------------------------------------------------------------------------------------- samples */
 
-struct curve create_curve(int over_limit, double fixed, size_t dimension)
+struct curve create_curve(int over_limit, double fixed, size_t record)
 {
-    return (struct curve){.over_limit = over_limit, .fixed = fixed, .dimension = dimension};
+    return (struct curve){.over_limit = over_limit, .fixed = fixed, .record = record};
 }
 
 void free_curve(struct curve *c)
@@ -46,7 +46,7 @@ static void insert_sample(struct curve *c, size_t k, double x, int asked)
 {
     c->sample = need_room(c->sample, c->count, &c->room, sizeof *c->sample);
     memmove(&c->sample[k + 1], &c->sample[k], (c->count - k) * sizeof *c->sample);
-    c->sample[k] = (struct sample){.x = x, .asked = asked, .y = need_memory(c->dimension, sizeof(double))};
+    c->sample[k] = (struct sample){.x = x, .asked = asked, .y = need_memory(c->record, sizeof(double))};
     c->count++;
 }
 

@@ -7,7 +7,7 @@
 struct sample {
     double x; /* Hz, or the logarithm of the limit */
     struct motion motion;
-    double *y; /* [dimension] the state at the beginning of a period, if it was found */
+    double *y; /* [record] the record, if it was found */
     int asked; /* one of those that the user wanted; others were added */
 };
 
@@ -16,10 +16,10 @@ struct curve {
     double fixed;   /* the other one */
     struct sample *sample;
     size_t count, room; /* ascending in x */
-    size_t dimension;
+    size_t record; /* numbers in the record of a motion */
 };
 
-struct curve create_curve(int over_limit, double fixed, size_t dimension);
+struct curve create_curve(int over_limit, double fixed, size_t record);
 void free_curve(struct curve *c);
 
 /* Adds a place where a motion is to be found; one that is there already is asked for. */

@@ -9,14 +9,16 @@
 
 /* Rows of the structure where a contact slides; to is no row for the ground. */
 struct rows {
-    size_t at[MAX_CONTACTS], to[MAX_CONTACTS], load;
+    size_t *at, *to, load;
 };
 
 static struct rows find_rows(const struct options *o, const struct structure *s)
 {
     struct rows r = {.load = find_degree(s, &o->load)};
-    for (size_t c = 0; c < o->contacts; c++) {
-        const struct contact *contact = &o->contact[c];
+    r.at = need_memory(2 * o->contacts.count, sizeof *r.at);
+    r.to = r.at + o->contacts.count;
+    for (size_t c = 0; c < o->contacts.count; c++) {
+        const struct contact *contact = &o->contacts.contact[c];
         r.at[c] = find_degree(s, &contact->at);
         r.to[c] = contact->between ? find_degree(s, &contact->to) : s->ndof;
         if (r.at[c] == r.to[c]) {
@@ -150,7 +152,7 @@ static void connect(const struct damper *d, const struct options *o, gsl_spmatri
     double *springs = need_memory(sliders ? d->modes * d->modes : 1, sizeof *springs);
     for (size_t c = 0, w = d->modes; c < d->contacts; c++) {
         if (d->stiffness[c] > 0.0) {
-            check_spring(d, c, o->contact[c].at.origin);
+            check_spring(d, c, o->contacts.contact[c].at.origin);
             add_slider(d, c, w, springs, stiffness);
             set_entry(direction, c, w++, 1.0);
             continue;
@@ -173,7 +175,7 @@ static void set_contacts(struct damper *d, const struct options *o)
     tribo_context *contacts = tribo_system_context(d->sys);
     size_t *first = need_memory(d->contacts, sizeof *first);
     for (size_t c = 0; c < d->contacts; c++) {
-        if (o->contact[c].planar) {
+        if (o->contacts.contact[c].planar) {
             first[d->planar++] = c;
         }
     }
@@ -219,7 +221,7 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
 {
     struct damper d = {.ndof = s->ndof,
                        .kept = kept,
-                       .contacts = o->contacts,
+                       .contacts = o->contacts.count,
                        .damping = o->damping,
                        .force = o->force,
                        .step = o->step,
@@ -232,11 +234,12 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     d.mu = need_memory(d.contacts, sizeof *d.mu);
     d.stiffness = need_memory(d.contacts, sizeof *d.stiffness);
     reduce(&d, o, s, &rows);
+    free(rows.at);
     d.motions = d.modes;
     for (size_t c = 0; c < d.contacts; c++) {
-        d.limit[c] = o->contact[c].limit;
-        d.mu[c] = o->contact[c].mu;
-        d.stiffness[c] = o->contact[c].stiffness;
+        d.limit[c] = o->contacts.contact[c].limit;
+        d.mu[c] = o->contacts.contact[c].mu;
+        d.stiffness[c] = o->contacts.contact[c].stiffness;
         d.motions += d.stiffness[c] > 0.0;
     }
     check_freedom(&d);
@@ -279,6 +282,9 @@ void check_drive(const struct damper *d, double hz)
             highest / TURN);
     }
     const struct scale s = free_scale(d, TURN * hz);
+    if (isnan(s.amplitude)) {
+        die("the load's frequency, %g Hz, is beyond what can be computed with; see --drive", hz);
+    }
     if (!isnormal(s.amplitude * s.amplitude) || !isnormal(s.power * s.power) || !isnormal(NOTHING * s.norm * s.norm)) {
         die("without friction the load makes an amplitude of %g: nothing to compute with; see --load, --force and --modes",
             s.amplitude);

@@ -23,7 +23,7 @@ static const char *const part[] = {
     "                       the node's place, lengths\n"
     "  --load X,Y,Z,DIR     at which node and along which axis, x, y or z, the harmonic load acts; amplitudes are those there\n"
     "  --contact CONTACT    X,Y,Z,DIR: a contact to ground at the node with these coordinates, sliding along DIR; or\n"
-    "                       in a plane, xy, xz or yz (--method march). Up to 32, those in a plane counting twice, as their two\n"
+    "                       in a plane, xy, xz or yz (--method march). One in a plane counts twice, as its two\n"
     "                       directions, which are two contacts in the tables. Words may follow, parted by colons or blanks:\n"
     "                         to=X,Y,Z      not to ground but to this node\n"
     "                         limit=FORCE   its limit, in a plane in any direction; without, it varies with --limits\n"

@@ -28,7 +28,8 @@ int main(int argc, char **argv)
         printf("%zu point%s not found: gaps in the tables, with messages\n", study.gaps, study.gaps == 1 ? " was" : "s were");
     }
     if (interrupted()) {
-        printf("interrupted: tables hold what was found until then\n");
+        printf(tables.motions ? "interrupted: tables hold what was found until then\n"
+                              : "interrupted before a motion was found: there are no tables of motions\n");
     }
     close_tables(&tables);
     close_file(stdout, "standard output");

@@ -12,7 +12,7 @@
 #include "team.h"
 
 /* The motion is run in blocks of cycles, and its transient extrapolated after each from the last KEEP + 1 of them. */
-enum { BLOCK = 16, KEEP = 8, BLOCKS = 250, QUIET = 5 };
+enum { BLOCK = 16, KEEP = 8, BLOCKS = 60, QUIET = 5 };
 static const double TOLERANCE = 1e-6;
 static const double LEAST_STEPS = 400, MOST_STEPS = 1e5; /* a period; an amplitude is the largest of the values there */
 static const double COULOMB_STEPS = 1000;                /* a period in steps of 1 */

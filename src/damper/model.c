@@ -30,7 +30,7 @@ static void find_one(void *data, size_t k)
     struct damper coulomb = *d;
     coulomb.law = TRIBO_COULOMB;
     struct worker w = create_worker(&coulomb, coulomb.planar > 0);
-    double *y = need_memory(w.dimension, sizeof *y);
+    double *y = need_memory(record_of(w.d), sizeof *y);
     c->motion[k] = find_motion(&w, c->point[k / 2].limit, c->point[k / 2].hz, NULL, y);
     free(y);
     free_worker(&w);
@@ -65,9 +65,10 @@ double model_error(const struct point *point, size_t count)
 
 /* --------------------------------------------------------------------------------------------------------------- choosing */
 
+/* So many modes; all, where these and static responses are more than half of them. */
 static struct damper with_modes(const struct options *o, const struct structure *s, size_t kept)
 {
-    return create_damper(o, s, kept < s->ndof ? kept : s->ndof);
+    return create_damper(o, s, 2 * (kept + o->contacts.count + 1) < s->ndof ? kept : s->ndof);
 }
 
 /* What is missing at contacts and load, as a part of the displacements there, up to the highest harmonic that matters. */
@@ -140,7 +141,9 @@ int take_more_modes(struct model *m, double error)
 
 struct model create_model(const struct options *o, const struct structure *s)
 {
-    struct model m = {.options = o, .structure = s, .damper = with_modes(o, s, o->modes ? o->modes : LEAST_MODES)};
+    struct model m = {.options = o,
+                      .structure = s,
+                      .damper = o->modes ? create_damper(o, s, o->modes) : with_modes(o, s, LEAST_MODES)};
     check_drives(o, &m.damper);
     while (may_double(&m) && !(missing(&m.damper, o) <= MOST_MISSING)) {
         const size_t kept = 2 * m.damper.kept;

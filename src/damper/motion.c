@@ -23,6 +23,11 @@ struct worker create_worker(const struct damper *d, int march)
     return w;
 }
 
+size_t record_of(const struct damper *d)
+{
+    return 2 * d->motions + 1 + 2 * d->contacts;
+}
+
 void free_worker(struct worker *w)
 {
     tribo_driver_destroy(w->drv);
@@ -47,22 +52,22 @@ void set_point(struct worker *w, double limit, double hz)
 
 /* What the period of the motion just found holds, in closed form. The load is F sin(omega t), so that its mean power is that
  * of its velocity's part in phase; what friction does not take of it damping does. */
-static int measure(struct worker *w, struct motion *m)
+static int measure(struct worker *w, struct motion *m, double *power)
 {
     const struct damper *d = w->d;
     double least, most, cosine, sine;
     int status = tribo_driver_period_extremes(w->drv, w->c, &least, &most);
     status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
-    status = status ? status : tribo_driver_period_dissipation(w->drv, m->power);
-    status = status ? status : tribo_driver_period_stick(w->drv, m->stick);
+    status = status ? status : tribo_driver_period_dissipation(w->drv, power);
+    status = status ? status : tribo_driver_period_stick(w->drv, power + d->contacts);
     if (status) {
         return status;
     }
     m->amplitude = 0.5 * (most - least);
     m->input = -0.5 * TURN * m->hz * d->force * cosine;
     for (size_t c = 0; c < d->contacts; c++) {
-        m->power[c] *= m->hz;
-        m->friction += m->power[c];
+        power[c] *= m->hz;
+        m->friction += power[c];
     }
     m->damped = m->input - m->friction;
     return TRIBO_OK;
@@ -93,7 +98,7 @@ static struct motion shoot(struct worker *w, double limit, double hz, double *y)
     const size_t before = periods_of(w);
     set_point(w, limit, hz);
     int status = tribo_driver_find_periodic(w->drv, 0.0, 1.0 / hz, y);
-    status = status ? status : measure(w, &m);
+    status = status ? status : measure(w, &m, y + w->dimension);
     m.periods = periods_of(w) - before;
     m.found = !status;
     if (status) {
@@ -104,14 +109,14 @@ static struct motion shoot(struct worker *w, double limit, double hz, double *y)
 
 struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y)
 {
-    double *state = need_memory(w->dimension, sizeof *state);
+    double *state = need_memory(record_of(w->d), sizeof *state);
     if (guess) {
         memcpy(state, guess, w->dimension * sizeof *state);
     }
     struct motion m = w->march ? march(w, limit, hz, state) : shoot(w, limit, hz, state);
     if (m.found) {
         take_rounding_away(w->d, &m);
-        memcpy(y, state, w->dimension * sizeof *y);
+        memcpy(y, state, record_of(w->d) * sizeof *y);
     }
     free(state);
     tell_point();

@@ -7,8 +7,6 @@
 struct motion {
     double limit, hz, amplitude;
     double friction, damped, input; /* power lost to friction, lost to modal damping, and put in by the load */
-    double power[MAX_CONTACTS];     /* lost to friction by each contact; not by marching, nor is */
-    double stick[MAX_CONTACTS];     /* the share of the period for which it is at rest */
     size_t periods;                 /* that were integrated to find it */
     int found;                      /* 0: numbers mean nothing, and message says why */
     char message[200];
@@ -30,8 +28,11 @@ void free_worker(struct worker *w);
 /* Loads the system for a limit and a frequency. */
 void set_point(struct worker *w, double limit, double hz);
 
-/* Finds it from the state guess [dimension], or from rest if that is NULL. y [dimension] out, if found: the state at the
- * beginning of a period. */
+/* Numbers in the record of a motion: the state at the beginning of a period, then of each contact the power lost to its friction,
+ * then of each contact the share of the period for which it is at rest. Marching leaves powers and shares 0. */
+size_t record_of(const struct damper *d);
+
+/* Finds it from the state guess, or from rest if that is NULL. y out, if found: its record. */
 struct motion find_motion(struct worker *w, double limit, double hz, const double *guess, double *y);
 
 #endif

@@ -41,13 +41,13 @@ static void set_damping(const char *origin, const char *value, struct options *o
 
 static void set_contact(const char *origin, const char *value, struct options *o)
 {
-    o->contacts = read_contact(origin, value, o->contact, o->contacts);
+    read_contact(origin, value, &o->contacts);
 }
 
 static void set_contacts(const char *origin, const char *value, struct options *o)
 {
     (void)origin;
-    o->contacts = read_contacts(value, o->contact, o->contacts);
+    read_contacts(value, &o->contacts);
 }
 
 static void set_load(const char *origin, const char *value, struct options *o)
@@ -209,7 +209,7 @@ static void need_structure(const struct options *o)
     } part[] = {{"--mass", o->mass != NULL},
                 {"--stiffness", o->stiffness != NULL},
                 {"--dofs", o->dofs != NULL},
-                {"--contact", o->contacts > 0},
+                {"--contact", o->contacts.count > 0},
                 {"--load", o->load.origin != NULL}};
     char missing[80] = "";
     for (size_t k = 0; k < sizeof part / sizeof *part; k++) {
@@ -225,8 +225,8 @@ static void need_structure(const struct options *o)
 int limits_vary(const struct options *o)
 {
     int vary = 0;
-    for (size_t c = 0; c < o->contacts; c++) {
-        vary = vary || isnan(o->contact[c].limit);
+    for (size_t c = 0; c < o->contacts.count; c++) {
+        vary = vary || isnan(o->contacts.contact[c].limit);
     }
     return vary;
 }
@@ -234,14 +234,14 @@ int limits_vary(const struct options *o)
 /* Sliders without mass cannot be marched with, and contacts in a plane have no closed form. */
 static void check_method(const struct options *o)
 {
-    for (size_t c = 0; c < o->contacts; c++) {
-        if (o->contact[c].stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
-            die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law", o->contact[c].at.origin,
-                tribo_law_name(o->law));
+    for (size_t c = 0; c < o->contacts.count; c++) {
+        if (o->contacts.contact[c].stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
+            die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law",
+                o->contacts.contact[c].at.origin, tribo_law_name(o->law));
         }
-        if (o->contact[c].planar && !o->march) {
+        if (o->contacts.contact[c].planar && !o->march) {
             die("%s: contacts in a plane are for --method march; method exact knows contacts along one axis only",
-                o->contact[c].at.origin);
+                o->contacts.contact[c].at.origin);
         }
     }
 }
@@ -263,6 +263,13 @@ static void complete(struct options *o)
         o->limits =
             (struct range){LIMIT_FROM * o->force, LIMIT_TO * o->force, o->drive.points > 1 ? FAMILY_LIMITS : CURVE_LIMITS};
     }
+    for (size_t c = 0; c < o->contacts.count; c++) {
+        const struct contact *contact = &o->contacts.contact[c];
+        const double most = isnan(contact->limit) ? contact->mu * o->limits.to : contact->limit;
+        if (!isfinite(most)) {
+            die("%s: mu times the normal load, up to %g, is too large a limit", contact->at.origin, o->limits.to);
+        }
+    }
 }
 
 /* What some options print instead of a study; ends the program where name is one of these. */
@@ -283,15 +290,17 @@ struct options read_options(int argc, char **argv)
 {
     struct options o = standard;
     o.drive.points = 1;
-    for (int i = 1; i < argc; i += 2) {
-        const char *name = argv[i], *value = argv[i + 1];
-        const struct option *option = strncmp(name, "--", 2) == 0 ? find_option(name + 2, strlen(name + 2)) : NULL;
+    for (int i = 1; i < argc; i++) {
+        const size_t length = strcspn(argv[i], "=");
+        const char *name = new_text("%.*s", (int)length, argv[i]);
+        const struct option *option = strncmp(name, "--", 2) == 0 ? find_option(name + 2, length - 2) : NULL;
         const int read = strcmp(name, "--read") == 0;
-        answer(name);
+        answer(argv[i]);
         if (!option && !read) {
             die("there is no option \"%s\"; see --help", name);
         }
-        if (i + 1 == argc) {
+        const char *value = argv[i][length] ? argv[i] + length + 1 : argv[++i];
+        if (!value || !*value) {
             die("option %s needs a value; see --help", name);
         }
         if (read) {

@@ -13,9 +13,8 @@ struct options {
     size_t modes;            /* 0: as many as the answer needs */
     int statics;             /* beside the modes, static responses of contacts and load */
     double damping;
-    struct contact contact[MAX_CONTACTS];
+    struct contacts contacts;
     struct place load;
-    size_t contacts;
     double force;
     struct range drive; /* Hz; from 0: the first natural frequency */
     struct range limits;

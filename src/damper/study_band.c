@@ -49,7 +49,7 @@ static struct family run_family(const struct study *s, const double *limit, size
 {
     struct family f = {s, need_memory(count, sizeof *f.curve)};
     for (size_t k = 0; k < count; k++) {
-        f.curve[k] = create_curve(0, limit[k], 2 * s->damper->motions + 1);
+        f.curve[k] = create_curve(0, limit[k], record_of(s->damper));
         ask_band(s, &f.curve[k]);
     }
     run_jobs(s->options->threads, count, run_curve, &f);
@@ -86,7 +86,7 @@ static void report_best(struct study *s, double limit)
         check_by_marching(s, &f.curve[0]);
         FILE *table = create_table(s->tables, "best");
         write_motion_head(table, s->damper->contacts);
-        write_curve(table, &f.curve[0], s->damper->contacts);
+        write_curve(s->tables, table, &f.curve[0], s->damper->contacts);
         close_table(s->tables, table, "best");
         printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude, top->motion.hz);
         write_result(s->tables, "band.limit", limit);
@@ -162,7 +162,7 @@ static double write_family(struct study *s, const struct family *f, size_t count
     for (size_t k = 0; k < count; k++) {
         const struct curve *c = &f->curve[k];
         const struct sample *top = largest_of(c);
-        write_curve(table, c, s->damper->contacts);
+        write_curve(s->tables, table, c, s->damper->contacts);
         fprintf(table, "%s", k + 1 < count && c->count ? "\n" : "");
         if (top) {
             printf("  %12.5g %8zu %12zu %18.8g %13.7g\n", c->fixed, c->count, gaps_of(c), top->motion.amplitude, top->motion.hz);

@@ -58,7 +58,7 @@ void check_extremes(const struct study *s, double hz)
     all.mu = each + d->contacts;
     follow_all(&all);
     struct worker w = create_worker(&all, s->options->march);
-    double *y = need_memory(w.dimension, sizeof *y);
+    double *y = need_memory(record_of(w.d), sizeof *y);
     const struct motion open = find_motion(&w, 0.0, hz, NULL, y), stuck = find_motion(&w, 1e6 * d->force, hz, NULL, y);
     const double omega = TURN * hz;
     end_telling();
@@ -125,7 +125,7 @@ static void march_one(void *data, size_t k)
     const struct marched *m = data;
     const struct motion *known = &m->sample[k]->motion;
     struct worker w = create_worker(m->damper, 1);
-    double *y = need_memory(w.dimension, sizeof *y);
+    double *y = need_memory(record_of(w.d), sizeof *y);
     m->motion[k] = find_motion(&w, known->limit, known->hz, NULL, y);
     free(y);
     free_worker(&w);
@@ -140,7 +140,7 @@ static void report(const struct study *s, const struct marched *m, size_t count)
            s->options->law == TRIBO_COULOMB ? "midpoint rule" : "rk4", tribo_law_name(s->options->law));
     for (size_t k = 0; k < count; k++) {
         const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
-        write_motion(table, here, 0);
+        write_motion(table, here, NULL, 0);
         if (!here->found) {
             printf("  %12.5g %12.5g  %s\n", here->limit, here->hz, here->message);
             continue;

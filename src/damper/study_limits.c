@@ -13,7 +13,8 @@ static const double LEAST_PART = 1e-6; /* the limit of most power is found to th
 
 double limit_of(const struct range *limits, size_t k)
 {
-    return k ? limits->from * pow(limits->to / limits->from, (double)k / (double)(limits->points - 1)) : limits->from;
+    const double part = k ? (double)k / (double)(limits->points - 1) : 0.0;
+    return pow(limits->from, 1.0 - part) * pow(limits->to, part);
 }
 
 /* -------------------------------------------------------------------------------------------------------------- power */
@@ -30,7 +31,7 @@ static void try_limit(void *data, size_t k)
 {
     const struct trial *t = data;
     struct worker w = create_worker(t->study->damper, t->study->options->march);
-    double *y = need_memory(w.dimension, sizeof *y);
+    double *y = need_memory(record_of(w.d), sizeof *y);
     const struct motion m = find_motion(&w, t->limit[k], t->from->motion.hz, t->from->y, y);
     t->value[k] = m.found ? -m.friction : HUGE_VAL;
     free(y);
@@ -148,7 +149,7 @@ static double follow_limits(struct study *s, struct curve *c)
     const struct range *limits = &s->options->limits;
     const double hz = lowest_drive(s->options, s->damper);
     struct limits_job j = {s, c};
-    *c = create_curve(1, hz, 2 * s->damper->motions + 1);
+    *c = create_curve(1, hz, record_of(s->damper));
     show_model(s);
     check_extremes(s, hz);
     for (size_t k = 0; k < limits->points; k++) {
@@ -172,7 +173,7 @@ void study_limits(struct study *s)
     }
     FILE *table = create_table(s->tables, "curve");
     write_motion_head(table, s->damper->contacts);
-    write_curve(table, &c, s->damper->contacts);
+    write_curve(s->tables, table, &c, s->damper->contacts);
     close_table(s->tables, table, "curve");
     s->gaps += gaps_of(&c);
     free_curve(&c);

@@ -66,7 +66,7 @@ static void write_message(FILE *file, const char *message)
     fputc('"', file);
 }
 
-void write_motion(FILE *file, const struct motion *m, size_t contacts)
+void write_motion(FILE *file, const struct motion *m, const double *power, size_t contacts)
 {
     fprintf(file, "%.10g,%.10g", m->limit, m->hz);
     if (m->found) {
@@ -77,7 +77,7 @@ void write_motion(FILE *file, const struct motion *m, size_t contacts)
     }
     for (size_t c = 0; c < contacts; c++) {
         if (m->found) {
-            fprintf(file, ",%.8g,%.8g", m->power[c], m->stick[c]);
+            fprintf(file, ",%.8g,%.8g", power[c], power[contacts + c]);
         } else {
             fprintf(file, ",,");
         }
@@ -85,11 +85,13 @@ void write_motion(FILE *file, const struct motion *m, size_t contacts)
     fprintf(file, "\n");
 }
 
-void write_curve(FILE *file, const struct curve *c, size_t contacts)
+void write_curve(struct tables *t, FILE *file, const struct curve *c, size_t contacts)
 {
     for (size_t k = 0; k < c->count; k++) {
         if (looked_for(&c->sample[k])) {
-            write_motion(file, &c->sample[k].motion, contacts);
+            const struct sample *s = &c->sample[k];
+            write_motion(file, &s->motion, s->y + c->record - 2 * contacts, contacts);
+            t->motions += (size_t)s->motion.found;
         }
     }
 }

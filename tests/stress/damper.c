@@ -362,11 +362,20 @@ TEST(options)
     assert_refused(CHAIN " --check 1 --step 1e-300", "step", "--step");
     assert_refused(CHAIN " --check 1 --law quinn --step 1e-300", "step", "--step");
     assert_refused(CHAIN " --drive 1e-9", "drive", "1e-09 Hz");
-    assert_refused(CHAIN " --drive 1e200", "drive", "without friction");
+    assert_refused(CHAIN " --drive 1e200", "drive", "1e+200 Hz");
+    assert_refused(CHAIN " --drive 1e300", "drive", "1e+300 Hz");
+    assert_refused(CHAIN " --limits 1e-300:1e300:5 --contact 3,0,0,x:mu=1e10", "a product", "too large a limit");
+    assert_refused(CHAIN " --contact 3,0,0,x:mu=1e200:load=1e200", "a product", "too large a limit");
+    const struct outcome o = assert_runs(CHAIN " --limits 1e-300:1e300:5");
+    require(says(o.out, "      1e-300 ") && says(o.out, "      1e+300 "), "%s", o.out);
     assert_refused(CHAIN " --force 1e-300", "force", "--force");
     assert_refused(CHAIN " --force 1e300", "force", "--force");
     assert_refused(CHAIN " --nonsense 1", "no option", "\"--nonsense\"");
     assert_refused(CHAIN " --modes", "no value", "--modes");
+    assert_refused(CHAIN " --modes=", "no value", "--modes");
+    assert_refused(CHAIN " --modes=x", "no number", "option --modes x");
+    assert_refused(CHAIN " --modes=2=2", "no number", "option --modes 2=2");
+    assert_refused(CHAIN " --nonsense=1", "no option", "\"--nonsense\"");
     assert_runs("--help");
 }
 END_TEST
@@ -425,6 +434,8 @@ TEST(same_limit)
         "--contact 2,0,0,x:limit=0.1",           "--contact 2,0,0,x --limits 0.1",
         "--contact 2,0,0,x:mu=0.5 --limits 0.2", "--contacts c.txt",
         "--contact 2,0,0,x:mu=2:load=0.05",      "--read o.txt",
+        "--contact=2,0,0,x:limit=0.1",           "--contact=2,0,0,x --limits=0.1",
+        "--read=o.txt",
     };
     double first = 0.0;
     write_chain();
@@ -550,5 +561,43 @@ TEST(few)
 }
 END_TEST
 
+/* A row of masses of 2 kg on springs of 200 N/m, held at one end, of which all but the last few are on contacts. */
+TEST(many_contacts)
+{
+    enum { MASSES = 60, CONTACTS = 50 };
+    static struct text m, k, dofs, contacts;
+    char line[100];
+    m.length = k.length = dofs.length = contacts.length = 0;
+    add(&m, "%%MatrixMarket matrix coordinate real symmetric\n60 60 60");
+    add(&k, "%%MatrixMarket matrix coordinate real symmetric\n60 60 119");
+    for (int i = 1; i <= MASSES; i++) {
+        snprintf(line, sizeof line, "%d %d 2", i, i);
+        add(&m, line);
+        snprintf(line, sizeof line, "%d %d %d", i, i, i < MASSES ? 400 : 200);
+        add(&k, line);
+        snprintf(line, sizeof line, "%d %d -200", i + 1, i);
+        add(&k, i < MASSES ? line : "%");
+        snprintf(line, sizeof line, "%d %d 1 %d 0 0", i, i, i);
+        add(&dofs, line);
+        snprintf(line, sizeof line, "%d,0,0,x", i);
+        add(&contacts, i <= CONTACTS ? line : "");
+    }
+    write_bytes("M.mtx", m.byte, m.length);
+    write_bytes("K.mtx", k.byte, k.length);
+    write_bytes("dofs.txt", dofs.byte, dofs.length);
+    write_bytes("c.txt", contacts.byte, contacts.length);
+    assert_runs(OWN " --contacts c.txt --load 60,0,0,x --drive 0.1 --damping 0.05 --limits 0.1:0.1:1");
+    /* stuck, ten masses are left: their receptance at the end by a continued fraction, without damping to a thousandth */
+    const double w2 = pow(2.0 * PI * 0.1, 2);
+    double behind = 0.0;
+    for (int i = CONTACTS + 1; i <= MASSES; i++) {
+        const double series = behind == 0.0 ? 200.0 : 1.0 / (1.0 / 200.0 + 1.0 / behind);
+        behind = series - 2.0 * w2;
+    }
+    assert_close(value_of("damper.stuck"), 1.0 / behind, 1e-2 / behind);
+    assert_close(value_of("damper.stuck"), value_of("damper.stuck.analytic"), 1e-9);
+}
+END_TEST
+
 TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {parts, 1}, {files_of_words, 1}, {same_limit, 1},
-          {between, 1}, {plane, 1}, {one_mass, 1}, {few, 1})
+          {between, 1}, {plane, 1}, {one_mass, 1}, {few, 1}, {many_contacts, 1})
