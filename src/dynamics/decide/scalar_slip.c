@@ -123,10 +123,39 @@ static size_t let_slide(struct stick_slip *m, tribo_system *sys, const double *y
 
 /* ---------------------------------------------------------------------------------------------------------- look ahead */
 
-static double limit_ahead(const struct stick_slip *m, size_t i)
+/* Limits that change fast beside forces change these by at most this part in the moment that a decision looks ahead. */
+#define CHANGES 1e-4
+
+/* The limit of contact i now, and its rate. */
+static double limit_now(const struct stick_slip *m, size_t i, double *rate)
 {
-    const double now = m->slip[i] ? m->limit[i] : m->stick[i], rate = m->slip[i] ? m->limit_rate[i] : m->stick_rate[i];
-    return m->slip[i] == 2 ? 0.0 : greater(now + m->horizon * rate, 0.0);
+    *rate = m->slip[i] ? m->limit_rate[i] : m->stick_rate[i];
+    return m->slip[i] ? m->limit[i] : m->stick[i];
+}
+
+static double limit_ahead(const struct stick_slip *m, size_t i, double moment)
+{
+    double rate;
+    const double now = limit_now(m, i, &rate);
+    return m->slip[i] == 2 ? 0.0 : greater(now + moment * rate, 0.0);
+}
+
+/* How far to look ahead: to the horizon, or less where a limit that counts until then is to change much faster than that. */
+static double find_moment(const struct stick_slip *m)
+{
+    double moment = m->horizon, force = 0.0, rate;
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        force = greater(force, greater(fabs(m->force[i]), m->inertia[i] * fabs(m->a[i])));
+    }
+    for (size_t k = 0; k < m->asks; k++) {
+        const size_t i = m->asked[k];
+        const double now = limit_now(m, i, &rate);
+        if (m->slip[i] != 2 && now <= fabs(m->force[i]) + m->horizon * fabs(rate) && moment * fabs(rate) > CHANGES * force) {
+            moment = force > 0.0 ? CHANGES * force / fabs(rate) : moment;
+        }
+    }
+    return moment;
 }
 
 /* The limits of this instant, where there are static ones. */
@@ -152,13 +181,13 @@ static void find_falling(struct stick_slip *m, const tribo_system *sys, const do
     }
 }
 
-static void set_bounds_ahead(struct stick_slip *m)
+static void set_bounds_ahead(struct stick_slip *m, double moment)
 {
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
-        const double limit = limit_ahead(m, i), now = m->stick[i], wider = WIDER * now;
+        const double limit = limit_ahead(m, i, moment), now = m->stick[i], wider = WIDER * now;
         if (m->elastic[i]) {
-            m->lo[i] = m->hi[i] = m->spring[i] + m->horizon * m->spring_rate[i];
+            m->lo[i] = m->hi[i] = m->spring[i] + moment * m->spring_rate[i];
             continue;
         }
         if (m->slip[i] != 0) {
@@ -181,13 +210,14 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     if (m->breakaway.falls) {
         find_falling(m, sys, y);
     }
+    const double moment = find_moment(m);
     tribo_stick_slip_find_rate(m, sys, y);
     tribo_stick_slip_contact_accelerations(sys, m->rate, 2, m->v);
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
-        m->v[i] = m->a[i] + m->horizon * m->v[i];
+        m->v[i] = m->a[i] + moment * m->v[i];
     }
-    set_bounds_ahead(m);
+    set_bounds_ahead(m, moment);
     const int status = tribo_stick_slip_solve(m, sys, m->v, m->f);
     if (status) {
         return status;
@@ -196,7 +226,7 @@ static int look_ahead(struct stick_slip *m, tribo_system *sys, const double *y, 
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         m->pulled[i] = 0;
-        const double limit = limit_ahead(m, i), room = limit - fabs(m->f[i]);
+        const double limit = limit_ahead(m, i, moment), room = limit - fabs(m->f[i]);
         if (tribo_stick_slip_searches(m, i) && room >= 0.0) {
             const signed char direction = direction_of(m, i, m->f[i]);
             const int may = !tribo_breakaway_is_sudden(&m->breakaway, i);

@@ -204,13 +204,18 @@ static void expect(struct events *e, const struct guard *event, double when)
     e->search.expected = e->begun && e->search.early <= ALIKE * e->begun->time ? e->begun->time : 0.0;
 }
 
-/* A run that does not continue another one is not to depend on it, not even in its rounding. */
-static void forget(struct events *e, int continues)
+/* A run that does not continue another one is not to depend on it, not even in its rounding; events of one that does are counted
+ * as if it had not been interrupted. */
+static void forget(struct events *e, double t, int continues)
 {
     e->begun = NULL;
     e->search.expected = 0.0;
     e->anew = !continues;
     if (!continues) {
+        e->paid = e->rested = t;
+        e->idle = e->suspects = 0;
+        e->stuck = 0.0;
+        refill(e, t);
         memset(e->lasted, 0, SLIPS * e->stick_slip.contacts * sizeof *e->lasted);
     }
 }
@@ -408,7 +413,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
 
 int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
-    const double begin = *t, fastest = greater(tribo_system_fastest(drv->sys), 1.0 / (t1 - begin));
+    const double begin = *t, own = tribo_system_fastest(drv->sys), fastest = own > 0.0 ? own : 1.0 / (t1 - begin);
     double shown = 1.0;
     if (e->shows_between && drv->seen && !(begin + drv->dt > begin && t1 - drv->dt < t1)) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP, "dt = %g, in which an observer sees the motion, is lost beside t = %.17g",
@@ -417,11 +422,7 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues);
     int status = tribo_planar_slip_start(&e->stick_slip, drv->sys, continues);
     status = on_context(drv, status ? status : decide(&e->stick_slip, drv->sys, *t, y));
-    e->paid = e->rested = *t;
-    e->idle = e->suspects = 0;
-    e->stuck = 0.0;
-    refill(e, *t);
-    forget(e, continues);
+    forget(e, *t, continues);
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }

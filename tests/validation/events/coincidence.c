@@ -154,6 +154,50 @@ TEST(an_observer_that_would_see_nothing)
     tribo_system_destroy(sys);
 }
 
+/* Three oscillators; two contacts between bodies 0 and 1, whose forces at rest are not unique, and one that holds body 1 by a limit
+ * that swings through zero, 10^2 to 10^6 times as large: it passes the load in a moment, and a decision must not look beyond
+ * that. A period has some 20 events, wherever it is cut. */
+static tribo_system *clutch(struct random *g)
+{
+    const double mass[] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, direction[] = {0, -1, 1, 0, 1, -1, 0, 1, 0}, load[] = {0, 1, 0};
+    const double damping[] = {uniform(g, 0.0, 0.001), 0, 0, 0, 0.001, 0, 0, 0, 0.002}, big = pow(10.0, uniform(g, 2.0, 6.0));
+    const double limit[] = {pow(10.0, uniform(g, -2.5, -1.0)), pow(10.0, uniform(g, -2.5, -1.0)), big};
+    const double swing = big * uniform(g, 1.02, 1.4), phase = uniform(g, -0.3, 0.3), cosine[] = {0.0, 0.0, swing * cos(phase)};
+    const double sine[] = {uniform(g, 0.0, 0.1) * limit[0], uniform(g, 0.0, 0.1) * limit[1], swing * sin(phase)};
+    tribo_system *sys;
+    assert_ok(tribo_system_linear(&sys, 3, 3, mass, damping, mass, direction, 0, NULL, 0));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    assert_ok(tribo_system_add_load(sys, 1.0, load, NULL));
+    assert_ok(tribo_system_add_limit(sys, 2.0, cosine, sine));
+    return sys;
+}
+
+TEST(a_limit_that_passes_the_load_in_a_moment)
+{
+    struct random g = random_of(_i);
+    for (int trial = 0; trial < 10; trial++) {
+        tribo_system *sys = clutch(&g);
+        double start[7] = {0}, dissipated[2];
+        run(sys, methods[_i % 2], 1.0, 1e-12, 40.0 * PI, start);
+        start[6] = 0.0;
+        for (int k = 0; k < 2; k++) {
+            const int pieces = k ? 1000 : 1;
+            tribo_driver *drv = driver_create(sys, methods[_i % 2], 1.0, 1e-12);
+            double y[7], t = 40.0 * PI;
+            memcpy(y, start, sizeof y);
+            for (int piece = 1; piece <= pieces; piece++) {
+                driver_advance(drv, &t, 40.0 * PI + 2.0 * PI * piece / pieces, y);
+            }
+            const size_t events = driver_count(drv, TRIBO_COUNT_EVENTS);
+            require(events <= (k ? 500 : 40), "trial %d: %zu events in %d", trial, events, pieces);
+            dissipated[k] = y[6];
+            tribo_driver_destroy(drv);
+        }
+        assert_close(dissipated[1], dissipated[0], 1e-7 * dissipated[0]);
+        tribo_system_destroy(sys);
+    }
+}
+
 /* What a driver tells of its motion, and what it does not. */
 TEST(violations)
 {
@@ -178,4 +222,5 @@ TEST(violations)
 }
 
 TEST_MAIN("coincidence", {let_go_one_after_another, 5}, {belt_at_any_tolerance, 1}, {next_to_nothing, 4}, {fast_decay, 1},
-          {what_cannot_be_followed, 2}, {an_observer_that_would_see_nothing, 1}, {violations, 2})
+          {what_cannot_be_followed, 2}, {an_observer_that_would_see_nothing, 1}, {violations, 2},
+          {a_limit_that_passes_the_load_in_a_moment, 8})
