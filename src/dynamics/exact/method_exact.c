@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "dynamics/events/events.h"
+#include "dynamics/system/elastic.h"
 #include "motion.h"
 #include "terms.h"
 #include "transition.h"
@@ -371,7 +372,7 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
 {
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
-    if (check_system(sys)) {
+    if (check_system(sys) || tribo_elastic_check(sys)) {
         return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_message(sys->contacts));
     }
     if (x->revision != sys->revision) {

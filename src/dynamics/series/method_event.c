@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "event_series.h"
+#include "dynamics/system/elastic.h"
 #include "common/real.h"
 #include "common/simd.h"
 #include "common/zeros.h"
@@ -337,6 +338,10 @@ static int prepare(struct event *e)
     const tribo_system *sys = e->sys;
     if (e->cosine && e->revision == sys->revision) {
         return TRIBO_OK;
+    }
+    const int status = tribo_elastic_check(sys);
+    if (status) {
+        return status;
     }
     e->fastest = tribo_system_fastest(sys);
     set_order(e, best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS));

@@ -51,6 +51,26 @@ static void stretch_springs(const tribo_system *sys, const double *x, double *wo
     }
 }
 
+/* By being elastic a contact this many times as stiff as all else changes a motion by 1e-8 of it, and the rounding of places
+ * changes its force by as much; a stiffer one had better be rigid. */
+#define MOST_STIFF 1e8
+
+int tribo_elastic_check(const tribo_system *sys)
+{
+    const struct massless *w = &sys->massless;
+    double own = w->own;
+    for (size_t s = 0; s < sys->harmonics; s++) {
+        own = greater(own, sys->harmonic[s].omega * sys->harmonic[s].omega);
+    }
+    if (!w->count || own == 0.0 || w->added <= MOST_STIFF * own) {
+        return TRIBO_OK;
+    }
+    return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
+                             "the elastic contact %zu gives way by %g, and makes omega^2 = %g of %g: a contact more than %g "
+                             "times as stiff as the structure is rigid: leave out its spring, or take moreau/fixed",
+                             w->tightest, w->compliance[w->tightest], w->added, own, MOST_STIFF);
+}
+
 void tribo_elastic_forces(const tribo_system *sys, const double *q, double *work, double *force, double *size)
 {
     stretch_springs(sys, q, work, force, size);

@@ -6,6 +6,10 @@
 
 #include "system.h"
 
+/* TRIBO_OK; or, with its message on the context, TRIBO_ERR_UNSUPPORTED if a contact is so stiff beside the structure and its loads
+ * that the rounding of places hides its force. */
+int tribo_elastic_check(const tribo_system *sys);
+
 /* force [ncontact] of the elastic contacts in places q [ndof], 0 of the others, and size [ncontact] of the terms that these come
  * from, or NULL. work [ndof]. */
 void tribo_elastic_forces(const tribo_system *sys, const double *q, double *work, double *force, double *size);

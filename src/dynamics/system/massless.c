@@ -8,6 +8,7 @@
 
 #include "elastic.h"
 #include "model.h"
+#include "common/real.h"
 
 /* A pivot that is not more than this part of the diagonal entry is rounding; and so is compliance that contacts share. */
 #define ROUNDING (64.0 * DBL_EPSILON)
@@ -43,6 +44,9 @@ int tribo_massless_copy(struct massless *to, const struct massless *from, size_t
         done = done && (!from->shared || create_shared(to, ncontact, from->shared->matrix, &where) == TRIBO_OK);
         to->count = from->count;
         to->stiffest = from->stiffest;
+        to->own = from->own;
+        to->added = from->added;
+        to->tightest = from->tightest;
     }
     return done;
 }
@@ -357,6 +361,35 @@ static void massless_exchange(struct matrix *a, struct matrix *b)
     *b = c;
 }
 
+/* Contact i adds so much to omega^2. */
+static void note_added(struct massless *w, size_t i, double added)
+{
+    w->tightest = added > w->added ? i : w->tightest;
+    w->added = greater(w->added, added);
+}
+
+/* w->own, less what is rounding; added, and tightest. force [ncontact], as large as it can be beside q = 1. */
+static void find_tightest(const tribo_system *s, struct massless *w, const double *force)
+{
+    const struct matrix *k = &s->stiffness, *b = &s->response, *give = &w->give;
+    for (size_t d = 0; d < s->ndof; d++) {
+        double own = 0.0, size = 0.0;
+        for (size_t e = k->first[d]; !w->is[d] && e < k->first[d + 1]; e++) {
+            const size_t j = k->col[e];
+            const double part = k->val[e] * (j == d ? 1.0 : w->is[j] ? tribo_matrix_get(&w->follow, j, d) : 0.0);
+            own += part;
+            size += fabs(part);
+            for (size_t g = give->first[j]; g < give->first[j + 1]; g++) {
+                note_added(w, give->col[g], fabs(k->val[e] * give->val[g]) * force[give->col[g]]);
+            }
+        }
+        w->own = own > ROUNDING * size ? greater(w->own, own) : w->own;
+        for (size_t e = b->first[d]; e < b->first[d + 1]; e++) {
+            note_added(w, b->col[e], fabs(b->val[e]) * force[b->col[e]]);
+        }
+    }
+}
+
 /* The largest row sum of what accelerates by places: those of w, and forces of elastic contacts, as large as they can be beside
  * q = 1. 0 if out of memory. */
 static int find_stiffest(tribo_system *s)
@@ -374,6 +407,7 @@ static int find_stiffest(tribo_system *s)
     tribo_matrix_add_sizes(&w->follow, q, places);
     tribo_matrix_add_sizes(&s->direction, places, force);
     tribo_elastic_sizes(s, force);
+    find_tightest(s, w, force);
     tribo_matrix_add_sizes(&w->give, force, places);
     tribo_matrix_add_sizes(&s->stiffness, places, rate);
     tribo_matrix_add_sizes(&s->response, force, rate);

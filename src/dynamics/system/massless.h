@@ -16,6 +16,8 @@ struct massless {
     double *compliance;         /* [ncontact] C_ii, 0: a rigid contact */
     struct definite *shared;    /* C, if it is not diagonal; else NULL */
     double stiffest;            /* omega^2 is no larger, whichever contacts hold */
+    double own, added;          /* the largest of one degree of freedom if no contact holds; and what the spring of */
+    size_t tightest;            /* this contact adds to that of one, more than others */
 };
 
 /* 1, or 0 if out of memory. tribo_massless_free takes what failed too. */

@@ -331,6 +331,56 @@ TEST(static_limits)
     tribo_system_destroy(s);
 }
 
+/* Bodies 0 and 1, the latter of which only contacts hold, and sliders 2 and 3 on springs of this stiffness on them. */
+static tribo_system *sprung(double on_0, double on_1, double k)
+{
+    const double mass[] = {1, 0, 0, 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0};
+    const double stiffness[] = {k + on_0, 0, -on_0, 0, 0, on_1, 0, -on_1, -on_0, 0, on_0, 0, 0, -on_1, 0, on_1};
+    const double direction[] = {0, 0, 1, 0, 0, 0, 0, 1}, limit[] = {0.3, 0.2};
+    tribo_system *sys = linear(4, 2, mass, NULL, stiffness, direction);
+    assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
+    return sys;
+}
+
+/* A spring 10^8 times as stiff as the structure, or what its loads make of the masses, is rigid: that is said at once, and which. */
+TEST(springs_that_are_rigid)
+{
+    const double load[] = {0.5, 0.4, 0.0, 0.0};
+    const char *const method = _i % 2 ? "exact" : "event";
+    for (double stiff = 1e2; stiff < 1e18; stiff *= 1e3) {
+        tribo_system *sys = sprung(_i < 2 ? stiff : 1e2, _i < 2 ? 1e2 : 2.0 * stiff, 1.0);
+        tribo_driver *drv = driver_create(sys, method, 0.1, 1e-9);
+        double t = 0.0, y[9] = {0};
+        assert_ok(tribo_system_add_load(sys, 0.7, load, NULL));
+        const int status = tribo_driver_advance(drv, &t, 0.1, y);
+        assert_status(status, stiff > 1e8 ? TRIBO_ERR_UNSUPPORTED : TRIBO_OK);
+        if (status) {
+            assert_says(tribo_driver_message(drv), _i < 2 ? "elastic contact 0" : "elastic contact 1");
+            assert_exact(t, 0.0);
+        }
+        tribo_driver_destroy(drv);
+        tribo_system_destroy(sys);
+    }
+}
+
+/* Nothing is soft beside the springs of masses that are free but for them, unless a load is slow. */
+TEST(springs_alone)
+{
+    const double load[] = {0.5, 0.4, 0.0, 0.0};
+    const char *const method = _i % 2 ? "exact" : "event";
+    tribo_system *sys = sprung(1e12, 1e12, 0.0);
+    tribo_driver *drv = driver_create(sys, method, 1e-6, 1e-9);
+    double t = 0.0, y[9] = {0.0, 0.0, 0.0, 0.0, 1e-7};
+    assert_ok(tribo_driver_advance(drv, &t, 1e-6, y));
+    assert_ok(tribo_system_add_load(sys, 1e3, load, NULL));
+    assert_ok(tribo_driver_advance(drv, &t, 2e-6, y));
+    assert_ok(tribo_system_clear_loads(sys));
+    assert_ok(tribo_system_add_load(sys, 1.0, load, NULL));
+    assert_status(tribo_driver_advance(drv, &t, 3e-6, y), TRIBO_ERR_UNSUPPORTED);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
 TEST_MAIN("elastic_methods", {event_is_exact, 4}, {table, 1}, {moreau_order, 4}, {moreau_loop, 1}, {moreau_steady_state, 2},
           {beyond_limit, 3}, {rest_at_limit, 3}, {periodic_element, 4}, {periodic_held, 4}, {periodic_structure, 16},
-          {multipliers, 2}, {contacts_of_state, 1}, {static_limits, 4})
+          {multipliers, 2}, {contacts_of_state, 1}, {static_limits, 4}, {springs_that_are_rigid, 4}, {springs_alone, 2})
