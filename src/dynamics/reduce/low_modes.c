@@ -304,9 +304,33 @@ static double separate(const struct model *m, size_t count, const double *phi, d
     return weigh(m, x, mx);
 }
 
+/* Whether a motion of that norm is slower than the shift: no stiffness holds it, and a steady force has no response to it. */
+static int drifts(const struct model *m, const struct shifted *s, const double *x, double norm, double *omega2)
+{
+    *omega2 = norm > 0.0 ? fabs(tribo_matrix_form(&m->stiffness, x, x)) / norm / norm : HUGE_VAL;
+    return *omega2 < 0.5 * s->shift;
+}
+
+/* What a force does to a structure that drifts is the drift, and a little of what is elastic: takes that out of x [ndof], which
+ * has nothing of the motions. mx [ndof] is workspace. Returns the norm of the rest. */
+static double purify(const struct model *m, const struct shifted *s, const struct reduced *r, double *x, double norm, double *mx)
+{
+    double omega2, before = HUGE_VAL;
+    while (drifts(m, s, x, norm, &omega2) && omega2 < 0.25 * before) {
+        weigh(m, x, mx);
+        memset(x, 0, m->ndof * sizeof *x);
+        tribo_add(x, s->shift, mx, m->ndof);
+        tribo_cholesky_solve(&s->factor, 1, x);
+        norm = separate(m, r->count, r->phi, x, mx);
+        before = omega2;
+    }
+    return norm;
+}
+
 /* x [ndof] is what a steady force at contact i does. Takes out of it what the modes have, enters what the rest does at the
  * contacts into missing [ncontact][ncontact], and adds what is new in it to the motions. */
-static void add_static(const struct model *m, struct reduced *r, size_t i, double *x, double *mx, double *missing)
+static void add_static(const struct model *m, const struct shifted *s, struct reduced *r, size_t i, double *x, double *mx,
+                       double *missing)
 {
     const double whole = weigh(m, x, mx), before = separate(m, m->nmode, r->phi, x, mx);
     for (size_t j = 0; j < m->ncontact; j++) {
@@ -315,9 +339,10 @@ static void add_static(const struct model *m, struct reduced *r, size_t i, doubl
     if (r->residual) {
         memcpy(r->residual + i * m->ndof, x, m->ndof * sizeof *x);
     }
-    const double norm =
+    double norm =
         m->statics == TRIBO_STATICS_MASS ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
     if (norm > greater(OWN * before, ROUNDING * whole)) {
+        norm = purify(m, s, r, x, norm, mx);
         for (size_t k = 0; k < m->ndof; k++) {
             r->phi[r->count * m->ndof + k] = x[k] / norm;
         }
@@ -364,9 +389,9 @@ static int unshift(const struct model *m, const struct shifted *s, struct reduce
 static int add_statics(const struct model *m, const struct shifted *s, struct reduced *r, double *missing)
 {
     const size_t n = m->ndof;
-    double *x = malloc((BATCH + 1) * n * sizeof *x);
-    int done = x != NULL;
-    for (size_t first = 0; done && first < m->ncontact; first += BATCH) {
+    double omega2, *x = malloc((BATCH + 1) * n * sizeof *x);
+    int done = x != NULL, status = TRIBO_OK;
+    for (size_t first = 0; done && !status && first < m->ncontact; first += BATCH) {
         const size_t count = m->ncontact - first < BATCH ? m->ncontact - first : BATCH;
         memset(x, 0, count * n * sizeof *x);
         for (size_t i = first; i < first + count; i++) {
@@ -378,12 +403,20 @@ static int add_statics(const struct model *m, const struct shifted *s, struct re
             }
         }
         done = tribo_cholesky_solve(&s->factor, count, x) && (!r->residual || unshift(m, s, r, first, count, x, x + BATCH * n));
-        for (size_t i = first; done && i < first + count; i++) {
-            add_static(m, r, i, x + (i - first) * n, x + BATCH * n, missing);
+        for (size_t i = first; done && !status && i < first + count; i++) {
+            double *y = x + (i - first) * n;
+            if (r->residual && drifts(m, s, y, weigh(m, y, x + BATCH * n), &omega2)) {
+                status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                                          "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take more "
+                                          "modes, or TRIBO_STATICS_MASS",
+                                          m->nmode, i);
+            } else {
+                add_static(m, s, r, i, y, x + BATCH * n, missing);
+            }
         }
     }
     free(x);
-    return done ? TRIBO_OK : tribo_model_no_memory(m);
+    return done ? status : tribo_model_no_memory(m);
 }
 
 /* The motions that add_statics has added become orthogonal in K. */

@@ -284,6 +284,42 @@ TEST(free_bodies)
     gsl_spmatrix_free(direction);
 }
 
+/* Two free chains of which one drift is a mode and the other is left to the static response of a contact of both: a drift, too. As
+ * compliance it would have no bound. */
+TEST(drifts_left_out)
+{
+    struct random g = random_of(_i + 1);
+    const size_t n = 4 + below(&g, 60), cut = 1 + below(&g, n - 1);
+    gsl_spmatrix *mass = gsl_spmatrix_alloc(n, n), *stiffness = gsl_spmatrix_alloc(n, n), *direction = gsl_spmatrix_alloc(1, n);
+    char text[200] = "";
+    double omega[2];
+    tribo_system *sys;
+    for (size_t i = 0; i < n; i++) {
+        gsl_spmatrix_set(mass, i, i, 0.5 + uniform(&g, 0.0, 1.0));
+        if (i > 0 && i != cut) {
+            const double k = exp(6.0 * uniform(&g, 0.0, 1.0));
+            gsl_spmatrix_set(stiffness, i, i, gsl_spmatrix_get(stiffness, i, i) + k);
+            gsl_spmatrix_set(stiffness, i - 1, i - 1, gsl_spmatrix_get(stiffness, i - 1, i - 1) + k);
+            gsl_spmatrix_set(stiffness, i, i - 1, -k);
+            gsl_spmatrix_set(stiffness, i - 1, i, -k);
+        }
+    }
+    gsl_spmatrix_set(direction, 0, below(&g, cut), 1.0);
+    gsl_spmatrix_set(direction, 0, cut + below(&g, n - cut), 0.5);
+    require(!tribo_system_reduced(&sys, mass, stiffness, direction, 1, TRIBO_STATICS_MASS, text, sizeof text), "%s", text);
+    ck_assert_uint_eq(tribo_system_ndof(sys), 2);
+    assert_ok(tribo_system_get_frequencies(sys, omega));
+    assert_exact(omega[0], 0.0);
+    assert_exact(omega[1], 0.0);
+    tribo_system_destroy(sys);
+    assert_status(tribo_system_reduced(&sys, mass, stiffness, direction, 1, TRIBO_STATICS_COMPLIANCE, text, sizeof text),
+                  TRIBO_ERR_UNSUPPORTED);
+    assert_says(text, "nmode = 1 leaves out a motion that contact 0 moves");
+    gsl_spmatrix_free(mass);
+    gsl_spmatrix_free(stiffness);
+    gsl_spmatrix_free(direction);
+}
+
 /* A body on a spring, and two that only inertia couples with it, which are free to drift together: the first one has no part in
  * that, however little of it numerical modes leave, and a contact of it cannot stop them. */
 TEST(drift_beside_a_contact)
@@ -316,4 +352,4 @@ TEST(copies_keep_truncation)
 }
 
 TEST_MAIN("reduced", {drift_beside_a_contact, 1}, {beam_stuck, 4}, {beam_best, 8}, {truncation_bounds, 8}, {truncation_errors, 1},
-          {all_of_a_small_structure, 4}, {free_bodies, 1}, {copies_keep_truncation, 1})
+          {all_of_a_small_structure, 4}, {free_bodies, 1}, {drifts_left_out, 100}, {copies_keep_truncation, 1})
