@@ -4,8 +4,8 @@ load 'style.gp'
 colour(c) = word('#0072b2 #d55e00 #009e73', c)
 where(c) = word('200 300 400', c)
 file(k) = results.'/damper-'.word('history sticking', k).'.csv'
-heading(k) = k == 1 ? sprintf('at the optimum, μN = %.4f N', number('damper.best.limit')) \
-                    : sprintf('three times the optimum, μN = %.4f N', 3 * number('damper.best.limit'))
+heading(k) = k == 1 ? sprintf('at the optimum, limit %.4f N', number('damper.best.limit')) \
+                    : sprintf('three times the optimum, limit %.4f N', 3 * number('damper.best.limit'))
 sticks(k) = int(system("awk -F, 'NR > 1 && ($6 == 0 || $9 == 0 || $12 == 0) {n++} END {print n + 0}' '".file(k)."'"))
 set multiplot
 set xrange [0:3]

@@ -14,7 +14,7 @@ set format y '10^{%T}'
 set xlabel 'frequency of the load, Hz'
 set ylabel 'amplitude where the load acts, mm'
 set key at graph 1.02, 1 left top Left reverse width -2 spacing 1.25 samplen 2.2 \
-    title 'friction limit μN'."\n".'of each contact' left
+    title 'friction limit'."\n".'of each contact' left
 set rmargin at screen 0.795
 legend(x) = sprintf(x < 0.1 ? '%.3f N' : x < 1 ? '%.2f N' : '%.3g N', x)
 plot linear using 1:2 with lines linecolor '#9a9a9a' dashtype (2, 3) linewidth 1.6 title 'none', \

@@ -9,14 +9,18 @@
 
 /* Rows of the structure where a contact slides; to is no row for the ground. */
 struct rows {
-    size_t *at, *to, load;
+    size_t *at, *to, *output, load;
 };
 
 static struct rows find_rows(const struct options *o, const struct structure *s)
 {
     struct rows r = {.load = find_degree(s, &o->load)};
-    r.at = need_memory(2 * o->contacts.count, sizeof *r.at);
+    r.at = need_memory(2 * o->contacts.count + o->outputs, sizeof *r.at);
     r.to = r.at + o->contacts.count;
+    r.output = r.to + o->contacts.count;
+    for (size_t k = 0; k < o->outputs; k++) {
+        r.output[k] = find_degree(s, &o->output[k]);
+    }
     for (size_t c = 0; c < o->contacts.count; c++) {
         const struct contact *contact = &o->contacts.contact[c];
         r.at[c] = find_degree(s, &contact->at);
@@ -85,6 +89,9 @@ static void read_shapes(struct damper *d, const struct rows *r)
         need(tribo_system_expand(d->reduced, unit, full), NULL);
         unit[k] = 0.0;
         d->load_shape[k] = full[r->load];
+        for (size_t i = 0; i < d->outputs; i++) {
+            d->output_shape[i * d->modes + k] = full[r->output[i]];
+        }
         for (size_t c = 0; c < d->contacts; c++) {
             d->contact_shape[c * d->modes + k] = full[r->at[c]] - full[r->to[c]]; /* full[ndof] = 0 is the ground */
         }
@@ -110,6 +117,7 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
     d->omega = need_memory(d->modes, sizeof *d->omega);
     d->load_shape = need_memory(d->modes, sizeof *d->load_shape);
     d->contact_shape = need_memory(d->contacts * d->modes, sizeof *d->contact_shape);
+    d->output_shape = need_memory(d->outputs * d->modes, sizeof *d->output_shape);
     need(tribo_system_get_frequencies(d->reduced, d->omega), tribo_message(tribo_system_context(d->reduced)));
     read_shapes(d, r);
 }
@@ -222,6 +230,7 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     struct damper d = {.ndof = s->ndof,
                        .kept = kept,
                        .contacts = o->contacts.count,
+                       .outputs = o->outputs,
                        .damping = o->damping,
                        .force = o->force,
                        .step = o->step,
@@ -258,6 +267,7 @@ void free_damper(struct damper *d)
     free(d->omega);
     free(d->load_shape);
     free(d->contact_shape);
+    free(d->output_shape);
     free(d->load);
     free(d->limit);
     free(d->mu);

@@ -25,7 +25,7 @@ struct worker create_worker(const struct damper *d, int march)
 
 size_t record_of(const struct damper *d)
 {
-    return 2 * d->motions + 1 + 2 * d->contacts;
+    return 2 * d->motions + 1 + 2 * d->contacts + 2 * d->outputs;
 }
 
 void free_worker(struct worker *w)
@@ -50,6 +50,23 @@ void set_point(struct worker *w, double limit, double hz)
 
 /* ------------------------------------------------------------------------------------------------------------ measuring */
 
+/* output [outputs][2]: half of the way from least to most, and the phase. */
+static int measure_outputs(struct worker *w, double *output)
+{
+    const struct damper *d = w->d;
+    int status = TRIBO_OK;
+    for (size_t k = 0; k < d->outputs && !status; k++) {
+        double least, most, cosine, sine;
+        memcpy(w->c, d->output_shape + k * d->modes, d->modes * sizeof *w->c);
+        status = tribo_driver_period_extremes(w->drv, w->c, &least, &most);
+        status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
+        output[2 * k] = status ? 0.0 : 0.5 * (most - least);
+        output[2 * k + 1] = status ? 0.0 : atan2(cosine, sine) * 360.0 / TURN;
+    }
+    memcpy(w->c, d->load_shape, d->modes * sizeof *w->c);
+    return status;
+}
+
 /* What the period of the motion just found holds, in closed form. The load is F sin(omega t), so that its mean power is that
  * of its velocity's part in phase; what friction does not take of it damping does. */
 static int measure(struct worker *w, struct motion *m, double *power)
@@ -60,6 +77,10 @@ static int measure(struct worker *w, struct motion *m, double *power)
     status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
     status = status ? status : tribo_driver_period_dissipation(w->drv, power);
     status = status ? status : tribo_driver_period_stick(w->drv, power + d->contacts);
+    if (status) {
+        return status;
+    }
+    status = measure_outputs(w, power + 2 * d->contacts);
     if (status) {
         return status;
     }

@@ -29,7 +29,8 @@ void free_worker(struct worker *w);
 void set_point(struct worker *w, double limit, double hz);
 
 /* Numbers in the record of a motion: the state at the beginning of a period, then of each contact the power lost to its friction,
- * then of each contact the share of the period for which it is at rest. Marching leaves powers and shares 0. */
+ * then of each contact the share of the period for which it is at rest, then of each output the amplitude and the phase of its
+ * first harmonic to the load, in degrees. Marching leaves all but the state 0. */
 size_t record_of(const struct damper *d);
 
 /* Finds it from the state guess, or from rest if that is NULL. y out, if found: its record. */

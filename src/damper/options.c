@@ -55,6 +55,12 @@ static void set_load(const char *origin, const char *value, struct options *o)
     o->load = read_place(origin, value);
 }
 
+static void set_output(const char *origin, const char *value, struct options *o)
+{
+    o->output = need_room(o->output, o->outputs, &o->output_room, sizeof *o->output);
+    o->output[o->outputs++] = read_place(origin, value);
+}
+
 static void set_force(const char *origin, const char *value, struct options *o)
 {
     o->force = read_real(origin, value, 0.0, 0);
@@ -139,7 +145,7 @@ static const struct option {
     {FILE_OPTION(out)},  {OPTION(name)},
     {OPTION(modes)},     {OPTION(statics)}, {OPTION(damping)},
     {OPTION(contact)},   {"--contacts", set_contacts, 0, 1},
-    {OPTION(load)},      {OPTION(force)},
+    {OPTION(load)},      {OPTION(output)},  {OPTION(force)},
     {OPTION(drive)},     {OPTION(limits)},
     {OPTION(method)},    {OPTION(check)},
     {OPTION(step)},      {OPTION(law)},
@@ -234,6 +240,9 @@ int limits_vary(const struct options *o)
 /* Sliders without mass cannot be marched with, and contacts in a plane have no closed form. */
 static void check_method(const struct options *o)
 {
+    if (o->outputs && o->march) {
+        die("%s: is for --method exact; marching shows the place of the load only", o->output[0].origin);
+    }
     for (size_t c = 0; c < o->contacts.count; c++) {
         if (o->contacts.contact[c].stiffness > 0.0 && (o->march || o->check) && o->law != TRIBO_COULOMB) {
             die("%s: with --law %s marching takes rigid contacts only: leave out stiffness=, or --law",

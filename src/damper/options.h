@@ -15,6 +15,8 @@ struct options {
     double damping;
     struct contacts contacts;
     struct place load;
+    struct place *output; /* [outputs] */
+    size_t outputs, output_room;
     double force;
     struct range drive; /* Hz; from 0: the first natural frequency */
     struct range limits;

@@ -85,8 +85,8 @@ static void report_best(struct study *s, double limit)
     if (top && !interrupted()) {
         check_by_marching(s, &f.curve[0]);
         FILE *table = create_table(s->tables, "best");
-        write_motion_head(table, s->damper->contacts);
-        write_curve(s->tables, table, &f.curve[0], s->damper->contacts);
+        write_motion_head(table, s->damper);
+        write_curve(s->tables, table, &f.curve[0], s->damper);
         close_table(s->tables, table, "best");
         printf("best limit of the band: %.6g, largest amplitude %.8g at %.7g Hz\n", limit, top->motion.amplitude, top->motion.hz);
         write_result(s->tables, "band.limit", limit);
@@ -157,12 +157,12 @@ static void find_best(struct study *s, const struct family *f, const double *lim
 static double write_family(struct study *s, const struct family *f, size_t count)
 {
     FILE *table = create_table(s->tables, "family");
-    write_motion_head(table, s->damper->contacts);
+    write_motion_head(table, s->damper);
     printf("         limit   points    not found  largest amplitude  at frequency\n");
     for (size_t k = 0; k < count; k++) {
         const struct curve *c = &f->curve[k];
         const struct sample *top = largest_of(c);
-        write_curve(s->tables, table, c, s->damper->contacts);
+        write_curve(s->tables, table, c, s->damper);
         fprintf(table, "%s", k + 1 < count && c->count ? "\n" : "");
         if (top) {
             printf("  %12.5g %8zu %12zu %18.8g %13.7g\n", c->fixed, c->count, gaps_of(c), top->motion.amplitude, top->motion.hz);

@@ -14,7 +14,7 @@ static void compare(const struct study *s, const struct motion *m, double known,
         return;
     }
     char *analytic = new_text("%s.analytic", key);
-    printf("%s: amplitude %.10g, in closed form %.10g\n", what, m->amplitude, known);
+    printf("%s: amplitude %.10g, in closed form within the same modes %.10g\n", what, m->amplitude, known);
     write_result(s->tables, key, m->amplitude);
     write_result(s->tables, analytic, known);
     free(analytic);
@@ -135,12 +135,12 @@ static void report(const struct study *s, const struct marched *m, size_t count)
 {
     FILE *table = create_table(s->tables, "check");
     double amplitude = 0.0, power = 0.0, most = 0.0, unbalanced = 0.0;
-    write_motion_head(table, 0);
+    write_motion_head(table, NULL);
     printf("by marching in time (%s, %s)\n         limit    frequency    amplitude   difference  periods\n",
            s->options->law == TRIBO_COULOMB ? "midpoint rule" : "rk4", tribo_law_name(s->options->law));
     for (size_t k = 0; k < count; k++) {
         const struct motion *here = &m->motion[k], *known = &m->sample[k]->motion;
-        write_motion(table, here, NULL, 0);
+        write_motion(table, here, NULL, NULL);
         if (!here->found) {
             printf("  %12.5g %12.5g  %s\n", here->limit, here->hz, here->message);
             continue;

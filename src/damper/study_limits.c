@@ -170,10 +170,13 @@ void study_limits(struct study *s)
     check_by_marching(s, &c);
     if (!interrupted() && s->options->limits.points > 1) {
         find_most_power(s, &c);
+    } else if (!interrupted()) {
+        show_motion(s, &c, s->options->limits.from, "loop");
+        end_telling();
     }
     FILE *table = create_table(s->tables, "curve");
-    write_motion_head(table, s->damper->contacts);
-    write_curve(s->tables, table, &c, s->damper->contacts);
+    write_motion_head(table, s->damper);
+    write_curve(s->tables, table, &c, s->damper);
     close_table(s->tables, table, "curve");
     s->gaps += gaps_of(&c);
     free_curve(&c);

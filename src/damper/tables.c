@@ -48,11 +48,14 @@ void write_result(const struct tables *t, const char *key, double value)
 
 /* ------------------------------------------------------------------------------------------------------------- motions */
 
-void write_motion_head(FILE *file, size_t contacts)
+void write_motion_head(FILE *file, const struct damper *d)
 {
     fprintf(file, "limit,frequency,amplitude,friction power,damping power,input power,periods,message");
-    for (size_t c = 1; c <= contacts; c++) {
+    for (size_t c = 1; d && c <= d->contacts; c++) {
         fprintf(file, ",power%zu,stick%zu", c, c);
+    }
+    for (size_t k = 1; d && k <= d->outputs; k++) {
+        fprintf(file, ",amplitude%zu,phase%zu", k, k);
     }
     fprintf(file, "\n");
 }
@@ -66,7 +69,19 @@ static void write_message(FILE *file, const char *message)
     fputc('"', file);
 }
 
-void write_motion(FILE *file, const struct motion *m, const double *power, size_t contacts)
+/* count pairs, first [i * step] and second [i * step]; blank if they were not found. */
+static void write_pairs(FILE *file, const struct motion *m, size_t count, const double *first, const double *second, size_t step)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (m->found) {
+            fprintf(file, ",%.10g,%.10g", first[i * step], second[i * step]);
+        } else {
+            fprintf(file, ",,");
+        }
+    }
+}
+
+void write_motion(FILE *file, const struct motion *m, const double *y, const struct damper *d)
 {
     fprintf(file, "%.10g,%.10g", m->limit, m->hz);
     if (m->found) {
@@ -75,23 +90,20 @@ void write_motion(FILE *file, const struct motion *m, const double *power, size_
         fprintf(file, ",,,,,%zu,", m->periods);
         write_message(file, m->message);
     }
-    for (size_t c = 0; c < contacts; c++) {
-        if (m->found) {
-            fprintf(file, ",%.8g,%.8g", power[c], power[contacts + c]);
-        } else {
-            fprintf(file, ",,");
-        }
+    if (d) {
+        const double *power = y + 2 * d->motions + 1, *output = power + 2 * d->contacts;
+        write_pairs(file, m, d->contacts, power, power + d->contacts, 1);
+        write_pairs(file, m, d->outputs, output, output + 1, 2);
     }
     fprintf(file, "\n");
 }
 
-void write_curve(struct tables *t, FILE *file, const struct curve *c, size_t contacts)
+void write_curve(struct tables *t, FILE *file, const struct curve *c, const struct damper *d)
 {
     for (size_t k = 0; k < c->count; k++) {
         if (looked_for(&c->sample[k])) {
-            const struct sample *s = &c->sample[k];
-            write_motion(file, &s->motion, s->y + c->record - 2 * contacts, contacts);
-            t->motions += (size_t)s->motion.found;
+            write_motion(file, &c->sample[k].motion, c->sample[k].y, d);
+            t->motions += (size_t)c->sample[k].motion.found;
         }
     }
 }
@@ -171,6 +183,13 @@ static void write_instant(FILE *table, const struct damper *d, double cycle, dou
     for (size_t c = 0; c < d->contacts; c++) {
         fprintf(table, ",%.8g,%.8g,%d", v[c], f[c], slip[c]);
     }
+    for (size_t c = 0; c < d->contacts; c++) {
+        double z = 0.0;
+        for (size_t k = 0; k < d->modes; k++) {
+            z += d->contact_shape[c * d->modes + k] * y[k];
+        }
+        fprintf(table, ",%.8g", z);
+    }
     fprintf(table, "\n");
 }
 
@@ -193,6 +212,9 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     fprintf(table, "cycle,t,displacement");
     for (size_t c = 0; c < d->contacts; c++) {
         fprintf(table, ",v%zu,f%zu,mode%zu", c + 1, c + 1, c + 1);
+    }
+    for (size_t c = 0; c < d->contacts; c++) {
+        fprintf(table, ",z%zu", c + 1);
     }
     fprintf(table, "\n");
     for (int i = 0; i <= STEPS; i++) {

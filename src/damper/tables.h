@@ -19,11 +19,11 @@ void close_table(const struct tables *t, FILE *file, const char *what);
 /* Shown by NAME.key. */
 void write_result(const struct tables *t, const char *key, double value);
 
-/* A table of motions: its head, and a line for each of a curve, with powers and shares of rest of so many contacts; power: of the
- * record. */
-void write_motion_head(FILE *file, size_t contacts);
-void write_motion(FILE *file, const struct motion *m, const double *power, size_t contacts);
-void write_curve(struct tables *t, FILE *file, const struct curve *c, size_t contacts);
+/* A table of motions: its head, and a line for each of a curve. y: the record, with powers and shares of rest of contacts, and
+ * outputs; both NULL: without these. */
+void write_motion_head(FILE *file, const struct damper *d);
+void write_motion(FILE *file, const struct motion *m, const double *y, const struct damper *d);
+void write_curve(struct tables *t, FILE *file, const struct curve *c, const struct damper *d);
 
 void write_frequencies(const struct tables *t, const struct damper *d, const char *given);
 

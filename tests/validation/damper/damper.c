@@ -101,6 +101,37 @@ TEST(nothing_left_to_move)
 }
 END_TEST
 
+/* Column k, from 1, of the first line of a table. */
+static double column_of(const char *name, int k)
+{
+    char table[TEXT], *at = table;
+    read_text(name, table);
+    at = strchr(table, '\n');
+    for (int column = 1; column < k && at; column++) {
+        at = strchr(at + 1, ',');
+    }
+    require(at, "%s: no column %d: %s", name, k, table);
+    return strtod(at + 1, NULL);
+}
+
+/* What the force of the only contact takes along its displacement, over the three periods of a table. */
+static double loop_power(const char *name, double hz)
+{
+    char line[500];
+    double z, f, before[2] = {0.0, 0.0}, work = 0.0;
+    size_t lines = 0;
+    FILE *file = fopen(name, "r");
+    require(file && fgets(line, sizeof line, file), "there is no %s", name);
+    for (; fgets(line, sizeof line, file); lines++) {
+        require(sscanf(line, "%*f,%*f,%*f,%*f,%lf,%*d,%lf", &f, &z) == 2, "%s", line);
+        work -= lines ? 0.5 * (f + before[0]) * (z - before[1]) : 0.0;
+        before[0] = f;
+        before[1] = z;
+    }
+    fclose(file);
+    return work * hz / 3.0;
+}
+
 /* x'' + 0.1 x' + x + f = cos 1.1 t, f of a slider of limit 0.5 on a spring of 1. */
 TEST(spring)
 {
@@ -130,6 +161,19 @@ TEST(spring)
         require(says(marched.out, "           0.5       3.3866 "), "%s", marched.out);
         assert_close(k ? 0.0 : value_of("damper.check.amplitude"), 0.0, 1e-4);
     }
+    /* its loop at one limit takes the power; stuck, it lags by what damping makes of it */
+    snprintf(options, sizeof options, "%s1 --limits 0.5 --output 1,0,0,x", structure);
+    assert_runs(options);
+    assert_close(loop_power("damper-loop.csv", 0.17507043740108488), column_of("damper-curve.csv", 4), 1e-4);
+    snprintf(options, sizeof options, "%s1 --limits 1000 --output 1,0,0,x --output=1,0,0,x", structure);
+    assert_runs(options);
+    assert_close(column_of("damper-curve.csv", 11), 1.0 / hypot(0.79, 0.11), 1e-8);
+    assert_close(column_of("damper-curve.csv", 12), -atan2(0.11, 0.79) * 180.0 / PI, 1e-6);
+    assert_exact(column_of("damper-curve.csv", 14), column_of("damper-curve.csv", 12));
+    snprintf(options, sizeof options, "%s1 --limits 1000 --output 1,0,0,x --method march", structure);
+    assert_refused(options, options, "option --output 1,0,0,x: is for --method exact");
+    snprintf(options, sizeof options, "%s1 --output 2,0,0,x", structure);
+    assert_refused(options, options, "option --output 2,0,0,x");
     snprintf(options, sizeof options, "%s1 --check 1 --law quinn", structure);
     assert_refused(options, options, "with --law quinn marching takes rigid contacts only");
 }
