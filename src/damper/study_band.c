@@ -143,8 +143,10 @@ static void find_best(struct study *s, const struct family *f, const double *lim
     end_telling();
     if (least == HUGE_VAL) {
         printf("no motion was found at any of these limits: %s\n", first_message(f, count));
+        check_by_marching(s, &f->curve[0]);
     } else if (found == 0.0 && !interrupted()) {
         printf("no limit within the range is better than its ends: widen --limits to find the best\n");
+        check_by_marching(s, &f->curve[0]);
     } else if (!interrupted()) {
         report_best(s, found);
     }

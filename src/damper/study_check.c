@@ -168,7 +168,9 @@ void check_by_marching(const struct study *s, const struct curve *c)
     const size_t count = spread_samples(c, most, m.sample);
     run_jobs(s->options->threads, count, march_one, &m);
     end_telling();
-    if (!interrupted()) {
+    if (count == 0) {
+        printf("--check was not done: no motion was found\n");
+    } else if (!interrupted()) {
         report(s, &m, count);
     }
     free(m.sample);

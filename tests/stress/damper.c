@@ -541,6 +541,17 @@ TEST(one_mass)
 }
 END_TEST
 
+/* A band whose best limit is at an end has its check all the same. */
+TEST(check_at_the_end)
+{
+    write_chain();
+    const struct outcome o =
+        assert_runs(OWN " --contact 2,0,0,x --load 4,0,0,x --drive 0.4:0.5:3 --limits 1e-4:1e-3:3 --damping 0.05 --check 1");
+    require(says(o.out, "widen --limits") && says(o.out, "by marching in time"), "%s", o.out);
+    assert_close(value_of("damper.check.amplitude"), 0.0, 1e-3);
+}
+END_TEST
+
 /* More contacts than modes, and few limits. */
 TEST(few)
 {
@@ -600,4 +611,4 @@ TEST(many_contacts)
 END_TEST
 
 TEST_MAIN("damper", {damage, 6}, {the_same, 1}, {no_files, 1}, {options, 1}, {parts, 1}, {files_of_words, 1}, {same_limit, 1},
-          {between, 1}, {plane, 1}, {one_mass, 1}, {few, 1}, {many_contacts, 1})
+          {between, 1}, {plane, 1}, {one_mass, 1}, {few, 1}, {many_contacts, 1}, {check_at_the_end, 1})
