@@ -154,11 +154,11 @@ static int find_pattern(struct sparse *s)
          * 100,000 contacts. A change goes from its column to the root. */
         for (size_t j = s->r.n; j-- > 0;) {
             const double entries = (double)(s->column[j + 1] - s->column[j] + 1);
-            path[j] = entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
+            path[j] = 1.25 * entries + (parent[j] == NONE ? 0.0 : path[parent[j]]);
             s->change += path[j] / (double)s->r.n;
             s->rebuild += (0.5 * entries + 4.0) * entries + 6.0;
         }
-        s->change += 1000.0;
+        s->change += 150.0;
     }
     free(parent);
     free(path);
