@@ -396,6 +396,15 @@ static int search_all(struct shooting *s)
     if (!status && !close_enough(&s->best, TOLERANCE) && s->map.events->stick_slip.breakaway.some) {
         status = search_again(s, MARCHED_STATIC);
     }
+    /* Under static limits a motion may be stable and not odd, though all that drives it is. */
+    if (!status && !close_enough(&s->best, TOLERANCE) && s->map.odd && s->map.events->stick_slip.breakaway.some) {
+        tribo_period_map_choose(&s->map, 0);
+        memcpy(s->here.x, s->guess, s->map.n * sizeof *s->guess);
+        status = search(s, FIRST);
+        if (!status && !close_enough(&s->best, TOLERANCE)) {
+            status = search_again(s, MARCHED_STATIC);
+        }
+    }
     return status;
 }
 

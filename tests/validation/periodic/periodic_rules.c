@@ -249,5 +249,45 @@ TEST(huge_load)
     search_free(&s);
 }
 
+/* Four masses and one contact with a static limit, load and base of one frequency. All that drives them is odd, and the motion in
+ * which they end is stable, but not odd: half a period later it is not minus itself. It is found from itself, and from zeros. */
+TEST(not_odd)
+{
+    enum { N = 4 };
+    const double omega = 0.18824263738325386, period = 2.0 * PI / omega, j[N] = {-1.0, 0.0, 1.0, 0.0}, limit = 1.912075867437178;
+    const double k[N * N] = {2.0, -1.0, 0.0, 0.0, -1.0, 3.0, -1.0, 0.0, 0.0, -1.0, 3.0, -1.0, 0.0, 0.0, -1.0, 2.0};
+    const double load[N] = {1.0}, base = 1.0, ratio = 1.7095138103201202;
+    double m[N * N] = {0.0}, c[N * N] = {0.0}, y[2 * N + 1] = {0.0}, z[2 * N + 1], t = 0.0, odd = 0.0;
+    tribo_system *sys;
+    for (size_t i = 0; i < N; i++) {
+        m[i * N + i] = 1.0;
+        c[i * N + i] = 4.0752852251347654e-4 * (double)(i + 1);
+    }
+    assert_ok(tribo_system_linear(&sys, N, 1, m, c, k, j, 0, NULL, 0));
+    assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
+    assert_ok(tribo_set_static(tribo_system_context(sys), &ratio, NULL));
+    assert_ok(tribo_system_add_load(sys, omega, load, NULL));
+    assert_ok(tribo_system_add_base_motion(sys, omega, &base, NULL));
+    tribo_driver *drv = driver_create(sys, _i % 2 ? "event" : "exact", period, 1e-12);
+    if (_i / 2) {
+        for (int p = 0; p < 3000; p++) {
+            t = 0.0;
+            driver_advance(drv, &t, period, y);
+        }
+    }
+    assert_ok(tribo_driver_find_periodic(drv, 0.0, period, y));
+    memcpy(z, y, sizeof z);
+    t = 0.0;
+    driver_advance(drv, &t, 0.5 * period, z);
+    for (size_t i = 0; i < 2 * N; i++) {
+        odd = fmax(odd, fabs(z[i] + y[i]));
+    }
+    require(odd > 1.0, "half a period later the state is minus itself but for %g", odd);
+    driver_advance(drv, &t, period, z);
+    assert_all_close(z, y, 2 * N, 1e-8);
+    tribo_driver_destroy(drv);
+    tribo_system_destroy(sys);
+}
+
 TEST_MAIN("periodic_rules", {nothing_left, 2}, {errors, 2}, {other_methods, 4}, {static_limit, 12}, {falling_limit, 12},
-          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1}, {any_size, 6}, {huge_load, 1})
+          {nearly_stuck, 1}, {fast_load, 2}, {automatic, 1}, {any_size, 6}, {huge_load, 1}, {not_odd, 4})
