@@ -150,9 +150,10 @@ static void find_moves(struct modal_motion *x)
         x->er[p] = now.re - then.re;
         x->ei[p] = now.im - then.im;
     }
-    for (size_t p = 0; p < e && !h->any_resonant; p++) {
+    for (size_t p = h->any_resonant ? e : 0; p < terms; p++) {
         if (x->tau * h->size[p] < LITTLE) {
-            /* With a load far above the frequency of exponential p the little by which it moves is all of the motion: no difference. */
+            /* With a load far above the frequency of exponential p, or a limit far above all forces that a contact slides by for a
+             * moment, the little by which it moves is all of the motion: no difference. */
             const double complex lambda_tau = x->tau * (x->h->lr[p] + x->h->li[p] * I);
             const struct number z = tribo_term_at_start(x, p);
             const double complex move = (z.re + z.im * I) * lambda_tau * tribo_exp_1(lambda_tau);
@@ -167,10 +168,23 @@ struct amplitude {
     double place, rate;
 };
 
-/* Adds what term p, times r, has moved a mode by. */
-static inline void add_term(const struct modal_motion *x, size_t p, double rr, double ri, struct amplitude *a)
+/* Whether all terms have moved by small parts of themselves: velocities, too, are then those at t0 and what they have changed by. */
+static int is_brief(const struct modal_motion *x)
 {
-    const struct number rate = tribo_term_rate(x, p);
+    return x->tau * x->h->quickest < LITTLE && !x->h->any_resonant && !x->sys->base_harmonics;
+}
+
+/* The rate of term p, or by how much that has changed. */
+static inline struct number rate_of(const struct modal_motion *x, size_t p, int brief)
+{
+    const double lr = x->h->lr[p], li = x->h->li[p], er = x->er[p], ei = x->ei[p];
+    return brief ? (struct number){lr * er - li * ei, lr * ei + li * er} : tribo_term_rate(x, p);
+}
+
+/* Adds what term p, times r, has moved a mode by. */
+static inline void add_term(const struct modal_motion *x, size_t p, int brief, double rr, double ri, struct amplitude *a)
+{
+    const struct number rate = rate_of(x, p, brief);
     a->place += rr * x->er[p] - ri * x->ei[p];
     a->rate += rr * rate.re - ri * rate.im;
 }
@@ -188,7 +202,7 @@ static void add_mode(const struct modal_motion *x, size_t k, struct amplitude a,
     }
 }
 
-static void motion_add_modes(struct modal_motion *x, double *velocity)
+static void motion_add_modes(struct modal_motion *x, int brief, double *velocity)
 {
     const struct modal *h = x->h;
     const size_t e = h->exponents, harmonics = h->harmonics, modes = h->modes;
@@ -198,17 +212,17 @@ static void motion_add_modes(struct modal_motion *x, double *velocity)
         if (x->runs) {
             /* What is linear in time, or quadratic, of mode k. */
             const double drift = x->vel[k] + (x->h->drifts[k] ? x->drift_rate[k] : 0.0), acc = x->acc[k], tau = x->tau;
-            a = (struct amplitude){tau * (drift + 0.5 * acc * tau), drift + acc * tau};
+            a = (struct amplitude){tau * (drift + 0.5 * acc * tau), (brief ? 0.0 : drift) + acc * tau};
         }
         for (; h->owner && p < e && h->owner[p] == k; p++) {
             a.place += x->er[p];
-            a.rate += tribo_term_rate(x, p).re;
+            a.rate += rate_of(x, p, brief).re;
         }
         for (size_t l = 0; !h->owner && l < e; l++) {
-            add_term(x, l, h->rr[k * e + l], h->ri[k * e + l], &a);
+            add_term(x, l, brief, h->rr[k * e + l], h->ri[k * e + l], &a);
         }
         for (size_t s = 0; s < harmonics; s++) {
-            add_term(x, e + s, h->xr[s * modes + k], h->xi[s * modes + k], &a);
+            add_term(x, e + s, brief, h->xr[s * modes + k], h->xi[s * modes + k], &a);
         }
         add_mode(x, k, a, velocity);
     }
@@ -235,6 +249,7 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const size_t n = sys->ndof;
     double *velocity = to + n;
     tribo_modal_motion_go(x, tau);
+    const int brief = is_brief(x);
     if (h->moving < n) {
         memset(x->dq, 0, n * sizeof *x->dq);
     }
@@ -243,14 +258,14 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     }
     for (size_t i = 0; i < h->moving; i++) {
         x->dq[h->dof[i]] = h->y0[i] * tau;
-        velocity[h->dof[i]] = h->y0[i];
+        velocity[h->dof[i]] = brief ? velocity[h->dof[i]] : h->y0[i];
     }
     for (size_t s = 0; sys->base_harmonics && s < h->given; s++) {
         if (sys->harmonic[s].drives == DRIVES_BASE) {
             carry(x, s, velocity);
         }
     }
-    motion_add_modes(x, velocity);
+    motion_add_modes(x, brief, velocity);
     for (size_t i = 0; i < h->moving; i++) {
         to[h->dof[i]] += x->dq[h->dof[i]];
     }
