@@ -168,14 +168,8 @@ struct amplitude {
     double place, rate;
 };
 
-/* Whether all terms have moved by small parts of themselves: velocities, too, are then those at t0 and what they have changed by. */
-static int is_brief(const struct modal_motion *x)
-{
-    return x->tau * x->h->quickest < LITTLE && !x->h->any_resonant && !x->sys->base_harmonics;
-}
-
-/* The rate of term p, or by how much that has changed. */
-static inline struct number rate_of(const struct modal_motion *x, size_t p, int brief)
+/* The rate of term p, or, brief, by how much that has changed. */
+static inline struct number change_of_rate(const struct modal_motion *x, size_t p, int brief)
 {
     const double lr = x->h->lr[p], li = x->h->li[p], er = x->er[p], ei = x->ei[p];
     return brief ? (struct number){lr * er - li * ei, lr * ei + li * er} : tribo_term_rate(x, p);
@@ -184,7 +178,7 @@ static inline struct number rate_of(const struct modal_motion *x, size_t p, int 
 /* Adds what term p, times r, has moved a mode by. */
 static inline void add_term(const struct modal_motion *x, size_t p, int brief, double rr, double ri, struct amplitude *a)
 {
-    const struct number rate = rate_of(x, p, brief);
+    const struct number rate = change_of_rate(x, p, brief);
     a->place += rr * x->er[p] - ri * x->ei[p];
     a->rate += rr * rate.re - ri * rate.im;
 }
@@ -216,7 +210,7 @@ static void motion_add_modes(struct modal_motion *x, int brief, double *velocity
         }
         for (; h->owner && p < e && h->owner[p] == k; p++) {
             a.place += x->er[p];
-            a.rate += rate_of(x, p, brief).re;
+            a.rate += change_of_rate(x, p, brief).re;
         }
         for (size_t l = 0; !h->owner && l < e; l++) {
             add_term(x, l, brief, h->rr[k * e + l], h->ri[k * e + l], &a);
@@ -249,7 +243,8 @@ void tribo_modal_motion_state(struct modal_motion *x, double tau, const double *
     const size_t n = sys->ndof;
     double *velocity = to + n;
     tribo_modal_motion_go(x, tau);
-    const int brief = is_brief(x);
+    /* where all terms have moved by small parts of themselves velocities, too, are those at t0 and what they have changed by */
+    const int brief = x->tau * h->quickest < LITTLE && !h->any_resonant && !sys->base_harmonics;
     if (h->moving < n) {
         memset(x->dq, 0, n * sizeof *x->dq);
     }
