@@ -87,34 +87,6 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_linear
 
-    function c_system_linear_sparse(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
-      bind(c,name='tribo_system_linear_sparse')
-      import
-      type(c_ptr), intent(inout) :: sys
-      type(c_ptr), value :: mass
-      type(c_ptr), value :: damping
-      type(c_ptr), value :: stiffness
-      type(c_ptr), value :: direction
-      integer(c_size_t), value :: nmode
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
-      integer(c_int) :: answer
-    end function c_system_linear_sparse
-
-    function c_system_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
-      bind(c,name='tribo_system_reduced')
-      import
-      type(c_ptr), intent(inout) :: sys
-      type(c_ptr), value :: mass
-      type(c_ptr), value :: stiffness
-      type(c_ptr), value :: direction
-      integer(c_size_t), value :: nmode
-      integer(c_int), value :: static_contacts
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
-      integer(c_int) :: answer
-    end function c_system_reduced
-
     subroutine c_system_destroy(sys) bind(c,name='tribo_system_destroy')
       import
       type(c_ptr), value :: sys
@@ -233,12 +205,6 @@ module tribo_gsl_c
       type(c_ptr), value :: sys
       type(c_ptr) :: answer
     end function c_system_context
-
-    function c_system_odeiv2(sys) result(answer) bind(c,name='tribo_system_odeiv2')
-      import
-      type(c_ptr), value :: sys
-      type(c_ptr) :: answer
-    end function c_system_odeiv2
 
     function c_system_contacts(sys, t, y, v, feq, f) result(answer) bind(c,name='tribo_system_contacts')
       import
@@ -399,6 +365,40 @@ module tribo_gsl_c
       import
       type(c_ptr), value :: drv
     end subroutine c_driver_destroy
+
+    function c_system_linear_sparse(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
+      bind(c,name='tribo_system_linear_sparse')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: damping
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_system_linear_sparse
+
+    function c_system_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
+      bind(c,name='tribo_system_reduced')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: mass
+      type(c_ptr), value :: stiffness
+      type(c_ptr), value :: direction
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_system_reduced
+
+    function c_system_odeiv2(sys) result(answer) bind(c,name='tribo_system_odeiv2')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr) :: answer
+    end function c_system_odeiv2
 
     pure function c_fortran_ndof(held) result(answer) bind(c,name='tribo_fortran_ndof')
       import

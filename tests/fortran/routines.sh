@@ -21,7 +21,7 @@ same() {
 
 grep -v '^#' "$list" >"$scratch/list"
 awk '{ print $1 }' "$scratch/list" | sort >"$scratch/functions listed"
-sed -n 's/^TRIBO_API [^(]*\b\(tribo_[a-z0-9_]*\)(.*/\1/p' include/tribo/tribo.h include/tribo/tribo_gsl.h | sort >"$scratch/headers"
+sed -n 's/^TRIBO_API [^(]*\b\(tribo_[a-z0-9_]*\)(.*/\1/p' include/tribo/tribo.h include/tribo/tribo_dynamics.h include/tribo/tribo_gsl.h | sort >"$scratch/headers"
 same "functions listed" headers
 
 awk '$2 != "-" { for (k = 2; k <= NF; k++) print $k } NF < 3 && $2 == "-" || NF < 2 { print $1, "has no routine and no reason" }' \
