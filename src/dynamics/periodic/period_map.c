@@ -131,15 +131,6 @@ static int hold_still(struct period_map *m)
     return status ? tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts)) : TRIBO_OK;
 }
 
-/* Sliders that begin beyond their limits go back to them. */
-static void enter(struct period_map *m)
-{
-    if (m->sys->massless.count) {
-        tribo_get_limit(m->sys->contacts, m->limit);
-        tribo_elastic_enter(m->sys, m->limit, m->x, m->limit + m->sys->ncontact, m->y);
-    }
-}
-
 static void set_image(int odd, size_t count, double *x)
 {
     for (size_t i = 0; odd && i < count; i++) {
@@ -190,7 +181,11 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     }
     set_state(m, p->x);
     int status = m->moved ? hold_still(m) : TRIBO_OK;
-    enter(m);
+    /* Sliders that begin beyond their limits go back to them. */
+    if (m->sys->massless.count) {
+        tribo_get_limit(m->sys->contacts, m->limit);
+        tribo_elastic_enter(m->sys, m->limit, m->x, m->limit + m->sys->ncontact, m->y);
+    }
     memcpy(p->y, m->y, n * sizeof *p->y);
     tribo_period_map_coordinates(m, m->y, p->x);
     tribo_variation_begin(&m->variation, m->probe, p->derivative);
@@ -280,22 +275,17 @@ static int is_odd(const tribo_system *sys, double period)
     return 1;
 }
 
-/* to [ndof] += amplitudes of a load, in the modes. */
-static void add_modal(const struct period_map *m, const struct harmonic *w, const double *amplitude, double *to)
-{
-    for (size_t d = 0; d < m->sys->ndof; d++) {
-        for (size_t k = 0; k < w->count; k++) {
-            to[d] += m->norm.psi[d * m->sys->ndof + w->index[k]] * amplitude[k];
-        }
-    }
-}
-
 /* How far a load moves the structure at least, against stiffness or inertia. */
 static double size_of_load(struct period_map *m, const struct harmonic *w, const double *amplitude)
 {
     double size = 0.0;
     memset(m->x, 0, m->n * sizeof *m->x);
-    add_modal(m, w, amplitude, m->x);
+    /* x += psi amplitude: the load in the modes */
+    for (size_t d = 0; d < m->sys->ndof; d++) {
+        for (size_t k = 0; k < w->count; k++) {
+            m->x[d] += m->norm.psi[d * m->sys->ndof + w->index[k]] * amplitude[k];
+        }
+    }
     for (size_t d = 0; d < m->sys->ndof; d++) {
         size = hypot(size, m->x[d] / greater(m->norm.omega[d], fabs(w->omega)));
     }
@@ -328,26 +318,6 @@ static double least_motion(struct period_map *m)
         }
     }
     return size;
-}
-
-/* A power of two that makes very small or very large motions ordinary ones. */
-static double scale_of(double size)
-{
-    return size > 0.0 && !(size >= 1.0 / LARGE && size <= LARGE) ? ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0)) : 1.0;
-}
-
-/* Sizes of motions are those of what drives the system, and of the guess y. */
-static void prepare_sizes(struct period_map *m, const double *y)
-{
-    const double least = least_motion(m);
-    double size = least;
-    m->scale = 1.0;
-    tribo_period_map_coordinates(m, y, m->x);
-    for (size_t i = 0; i < m->n; i++) {
-        size = greater(size, fabs(m->x[i]));
-    }
-    m->scale = scale_of(size);
-    m->least = LEAST_SIZE * (m->scale * least);
 }
 
 /* What the variation follows: all perturbations, or some, between which there is nothing alike. */
@@ -398,7 +368,17 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
     tribo_energy_norm_set_damping(&m->norm, m->sys);
     m->t = t;
     tribo_period_map_choose(m, is_odd(m->sys, period));
-    prepare_sizes(m, y);
+    /* the size of the motion: of the loads, and of the guess y */
+    const double least = least_motion(m);
+    double size = least;
+    m->scale = 1.0;
+    tribo_period_map_coordinates(m, y, m->x);
+    for (size_t i = 0; i < m->n; i++) {
+        size = greater(size, fabs(m->x[i]));
+    }
+    /* a power of two that brings very small and very large motions to ordinary size */
+    m->scale = size > 0.0 && !(size >= 1.0 / LARGE && size <= LARGE) ? ldexp(1.0, -(int)clamp(logb(size), -1000.0, 1000.0)) : 1.0;
+    m->least = LEAST_SIZE * (m->scale * least);
     return TRIBO_OK;
 }
 

@@ -185,23 +185,6 @@ static int apply_equation(void *data, double *x)
     return status;
 }
 
-/* s->free = of each mode the inverse of (1 + shift) I - what it does in a span. */
-static void set_free(struct shooting *s, double shift)
-{
-    const struct energy_norm *norm = &s->map.norm;
-    const double span = s->map.span, sign = s->map.odd ? -1.0 : 1.0;
-    for (size_t k = 0; k < norm->n; k++) {
-        const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
-        const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
-        const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
-        const double qq = 1.0 + shift - (c + half * d), qu = -norm->omega[k] * d, uq = omega * omega / norm->omega[k] * d;
-        const double uu = 1.0 + shift - (c - half * d), det = qq * uu - qu * uq;
-        const double inverse[] = {uu / det, -qu / det, -uq / det, qq / det};
-        static const double unit[] = {1.0, 0.0, 0.0, 1.0};
-        memcpy(s->free + 4 * k, square > 0.0 && fabs(det) > NEARLY_SINGULAR ? inverse : unit, sizeof unit);
-    }
-}
-
 /* x [n], the right-hand side, becomes the solution; *done = 0: there is none, x may be anything. Where contacts rest all
  * the time, there may be many solutions: the Krylov space of a map that brings nothing further apart has the least one. */
 static int solve_in_space(struct shooting *s, const struct point *at, double shift, int spans, double tolerance, double *x,
@@ -211,7 +194,19 @@ static int solve_in_space(struct shooting *s, const struct point *at, double shi
     struct equation e = {s, at, shift, spans, free};
     double part;
     if (free) {
-        set_free(s, shift);
+        /* s->free = inverse of (1 + shift) I - (flow of the free mode over a span), [4] a mode */
+        const struct energy_norm *norm = &s->map.norm;
+        const double span = s->map.span, sign = s->map.odd ? -1.0 : 1.0;
+        for (size_t k = 0; k < norm->n; k++) {
+            const double omega = norm->natural[k], half = 0.5 * norm->damping[k], square = omega * omega - half * half;
+            const double nu = sqrt(fabs(square)), size = sign * exp(-half * span), c = size * cos(nu * span);
+            const double d = nu > 0.0 ? size * sin(nu * span) / nu : 0.0;
+            const double qq = 1.0 + shift - (c + half * d), qu = -norm->omega[k] * d, uq = omega * omega / norm->omega[k] * d;
+            const double uu = 1.0 + shift - (c - half * d), det = qq * uu - qu * uq;
+            const double inverse[] = {uu / det, -qu / det, -uq / det, qq / det};
+            static const double unit[] = {1.0, 0.0, 0.0, 1.0};
+            memcpy(s->free + 4 * k, square > 0.0 && fabs(det) > NEARLY_SINGULAR ? inverse : unit, sizeof unit);
+        }
     }
     const int status = tribo_gmres(s->map.n, apply_equation, &e, tolerance, s->map.n, x, &part, s->space);
     if (free) {
@@ -308,30 +303,6 @@ static int shorten(struct shooting *s, int shifted)
     return status;
 }
 
-/* s->there is where the motion leads from s->here. */
-static int march(struct shooting *s)
-{
-    memcpy(s->there.x, s->here.image, s->map.n * sizeof *s->there.x);
-    return tribo_period_map_follow(&s->map, &s->there);
-}
-
-static int turn_back(struct shooting *s)
-{
-    const int shifted = s->setbacks++ % 2 == 0;
-    copy_point(s, &s->here, &s->best);
-    int status = newton_step(s, 0.0);
-    if (!status && length(s->step, s->map.n) > 0.0) {
-        status = shorten(s, shifted);
-    }
-    if (!status && shifted && !(s->there.residual < PAYS * s->best.residual)) {
-        status = march(s);
-    }
-    if (!status) {
-        settle(s);
-    }
-    return status;
-}
-
 /* -------------------------------------------------------------------------------------------------------------- search */
 
 /* After a step. */
@@ -353,7 +324,21 @@ static int proceed(struct shooting *s)
         exchange(s);
         return TRIBO_OK;
     }
-    return turn_back(s);
+    const int shifted = s->setbacks++ % 2 == 0;
+    copy_point(s, &s->here, &s->best);
+    int status = newton_step(s, 0.0);
+    if (!status && length(s->step, s->map.n) > 0.0) {
+        status = shorten(s, shifted);
+    }
+    if (!status && shifted && !(s->there.residual < PAYS * s->best.residual)) {
+        /* s->there: the image of s->here */
+        memcpy(s->there.x, s->here.image, s->map.n * sizeof *s->there.x);
+        status = tribo_period_map_follow(&s->map, &s->there);
+    }
+    if (!status) {
+        settle(s);
+    }
+    return status;
 }
 
 /* From s->here on: s->best. */

@@ -108,21 +108,6 @@ static void find_met(struct variation *x)
     }
 }
 
-/* Those of them that go beyond: the others only touch their limits. */
-static void keep_rising(struct variation *x)
-{
-    size_t count = 0;
-    for (size_t k = 0; k < x->count; k++) {
-        const size_t i = x->met[k];
-        if (x->rise[i] > 0.0) {
-            x->met[count++] = i;
-        } else {
-            x->side[i] = 0;
-        }
-    }
-    x->count = count;
-}
-
 /* x->f = how letting contact i go changes the rates of forces that hold: damping hands on the jump of its acceleration. */
 static int change_of_rates(struct variation *x, size_t i)
 {
@@ -165,7 +150,17 @@ static int find_bond(struct variation *x)
 static int look_at_met(struct variation *x, const double *y)
 {
     int status = find_rise(x, y);
-    keep_rising(x);
+    /* keep the contacts whose force goes beyond the limit; the others only touch it */
+    size_t count = 0;
+    for (size_t k = 0; k < x->count; k++) {
+        const size_t i = x->met[k];
+        if (x->rise[i] > 0.0) {
+            x->met[count++] = i;
+        } else {
+            x->side[i] = 0;
+        }
+    }
+    x->count = count;
     status = status ? status : find_pull(x);
     return status ? status : find_bond(x);
 }
@@ -310,66 +305,24 @@ static void gather(struct variation *x, size_t i, size_t group)
     }
 }
 
-/* Those that stop, count of them, in groups with all to which they pass forces. */
-static void gather_all(struct variation *x, size_t count)
-{
-    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
-    for (size_t k = 0; k < count; k++) {
-        if (!x->group[x->stopped[k]]) {
-            gather(x, x->stopped[k], k + 1);
-        }
-    }
-}
-
-static void swap_stopped(struct variation *x, size_t i, size_t k)
-{
-    const size_t contact = x->stopped[i], n = 2 * x->sys->ndof;
-    x->stopped[i] = x->stopped[k];
-    x->stopped[k] = contact;
-    for (size_t j = 0; i != k && j < n; j++) {
-        const double change = x->rows[i * n + j];
-        x->rows[i * n + j] = x->rows[k * n + j];
-        x->rows[k * n + j] = change;
-    }
-}
-
 /* Moves those of a group, from contact first of those that stop on, to there. Returns how many. */
 static size_t bring_forward(struct variation *x, size_t first, size_t count, size_t group)
 {
     size_t next = first;
     for (size_t k = first; k < count; k++) {
         if (x->group[x->stopped[k]] == group) {
-            swap_stopped(x, next++, k);
+            const size_t i = next++;
+            const size_t contact = x->stopped[i], n = 2 * x->sys->ndof;
+            x->stopped[i] = x->stopped[k];
+            x->stopped[k] = contact;
+            for (size_t j = 0; i != k && j < n; j++) {
+                const double change = x->rows[i * n + j];
+                x->rows[i * n + j] = x->rows[k * n + j];
+                x->rows[k * n + j] = change;
+            }
         }
     }
     return next - first;
-}
-
-/* The part that a group has in the jump of accelerations. */
-static void jump_of_group(struct variation *x, size_t group, double slope, const double *row)
-{
-    const size_t n = x->sys->ndof;
-    double *jump = add_earlier(x, slope, row), *change = x->column;
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        x->f[i] = x->group[i] == group ? x->events->stick_slip.force[i] - x->force[i] : 0.0;
-    }
-    memset(change, 0, n * sizeof *change);
-    tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, change);
-    for (size_t d = 0; d < n; d++) {
-        jump[d * x->sys->ncontact] = change[d];
-    }
-}
-
-/* Whether one of a group slides from there on: which of them stops first then changes when the next one stops. If all rest, that
- * takes away all that their order does. */
-static void find_torn(struct variation *x, size_t group, const size_t *stopped)
-{
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        if (x->group[i] == group && x->events->stick_slip.slip[i] != 0) {
-            x->torn = i;
-            x->other = stopped[i == stopped[0]];
-        }
-    }
 }
 
 /* Contacts that stop by coincidence do so each at its own time: groups of them, between which no forces pass, one by one. */
@@ -380,23 +333,26 @@ static void stop_by_groups(struct variation *x, size_t count)
         const double *rows = x->rows + next * 2 * x->sys->ndof;
         of_group = bring_forward(x, next, count, group);
         if (together(x, stopped, of_group, x->slope, rows)) {
-            jump_of_group(x, group, x->slope[stopped[0]], rows);
+            /* jump of accelerations by the forces of the group */
+            const double slope = x->slope[stopped[0]];
+            const size_t n = x->sys->ndof;
+            double *jump = add_earlier(x, slope, rows), *change = x->column;
+            for (size_t i = 0; i < x->sys->ncontact; i++) {
+                x->f[i] = x->group[i] == group ? x->events->stick_slip.force[i] - x->force[i] : 0.0;
+            }
+            memset(change, 0, n * sizeof *change);
+            tribo_matrix_multiply_add(&x->sys->response, 1.0, x->f, change);
+            for (size_t d = 0; d < n; d++) {
+                jump[d * x->sys->ncontact] = change[d];
+            }
         } else {
-            find_torn(x, group, stopped);
-        }
-    }
-}
-
-/* Whether a contact loses its static limit where others stop, but not because they do: that is a coincidence of jumps, whose
- * order counts. */
-static void find_apart(struct variation *x)
-{
-    const struct stick_slip *m = &x->events->stick_slip;
-    for (size_t i = 0; i < x->sys->ncontact; i++) {
-        const int goes = x->before[i] == 0 && (m->slip[i] == 1 || m->slip[i] == -1);
-        if (goes && (x->side[i] || !x->group[i]) && tribo_breakaway_is_sudden(&m->breakaway, i)) {
-            x->torn = i;
-            x->other = x->stopped[0];
+            /* a contact of the group slides afterwards: then the order of stops matters, and there is no derivative */
+            for (size_t i = 0; i < x->sys->ncontact; i++) {
+                if (x->group[i] == group && x->events->stick_slip.slip[i] != 0) {
+                    x->torn = i;
+                    x->other = stopped[i == stopped[0]];
+                }
+            }
         }
     }
 }
@@ -407,23 +363,26 @@ static void stop_earlier(struct variation *x)
     if (!count) {
         return;
     }
-    gather_all(x, count);
-    find_apart(x);
+    /* group: contacts that stop, with all contacts that their forces reach */
+    memset(x->group, 0, x->sys->ncontact * sizeof *x->group);
+    for (size_t k = 0; k < count; k++) {
+        if (!x->group[x->stopped[k]]) {
+            gather(x, x->stopped[k], k + 1);
+        }
+    }
+    /* a contact that loses its static limit where another one stops, without cause: two jumps whose order counts */
+    const struct stick_slip *m = &x->events->stick_slip;
+    for (size_t i = 0; i < x->sys->ncontact; i++) {
+        const int goes = x->before[i] == 0 && (m->slip[i] == 1 || m->slip[i] == -1);
+        if (goes && (x->side[i] || !x->group[i]) && tribo_breakaway_is_sudden(&m->breakaway, i)) {
+            x->torn = i;
+            x->other = x->stopped[0];
+        }
+    }
     if (together(x, x->stopped, count, x->slope, x->rows)) {
         jump_earlier(x, x->slope[x->stopped[0]], x->rows);
     } else {
         stop_by_groups(x, count);
-    }
-}
-
-/* Of several contacts that lose their static limits at once, i slides; what others hold is taken from that, too. */
-static void let_go(struct variation *x, size_t i, const double *row)
-{
-    const struct stick_slip *m = &x->events->stick_slip;
-    const double drop = -(m->slip[i] + x->side[i] * tribo_breakaway_ratio(&m->breakaway, i)) * m->limit[i];
-    double *jump = add_earlier(x, x->rise[i], row);
-    for (size_t d = 0; d < x->sys->ndof; d++) {
-        jump[d * x->sys->ncontact] = drop * tribo_matrix_get(&x->sys->response, d, i);
     }
 }
 
@@ -438,9 +397,13 @@ static size_t find_bound(const struct variation *x)
     return bound;
 }
 
-/* Contacts that lose their static limits by coincidence do so each at its own time, too. */
-static void break_away_earlier(struct variation *x)
+static void event_decided(struct company *company)
 {
+    struct variation *x = (struct variation *)company;
+    const size_t n = x->sys->ndof, c = x->sys->ncontact;
+    x->jumps = 0;
+    stop_earlier(x);
+    /* contacts that lose their static limits together are taken one after the other */
     const signed char *now = x->events->stick_slip.slip;
     size_t gone = 0;
     for (size_t k = 0; k < x->count; k++) {
@@ -452,7 +415,15 @@ static void break_away_earlier(struct variation *x)
         const size_t bound = find_bound(x);
         for (size_t k = 0; k < x->count; k++) {
             if (now[x->met[k]] != 0) {
-                let_go(x, x->met[k], x->pull + k * 2 * x->sys->ndof);
+                /* contact i slides; the change of the forces that hold the others is part of its jump */
+                const size_t i = x->met[k];
+                const double *row = x->pull + k * 2 * x->sys->ndof;
+                const struct stick_slip *m = &x->events->stick_slip;
+                const double drop = -(m->slip[i] + x->side[i] * tribo_breakaway_ratio(&m->breakaway, i)) * m->limit[i];
+                double *jump = add_earlier(x, x->rise[i], row);
+                for (size_t d = 0; d < x->sys->ndof; d++) {
+                    jump[d * x->sys->ncontact] = drop * tribo_matrix_get(&x->sys->response, d, i);
+                }
             }
         }
         if (bound < x->sys->ncontact) {
@@ -460,15 +431,6 @@ static void break_away_earlier(struct variation *x)
             x->other = bound;
         }
     }
-}
-
-static void event_decided(struct company *company)
-{
-    struct variation *x = (struct variation *)company;
-    const size_t n = x->sys->ndof, c = x->sys->ncontact;
-    x->jumps = 0;
-    stop_earlier(x);
-    break_away_earlier(x);
     for (size_t d = 0; d < n; d++) {
         memmove(x->jump + d * x->jumps, x->jump + d * c, x->jumps * sizeof *x->jump);
     }
@@ -498,8 +460,8 @@ int tribo_variation_create(struct variation *x, struct events *e, tribo_system *
     if (!x->v || !x->before || !x->stopped) {
         return 0;
     }
-    double **const array[] = {&x->rows, &x->pull, &x->row, &x->jump, &x->changes, &x->slope, &x->a,
-                              &x->f,    &x->rise, &x->force, &x->acceleration, &x->column};
+    double **const array[] = {&x->rows, &x->pull, &x->row,  &x->jump,  &x->changes,      &x->slope,
+                              &x->a,    &x->f,    &x->rise, &x->force, &x->acceleration, &x->column};
     const size_t count[] = {2 * n * c, 2 * n * c, 2 * n * c, n * c, c * columns, c, c, c, c, c, n, 3 * n};
     double *next = x->v + 2 * n * columns;
     for (size_t k = 0; k < sizeof array / sizeof *array; k++) {

@@ -56,37 +56,6 @@ void tribo_creep_free(struct creep *c)
 
 /* --------------------------------------------------------------------------------------------------------- what it takes */
 
-static void set_basis(struct creep *c)
-{
-    memset(c->basis, 0, sizeof c->basis);
-    for (size_t i = 0; i < NODES; i++) {
-        double *b = c->basis[i];
-        b[0] = 1.0;
-        for (size_t j = 0; j < NODES; j++) { /* times (x - node_j)/(node_i - node_j) */
-            for (size_t k = NODES - 1; j != i && k < NODES; k--) {
-                b[k] = ((k ? b[k - 1] : 0.0) - node[j] * b[k]) / (node[i] - node[j]);
-            }
-        }
-    }
-}
-
-/* What a constant force does with time^m, one that is time^k does with m! k!/(m + k)! time^(m + k). */
-static void set_weights(struct creep *c)
-{
-    for (size_t m = 0; m < c->terms; m++) {
-        for (size_t j = 0; j < NODES; j++) {
-            double *w = c->weight + (m * NODES + j) * NODES, part = pow(node[j], (double)m);
-            memset(w, 0, NODES * sizeof *w);
-            for (size_t k = 0; k < NODES; k++) {
-                for (size_t i = 0; i < NODES; i++) {
-                    w[i] += part * c->basis[i][k];
-                }
-                part *= node[j] * (double)(k + 1) / (double)(m + k + 1);
-            }
-        }
-    }
-}
-
 static int reserve(struct event *e, size_t slides)
 {
     struct creep *c = &e->creep;
@@ -112,8 +81,29 @@ static int reserve(struct event *e, size_t slides)
     c->contacts = contacts;
     c->room = slides;
     c->terms = terms;
-    set_basis(c);
-    set_weights(c);
+    memset(c->basis, 0, sizeof c->basis);
+    for (size_t i = 0; i < NODES; i++) {
+        double *b = c->basis[i];
+        b[0] = 1.0;
+        for (size_t j = 0; j < NODES; j++) { /* times (x - node_j)/(node_i - node_j) */
+            for (size_t k = NODES - 1; j != i && k < NODES; k--) {
+                b[k] = ((k ? b[k - 1] : 0.0) - node[j] * b[k]) / (node[i] - node[j]);
+            }
+        }
+    }
+    /* a force time^k acts as a constant one does, with m! k!/(m + k)! time^(m + k) for time^m */
+    for (size_t m = 0; m < c->terms; m++) {
+        for (size_t j = 0; j < NODES; j++) {
+            double *w = c->weight + (m * NODES + j) * NODES, part = pow(node[j], (double)m);
+            memset(w, 0, NODES * sizeof *w);
+            for (size_t k = 0; k < NODES; k++) {
+                for (size_t i = 0; i < NODES; i++) {
+                    w[i] += part * c->basis[i][k];
+                }
+                part *= node[j] * (double)(k + 1) / (double)(m + k + 1);
+            }
+        }
+    }
     return TRIBO_OK;
 }
 
@@ -129,17 +119,6 @@ static size_t count_sliding(const struct stick_slip *m)
         count += (size_t)is_sliding(m, k);
     }
     return count;
-}
-
-/* Those that slide, to c->slides. */
-static void find_sliding(struct event *e)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    for (size_t k = 0, count = 0; k < m->plane->count; k++) {
-        if (is_sliding(m, k)) {
-            e->creep.slides[count++] = k;
-        }
-    }
 }
 
 static int one_begins(const struct stick_slip *m)
@@ -208,15 +187,6 @@ double tribo_creep_settled(const struct event *e, const double *y, double error)
         length = follows ? length : lesser(length, stop);
     }
     return length;
-}
-
-/* As directions turn they may go on. */
-static void guess(struct event *e, size_t k, double h)
-{
-    const double turn = turn_of(e, k);
-    for (size_t i = 0; i < NODES; i++) {
-        e->creep.angle[k * NODES + i] = fabs(turn * h) < 1.0 ? turn * h * node[i] : 0.0;
-    }
 }
 
 /* ------------------------------------------------------------------------------------------------------------ response */
@@ -305,26 +275,6 @@ static void add_response(const struct event *e, size_t from, size_t axis, double
     }
 }
 
-/* Derivatives of what x of contact a has across u by the angles of contact b, a and b among those that slide. */
-static void set_block(struct event *e, size_t a, size_t b, double h, size_t unknowns)
-{
-    double from[NODES][2], to[NODES][2], part[NODES][NODES];
-    for (size_t i = 0; i < NODES; i++) {
-        across(e, b, i, from[i]);
-        across(e, a, i, to[i]);
-        memset(e->creep.matrix + (a * NODES + i) * unknowns + b * NODES, 0, NODES * sizeof *e->creep.matrix);
-    }
-    for (size_t d = 0; d < 4; d++) {
-        add_response(e, 2 * b + d / 2, 2 * e->creep.slides[a] + d % 2, h, part);
-        for (size_t j = 0; j < NODES; j++) {
-            double *row = e->creep.matrix + (a * NODES + j) * unknowns + b * NODES;
-            for (size_t i = 0; i < NODES; i++) {
-                row[i] += to[j][d % 2] * part[j][i] * from[i][d / 2];
-            }
-        }
-    }
-}
-
 /* c->rest = what x has across u; and by what of it along u the matrix is less. */
 static void set_rest(struct event *e, size_t s, double h, size_t unknowns)
 {
@@ -346,7 +296,24 @@ static double improve(struct event *e, size_t slides, double h)
     struct creep *c = &e->creep;
     const size_t unknowns = slides * NODES;
     for (size_t s = 0; s < slides * slides; s++) {
-        set_block(e, s / slides, s % slides, h, unknowns);
+        /* block (a, b): derivative of the part of x_a across u_a by the angles of contact b */
+        const size_t a = s / slides;
+        const size_t b = s % slides;
+        double from[NODES][2], to[NODES][2], part[NODES][NODES];
+        for (size_t i = 0; i < NODES; i++) {
+            across(e, b, i, from[i]);
+            across(e, a, i, to[i]);
+            memset(e->creep.matrix + (a * NODES + i) * unknowns + b * NODES, 0, NODES * sizeof *e->creep.matrix);
+        }
+        for (size_t d = 0; d < 4; d++) {
+            add_response(e, 2 * b + d / 2, 2 * e->creep.slides[a] + d % 2, h, part);
+            for (size_t j = 0; j < NODES; j++) {
+                double *row = e->creep.matrix + (a * NODES + j) * unknowns + b * NODES;
+                for (size_t i = 0; i < NODES; i++) {
+                    row[i] += to[j][d % 2] * part[j][i] * from[i][d / 2];
+                }
+            }
+        }
     }
     for (size_t s = 0; s < slides; s++) {
         set_rest(e, s, h, unknowns);
@@ -504,25 +471,6 @@ static int find_angles(struct event *e, size_t slides, double h, double error, i
     return TRIBO_OK;
 }
 
-/* Whether the step is good, and how long the next one may be. Where it begins a contact that creeps may have another direction
- * than is asked of it, and has that in shorter steps, too. */
-static void judge(const struct event *e, size_t slides, double h, double error, struct creep_step *step)
-{
-    double defect = 0.0, slow = h, stray = 0.0;
-    for (size_t s = 0; s < slides; s++) {
-        const size_t k = e->creep.slides[s];
-        const double begins = find_stray(e, k, h, 0.0, error);
-        const int creeps = h > PAYS * stop_of(e, k, e->planar.line[k].xn[0]);
-        stray = creeps ? greater(stray, begins) : stray;
-        defect = greater(defect, greater(begins, find_defect(e, k, h, error)));
-        slow = lesser(slow, find_slow_part(e, k, h));
-    }
-    const int stays = stray > 1.0 && stray > LESS_STRAY * step->stray;
-    step->good = defect <= 1.0 && slow == h;
-    step->next = stays ? 0.0 : slow < h ? slow : h * change(defect);
-    step->stray = stray;
-}
-
 int tribo_creep_expand(struct event *e, double t, const double *y, double h, double error, struct creep_step *step)
 {
     struct creep *c = &e->creep;
@@ -531,9 +479,20 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     if (status) {
         return status;
     }
-    find_sliding(e);
+    /* slides: the planar contacts that slide */
+    const struct stick_slip *m = &e->events.stick_slip;
+    for (size_t k = 0, count = 0; k < m->plane->count; k++) {
+        if (is_sliding(m, k)) {
+            e->creep.slides[count++] = k;
+        }
+    }
     for (size_t s = 0; s < slides; s++) {
-        guess(e, c->slides[s], h);
+        /* guess: directions go on turning at their rate */
+        const size_t k = c->slides[s];
+        const double turn = turn_of(e, k);
+        for (size_t i = 0; i < NODES; i++) {
+            e->creep.angle[k * NODES + i] = fabs(turn * h) < 1.0 ? turn * h * node[i] : 0.0;
+        }
     }
     e->planar.given = 1;
     status = tribo_event_start(e, t, y);
@@ -543,7 +502,21 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     step->good = 0;
     step->next = SHRINKS * h;
     if (!status && found) {
-        judge(e, slides, h, error, step);
+        /* Judges the step. A contact that creeps may start in another direction than its equation asks for, at any length of the
+         * step: stray is no reason for shorter steps then. */
+        double defect = 0.0, slow = h, stray = 0.0;
+        for (size_t s = 0; s < slides; s++) {
+            const size_t k = e->creep.slides[s];
+            const double begins = find_stray(e, k, h, 0.0, error);
+            const int creeps = h > PAYS * stop_of(e, k, e->planar.line[k].xn[0]);
+            stray = creeps ? greater(stray, begins) : stray;
+            defect = greater(defect, greater(begins, find_defect(e, k, h, error)));
+            slow = lesser(slow, find_slow_part(e, k, h));
+        }
+        const int stays = stray > 1.0 && stray > LESS_STRAY * step->stray;
+        step->good = defect <= 1.0 && slow == h;
+        step->next = stays ? 0.0 : slow < h ? slow : h * change(defect);
+        step->stray = stray;
     }
     return status;
 }

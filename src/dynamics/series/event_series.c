@@ -65,42 +65,32 @@ static void expand_falling(struct event *e, size_t k)
     }
 }
 
-/* The k-th coefficient of f for rigid contacts that do not hold: those that slide follow their limit, and so do those that are
- * just at it; others keep their force. */
-static void given_forces(struct event *e, size_t k)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    for (size_t i = 0; i < e->sys->ncontact; i++) {
-        const int keeps = k == 0 && m->slip[i] == 0 && !m->holds[i];
-        const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact, side = tribo_stick_slip_follows(m, i);
-        e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
-    }
-}
-
-/* The same of elastic contacts that hold, by the k-th coefficients of places. */
-static void spring_forces(struct event *e, size_t k)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    const tribo_system *sys = e->sys;
-    tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
-    for (size_t i = 0; i < sys->ncontact; i++) {
-        if (m->slip[i] == 0 && m->elastic[i]) {
-            e->given[i] = k == 0 ? m->force[i] : e->spring[i];
-        }
-    }
-}
-
 /* given, and whether any of it is not 0. */
 static int find_given(struct event *e, size_t k)
 {
     const int springs = e->sys->massless.count > 0, some = k < e->slide_terms;
     if (some) {
-        given_forces(e, k);
+        /* rigid contacts: one that slides, or is just at its limit, follows the limit; others keep their force */
+        const struct stick_slip *m = &e->events.stick_slip;
+        for (size_t i = 0; i < e->sys->ncontact; i++) {
+            const int keeps = k == 0 && m->slip[i] == 0 && !m->holds[i];
+            const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact,
+                         side = tribo_stick_slip_follows(m, i);
+            e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
+        }
     } else if (springs) {
         memset(e->given, 0, e->sys->ncontact * sizeof *e->given);
     }
     if (springs) {
-        spring_forces(e, k);
+        /* elastic contacts that hold: their springs, by the k-th coefficients of displacements */
+        const struct stick_slip *m = &e->events.stick_slip;
+        const tribo_system *sys = e->sys;
+        tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
+        for (size_t i = 0; i < sys->ncontact; i++) {
+            if (m->slip[i] == 0 && m->elastic[i]) {
+                e->given[i] = k == 0 ? m->force[i] : e->spring[i];
+            }
+        }
     }
     return some || springs;
 }
@@ -133,18 +123,6 @@ static void expand_free(struct event *e, size_t k)
     tribo_system_tables(sys, (int)k, 1.0, 0, n, acc);
 }
 
-/* base and a = the k-th coefficients of accelerations of the bases, and of the contacts against them. */
-static void expand_relative(struct event *e, size_t k)
-{
-    const size_t c = e->sys->ncontact;
-    memset(e->base, 0, c * sizeof *e->base);
-    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
-    for (size_t i = 0; i < c; i++) {
-        e->a[i] = -e->base[i];
-    }
-    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->acceleration, e->a);
-}
-
 /* What is watched of contacts at rest is their force. */
 static void watch_forces(const struct event *e, size_t k, int given, double *watch)
 {
@@ -175,7 +153,14 @@ static int expand_forces(struct event *e, size_t k)
     if (given) {
         tribo_matrix_multiply_add(&sys->response, 1.0, e->given, acc);
     }
-    expand_relative(e, k);
+    /* k-th coefficients: base = accelerations of the bases, a = accelerations of the contacts against them */
+    const size_t c = e->sys->ncontact;
+    memset(e->base, 0, c * sizeof *e->base);
+    add_harmonics(e, DRIVES_BASE, k + 1, (double)(k + 1), e->base);
+    for (size_t i = 0; i < c; i++) {
+        e->a[i] = -e->base[i];
+    }
+    tribo_matrix_multiply_add(&e->sys->direction, 1.0, e->acceleration, e->a);
     status = tribo_stick_slip_balance(m, e->a, e->held);
     if (status) {
         return tribo_system_fail(sys, status, "%s", tribo_message(m->hold));
@@ -192,25 +177,6 @@ static int expand_forces(struct event *e, size_t k)
         tribo_elastic_move(sys, m->slip, e->base, acc, e->spring);
     }
     return status;
-}
-
-/* The power of the sliding contacts: limits times velocities. */
-static void expand_energy(struct event *e)
-{
-    const struct stick_slip *m = &e->events.stick_slip;
-    const tribo_system *sys = e->sys;
-    const size_t c = sys->ncontact;
-    for (size_t k = 0; k < e->order; k++) {
-        double power = 0.0;
-        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
-            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
-            for (size_t i = 0; i < c; i++) {
-                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
-            }
-        }
-        power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
-        e->d[k + 1] = power / (double)(k + 1);
-    }
 }
 
 int tribo_event_start(struct event *e, double t, const double *y)
@@ -243,7 +209,21 @@ int tribo_event_series(struct event *e)
         }
     }
     e->sys->evaluations += e->order + 1;
-    expand_energy(e);
+    /* power of the sliding contacts: limits times velocities */
+    const struct stick_slip *m = &e->events.stick_slip;
+    const tribo_system *sys = e->sys;
+    const size_t c = sys->ncontact;
+    for (size_t k = 0; k < e->order; k++) {
+        double power = 0.0;
+        for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
+            const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
+            for (size_t i = 0; i < c; i++) {
+                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
+            }
+        }
+        power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
+        e->d[k + 1] = power / (double)(k + 1);
+    }
     return TRIBO_OK;
 }
 

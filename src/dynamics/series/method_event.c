@@ -152,21 +152,6 @@ static double bound(void *motion, double tau)
     return HUGE_VAL;
 }
 
-/* What the velocity of contact i, or of those that hold it, is the sum of, over [0, h]. */
-static double parts_of_velocity(const struct event *e, size_t i, double h)
-{
-    const struct matrix *j = &e->sys->direction;
-    double size = 0.0, power = 1.0, lever = 0.0;
-    for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
-        lever += fabs(j->val[d]);
-    }
-    for (size_t k = 0; k <= e->order; k++) {
-        size += lever * tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
-        power = lesser(power * h, DBL_MAX);
-    }
-    return size;
-}
-
 /* Whether the limit of contact i may fall to 0, or to the force that it keeps, while no other guard of it looks after that. A
  * limit that only follows a table has its zeros at knots, where steps end. */
 static int limit_tells(const struct stick_slip *m, size_t i, int varies)
@@ -223,7 +208,17 @@ static void set_guards(struct event *e)
         if (m->slip[i] == 1 || m->slip[i] == -1) {
             tribo_events_guard_slip(&e->events, i, &g);
         } else if (tribo_stick_slip_may_part(m, i)) {
-            e->size[i] = parts_of_velocity(e, i, h);
+            /* size of the terms of v_i over [0, h] */
+            const struct matrix *j = &e->sys->direction;
+            double size = 0.0, power = 1.0, lever = 0.0;
+            for (size_t d = j->first[i]; d < j->first[i + 1]; d++) {
+                lever += fabs(j->val[d]);
+            }
+            for (size_t k = 0; k <= e->order; k++) {
+                size += lever * tribo_largest(e->u + k * e->sys->ndof, e->sys->ndof) * power;
+                power = lesser(power * h, DBL_MAX);
+            }
+            e->size[i] = size;
             tribo_events_guard_part(&e->events, i, &g);
         }
         g.limit = varies ? ratio : 0.0;
@@ -322,16 +317,6 @@ static int create(tribo_driver *drv)
     return TRIBO_OK;
 }
 
-/* Series in a plane and of what creeps find room anew for as many terms. */
-static void set_order(struct event *e, size_t order)
-{
-    if (order != e->most_order) {
-        tribo_planar_series_free(&e->planar);
-        tribo_creep_free(&e->creep);
-    }
-    e->most_order = order;
-}
-
 /* Room for the harmonics, which may have become more, and the highest frequency. */
 static int prepare(struct event *e)
 {
@@ -344,7 +329,13 @@ static int prepare(struct event *e)
         return status;
     }
     e->fastest = tribo_system_fastest(sys);
-    set_order(e, best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS));
+    /* planar series and creep need memory for as many terms */
+    const size_t order = best_order(e->tolerance, e->fastest, tribo_system_planar(sys) ? 0.5 * MOST_DIGITS : MOST_DIGITS);
+    if (order != e->most_order) {
+        tribo_planar_series_free(&e->planar);
+        tribo_creep_free(&e->creep);
+    }
+    e->most_order = order;
     const size_t room = (e->most_order + 2) * sys->harmonics + 1;
     double *more = realloc(e->cosine, 2 * room * sizeof *more);
     if (!more) {

@@ -198,13 +198,6 @@ static double before(const struct planar_line *l, size_t k)
     return k > 1 ? product_of(l->speed, l->ut, k, 1, k) : 0.0;
 }
 
-static void find_direction(struct planar_line *l, size_t k, int begins)
-{
-    const double both = k > 1 ? product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k) : 0.0;
-    l->un[k] = k ? -0.5 * both : 1.0;
-    l->ut[k] = k && begins == SLIDES_ON ? (l->xt[k] - before(l, k)) / l->xn[0] : 0.0;
-}
-
 int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip *m, const tribo_system *sys, size_t k,
                                const double *v, double *f)
 {
@@ -221,7 +214,9 @@ int tribo_planar_series_forces(struct planar_series *s, const struct stick_slip 
                                      sys->time, p->at);
         }
         if (!s->given) {
-            find_direction(l, k, p->begins);
+            const double both = k > 1 ? product_of(l->un, l->un, k, 1, k) + product_of(l->ut, l->ut, k, 1, k) : 0.0;
+            l->un[k] = k ? -0.5 * both : 1.0;
+            l->ut[k] = k && p->begins == SLIDES_ON ? (l->xt[k] - before(l, k)) / l->xn[0] : 0.0;
         }
         if (!s->given && k >= shift) {
             const size_t j = k - shift;

@@ -49,16 +49,6 @@ static int reserve_slopes(struct series_transition *x, const tribo_system *sys, 
     return TRIBO_OK;
 }
 
-/* x [ndof] -= accelerations by the springs of elastic contacts that hold, where place j is 1 and the others are 0. */
-static void add_springs(struct stick_slip *m, const tribo_system *sys, size_t j, double *x)
-{
-    double *unit = m->size, *force = m->own_a;
-    memset(unit, 0, sys->ndof * sizeof *unit);
-    unit[j] = 1.0;
-    tribo_elastic_answer(sys, m->slip, unit, m->rate, force);
-    tribo_matrix_multiply_add(&sys->response, -1.0, force, x);
-}
-
 /* to [ndof][ndof] = factor P a, a [ndof][ndof] transposed in `columns`, or no rows: the identity. */
 static int project(struct stick_slip *m, const tribo_system *sys, const struct matrix *a, double factor, double *to)
 {
@@ -68,7 +58,12 @@ static int project(struct stick_slip *m, const tribo_system *sys, const struct m
     for (size_t j = 0; !status && j < n; j++) {
         columns[j * n + j] += a ? 0.0 : 1.0;
         if (sys->massless.count && a == &sys->stiffness) {
-            add_springs(m, sys, j, columns + j * n);
+            /* x [ndof] -= accelerations by the springs of elastic contacts that hold, for a unit displacement j */
+            double *unit = m->size, *force = m->own_a;
+            memset(unit, 0, sys->ndof * sizeof *unit);
+            unit[j] = 1.0;
+            tribo_elastic_answer(sys, m->slip, unit, m->rate, force);
+            tribo_matrix_multiply_add(&sys->response, -1.0, force, (columns + j * n));
         }
         status = tribo_stick_slip_project(m, sys, m->still, columns + j * n);
         if (sys->massless.count) {

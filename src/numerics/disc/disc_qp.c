@@ -63,22 +63,6 @@ static double look(struct disc_qp *p)
     return tribo_disc_places(p);
 }
 
-/* y is the solution up to what rounding may have done to it: steps that halve the distance still may find less. */
-static void polish(struct disc_qp *p)
-{
-    double before = HUGE_VAL;
-    while (p->residual > p->near_enough && p->residual < 0.5 * before) {
-        before = p->residual;
-        memcpy(p->best, p->y, p->size * sizeof *p->y);
-        step_newton(p);
-        look(p);
-    }
-    if (p->residual >= before) {
-        memcpy(p->y, p->best, p->size * sizeof *p->y);
-        look(p);
-    }
-}
-
 /* Whether the objective at y is less than at from, where gradient and noise are those at y: the difference is found from the way
  * between them, so that little of it is lost. */
 static int descends(const struct disc_qp *p)
@@ -93,21 +77,6 @@ static int descends(const struct disc_qp *p)
         rounding += fabs(p->y[i] - p->from[i]) * p->noise[i];
     }
     return change <= rounding;
-}
-
-/* A contact at a time to the nearest point of its set to y - gain gradient: slow, but always downwards. */
-static void sweep(struct disc_qp *p)
-{
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        double gradient[2];
-        for (size_t k = 0; k < p->wide[i]; k++) {
-            gradient[k] = p->pull[i + k];
-            for (size_t j = 0; j < p->size; j++) {
-                gradient[k] += p->s[(i + k) * p->size + j] * p->y[j];
-            }
-        }
-        tribo_disc_descend(p, i, gradient, p->y + i);
-    }
 }
 
 /* How far from may go towards aim until a contact that is inside meets a rim, which is one of |x + t step| = 1. */
@@ -146,7 +115,17 @@ static void step_down(struct disc_qp *p)
         }
     }
     project(p, p->from, p->from, 1.0);
-    sweep(p);
+    /* contact by contact to the point of its set nearest to y - gain gradient: slow, but always downwards */
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        double gradient[2];
+        for (size_t k = 0; k < p->wide[i]; k++) {
+            gradient[k] = p->pull[i + k];
+            for (size_t j = 0; j < p->size; j++) {
+                gradient[k] += p->s[(i + k) * p->size + j] * p->y[j];
+            }
+        }
+        tribo_disc_descend(p, i, gradient, p->y + i);
+    }
 }
 
 static int settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p))
@@ -157,23 +136,29 @@ static int settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p)
         }
         step(p);
     }
-    polish(p);
+    /* y is the solution but for rounding; steps that halve the distance may still improve it */
+    double before = HUGE_VAL;
+    while (p->residual > p->near_enough && p->residual < 0.5 * before) {
+        before = p->residual;
+        memcpy(p->best, p->y, p->size * sizeof *p->y);
+        step_newton(p);
+        look(p);
+    }
+    if (p->residual >= before) {
+        memcpy(p->y, p->best, p->size * sizeof *p->y);
+        look(p);
+    }
     return 1;
 }
 
-/* The nearest point of the set to y - gain gradient is the solution already where contacts do not feel each other. */
-static void begin(struct disc_qp *p)
+int tribo_disc_solve(struct disc_qp *p)
 {
+    /* contacts that do not couple: the point of the set nearest to y - gain gradient is the solution */
     p->sets = (struct sets){0};
     tribo_disc_gains(p);
     project(p, p->y, p->y, 1.0);
     look(p);
     project(p, p->to, p->to, 1.0);
-}
-
-int tribo_disc_solve(struct disc_qp *p)
-{
-    begin(p);
     if (settle(p, FROM_BEFORE, step_newton)) {
         return 1;
     }
@@ -186,10 +171,14 @@ int tribo_disc_solve(struct disc_qp *p)
 /* As stiff as that, in parts of s, is what takes y to the least norm. */
 #define SOFT 1e-6
 
-/* Newton's steps until one has moved y by so little that it was the last: where the rest is soft, distances are settled long
- * before y is. */
-static void come_to_rest(struct disc_qp *p)
+/* y = the solution with so much stiffness more. */
+static int solve_softly(struct disc_qp *p, double more)
 {
+    for (size_t i = 0; i < p->size; i++) {
+        p->s[i * (p->size + 1)] = p->diagonal[i] + more * p->weight[i] * p->weight[i];
+    }
+    const int done = tribo_disc_solve(p);
+    /* Newton's steps until one moves y by rounding only: in soft directions distances settle long before y does */
     double moved = 1.0;
     for (int round = 0; round < FROM_INTERIOR && moved > 1e-8; round++) {
         step_newton(p);
@@ -199,16 +188,6 @@ static void come_to_rest(struct disc_qp *p)
             moved = greater(moved, fabs(p->y[i] - p->from[i]));
         }
     }
-}
-
-/* y = the solution with so much stiffness more. */
-static int solve_softly(struct disc_qp *p, double more)
-{
-    for (size_t i = 0; i < p->size; i++) {
-        p->s[i * (p->size + 1)] = p->diagonal[i] + more * p->weight[i] * p->weight[i];
-    }
-    const int done = tribo_disc_solve(p);
-    come_to_rest(p);
     return done;
 }
 

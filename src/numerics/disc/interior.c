@@ -60,26 +60,6 @@ static double average(const struct disc_qp *p)
     return sum / count;
 }
 
-/* Returns what is next to nothing of room times press. */
-static double begin(struct disc_qp *p)
-{
-    double most = 0.0, stiffest = 0.0;
-    for (size_t i = 0; i < p->size; i++) {
-        p->y[i] = -0.5 * p->shift[i];
-    }
-    tribo_disc_gradients(p);
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        stiffest = greater(stiffest, 1.0 / lesser(p->gain[i], p->gain[i + p->wide[i] - 1]));
-        most = greater(most, greater(stiffest, tribo_length(p->wide[i], p->gradient + i)));
-    }
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        for (int d = 0; d < DISCS; d++) {
-            p->press[DISCS * i + (size_t)d] = most / room_of(p, i, d);
-        }
-    }
-    return NEXT_TO_NOTHING * stiffest;
-}
-
 /* step = the move towards room times press = aim. */
 static void find_step(struct disc_qp *p, double aim)
 {
@@ -133,27 +113,24 @@ static double longest_step(const struct disc_qp *p, double aim)
     return NEARLY * length;
 }
 
-/* y and press go by length along their steps. A press that is far from what its room asks for would let y cross the disc again
- * and again where nothing else holds it. */
-static void advance(struct disc_qp *p, double length, double aim)
-{
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        for (int d = 0; d < DISCS; d++) {
-            p->press[DISCS * i + (size_t)d] += length * press_step(p, i, d, aim);
-        }
-        for (size_t k = i; k < i + p->wide[i]; k++) {
-            p->y[k] += length * p->step[k];
-        }
-        for (int d = 0; d < DISCS; d++) {
-            const double press = aim / room_of(p, i, d);
-            p->press[DISCS * i + (size_t)d] = clamp(p->press[DISCS * i + (size_t)d], press / FAR_OFF, FAR_OFF * press);
-        }
-    }
-}
-
 void tribo_disc_interior(struct disc_qp *p)
 {
-    const double enough = begin(p);
+    /* complementarity that counts as zero */
+    double most = 0.0, stiffest = 0.0;
+    for (size_t i = 0; i < p->size; i++) {
+        p->y[i] = -0.5 * p->shift[i];
+    }
+    tribo_disc_gradients(p);
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        stiffest = greater(stiffest, 1.0 / lesser(p->gain[i], p->gain[i + p->wide[i] - 1]));
+        most = greater(most, greater(stiffest, tribo_length(p->wide[i], p->gradient + i)));
+    }
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        for (int d = 0; d < DISCS; d++) {
+            p->press[DISCS * i + (size_t)d] = most / room_of(p, i, d);
+        }
+    }
+    const double enough = NEXT_TO_NOTHING * stiffest;
     double length = 1.0;
     for (int round = 0; round < ROUNDS; round++) {
         const double product = average(p), aim = shrink(length) * product;
@@ -165,6 +142,18 @@ void tribo_disc_interior(struct disc_qp *p)
         if (!(length > 1e-12)) {
             break;
         }
-        advance(p, length, aim);
+        /* y and press go by length along their steps; a press far from its room's would let y cross the disc again and again */
+        for (size_t i = 0; i < p->size; i += p->wide[i]) {
+            for (int d = 0; d < DISCS; d++) {
+                p->press[DISCS * i + (size_t)d] += length * press_step(p, i, d, aim);
+            }
+            for (size_t k = i; k < i + p->wide[i]; k++) {
+                p->y[k] += length * p->step[k];
+            }
+            for (int d = 0; d < DISCS; d++) {
+                const double press = aim / room_of(p, i, d);
+                p->press[DISCS * i + (size_t)d] = clamp(p->press[DISCS * i + (size_t)d], press / FAR_OFF, FAR_OFF * press);
+            }
+        }
     }
 }

@@ -112,23 +112,6 @@ static int minimize_on_disc(const double *weight, const double *q, double *n)
     return mu > 0.0;
 }
 
-/* The corner at which the sum is least. */
-static void minimize_at_corner(const double *c, const double *weight, const double *q, double *y)
-{
-    double other[2], change = 0.0;
-    struct corner k = tribo_lens_corner(c, q);
-    corner_at(k, y);
-    k.side = -k.side;
-    corner_at(k, other);
-    for (int d = 0; d < 2; d++) {
-        change += (other[d] - y[d]) * (0.5 * weight[d] * (other[d] + y[d]) - q[d]);
-    }
-    if (change < 0.0) {
-        y[0] = other[0];
-        y[1] = other[1];
-    }
-}
-
 int tribo_lens_minimize(const double *c, const double *weight, const double *q, double *y)
 {
     const double shifted[2] = {q[0] + weight[0] * c[0], q[1] + weight[1] * c[1]}, square = c[0] * c[0] + c[1] * c[1];
@@ -149,6 +132,18 @@ int tribo_lens_minimize(const double *c, const double *weight, const double *q, 
         y[1] = m[1] - c[1];
         return LENS_ON_SHIFTED;
     }
-    minimize_at_corner(c, weight, q, y);
+    /* the corner with the least sum */
+    double other[2], change = 0.0;
+    struct corner k = tribo_lens_corner(c, q);
+    corner_at(k, y);
+    k.side = -k.side;
+    corner_at(k, other);
+    for (int d = 0; d < 2; d++) {
+        change += (other[d] - y[d]) * (0.5 * weight[d] * (other[d] + y[d]) - q[d]);
+    }
+    if (change < 0.0) {
+        y[0] = other[0];
+        y[1] = other[1];
+    }
     return LENS_AT_CORNER;
 }

@@ -86,16 +86,6 @@ void tribo_disc_gradients(struct disc_qp *p)
     }
 }
 
-/* What presses a contact against the rim that it is on: of y - gain gradient the part beyond the rim, over gain. */
-static double press_of(const struct disc_qp *p, size_t i)
-{
-    double sum = 0.0;
-    for (size_t k = i; k < i + p->wide[i]; k++) {
-        sum += p->outward[k] * ((p->y[k] - p->to[k]) / p->gain[k] - p->gradient[k]);
-    }
-    return greater(sum, 0.0);
-}
-
 /* The limit of direction i, 1, or what pulls at it if forces are far from limits. */
 static double unit_of(const struct disc_qp *p, size_t i)
 {
@@ -128,7 +118,12 @@ double tribo_disc_places(struct disc_qp *p)
             off[k] = p->to[i + k] - p->y[i + k];
             noise[k] = product(p->gain[i + k], p->noise[i + k]);
         }
-        p->curvature[i] = press_of(p, i);
+        /* pressure on the rim: the part of y - gain gradient beyond the rim, over gain */
+        double sum = 0.0;
+        for (size_t k = i; k < i + p->wide[i]; k++) {
+            sum += p->outward[k] * ((p->y[k] - p->to[k]) / p->gain[k] - p->gradient[k]);
+        }
+        p->curvature[i] = greater(sum, 0.0);
         double distance = tribo_length(p->wide[i], off);
         p->residual = greater(p->residual, distance);
         if (is_skew(p, i)) {
@@ -148,20 +143,6 @@ double tribo_disc_places(struct disc_qp *p)
 static void add_freedom(struct disc_qp *p, size_t at, double x, double y, double curvature)
 {
     p->freedom[p->freedoms++] = (struct freedom){at, {x, y}, curvature};
-}
-
-static void find_freedoms(struct disc_qp *p)
-{
-    p->freedoms = 0;
-    for (size_t i = 0; i < p->size; i += p->wide[i]) {
-        const int rim = p->place[i] == LENS_ON_DISC || p->place[i] == LENS_ON_SHIFTED;
-        for (size_t k = i; p->place[i] == LENS_INSIDE && k < i + p->wide[i]; k++) {
-            add_freedom(p, k, 1.0, 0.0, 0.0);
-        }
-        if (rim && p->wide[i] == 2) {
-            add_freedom(p, i, -p->outward[i + 1], p->outward[i], p->curvature[i]);
-        }
-    }
 }
 
 /* x [size] along a freedom. */
@@ -225,7 +206,16 @@ void tribo_disc_backsolve(struct disc_qp *p)
 void tribo_disc_linearize(struct disc_qp *p)
 {
     const size_t n = p->size;
-    find_freedoms(p);
+    p->freedoms = 0;
+    for (size_t i = 0; i < p->size; i += p->wide[i]) {
+        const int rim = p->place[i] == LENS_ON_DISC || p->place[i] == LENS_ON_SHIFTED;
+        for (size_t k = i; p->place[i] == LENS_INSIDE && k < i + p->wide[i]; k++) {
+            add_freedom(p, k, 1.0, 0.0, 0.0);
+        }
+        if (rim && p->wide[i] == 2) {
+            add_freedom(p, i, -p->outward[i + 1], p->outward[i], p->curvature[i]);
+        }
+    }
     for (size_t k = 0; k < p->freedoms; k++) {
         const struct freedom *e = &p->freedom[k];
         const double *row = p->s + e->at * n;
@@ -281,22 +271,18 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
     spread(p, pull, move);
 }
 
-/* d(corner) = -dc/2 + d(side height across), across = (-c_2, c_1)/|c|: the height falls as |c| grows, and across turns with c. */
-static void drag_corner(const struct disc_qp *p, size_t i, const double *dshift, double *dy)
-{
-    const struct corner k = tribo_lens_corner(p->shift + i, p->to + i);
-    const double *e = k.along, grows = e[0] * dshift[0] + e[1] * dshift[1], turns = e[0] * dshift[1] - e[1] * dshift[0];
-    const double falls = -0.5 * quotient(k.half, greater(k.height, DBL_MIN)) * grows, turn = k.height * turns / (2.0 * k.half);
-    dy[0] = -0.5 * dshift[0] - k.side * (falls * e[1] + turn * e[0]);
-    dy[1] = -0.5 * dshift[1] + k.side * (falls * e[0] - turn * e[1]);
-}
-
 void tribo_disc_drag(const struct disc_qp *p, size_t i, const double *dshift, double *dy)
 {
     for (size_t k = 0; k < p->wide[i]; k++) {
         dy[k] = p->place[i] == LENS_ON_SHIFTED ? -dshift[k] : 0.0;
     }
     if (p->place[i] == LENS_AT_CORNER) {
-        drag_corner(p, i, dshift, dy);
+        /* d(corner) = -dc/2 + d(side height across), across = (-c_2, c_1)/|c|: the height falls as |c| grows, and across turns with c. */
+        const struct corner k = tribo_lens_corner(p->shift + i, p->to + i);
+        const double *e = k.along, grows = e[0] * dshift[0] + e[1] * dshift[1], turns = e[0] * dshift[1] - e[1] * dshift[0];
+        const double falls = -0.5 * quotient(k.half, greater(k.height, DBL_MIN)) * grows,
+                     turn = k.height * turns / (2.0 * k.half);
+        dy[0] = -0.5 * dshift[0] - k.side * (falls * e[1] + turn * e[0]);
+        dy[1] = -0.5 * dshift[1] + k.side * (falls * e[0] - turn * e[1]);
     }
 }
