@@ -123,7 +123,7 @@ TRIBO_SIMD static void update_rest(const struct fronts *f, size_t begin, size_t 
     }
 }
 
-static int eliminate(struct fronts *f, size_t columns, size_t rows, const size_t *row)
+static int multifrontal_eliminate(struct fronts *f, size_t columns, size_t rows, const size_t *row)
 {
     for (size_t begin = 0; begin < columns; begin += PANEL) {
         const size_t end = begin + PANEL < columns ? begin + PANEL : columns;
@@ -149,7 +149,7 @@ static void add_entries(struct fronts *f, size_t g)
 }
 
 /* Adds what group g has left to the front at hand, and frees it. */
-static void add_rest(struct fronts *f, size_t g)
+static void multifrontal_add_rest(struct fronts *f, size_t g)
 {
     const size_t columns = columns_of(f->s, g), rows = rows_of(f->s, g) - columns;
     const size_t *row = f->s->row + f->s->begin[g] + columns;
@@ -193,9 +193,9 @@ static int do_group(struct fronts *f, size_t g)
     memset(f->x, 0, (rows + TALL) * f->stride * sizeof *f->x);
     add_entries(f, g);
     for (size_t c = f->child[g]; c < f->s->count; c = f->rest[c].next) {
-        add_rest(f, c);
+        multifrontal_add_rest(f, c);
     }
-    return !eliminate(f, columns, rows, row) ? TRIBO_ERR_INDEFINITE : leave_rest(f, g) ? TRIBO_OK : TRIBO_ERR_MEMORY;
+    return !multifrontal_eliminate(f, columns, rows, row) ? TRIBO_ERR_INDEFINITE : leave_rest(f, g) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------- all */

@@ -52,7 +52,7 @@ static cholmod_sparse view_of(const struct matrix *a)
                             .packed = 1};
 }
 
-static void start(cholmod_common *common)
+static void sparse_factor_start(cholmod_common *common)
 {
     cholmod_l_start(common);
     common->print = 0;
@@ -85,7 +85,7 @@ static cholmod_sparse view_to_spend(const struct matrix *a, struct matrix *spent
 
 /* NULL with common->status if out of memory; a factor that stops at row l->minor if a pivot says so. cholmod_l_factorize would
  * make the half of a, too, but keep all of a beside it. */
-static cholmod_factor *factorize(const struct matrix *a, struct matrix *spent, cholmod_common *common)
+static cholmod_factor *sparse_factor_factorize(const struct matrix *a, struct matrix *spent, cholmod_common *common)
 {
     double nothing[2] = {0.0, 0.0};
     cholmod_sparse view = view_to_spend(a, spent);
@@ -104,7 +104,7 @@ static size_t given_row(const cholmod_factor *l, size_t row)
 }
 
 /* Makes the room of count vectors. 0 if out of memory; cholmod_l_solve2 makes it, too, but goes on without work[0]. */
-static int reserve(struct sparse_factor *f, struct room *room, size_t count)
+static int sparse_factor_reserve(struct sparse_factor *f, struct room *room, size_t count)
 {
     const size_t n = f->l->n, most = f->l->maxesize;
     return cholmod_l_ensure_dense(&room->solution, n, count, n, CHOLMOD_REAL, &f->common) &&
@@ -112,13 +112,13 @@ static int reserve(struct sparse_factor *f, struct room *room, size_t count)
            cholmod_l_ensure_dense(&room->work[1], count, most, count, CHOLMOD_REAL, &f->common);
 }
 
-static int solve(struct sparse_factor *f, int what, size_t count, double *x)
+static int sparse_factor_solve(struct sparse_factor *f, int what, size_t count, double *x)
 {
     const size_t n = f->l->n;
     cholmod_dense b = {
         .nrow = n, .ncol = count, .nzmax = n * count, .d = n, .x = x, .xtype = CHOLMOD_REAL, .dtype = CHOLMOD_DOUBLE};
     struct room *room = count == 1 ? &f->one : &f->many;
-    if (!reserve(f, room, count) ||
+    if (!sparse_factor_reserve(f, room, count) ||
         !cholmod_l_solve2(what, f->l, &b, NULL, &room->solution, NULL, &room->work[0], &room->work[1], &f->common)) {
         return 0;
     }
@@ -127,10 +127,10 @@ static int solve(struct sparse_factor *f, int what, size_t count, double *x)
 }
 
 /* Makes the room that single solves take: after this they cannot fail. */
-static int prepare(struct sparse_factor *f)
+static int sparse_factor_prepare(struct sparse_factor *f)
 {
     f->column = f->column ? f->column : calloc(f->l->n + 1, sizeof *f->column);
-    return f->column && solve(f, CHOLMOD_A, 1, f->column);
+    return f->column && sparse_factor_solve(f, CHOLMOD_A, 1, f->column);
 }
 
 int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matrix *a, struct matrix *spent, size_t *where)
@@ -139,10 +139,10 @@ int tribo_sparse_factor_create(struct sparse_factor **factor, const struct matri
     if (!f) {
         return TRIBO_ERR_MEMORY;
     }
-    start(&f->common);
-    f->l = factorize(a, spent, &f->common);
+    sparse_factor_start(&f->common);
+    f->l = sparse_factor_factorize(a, spent, &f->common);
     int status = status_of(&f->common);
-    status = status || (f->l && prepare(f)) ? status : TRIBO_ERR_MEMORY;
+    status = status || (f->l && sparse_factor_prepare(f)) ? status : TRIBO_ERR_MEMORY;
     if (status) {
         *where = f->l ? given_row(f->l, f->l->minor) : 0;
         tribo_sparse_factor_free(f);
@@ -160,10 +160,10 @@ int tribo_sparse_factor_copy(struct sparse_factor **factor, const struct sparse_
     }
     struct sparse_factor *f = calloc(1, sizeof *f);
     if (f) {
-        start(&f->common);
+        sparse_factor_start(&f->common);
         f->l = cholmod_l_copy_factor(from->l, &f->common);
     }
-    if (!f || !f->l || !prepare(f)) {
+    if (!f || !f->l || !sparse_factor_prepare(f)) {
         tribo_sparse_factor_free(f);
         return 0;
     }
@@ -197,7 +197,7 @@ size_t tribo_sparse_factor_entries(const struct sparse_factor *f)
 
 int tribo_sparse_factor_solve(struct sparse_factor *f, size_t count, double *x)
 {
-    return solve(f, CHOLMOD_A, count, x);
+    return sparse_factor_solve(f, CHOLMOD_A, count, x);
 }
 
 /* One column after the other of x [n][cols]: first one part of the factor, then the other. */
@@ -207,8 +207,8 @@ static void solve_columns(struct sparse_factor *f, int first, int second, double
         for (size_t i = 0; i < f->l->n; i++) {
             f->column[i] = x[i * cols + j];
         }
-        solve(f, first, 1, f->column);
-        solve(f, second, 1, f->column);
+        sparse_factor_solve(f, first, 1, f->column);
+        sparse_factor_solve(f, second, 1, f->column);
         for (size_t i = 0; i < f->l->n; i++) {
             x[i * cols + j] = f->column[i];
         }
@@ -230,7 +230,7 @@ int tribo_sparse_inertia(const struct sparse_factor *like, const struct matrix *
 {
     cholmod_common common;
     cholmod_sparse view = view_to_spend(a, spent);
-    start(&common);
+    sparse_factor_start(&common);
     cholmod_factor *own = like ? NULL : cholmod_l_analyze(&view, &common);
     const cholmod_factor *l = like ? like->l : own;
     cholmod_sparse *half = half_of(&view, spent, l, &common);

@@ -317,7 +317,7 @@ static int find_column(const tribo_context *ctx, const struct solver *m, size_t 
 }
 
 /* a, of which j rows are there, gets room for so many entries. */
-static int make_room(struct csr *a, size_t j, size_t room)
+static int input_make_room(struct csr *a, size_t j, size_t room)
 {
     struct csr more;
     if (!tribo_csr_create(&more, a->n, room)) {
@@ -337,7 +337,7 @@ static int append_column(struct csr *a, size_t *room, size_t j, const double *co
     const size_t n = a->n;
     if (*room - a->first[j] < n) {
         const size_t more = 2 * *room + n;
-        if (!make_room(a, j, more)) {
+        if (!input_make_room(a, j, more)) {
             return 0;
         }
         *room = more;

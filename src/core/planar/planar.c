@@ -42,8 +42,8 @@ int tribo_plane_create(struct plane *plane, const struct planar *planar, size_t 
     }
     plane->near = malloc((planar->largest + 1) * sizeof *plane->near);
     plane->y = calloc(VECTORS * (n + 1), sizeof *plane->y);
-    double **const vector[VECTORS] = {&plane->y, &plane->v, &plane->a, &plane->unit, &plane->df, &plane->other, &plane->dlimit,
-                                      &plane->radius, &plane->pull, &plane->shift};
+    double **const vector[VECTORS] = {&plane->y,     &plane->v,      &plane->a,      &plane->unit, &plane->df,
+                                      &plane->other, &plane->dlimit, &plane->radius, &plane->pull, &plane->shift};
     for (size_t k = 1; plane->y && k < VECTORS; k++) {
         *vector[k] = plane->y + k * (n + 1);
     }
@@ -66,7 +66,7 @@ void tribo_plane_free(struct plane *plane)
 
 /* -------------------------------------------------------------------------------------------------------- clusters */
 
-static size_t root_of(size_t *parent, size_t i)
+static size_t planar_root_of(size_t *parent, size_t i)
 {
     while (parent[i] != i) {
         parent[i] = parent[parent[i]];
@@ -75,9 +75,9 @@ static size_t root_of(size_t *parent, size_t i)
     return i;
 }
 
-static void join(size_t *parent, size_t i, size_t j)
+static void planar_join(size_t *parent, size_t i, size_t j)
 {
-    const size_t p = root_of(parent, i), q = root_of(parent, j);
+    const size_t p = planar_root_of(parent, i), q = planar_root_of(parent, j);
     parent[p > q ? p : q] = p > q ? q : p;
 }
 
@@ -91,14 +91,14 @@ static size_t find_parents(const struct planar *c, const struct delassus *op, si
     for (size_t g = 0; g < op->groups; g++) {
         const size_t *member = op->member + op->group[g].first;
         for (size_t k = 1; k < op->group[g].size; k++) {
-            join(parent, member[0], member[k]);
+            planar_join(parent, member[0], member[k]);
         }
     }
     for (size_t k = 0; k < c->count; k++) {
-        join(parent, c->first[k], c->first[k] + 1);
+        planar_join(parent, c->first[k], c->first[k] + 1);
     }
     for (size_t i = 0; i < n; i++) {
-        parent[i] = root_of(parent, i);
+        parent[i] = planar_root_of(parent, i);
         islands += parent[i] == i;
     }
     return islands;
@@ -160,8 +160,8 @@ static void fill_groups(struct planar *c, const struct delassus *op, struct memo
     }
 }
 
-static void fill_rows(struct planar *c, const struct delassus *op, struct memory *m, size_t n, const size_t *label,
-                      const size_t *place)
+static void planar_fill_rows(struct planar *c, const struct delassus *op, struct memory *m, size_t n, const size_t *label,
+                             const size_t *place)
 {
     fill_groups(c, op, m, label, place);
     for (size_t i = 0; i < n; i++) {
@@ -199,7 +199,7 @@ static int find_clusters(struct planar *c, size_t n, const struct delassus *op, 
     }
     c->r = status ? NULL : calloc(entries, sizeof *c->r);
     if (c->r) {
-        fill_rows(c, op, m, n, work + n, work + 2 * n);
+        planar_fill_rows(c, op, m, n, work + n, work + 2 * n);
     }
     free(work);
     return status || c->r ? status : TRIBO_ERR_MEMORY;

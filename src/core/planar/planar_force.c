@@ -16,7 +16,7 @@
 /* --------------------------------------------------------------------------------------------------------- clusters */
 
 /* Takes the direction at place k into the problem; directions: 1, or of a pair 2 and 0. */
-static void take(tribo_context *ctx, size_t k, size_t directions, double shift)
+static void planar_force_take(tribo_context *ctx, size_t k, size_t directions, double shift)
 {
     struct disc_qp *p = &ctx->plane.problem;
     ctx->plane.shift[p->size] = shift;
@@ -31,7 +31,7 @@ static void take_pair(tribo_context *ctx, size_t k, size_t i, const double *shif
     const int both = bound[0] > 0.0 && bound[1] > 0.0;
     for (size_t d = 0; d < 2; d++) {
         if (bound[d] > 0.0) {
-            take(ctx, k + d, both ? 2 - 2 * d : 1, shift[d]);
+            planar_force_take(ctx, k + d, both ? 2 - 2 * d : 1, shift[d]);
         } else {
             ctx->last.f[i + d] = 0.0;
         }
@@ -44,7 +44,7 @@ static void take_scalar(tribo_context *ctx, size_t k, size_t i, double v)
     const struct law *law = ctx->set.law;
     const struct contacts *c = &ctx->follow.contacts;
     if (tribo_scalar_near(law, c, i, v)) {
-        take(ctx, k, 1, law->relaxes ? 2.0 * quotient(v, tribo_epsilon_of(c, i)) : 0.0);
+        planar_force_take(ctx, k, 1, law->relaxes ? 2.0 * quotient(v, tribo_epsilon_of(c, i)) : 0.0);
     } else if (law->uses_feq && ctx->last.did.of[i] == STORED) {
         ctx->last.f[i] = sliding(v, c->limit[i]);
     }
@@ -142,7 +142,7 @@ static void pose_cluster(tribo_context *ctx, const struct cluster *g)
         }
     }
     for (size_t e = 0; e < n; e += p->wide[e]) {
-                const double length = tribo_length(p->wide[e], ctx->plane.pull + e);
+        const double length = tribo_length(p->wide[e], ctx->plane.pull + e);
         const double size = lesser(quotient(quotient(length, u.r), u.force), HARDEST);
         for (size_t k = e; k < e + p->wide[e]; k++) {
             p->pull[k] = length > 0.0 ? p->weight[k] * (ctx->plane.pull[k] / length) * size : 0.0;
@@ -175,7 +175,7 @@ void tribo_planar_resume(tribo_context *ctx, const struct cluster *g, const doub
 /* Forces that miss their balance by more than this part of a reach are none. */
 #define TOO_FAR 1e-6
 
-static int solve(tribo_context *ctx, const struct cluster *g)
+static int planar_force_solve(tribo_context *ctx, const struct cluster *g)
 {
     struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, *near = ctx->plane.near;
@@ -212,7 +212,7 @@ static int solve_all(tribo_context *ctx, const struct cluster *g, double dt, con
         do {
             tribo_planar_arrange(ctx, g);
             pose_cluster(ctx, g);
-            status = solve(ctx, g);
+            status = planar_force_solve(ctx, g);
         } while (!status && ctx->plane.cuts && tribo_planar_widen(ctx, g));
     } while (!status && ctx->set.breaking && tribo_planar_break(ctx, g, dt, a));
     ctx->plane.solved++;
@@ -328,7 +328,7 @@ static int collect_free(tribo_context *ctx, const struct cluster *g, const signe
         if (role == ROLE_FIRST) {
             take_pair(ctx, k, i, none);
         } else if (role == ROLE_SCALAR && limit[i] > 0.0 && !(known && known[i])) {
-            take(ctx, k, 1, 0.0);
+            planar_force_take(ctx, k, 1, 0.0);
         }
     }
     return p->size > 0;

@@ -70,8 +70,10 @@ static int all_ask(const tribo_context *ctx, const struct cluster *g)
 {
     const size_t n = ctx->plane.problem.size, *near = ctx->plane.near, *member = ctx->planar->member + g->member;
     size_t k = 0;
-    while (k < n && product(ctx->follow.contacts.bound[member[near[k]]], ctx->planar->r[g->r + near[k] * (g->size + 1)]) <=
-                        AMPLE * fabs(ctx->plane.pull[k]) && !tribo_planar_cut(ctx, member[near[k]])) {
+    while (k < n &&
+           product(ctx->follow.contacts.bound[member[near[k]]], ctx->planar->r[g->r + near[k] * (g->size + 1)]) <=
+               AMPLE * fabs(ctx->plane.pull[k]) &&
+           !tribo_planar_cut(ctx, member[near[k]])) {
         k++;
     }
     return k == n;
@@ -168,7 +170,7 @@ void tribo_planar_estimate(tribo_context *ctx, const struct cluster *g)
 
 /* Whether the direction at e of the problem is on the rim of its limit, and that bends so much that the direction at other cannot
  * be loose. */
-static int bends(const tribo_context *ctx, const struct cluster *g, size_t e, size_t other)
+static int planar_reach_bends(const tribo_context *ctx, const struct cluster *g, size_t e, size_t other)
 {
     const struct disc_qp *p = &ctx->plane.problem;
     const size_t *member = ctx->planar->member + g->member, i = member[ctx->plane.near[e]], j = member[ctx->plane.near[other]];
@@ -192,7 +194,7 @@ size_t tribo_planar_widen(tribo_context *ctx, const struct cluster *g)
             wanted[d] = beyond ? product(AMPLE, ctx->plane.radius[i]) : ctx->plane.radius[i];
             out |= beyond;
         }
-        if (p->wide[e] < count && (bends(ctx, g, e, e + 1) || bends(ctx, g, e + 1, e))) {
+        if (p->wide[e] < count && (planar_reach_bends(ctx, g, e, e + 1) || planar_reach_bends(ctx, g, e + 1, e))) {
             wanted[0] = wanted[1] = HUGE_VAL;
             out = 1;
         }

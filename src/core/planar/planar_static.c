@@ -86,7 +86,7 @@ static void find_ends(tribo_context *ctx, const struct cluster *g, double dt, co
 }
 
 /* The limits by which the contact at i, of 1 or 2 directions, slides; returns whether they have fallen. */
-static int let_go(tribo_context *ctx, size_t i, size_t directions)
+static int planar_static_let_go(tribo_context *ctx, size_t i, size_t directions)
 {
     const double speed = tribo_length((int)directions, ctx->plane.v + i);
     int fallen = 0;
@@ -116,7 +116,7 @@ size_t tribo_planar_break(tribo_context *ctx, const struct cluster *g, double dt
         const size_t k = member[ctx->plane.near[e]], i = k - (ctx->planar->role[k] == ROLE_SECOND);
         const size_t directions = ctx->planar->role[k] == ROLE_SCALAR ? 1 : 2;
         if (p->place[e] != LENS_INSIDE && holds(ctx, i, directions) && pulled_beyond(p, e)) {
-            broken += (size_t)let_go(ctx, i, directions);
+            broken += (size_t)planar_static_let_go(ctx, i, directions);
         }
     }
     return broken;

@@ -76,7 +76,7 @@ struct turn {
     double v[2], limit[2], epsilon;
 };
 
-static struct turn turn_of(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
+static struct turn planar_tangent_turn_of(const tribo_context *ctx, size_t i, const struct slide *s, const struct change *d)
 {
     const struct contacts *c = &ctx->follow.contacts;
     struct turn t = {{tribo_entry(d->v, i), tribo_entry(d->v, i + 1)},
@@ -135,7 +135,7 @@ static void products_of_slips(const tribo_context *ctx, const struct cluster *g,
         if (ctx->planar->role[i] == ROLE_FIRST) {
             const struct contacts *c = &ctx->follow.contacts;
             const struct slide s = tribo_planar_slide(c, i, ctx->plane.v + i);
-            const struct turn t = turn_of(ctx, i, &s, by_v);
+            const struct turn t = planar_tangent_turn_of(ctx, i, &s, by_v);
             turn_force(ctx->set.law, &s, c->limit + i, ctx->plane.v + i, &t, df + i);
         } else if (ctx->planar->role[i] == ROLE_SCALAR) {
             const struct tangent *law = &ctx->last.tangent[i];
@@ -160,7 +160,7 @@ static void shift_change(const tribo_context *ctx, const size_t *member, size_t 
     double change[2] = {0.0, 0.0}, epsilon = 0.0;
     if (ctx->set.law->relaxes && ctx->planar->role[i] != ROLE_SCALAR) {
         const struct slide s = tribo_planar_slide(c, first, ctx->plane.v + first);
-        const struct turn t = turn_of(ctx, first, &s, d);
+        const struct turn t = planar_tangent_turn_of(ctx, first, &s, d);
         turn_shift(&s, c->limit + first, ctx->plane.v + first, &t, change);
         epsilon = t.epsilon;
     } else if (ctx->set.law->relaxes) {

@@ -301,7 +301,7 @@ static double work(void *motion, size_t i, double tau)
 
 /* --------------------------------------------------------------------------------------------------------- the driver */
 
-static void destroy(tribo_driver *drv)
+static void method_exact_destroy(tribo_driver *drv)
 {
     struct exact *x = drv->own;
     if (x) {
@@ -332,7 +332,7 @@ static int check_system(const tribo_system *sys)
                                                   i);
 }
 
-static int create(tribo_driver *drv)
+static int method_exact_create(tribo_driver *drv)
 {
     const int unsupported = check_system(drv->sys);
     if (unsupported) {
@@ -387,11 +387,6 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
     return TRIBO_OK;
 }
 
-const struct method tribo_method_exact = {"exact",
-                                          WITHOUT_TOLERANCES,
-                                          create,
-                                          destroy,
-                                          tribo_events_method,
-                                          NULL,
-                                          method_exact_open_events,
-                                          tribo_events_find_periodic};
+const struct method tribo_method_exact = {
+    "exact", WITHOUT_TOLERANCES,       method_exact_create,       method_exact_destroy, tribo_events_method,
+    NULL,    method_exact_open_events, tribo_events_find_periodic};

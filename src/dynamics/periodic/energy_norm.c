@@ -40,7 +40,7 @@ static void add_followers(const tribo_system *sys, double factor, double *x)
 }
 
 /* rate = phi'M, and psi. */
-static void weigh(struct energy_norm *e, const tribo_system *sys)
+static void energy_norm_weigh(struct energy_norm *e, const tribo_system *sys)
 {
     const size_t n = e->n;
     double *mode = e->omega; /* not set yet */
@@ -77,7 +77,7 @@ static int find(struct energy_norm *e, const tribo_system *sys, double *k)
         return TRIBO_ERR_MEMORY;
     }
     tribo_half_solve_back(&sys->factor, e->phi, n);
-    weigh(e, sys);
+    energy_norm_weigh(e, sys);
     if (sys->massless.count) {
         add_followers(sys, -1.0, e->psi);
     }

@@ -19,17 +19,17 @@
 /* Sizes between this and one over it have squares that are numbers, and so have those of what is far smaller or larger. */
 #define LARGE 1e100
 
-static double turn(void)
+static double period_map_turn(void)
 {
     return 2.0 * acos(-1.0);
 }
 
-static double length(const double *x, size_t n)
+static double period_map_length(const double *x, size_t n)
 {
     return sqrt(tribo_dot(x, x, n));
 }
 
-static double distance(const double *a, const double *b, size_t n)
+static double period_map_distance(const double *a, const double *b, size_t n)
 {
     double square = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -66,7 +66,7 @@ static int phase_ends(struct company *company, double tau, double t, const doubl
 {
     struct period_map *m = of_company(company);
     tribo_period_map_coordinates(m, y, m->x);
-    m->size = greater(m->size, length(m->x, m->n));
+    m->size = greater(m->size, period_map_length(m->x, m->n));
     return m->variation.company.ends(&m->variation.company, tau, t, y);
 }
 
@@ -77,7 +77,7 @@ static void event_decided(struct company *company)
 }
 
 /* m->y from t to end, unseen by the driver's observer, after which the driver begins anew. */
-static int integrate(struct period_map *m, double t, double end, struct company *company)
+static int period_map_integrate(struct period_map *m, double t, double end, struct company *company)
 {
     tribo_driver *drv = m->drv;
     int (*const seen)(double, const double *, int, void *) = drv->seen;
@@ -106,7 +106,7 @@ int tribo_period_map_replay(struct period_map *m, const double *y, struct compan
 {
     const int status = m->drv->method->open(m->drv, &m->events);
     memcpy(m->y, y, m->n * sizeof *y);
-    return status ? status : integrate(m, m->t, m->t + m->period, company);
+    return status ? status : period_map_integrate(m, m->t, m->t + m->period, company);
 }
 
 int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
@@ -114,7 +114,7 @@ int tribo_period_map_march(struct period_map *m, size_t periods, double *x)
     int status = TRIBO_OK;
     set_state(m, x);
     for (size_t k = 0; !status && k < periods; k++) {
-        status = integrate(m, m->t, m->t + m->period, NULL);
+        status = period_map_integrate(m, m->t, m->t + m->period, NULL);
     }
     tribo_period_map_coordinates(m, m->y, x);
     return status;
@@ -189,8 +189,8 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     memcpy(p->y, m->y, n * sizeof *p->y);
     tribo_period_map_coordinates(m, m->y, p->x);
     tribo_variation_begin(&m->variation, m->probe, p->derivative);
-    m->size = greater(m->least, length(p->x, n));
-    status = status ? status : integrate(m, m->t, m->t + m->span, &m->company);
+    m->size = greater(m->least, period_map_length(p->x, n));
+    status = status ? status : period_map_integrate(m, m->t, m->t + m->span, &m->company);
     status = status ? status : on_driver(m, m->variation.status);
     if (status) {
         return status;
@@ -199,7 +199,7 @@ int tribo_period_map_follow(struct period_map *m, struct point *p)
     memcpy(p->end, m->y, n * sizeof *p->end);
     tribo_period_map_coordinates(m, m->y, p->image);
     set_image(m->odd, n, p->image);
-    p->residual = distance(p->image, p->x, n);
+    p->residual = period_map_distance(p->image, p->x, n);
     p->size = m->size;
     p->odd = m->odd;
     p->torn = m->variation.torn;
@@ -254,9 +254,9 @@ int tribo_period_map_complete(struct period_map *m, struct point *p, double *res
         return TRIBO_OK;
     }
     memcpy(m->y, p->end, m->n * sizeof *m->y);
-    const int status = integrate(m, m->t + m->span, m->t + m->period, NULL);
+    const int status = period_map_integrate(m, m->t + m->span, m->t + m->period, NULL);
     tribo_period_map_coordinates(m, m->y, m->x);
-    *residual = distance(m->x, p->x, m->n);
+    *residual = period_map_distance(m->x, p->x, m->n);
     return status;
 }
 
@@ -267,7 +267,7 @@ static int is_odd(const tribo_system *sys, double period)
 {
     for (size_t k = 0; k < sys->harmonics; k++) {
         const struct harmonic *w = &sys->harmonic[k];
-        const double order = round(fabs(w->omega) * period / turn());
+        const double order = round(fabs(w->omega) * period / period_map_turn());
         if (w->count > 0 && fmod(order, 2.0) != (w->drives == DRIVES_LIMIT ? 0.0 : 1.0)) {
             return 0;
         }
@@ -357,7 +357,7 @@ int tribo_period_map_prepare(struct period_map *m, double t, double period, cons
         }
     }
     if (!status && m->period != period) {
-        tribo_energy_norm_set_least(&m->norm, LEAST_OMEGA * turn() / period);
+        tribo_energy_norm_set_least(&m->norm, LEAST_OMEGA * period_map_turn() / period);
         m->period = period;
         status = prepare_probes(m);
     }

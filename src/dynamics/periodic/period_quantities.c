@@ -18,7 +18,7 @@ struct replay {
     double *sum;          /* [ncontact] */
 };
 
-static int no_memory(const struct replay *r)
+static int period_quantities_no_memory(const struct replay *r)
 {
     return tribo_system_fail(r->map->sys, TRIBO_ERR_MEMORY, "out of memory for a phase of the period");
 }
@@ -78,7 +78,9 @@ static int check_combination(tribo_driver *drv, const double *c)
 static int find_extremes(struct replay *r, double tau, const double *end)
 {
     const int status = set_signal(r, tau, end);
-    return status || tribo_signal_extremes(&r->signal, &r->slope, r->map->t + r->elapsed, &r->extremes) ? status : no_memory(r);
+    return status || tribo_signal_extremes(&r->signal, &r->slope, r->map->t + r->elapsed, &r->extremes)
+               ? status
+               : period_quantities_no_memory(r);
 }
 
 int tribo_driver_period_extremes_at(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
@@ -164,7 +166,7 @@ static int add_energy(struct replay *r, double tau, const double *end)
     return TRIBO_OK;
 }
 
-static int add_rest(struct replay *r, double tau, const double *end)
+static int period_quantities_add_rest(struct replay *r, double tau, const double *end)
 {
     (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
@@ -200,5 +202,5 @@ int tribo_driver_period_dissipation(tribo_driver *drv, double *energy)
 
 int tribo_driver_period_stick(tribo_driver *drv, double *share)
 {
-    return sum_up(drv, "share", add_rest, share);
+    return sum_up(drv, "share", period_quantities_add_rest, share);
 }

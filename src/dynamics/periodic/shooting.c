@@ -76,12 +76,12 @@
 /* A guess that is so much of the motion's size away from the odd one, along the family, is meant. */
 #define MEANT 0.1
 
-static double length(const double *x, size_t n)
+static double shooting_length(const double *x, size_t n)
 {
     return sqrt(tribo_dot(x, x, n));
 }
 
-static int no_memory(const struct shooting *s)
+static int shooting_no_memory(const struct shooting *s)
 {
     return tribo_driver_fail(s->map.drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
                              s->map.sys->ndof, plural(s->map.sys->ndof));
@@ -100,7 +100,7 @@ static int close_enough(const struct point *p, double part)
     return comes_back(p->residual, p->size, part);
 }
 
-static void exchange(struct shooting *s)
+static void shooting_exchange(struct shooting *s)
 {
     const struct point p = s->here;
     s->here = s->there;
@@ -122,9 +122,9 @@ static void copy_point(const struct shooting *s, struct point *to, const struct 
 }
 
 /* Goes there, and begins anew from there. */
-static void settle(struct shooting *s)
+static void shooting_settle(struct shooting *s)
 {
-    exchange(s);
+    shooting_exchange(s);
     copy_point(s, &s->best, &s->here);
     s->astray = 0;
 }
@@ -244,7 +244,7 @@ static int newton_step(struct shooting *s, double shift)
         return TRIBO_OK;
     }
     set_matrix(s, derivative, shift);
-    return tribo_least_norm_solve(s->a, n, CUT, s->step, NULL) ? TRIBO_OK : no_memory(s);
+    return tribo_least_norm_solve(s->a, n, CUT, s->step, NULL) ? TRIBO_OK : shooting_no_memory(s);
 }
 
 /* s->there = s->here and part of the step. */
@@ -276,7 +276,7 @@ static int newton(struct shooting *s)
     const int to_double = s->rate > DOUBLE_FROM && s->rate < DOUBLE_TO;
     const int status = newton_step(s, 0.0);
     s->map.drv->newton++;
-    if (!status && length(s->step, s->map.n) < FLAT * s->here.residual) {
+    if (!status && shooting_length(s->step, s->map.n) < FLAT * s->here.residual) {
         return stride(s);
     }
     s->stride = 0.0;
@@ -286,7 +286,7 @@ static int newton(struct shooting *s)
 /* Looks for a shorter step, whose ratio for part 1 is known, between low and high; with a shift, or without. */
 static int shorten(struct shooting *s, int shifted)
 {
-    const double whole = length(s->step, s->map.n);
+    const double whole = shooting_length(s->step, s->map.n);
     double low = 0.0, high = 1.0, at_low = 1.0, at_high = s->first;
     int status = TRIBO_OK;
     for (int k = 0; !status && k < MOST_TRIALS; k++) {
@@ -310,24 +310,24 @@ static int proceed(struct shooting *s)
 {
     s->rate = 0.0;
     if (s->there.residual < PAYS * s->best.residual) {
-        settle(s);
+        shooting_settle(s);
         s->rate = s->stride > 0.0 ? 0.0 : s->ratio;
         return TRIBO_OK;
     }
     if (s->stride > 0.0 && s->ratio > 0.0) {
-        settle(s);
+        shooting_settle(s);
         return TRIBO_OK;
     }
     s->first = s->astray ? s->first : s->ratio;
     if (s->astray < MOST_ASTRAY && s->ratio > -TOO_FAR) {
         s->astray++;
-        exchange(s);
+        shooting_exchange(s);
         return TRIBO_OK;
     }
     const int shifted = s->setbacks++ % 2 == 0;
     copy_point(s, &s->here, &s->best);
     int status = newton_step(s, 0.0);
-    if (!status && length(s->step, s->map.n) > 0.0) {
+    if (!status && shooting_length(s->step, s->map.n) > 0.0) {
         status = shorten(s, shifted);
     }
     if (!status && shifted && !(s->there.residual < PAYS * s->best.residual)) {
@@ -336,7 +336,7 @@ static int proceed(struct shooting *s)
         status = tribo_period_map_follow(&s->map, &s->there);
     }
     if (!status) {
-        settle(s);
+        shooting_settle(s);
     }
     return status;
 }
@@ -429,7 +429,7 @@ static int find_family(struct shooting *s, double *move)
     tribo_multiply_add(n, n, 1, 1.0, s->a, move, s->step);
     if (!tribo_least_norm_solve(s->a, n, FREE, s->step, &s->freedom)) {
         s->freedom = UNKNOWN;
-        return no_memory(s);
+        return shooting_no_memory(s);
     }
     tribo_add(move, -1.0, s->step, n);
     return TRIBO_OK;
@@ -460,10 +460,10 @@ static int stay_in_family(struct shooting *s, double *move)
 static int approach_guess(struct shooting *s)
 {
     const size_t n = s->map.n;
-    const int any = s->map.odd && length(s->guess, n) > 0.0;
+    const int any = s->map.odd && shooting_length(s->guess, n) > 0.0;
     tribo_add(s->guess, -1.0, s->best.x, n);
-    int status = any && length(s->guess, n) >= MEANT * s->best.size ? stay_in_family(s, s->guess) : TRIBO_OK;
-    if (status || !any || length(s->guess, n) < MEANT * s->best.size) {
+    int status = any && shooting_length(s->guess, n) >= MEANT * s->best.size ? stay_in_family(s, s->guess) : TRIBO_OK;
+    if (status || !any || shooting_length(s->guess, n) < MEANT * s->best.size) {
         return status;
     }
     tribo_period_map_choose(&s->map, 0);
@@ -528,7 +528,7 @@ static int no_convergence(const struct shooting *s, double residual)
         0.5 * (double)s->map.halves, residual);
 }
 
-static int find(struct shooting *s, double *y)
+static int shooting_find(struct shooting *s, double *y)
 {
     double residual = 0.0;
     tribo_period_map_coordinates(&s->map, y, s->here.x);
@@ -557,7 +557,7 @@ int tribo_shooting_find(struct shooting *s, double t, double period, double *y)
     s->found = 0;
     s->freedom = UNKNOWN;
     int status = tribo_period_map_prepare(&s->map, t, period, y);
-    status = status ? status : find(s, y);
+    status = status ? status : shooting_find(s, y);
     drv->periods += (s->map.halves + 1) / 2;
     return status;
 }

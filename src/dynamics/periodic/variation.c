@@ -80,7 +80,7 @@ static int find_pull(struct variation *x)
 }
 
 /* Whether a static limit is what ends the phase. */
-static int breaks_away(const struct variation *x)
+static int variation_breaks_away(const struct variation *x)
 {
     const struct guard *g = x->events->met;
     const struct stick_slip *m = &x->events->stick_slip;
@@ -94,7 +94,7 @@ static void find_met(struct variation *x)
     const struct stick_slip *m = &x->events->stick_slip;
     x->count = 0;
     memset(x->side, 0, x->sys->ncontact);
-    if (!breaks_away(x)) {
+    if (!variation_breaks_away(x)) {
         return;
     }
     tribo_system_limits(x->sys, x->a, x->f);

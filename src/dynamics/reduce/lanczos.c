@@ -52,7 +52,7 @@ struct lanczos {
 
 /* -------------------------------------------------------------------------------------------------------------- the basis */
 
-static void scatter(struct lanczos *l, double *x)
+static void lanczos_scatter(struct lanczos *l, double *x)
 {
     for (size_t i = 0; i < l->n; i++) {
         l->seed = l->seed * 6364136223846793005u + 1442695040888963407u;
@@ -96,7 +96,7 @@ static void separate(struct lanczos *l, size_t j, size_t count)
 static int draw(struct lanczos *l, size_t j, size_t count)
 {
     for (size_t k = j; k < j + count; k++) {
-        scatter(l, l->w + k * l->n);
+        lanczos_scatter(l, l->w + k * l->n);
     }
     const int done = tribo_cholesky_solve(l->shifted, count, l->w + j * l->n);
     separate(l, j, count);
@@ -123,7 +123,7 @@ static double separate_from_block(struct lanczos *l, size_t j)
 
 /* Appends the direction of the j-th vector of w to the basis, which ends with those before it, or another if it has none of its
  * own; if there is none at all, the basis is complete. */
-static void append(struct lanczos *l, size_t j)
+static void lanczos_append(struct lanczos *l, size_t j)
 {
     for (int attempt = 0; attempt < 3 && l->size < l->n; attempt++) {
         const double rest = separate_from_block(l, j);
@@ -150,11 +150,11 @@ static void find_gram(struct lanczos *l)
 }
 
 /* One block more. 0 if out of memory. */
-static int extend(struct lanczos *l)
+static int lanczos_extend(struct lanczos *l)
 {
     const size_t first = l->size;
     for (size_t j = 0; j < BLOCK && !l->complete; j++) {
-        append(l, j);
+        lanczos_append(l, j);
     }
     l->pending = l->size - first;
     memset(l->w, 0, l->pending * l->n * sizeof *l->w);
@@ -242,7 +242,7 @@ static void compress(struct lanczos *l, size_t keep)
 }
 
 /* The best become the basis, keep of them or as many as leave room for two blocks more. */
-static void make_room(struct lanczos *l, size_t keep)
+static void lanczos_make_room(struct lanczos *l, size_t keep)
 {
     compress(l, l->room == l->n || keep < l->room - 2 * BLOCK ? keep : l->room - 2 * BLOCK);
 }
@@ -253,9 +253,9 @@ static int converge(struct lanczos *l, size_t target)
     for (size_t blocks = 0; blocks < MOST_BLOCKS; blocks++) {
         if (l->size + BLOCK > l->room && l->room < l->n) {
             const size_t found = count_found(l);
-            make_room(l, found + (l->size - found) / 2);
+            lanczos_make_room(l, found + (l->size - found) / 2);
         }
-        if (!extend(l) || !project(l)) {
+        if (!lanczos_extend(l) || !project(l)) {
             return TRIBO_ERR_MEMORY;
         }
         if (l->complete || count_found(l) >= target) {
@@ -266,9 +266,9 @@ static int converge(struct lanczos *l, size_t target)
 }
 
 /* The modes found stay; the search goes on from vectors that have nothing to do with them. */
-static int start_anew(struct lanczos *l)
+static int lanczos_start_anew(struct lanczos *l)
 {
-    make_room(l, count_found(l));
+    lanczos_make_room(l, count_found(l));
     return draw(l, 0, BLOCK) ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
@@ -343,7 +343,7 @@ static size_t count_above(const struct lanczos *l, double theta)
 static int complete(struct lanczos *l, double theta, size_t count)
 {
     for (int search = 0; search < MOST_SEARCHES && count_above(l, theta) < count; search++) {
-        int status = search ? start_anew(l) : TRIBO_OK;
+        int status = search ? lanczos_start_anew(l) : TRIBO_OK;
         status = status ? status : converge(l, count);
         if (status) {
             return status;
@@ -356,7 +356,7 @@ static int complete(struct lanczos *l, double theta, size_t count)
 static int complete_below(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
 {
     for (size_t search = 0; search < MOST_SEARCHES + wanted / BLOCK; search++) {
-        int status = search ? start_anew(l) : TRIBO_OK;
+        int status = search ? lanczos_start_anew(l) : TRIBO_OK;
         status = status ? status : converge(l, wanted);
         const double theta = status ? 1.0 : above_frequency(l, wanted);
         status = status ? status : count_modes(l, k, theta, found);
@@ -371,7 +371,7 @@ static int complete_below(struct lanczos *l, const struct matrix *k, size_t want
  * calls */
 
 /* The modes found, once more through (K + shift M)^-1 M: that takes out of them what has no mass. */
-static int take(struct lanczos *l, size_t count, struct low_modes *found)
+static int lanczos_take(struct lanczos *l, size_t count, struct low_modes *found)
 {
     const size_t n = l->n;
     int done = 1;
@@ -394,10 +394,10 @@ static int take(struct lanczos *l, size_t count, struct low_modes *found)
     return done ? TRIBO_OK : TRIBO_ERR_MEMORY;
 }
 
-static int find(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
+static int lanczos_find(struct lanczos *l, const struct matrix *k, size_t wanted, struct low_modes *found)
 {
     double theta = 0.0;
-    int status = start_anew(l);
+    int status = lanczos_start_anew(l);
     status = status ? status : converge(l, wanted);
     if (!status && count_found(l) < wanted) {
         found->count = count_found(l);
@@ -411,7 +411,7 @@ static int find(struct lanczos *l, const struct matrix *k, size_t wanted, struct
     } else if (!status) {
         status = complete(l, theta, found->below);
     }
-    return status ? status : take(l, found->below > wanted ? found->below : wanted, found);
+    return status ? status : lanczos_take(l, found->below > wanted ? found->below : wanted, found);
 }
 
 int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift, const struct cholesky *shifted, size_t wanted,
@@ -432,7 +432,7 @@ int tribo_low_modes(const struct matrix *k, const struct matrix *m, double shift
     l.h = l.theta + room;
     l.s = l.h + room * room;
     l.work = l.s + room * room;
-    const int status = find(&l, k, wanted, found);
+    const int status = lanczos_find(&l, k, wanted, found);
     free(memory);
     return status;
 }

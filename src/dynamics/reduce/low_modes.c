@@ -284,7 +284,7 @@ static int find_sparsely(const struct model *m, const struct shifted *s, struct 
 /* --------------------------------------------------------------------------------------------------------------- contacts */
 
 /* mx [ndof] = M x. Returns the norm of x in M. */
-static double weigh(const struct model *m, const double *x, double *mx)
+static double low_modes_weigh(const struct model *m, const double *x, double *mx)
 {
     memset(mx, 0, m->ndof * sizeof *mx);
     tribo_matrix_multiply_add(&m->mass, 1.0, x, mx);
@@ -293,15 +293,15 @@ static double weigh(const struct model *m, const double *x, double *mx)
 }
 
 /* x -= the part of it in each of count motions, orthonormal in M, twice. mx [ndof] is workspace. Returns the norm of the rest. */
-static double separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
+static double low_modes_separate(const struct model *m, size_t count, const double *phi, double *x, double *mx)
 {
     for (int pass = 0; pass < 2; pass++) {
-        weigh(m, x, mx);
+        low_modes_weigh(m, x, mx);
         for (size_t k = 0; k < count; k++) {
             tribo_add(x, -tribo_dot(phi + k * m->ndof, mx, m->ndof), phi + k * m->ndof, m->ndof);
         }
     }
-    return weigh(m, x, mx);
+    return low_modes_weigh(m, x, mx);
 }
 
 /* Whether a motion of that norm is slower than the shift: no stiffness holds it, and a steady force has no response to it. */
@@ -317,11 +317,11 @@ static double purify(const struct model *m, const struct shifted *s, const struc
 {
     double omega2, before = HUGE_VAL;
     while (drifts(m, s, x, norm, &omega2) && omega2 < 0.25 * before) {
-        weigh(m, x, mx);
+        low_modes_weigh(m, x, mx);
         memset(x, 0, m->ndof * sizeof *x);
         tribo_add(x, s->shift, mx, m->ndof);
         tribo_cholesky_solve(&s->factor, 1, x);
-        norm = separate(m, r->count, r->phi, x, mx);
+        norm = low_modes_separate(m, r->count, r->phi, x, mx);
         before = omega2;
     }
     return norm;
@@ -332,7 +332,7 @@ static double purify(const struct model *m, const struct shifted *s, const struc
 static void add_static(const struct model *m, const struct shifted *s, struct reduced *r, size_t i, double *x, double *mx,
                        double *missing)
 {
-    const double whole = weigh(m, x, mx), before = separate(m, m->nmode, r->phi, x, mx);
+    const double whole = low_modes_weigh(m, x, mx), before = low_modes_separate(m, m->nmode, r->phi, x, mx);
     for (size_t j = 0; j < m->ncontact; j++) {
         missing[i * m->ncontact + j] = tribo_matrix_row_dot(&m->direction, j, x);
     }
@@ -340,7 +340,7 @@ static void add_static(const struct model *m, const struct shifted *s, struct re
         memcpy(r->residual + i * m->ndof, x, m->ndof * sizeof *x);
     }
     double norm =
-        m->statics == TRIBO_STATICS_MASS ? separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
+        m->statics == TRIBO_STATICS_MASS ? low_modes_separate(m, r->count - m->nmode, r->phi + m->nmode * m->ndof, x, mx) : 0.0;
     if (norm > greater(OWN * before, ROUNDING * whole)) {
         norm = purify(m, s, r, x, norm, mx);
         for (size_t k = 0; k < m->ndof; k++) {
@@ -359,7 +359,7 @@ static void deflate(const struct model *m, const struct reduced *r, double *forc
     const double whole = tribo_dot(force, force, m->ndof);
     for (int pass = 0; pass < 2; pass++) {
         for (size_t k = 0; k < m->nmode; k++) {
-            weigh(m, r->phi + k * m->ndof, mx);
+            low_modes_weigh(m, r->phi + k * m->ndof, mx);
             tribo_add(force, -tribo_dot(r->phi + k * m->ndof, force, m->ndof), mx, m->ndof);
         }
     }
@@ -376,7 +376,7 @@ static int unshift(const struct model *m, const struct shifted *s, struct reduce
     const size_t n = m->ndof;
     double *before = r->residual + first * n;
     for (size_t i = 0; i < count; i++) {
-        separate(m, m->nmode, r->phi, x + i * n, mx);
+        low_modes_separate(m, m->nmode, r->phi, x + i * n, mx);
         memcpy(before + i * n, x + i * n, n * sizeof *x);
         memset(x + i * n, 0, n * sizeof *x);
         tribo_matrix_multiply_add(&m->mass, s->shift, before + i * n, x + i * n);
@@ -405,11 +405,12 @@ static int add_statics(const struct model *m, const struct shifted *s, struct re
         done = tribo_cholesky_solve(&s->factor, count, x) && (!r->residual || unshift(m, s, r, first, count, x, x + BATCH * n));
         for (size_t i = first; done && !status && i < first + count; i++) {
             double *y = x + (i - first) * n;
-            if (r->residual && drifts(m, s, y, weigh(m, y, x + BATCH * n), &omega2)) {
-                status = tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
-                                          "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take more "
-                                          "modes, or TRIBO_STATICS_MASS",
-                                          m->nmode, i);
+            if (r->residual && drifts(m, s, y, low_modes_weigh(m, y, x + BATCH * n), &omega2)) {
+                status =
+                    tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED,
+                                     "nmode = %zu leaves out a motion that contact %zu moves and no stiffness holds: take more "
+                                     "modes, or TRIBO_STATICS_MASS",
+                                     m->nmode, i);
             } else {
                 add_static(m, s, r, i, y, x + BATCH * n, missing);
             }

@@ -62,7 +62,7 @@ static int find_all(struct spectrum *s, const struct cholesky *mass)
     return TRIBO_OK;
 }
 
-static void exchange(double *x, double *y, size_t n)
+static void modes_exchange(double *x, double *y, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         const double t = x[i];
@@ -81,8 +81,8 @@ static size_t set_apart(struct spectrum *s, size_t open)
     }
     for (size_t k = 0; k < open; k++) {
         if (!(fabs(s->value[k]) >= FOUND * most)) {
-            exchange(&s->value[k], &s->value[low], 1);
-            exchange(s->y + k * s->n, s->y + low * s->n, s->n);
+            modes_exchange(&s->value[k], &s->value[low], 1);
+            modes_exchange(s->y + k * s->n, s->y + low * s->n, s->n);
             low++;
         }
     }
@@ -99,7 +99,7 @@ static void stress(struct spectrum *s, size_t first, size_t count)
 
 /* block [low][count] = y_k'K y_j, for the first `low` modes k, of which ky is known, and `count` modes j from the first one on.
  */
-static void share(struct spectrum *s, size_t low, size_t first, size_t count)
+static void modes_share(struct spectrum *s, size_t low, size_t first, size_t count)
 {
     tribo_transpose(count, s->n, s->y + first * s->n, s->turn);
     memset(s->block, 0, low * count * sizeof *s->block);
@@ -113,7 +113,7 @@ static double find_turns(struct spectrum *s, size_t low)
     const size_t n = s->n, others = n - low;
     double most = 0.0;
     stress(s, 0, low);
-    share(s, low, low, others);
+    modes_share(s, low, low, others);
     for (size_t k = 0; k < low; k++) {
         const double value = tribo_dot(s->y + k * n, s->ky + k * n, n);
         for (size_t j = 0; j < others; j++) {
@@ -135,7 +135,7 @@ static void take_out(struct spectrum *s, size_t low, double part)
 
 /* Takes out of the first `low` modes what they have of the others, and what those have of them; half before and half after that
  * leaves them orthonormal but for a quarter of the third power of turns. Leaves ky of the first. */
-static void separate(struct spectrum *s, size_t low)
+static void modes_separate(struct spectrum *s, size_t low)
 {
     const size_t n = s->n, others = n - low;
     const int halves = find_turns(s, low) > TINY, by_others = !halves && low >= others;
@@ -158,7 +158,7 @@ static void separate(struct spectrum *s, size_t low)
 static int find_low(struct spectrum *s, size_t low)
 {
     const size_t n = s->n;
-    share(s, low, 0, low);
+    modes_share(s, low, 0, low);
     if (!tribo_symmetric_eigen(s->block, low, s->value, s->turn)) {
         return TRIBO_ERR_MEMORY;
     }
@@ -169,21 +169,21 @@ static int find_low(struct spectrum *s, size_t low)
     return TRIBO_OK;
 }
 
-static int find(struct spectrum *s, const struct cholesky *mass)
+static int modes_find(struct spectrum *s, const struct cholesky *mass)
 {
     int status = find_all(s, mass);
     for (size_t open = s->n, low = 0; !status && (low = set_apart(s, open)) > 0; open = low) {
         if (low == open) {
             return TRIBO_ERR_NO_CONVERGENCE;
         }
-        separate(s, low);
+        modes_separate(s, low);
         status = find_low(s, low);
     }
     return status;
 }
 
 /* phi [n] = Z y of mode k. */
-static void expand(const struct spectrum *s, const struct matrix *z, size_t k, double *phi)
+static void modes_expand(const struct spectrum *s, const struct matrix *z, size_t k, double *phi)
 {
     if (z->rows) {
         memset(phi, 0, z->rows * sizeof *phi);
@@ -240,7 +240,7 @@ static struct impurity find_impurity(struct spectrum *s, const struct entries *s
         const double part = j == k ? 0.0 : fabs(tribo_dot(s->y + j * n, ky, n)), least = greater(own, fabs(s->value[j]));
         found.energy += part > 0.0 ? part * (part / least) : 0.0;
         if (part > SHARED * sqrt(own) * sqrt(least)) {
-            expand(s, z, j, stiffness->force);
+            modes_expand(s, z, j, stiffness->force);
             const double noise = tribo_matrix_noise(stiffness->matrix, stiffness->root, phi, stiffness->force);
             found.unexplained |= !(part <= EXPLAINED * noise);
         }
@@ -249,8 +249,8 @@ static struct impurity find_impurity(struct spectrum *s, const struct entries *s
 }
 
 /* omega^2 = phi'K phi of mode k, if that is more than rounding. */
-static int judge(struct spectrum *s, const struct entries *stiffness, const struct matrix *z, size_t k, const double *phi,
-                 double *omega2, struct doubt *doubt)
+static int modes_judge(struct spectrum *s, const struct entries *stiffness, const struct matrix *z, size_t k, const double *phi,
+                       double *omega2, struct doubt *doubt)
 {
     const size_t n = stiffness->matrix->rows;
     memset(stiffness->force, 0, n * sizeof *stiffness->force);
@@ -301,17 +301,17 @@ static int finish(struct spectrum *s, const struct entries *k, const struct matr
         for (size_t q = p + 1; q < m; q++) {
             lowest = s->value[q] < s->value[lowest] ? q : lowest;
         }
-        exchange(&s->value[p], &s->value[lowest], 1);
-        exchange(s->y + p * m, s->y + lowest * m, m);
-        expand(s, z, p, phi + p * n);
+        modes_exchange(&s->value[p], &s->value[lowest], 1);
+        modes_exchange(s->y + p * m, s->y + lowest * m, m);
+        modes_expand(s, z, p, phi + p * n);
         turn(phi + p * n, n);
-        const int status = judge(s, k, z, p, phi + p * n, &omega2[p], doubt);
+        const int status = modes_judge(s, k, z, p, phi + p * n, &omega2[p], doubt);
         if (status) {
             return status;
         }
         for (size_t q = p; q > 0 && omega2[q] < omega2[q - 1]; q--) {
-            exchange(&omega2[q], &omega2[q - 1], 1);
-            exchange(phi + q * n, phi + (q - 1) * n, n);
+            modes_exchange(&omega2[q], &omega2[q - 1], 1);
+            modes_exchange(phi + q * n, phi + (q - 1) * n, n);
         }
     }
     return TRIBO_OK;
@@ -335,7 +335,7 @@ int tribo_normal_modes(const struct matrix *k, const struct matrix *z, const str
     struct entries entries = {k, s.value + m, s.value + m + n, s.value + m + 2 * n};
     look_at_entries(&entries);
     int status = tribo_matrix_congruent(k, z, s.k) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-    status = status || m == 0 ? status : find(&s, mass);
+    status = status || m == 0 ? status : modes_find(&s, mass);
     status = status ? status : finish(&s, &entries, z, wanted, omega2, phi, doubt);
     free(memory);
     return status;

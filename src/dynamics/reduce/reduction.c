@@ -61,7 +61,7 @@ static void find_shapes(const struct model *m, const struct reduced *r, double *
 }
 
 /* q'' + diag(omega^2) q = modes' p + shapes' f. responses [count][ncontact] out: transposed shapes. */
-static int build(const struct model *m, const struct reduced *r, double *responses, tribo_system **sys)
+static int reduction_build(const struct model *m, const struct reduced *r, double *responses, tribo_system **sys)
 {
     const size_t count = r->count, c = m->ncontact;
     struct matrix stiffness = {0}, damping = {0}, direction = {0}, response = {0};
@@ -239,7 +239,7 @@ static int build_compliant(const struct model *m, const struct reduced *r, tribo
 static int build_with_mass(const struct model *m, const struct reduced *r, tribo_system **sys)
 {
     double *responses = malloc((m->ncontact * r->count + 1) * sizeof *responses);
-    int status = responses ? build(m, r, responses, sys) : tribo_model_no_memory(m);
+    int status = responses ? reduction_build(m, r, responses, sys) : tribo_model_no_memory(m);
     if (!status) {
         status = take_modes(*sys, m->ndof, r) ? tribo_model_set_operator(m, *sys, responses, r->count) : tribo_model_no_memory(m);
     }

@@ -27,7 +27,7 @@ static void apply_mass(const tribo_system *sys, const double *x, double *y)
     tribo_system_add_mass(sys, 1.0, x, y);
 }
 
-static void apply(const struct lanczos *l, const double *x, double *y)
+static void spectrum_apply(const struct lanczos *l, const double *x, double *y)
 {
     memset(y, 0, l->n * sizeof *y);
     tribo_matrix_multiply_add(&l->sys->stiffness, l->stiffness, x, y);
@@ -37,7 +37,7 @@ static void apply(const struct lanczos *l, const double *x, double *y)
 }
 
 /* Numbers between 1/2 and 1 of either sign, the same every time. */
-static void scatter(double *x, size_t n, uint64_t seed)
+static void spectrum_scatter(double *x, size_t n, uint64_t seed)
 {
     for (size_t i = 0; i < n; i++) {
         seed = seed * 6364136223846793005u + 1442695040888963407u;
@@ -50,8 +50,8 @@ static void scatter(double *x, size_t n, uint64_t seed)
 static int symmetric_damping(struct lanczos *l)
 {
     const tribo_system *sys = l->sys;
-    scatter(l->v, l->n, 1);
-    scatter(l->before, l->n, 2);
+    spectrum_scatter(l->v, l->n, 1);
+    spectrum_scatter(l->before, l->n, 2);
     double sum[2], size = 0.0;
     for (int k = 0; k < 2; k++) {
         memset(l->next, 0, l->n * sizeof *l->next);
@@ -98,10 +98,10 @@ static double highest(const struct lanczos *l, size_t k)
 }
 
 /* One vector more. 0 if there is none. */
-static int extend(struct lanczos *l, size_t k, double size)
+static int spectrum_extend(struct lanczos *l, size_t k, double size)
 {
     const size_t n = l->n;
-    apply(l, l->v, l->next);
+    spectrum_apply(l, l->v, l->next);
     l->alpha[k] = tribo_dot(l->mv, l->next, n);
     for (size_t i = 0; i < n; i++) {
         l->next[i] -= l->alpha[k] * l->v[i] + (k ? l->beta[k - 1] * l->before[i] : 0.0);
@@ -124,7 +124,7 @@ static double iterate(struct lanczos *l)
 {
     const size_t most = l->n < MOST_VECTORS ? l->n : MOST_VECTORS;
     double value = 0.0, last = -HUGE_VAL, size = 0.0;
-    scatter(l->v, l->n, 3);
+    spectrum_scatter(l->v, l->n, 3);
     apply_mass(l->sys, l->v, l->mv);
     const double length = sqrt(tribo_dot(l->v, l->mv, l->n));
     for (size_t i = 0; i < l->n; i++) {
@@ -133,7 +133,7 @@ static double iterate(struct lanczos *l)
         l->before[i] = 0.0;
     }
     for (size_t k = 1, check = 8; k <= most; k++) {
-        const int more = extend(l, k - 1, size);
+        const int more = spectrum_extend(l, k - 1, size);
         size = greater(size, fabs(l->alpha[k - 1]) + l->beta[k - 1]);
         if (!more || k == most || k == check) {
             value = highest(l, k);

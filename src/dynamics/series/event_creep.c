@@ -160,7 +160,7 @@ static void fit(struct event *e, size_t k, double h)
 }
 
 /* How fast the direction of contact k turns where the last step ends. */
-static double turn_of(const struct event *e, size_t k)
+static double event_creep_turn_of(const struct event *e, size_t k)
 {
     const struct planar_line *l = &e->planar.line[k];
     double un = 0.0, ut = 0.0, dn = 0.0, dt = 0.0;
@@ -182,7 +182,7 @@ double tribo_creep_settled(const struct event *e, const double *y, double error)
         const double v =
             hypot(tribo_stick_slip_velocity(m, e->sys, p->at, y), tribo_stick_slip_velocity(m, e->sys, p->at + 1, y));
         const double stop = tribo_planar_series_stop(m, e->sys, p, y);
-        const double turn = is_sliding(m, k) ? fabs(turn_of(e, k)) : 0.0;
+        const double turn = is_sliding(m, k) ? fabs(event_creep_turn_of(e, k)) : 0.0;
         const int follows = turn <= TURNS * e->fastest || turn * stop <= lesser(MOST_STRAY, error / v);
         length = follows ? length : lesser(length, stop);
     }
@@ -489,7 +489,7 @@ int tribo_creep_expand(struct event *e, double t, const double *y, double h, dou
     for (size_t s = 0; s < slides; s++) {
         /* guess: directions go on turning at their rate */
         const size_t k = c->slides[s];
-        const double turn = turn_of(e, k);
+        const double turn = event_creep_turn_of(e, k);
         for (size_t i = 0; i < NODES; i++) {
             e->creep.angle[k * NODES + i] = fabs(turn * h) < 1.0 ? turn * h * node[i] : 0.0;
         }

@@ -98,7 +98,7 @@ static struct sample watch(const struct event *e, const struct guard *g, double 
 }
 
 /* The two sides of what is watched follow one another, and are computed once. */
-static void look(void *motion, double tau, size_t guards, struct guard *const *guard)
+static void method_event_look(void *motion, double tau, size_t guards, struct guard *const *guard)
 {
     const struct event *e = motion;
     const void *seen = NULL;
@@ -120,8 +120,8 @@ static void look(void *motion, double tau, size_t guards, struct guard *const *g
 }
 
 /* Bounds of so many terms of all that is watched, or of limits, over [0, h]. */
-TRIBO_SIMD static void find_bounds(size_t c, size_t terms, double h, const double *restrict watch, double *restrict size,
-                                   double *restrict bend)
+TRIBO_SIMD static void method_event_find_bounds(size_t c, size_t terms, double h, const double *restrict watch,
+                                                double *restrict size, double *restrict bend)
 {
     double power = 1.0, sixth = 1.0; /* of h; the second that of the sixth derivative */
     memset(size, 0, c * sizeof *size);
@@ -138,7 +138,7 @@ TRIBO_SIMD static void find_bounds(size_t c, size_t terms, double h, const doubl
     }
 }
 
-static double bound(void *motion, double tau)
+static double method_event_bound(void *motion, double tau)
 {
     struct event *e = motion;
     struct first_zero *s = &e->events.search;
@@ -191,8 +191,8 @@ static void set_guards(struct event *e)
     const double h = e->length;
     const int varies = e->terms > 1;
     tribo_events_clear_guards(&e->events);
-    find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
-    find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
+    method_event_find_bounds(m->contacts, e->order + 1, h, e->watch, e->size, e->bend);
+    method_event_find_bounds(m->contacts, e->terms, h, e->limit, e->limit_size, e->limit_bend);
     if (m->plane) {
         set_planar_guards(e);
     }
@@ -247,10 +247,10 @@ static void destroy(tribo_driver *drv)
     }
 }
 
-static int begin(void *motion, double t, const double *y, double *reach);
+static int method_event_begin(void *motion, double t, const double *y, double *reach);
 static int transition(void *motion, const void *phase, double tau, size_t columns, double *v);
 static int combine(void *motion, const double *c, double tau, const double *end, struct signal *to);
-static double work(void *motion, size_t i, double tau);
+static double method_event_work(void *motion, size_t i, double tau);
 static void state(void *motion, double tau, const double *from, double *to);
 
 /* Powers of frequencies and of steps stay within so many digits, which leaves room for sizes, and half as many where squares of
@@ -306,19 +306,19 @@ static int create(tribo_driver *drv)
     e->limit_bend = e->limit_size + c;
     e->spring = e->limit_bend + c;
     e->work = e->spring + c;
-    e->events.search.look = look;
-    e->events.search.bound = bound;
+    e->events.search.look = method_event_look;
+    e->events.search.bound = method_event_bound;
     e->events.search.motion = e->events.motion = e;
-    e->events.begin = begin;
+    e->events.begin = method_event_begin;
     e->events.state = state;
     e->events.transition = transition;
     e->events.signal = combine;
-    e->events.work = work;
+    e->events.work = method_event_work;
     return TRIBO_OK;
 }
 
 /* Room for the harmonics, which may have become more, and the highest frequency. */
-static int prepare(struct event *e)
+static int method_event_prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
     if (e->cosine && e->revision == sys->revision) {
@@ -484,7 +484,7 @@ static int creep(struct event *e, double t, const double *y, double most, double
 }
 
 /* The series from (t, y) on, and how far it may serve. */
-static int expand(struct event *e, double t, const double *y, double most, double *length)
+static int method_event_expand(struct event *e, double t, const double *y, double most, double *length)
 {
     if (!e->events.stick_slip.plane) {
         const int status = tribo_event_expand(e, t, y);
@@ -505,11 +505,11 @@ static int never_ends(const struct event *e, double end)
     return (double)(e->order + 1) < DBL_EPSILON * fabs(end) * e->fastest;
 }
 
-static int begin(void *motion, double t, const double *y, double *reach)
+static int method_event_begin(void *motion, double t, const double *y, double *reach)
 {
     struct event *e = motion;
     double length;
-    const int status = expand(e, t, y, *reach, &length);
+    const int status = method_event_expand(e, t, y, *reach, &length);
     if (status) {
         return status;
     }
@@ -551,7 +551,7 @@ static int combine(void *motion, const double *c, double tau, const double *end,
     return TRIBO_OK;
 }
 
-static double work(void *motion, size_t i, double tau)
+static double method_event_work(void *motion, size_t i, double tau)
 {
     return tribo_event_work(motion, i, tau);
 }
@@ -559,7 +559,7 @@ static double work(void *motion, size_t i, double tau)
 static int open_events(tribo_driver *drv, struct events **events)
 {
     struct event *e = drv->own;
-    const int status = prepare(e);
+    const int status = method_event_prepare(e);
     *events = &e->events;
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }

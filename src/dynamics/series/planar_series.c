@@ -29,7 +29,7 @@ static int slides(const struct stick_slip *m, const struct planar_contact *p)
     return m->slip[p->at] == TRIBO_IN_PLANE;
 }
 
-static int reserve(struct planar_series *s, size_t terms, size_t contacts)
+static int planar_series_reserve(struct planar_series *s, size_t terms, size_t contacts)
 {
     if (s->line && s->room >= contacts) {
         return 1;
@@ -73,13 +73,14 @@ static int reserve_begins(struct planar_series *s, const tribo_system *sys, size
 }
 
 /* limit t times J acc. */
-static double along(const struct planar_contact *p, const struct planar_line *l, const double *acc)
+static double planar_series_along(const struct planar_contact *p, const struct planar_line *l, const double *acc)
 {
     return p->limit[0] * l->t[0] * acc[p->at] + p->limit[1] * l->t[1] * acc[p->at + 1];
 }
 
 /* What a t-part of 1 of contact q among those that begin does to q'', to the forces of contacts that hold, and to all t-parts. */
-static int answer(struct planar_series *s, size_t q, struct stick_slip *m, const tribo_system *sys, double *a, double *f)
+static int planar_series_answer(struct planar_series *s, size_t q, struct stick_slip *m, const tribo_system *sys, double *a,
+                                double *f)
 {
     const size_t c = sys->ncontact, n = sys->ndof;
     const struct planar_contact *all = m->plane->contact, *p = &all[s->begin[q]];
@@ -100,7 +101,7 @@ static int answer(struct planar_series *s, size_t q, struct stick_slip *m, const
     memset(a, 0, c * sizeof *a);
     tribo_matrix_multiply_add(&sys->direction, 1.0, acc, a);
     for (size_t r = 0; r < s->begins; r++) {
-        s->s[r * s->begins + q] = -along(&all[s->begin[r]], &s->line[s->begin[r]], a);
+        s->s[r * s->begins + q] = -planar_series_along(&all[s->begin[r]], &s->line[s->begin[r]], a);
     }
     return TRIBO_OK;
 }
@@ -140,7 +141,7 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
     for (size_t k = 0; k < plane->count; k++) {
         begins += slides(m, &plane->contact[k]) && plane->contact[k].begins != SLIDES_ON;
     }
-    if ((plane->count && !reserve(s, order + 1, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
+    if ((plane->count && !planar_series_reserve(s, order + 1, plane->count)) || (begins && !reserve_begins(s, sys, begins))) {
         return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for series of %zu contact%s in a plane", plane->count,
                                  plural(plane->count));
     }
@@ -158,7 +159,7 @@ int tribo_planar_series_begin(struct planar_series *s, size_t order, struct stic
     }
     int status = TRIBO_OK;
     for (size_t q = 0; !status && q < s->begins; q++) {
-        status = answer(s, q, m, sys, a, f);
+        status = planar_series_answer(s, q, m, sys, a, f);
     }
     return status;
 }
@@ -257,7 +258,7 @@ int tribo_planar_series_finish(struct planar_series *s, const struct stick_slip 
         const struct planar_contact *p = &m->plane->contact[s->begin[q]];
         const struct planar_line *l = &s->line[s->begin[q]];
         double shift;
-        s->tau[q] = along(p, l, a) - asked(l, p->begins, k, &shift);
+        s->tau[q] = planar_series_along(p, l, a) - asked(l, p->begins, k, &shift);
         s->lu[q * n + q] += shift;
     }
     if (!(tribo_lu_create(s->lu, n, s->pivot) > 0.0)) {

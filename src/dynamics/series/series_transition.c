@@ -17,7 +17,7 @@ void tribo_series_transition_free(struct series_transition *x)
     memset(x, 0, sizeof *x);
 }
 
-static int reserve(struct series_transition *x, const tribo_system *sys, size_t columns)
+static int series_transition_reserve(struct series_transition *x, const tribo_system *sys, size_t columns)
 {
     const size_t n = sys->ndof;
     x->holds = malloc(sys->ncontact + 1);
@@ -50,7 +50,8 @@ static int reserve_slopes(struct series_transition *x, const tribo_system *sys, 
 }
 
 /* to [ndof][ndof] = factor P a, a [ndof][ndof] transposed in `columns`, or no rows: the identity. */
-static int project(struct stick_slip *m, const tribo_system *sys, const struct matrix *a, double factor, double *to)
+static int series_transition_project(struct stick_slip *m, const tribo_system *sys, const struct matrix *a, double factor,
+                                     double *to)
 {
     const size_t n = sys->ndof;
     double *columns = a ? tribo_matrix_transpose_to_dense(a) : calloc(n * n + 1, sizeof *columns);
@@ -103,10 +104,10 @@ static int update(struct series_transition *x, struct stick_slip *m, const tribo
     }
     memcpy(x->holds, m->holds, sys->ncontact);
     x->revision = sys->revision;
-    int status = project(m, sys, NULL, 1.0, x->project);
-    status = status ? status : project(m, sys, &sys->stiffness, -1.0, x->stiff);
+    int status = series_transition_project(m, sys, NULL, 1.0, x->project);
+    status = status ? status : series_transition_project(m, sys, &sys->stiffness, -1.0, x->stiff);
     if (!status && sys->damping.rows) {
-        status = project(m, sys, &sys->damping, -1.0, x->damp);
+        status = series_transition_project(m, sys, &sys->damping, -1.0, x->damp);
     }
     if (!status && x->terms) {
         status = project_response(x, m, sys);
@@ -116,7 +117,8 @@ static int update(struct series_transition *x, struct stick_slip *m, const tribo
 }
 
 /* Term k of the forces that follow from the terms of velocities up to u, which is the k-th, to x->force. */
-static void find_forces(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes, size_t k, double tau)
+static void series_transition_find_forces(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes,
+                                          size_t k, double tau)
 {
     const size_t c = sys->ncontact, columns = x->columns;
     double power = 1.0;
@@ -134,7 +136,8 @@ static void find_forces(struct series_transition *x, const tribo_system *sys, co
 }
 
 /* The k-th terms, x^(k) tau^k/k!, from those before. */
-static void differentiate(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes, size_t k, double tau)
+static void series_transition_differentiate(struct series_transition *x, const tribo_system *sys, const struct slopes *slopes,
+                                            size_t k, double tau)
 {
     const size_t n = sys->ndof, c = x->columns;
     const double part = tau / (double)k;
@@ -144,7 +147,7 @@ static void differentiate(struct series_transition *x, const tribo_system *sys, 
         tribo_multiply_add(n, n, c, part, x->damp, x->u, x->next);
     }
     if (slopes->terms) {
-        find_forces(x, sys, slopes, k - 1, tau);
+        series_transition_find_forces(x, sys, slopes, k - 1, tau);
         tribo_multiply_add(n, sys->ncontact, c, part, x->push, x->force, x->next);
     }
     for (size_t i = 0; i < n * c; i++) {
@@ -157,7 +160,7 @@ int tribo_series_transition(struct series_transition *x, struct stick_slip *m, c
                             const struct slopes *slopes, double tau, size_t columns, double *v)
 {
     const size_t n = sys->ndof, half = n * columns;
-    int status = x->project ? TRIBO_OK : reserve(x, sys, columns);
+    int status = x->project ? TRIBO_OK : series_transition_reserve(x, sys, columns);
     status = status || !slopes->terms || x->push ? status : reserve_slopes(x, sys, slopes->terms);
     status = status ? status : update(x, m, sys);
     if (status) {
@@ -168,7 +171,7 @@ int tribo_series_transition(struct series_transition *x, struct stick_slip *m, c
     tribo_multiply_add(n, n, columns, 1.0, x->project, v + half, x->u);
     memcpy(v + half, x->u, half * sizeof *v);
     for (size_t k = 1, small = 0; small < 2 && k < MOST_TERMS; k++) {
-        differentiate(x, sys, slopes, k, tau);
+        series_transition_differentiate(x, sys, slopes, k, tau);
         tribo_add(v, 1.0, x->q, half);
         tribo_add(v + half, 1.0, x->u, half);
         small = tribo_largest(x->q, half) <= DBL_EPSILON * tribo_largest(v, half) &&

@@ -19,7 +19,7 @@ enum { FROM_BEFORE = 12, FROM_INTERIOR = 40 };
 #define SETTLED 4.0
 
 /* y = the point of the set that is nearest to from + part (aim - from). */
-static void project(struct disc_qp *p, const double *from, const double *aim, double part)
+static void disc_project(struct disc_qp *p, const double *from, const double *aim, double part)
 {
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
         double z[2];
@@ -53,11 +53,11 @@ static void find_aim(struct disc_qp *p)
 static void step_newton(struct disc_qp *p)
 {
     find_aim(p);
-    project(p, p->from, p->aim, 1.0);
+    disc_project(p, p->from, p->aim, 1.0);
 }
 
 /* Returns what tribo_disc_places does. */
-static double look(struct disc_qp *p)
+static double disc_look(struct disc_qp *p)
 {
     tribo_disc_gradients(p);
     return tribo_disc_places(p);
@@ -102,19 +102,19 @@ static void step_down(struct disc_qp *p)
     const double before = p->residual;
     find_aim(p);
     const double way = way_inside(p);
-    project(p, p->from, p->aim, 1.0);
-    look(p);
+    disc_project(p, p->from, p->aim, 1.0);
+    disc_look(p);
     if (p->residual < 0.5 * before) {
         return;
     }
     for (double part = way; part > 1e-3 * way; part *= 0.5) {
-        project(p, p->from, p->aim, part);
+        disc_project(p, p->from, p->aim, part);
         tribo_disc_gradients(p);
         if (descends(p)) {
             return;
         }
     }
-    project(p, p->from, p->from, 1.0);
+    disc_project(p, p->from, p->from, 1.0);
     /* contact by contact to the point of its set nearest to y - gain gradient: slow, but always downwards */
     for (size_t i = 0; i < p->size; i += p->wide[i]) {
         double gradient[2];
@@ -128,9 +128,9 @@ static void step_down(struct disc_qp *p)
     }
 }
 
-static int settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p))
+static int disc_settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p))
 {
-    for (int round = 0; look(p) > SETTLED; round++) {
+    for (int round = 0; disc_look(p) > SETTLED; round++) {
         if (round == rounds) {
             return 0;
         }
@@ -142,11 +142,11 @@ static int settle(struct disc_qp *p, int rounds, void (*step)(struct disc_qp *p)
         before = p->residual;
         memcpy(p->best, p->y, p->size * sizeof *p->y);
         step_newton(p);
-        look(p);
+        disc_look(p);
     }
     if (p->residual >= before) {
         memcpy(p->y, p->best, p->size * sizeof *p->y);
-        look(p);
+        disc_look(p);
     }
     return 1;
 }
@@ -156,14 +156,14 @@ int tribo_disc_solve(struct disc_qp *p)
     /* contacts that do not couple: the point of the set nearest to y - gain gradient is the solution */
     p->sets = (struct sets){0};
     tribo_disc_gains(p);
-    project(p, p->y, p->y, 1.0);
-    look(p);
-    project(p, p->to, p->to, 1.0);
-    if (settle(p, FROM_BEFORE, step_newton)) {
+    disc_project(p, p->y, p->y, 1.0);
+    disc_look(p);
+    disc_project(p, p->to, p->to, 1.0);
+    if (disc_settle(p, FROM_BEFORE, step_newton)) {
         return 1;
     }
     tribo_disc_interior(p);
-    return settle(p, FROM_INTERIOR, step_down);
+    return disc_settle(p, FROM_INTERIOR, step_down);
 }
 
 /* ------------------------------------------------------------------------------------------------ redundant contacts */
@@ -182,7 +182,7 @@ static int solve_softly(struct disc_qp *p, double more)
     double moved = 1.0;
     for (int round = 0; round < FROM_INTERIOR && moved > 1e-8; round++) {
         step_newton(p);
-        look(p);
+        disc_look(p);
         moved = 0.0;
         for (size_t i = 0; i < p->size; i++) {
             moved = greater(moved, fabs(p->y[i] - p->from[i]));
@@ -216,10 +216,10 @@ int tribo_disc_share(struct disc_qp *p)
         p->s[i * (p->size + 1)] = p->diagonal[i];
     }
     tribo_disc_gains(p);
-    project(p, p->share, p->share, 1.0);
-    look(p);
-    project(p, p->to, p->to, 1.0); /* what slides is on its rim, to the last digit */
-    const double off = look(p);
+    disc_project(p, p->share, p->share, 1.0);
+    disc_look(p);
+    disc_project(p, p->to, p->to, 1.0); /* what slides is on its rim, to the last digit */
+    const double off = disc_look(p);
     const int shared = p->near_enough < TRIBO_NEAR_ENOUGH ? off <= SETTLED : p->residual < SHARED;
     return done && (shared || tribo_disc_solve(p));
 }

@@ -146,7 +146,7 @@ static void add_freedom(struct disc_qp *p, size_t at, double x, double y, double
 }
 
 /* x [size] along a freedom. */
-static double along(const struct freedom *e, const double *x)
+static double tangent_qp_along(const struct freedom *e, const double *x)
 {
     return e->tangent[0] * x[e->at] + (e->tangent[1] != 0.0 ? e->tangent[1] * x[e->at + 1] : 0.0);
 }
@@ -223,7 +223,7 @@ void tribo_disc_linearize(struct disc_qp *p)
             p->spare[j] = e->tangent[0] * row[j] + (e->tangent[1] != 0.0 ? e->tangent[1] * row[n + j] : 0.0);
         }
         for (size_t j = 0; j < p->freedoms; j++) {
-            p->matrix[k * p->freedoms + j] = along(&p->freedom[j], p->spare);
+            p->matrix[k * p->freedoms + j] = tangent_qp_along(&p->freedom[j], p->spare);
         }
         p->matrix[k * p->freedoms + k] += e->curvature;
     }
@@ -246,7 +246,7 @@ static void spread(const struct disc_qp *p, const double *step, double *move)
 void tribo_disc_follow(struct disc_qp *p, const double *rhs, double *move)
 {
     for (size_t k = 0; k < p->freedoms; k++) {
-        p->step[k] = -along(&p->freedom[k], rhs);
+        p->step[k] = -tangent_qp_along(&p->freedom[k], rhs);
     }
     tribo_disc_backsolve(p);
     spread(p, p->step, move);
@@ -257,7 +257,7 @@ void tribo_disc_slide(struct disc_qp *p, const double *rhs, double *move)
     double *pull = p->spare, *balanced = p->press, most = 0.0;
     int apart = 0;
     for (size_t k = 0; k < p->freedoms; k++) {
-        pull[k] = balanced[k] = -along(&p->freedom[k], rhs);
+        pull[k] = balanced[k] = -tangent_qp_along(&p->freedom[k], rhs);
     }
     tribo_null_project(&p->factor, p->redundant, balanced);
     for (size_t k = 0; k < p->freedoms; k++) {
