@@ -55,6 +55,8 @@ static const char *const part[] = {
     "  --threads COUNT      one a core. Results do not depend on it\n"
     "  --out FOLDER         where the tables go, which must exist; \".\"\n"
     "  --name WORD          how the names of the tables begin; \"damper\"\n"
+    "  --plot png|svg       draws the tables by gnuplot: damper-family or damper-curve, and the loops of contacts; the script,\n"
+    "                       damper-plot.gp, stays beside them\n"
     "  --read FILE          options from a file, one a line, without the hyphens; names of files in it are relative to its\n"
     "                       folder. Lines that begin with # say nothing\n"
     "  --help, -h           prints this\n"

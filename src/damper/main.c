@@ -6,6 +6,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "output.h"
+#include "plot.h"
 #include "study.h"
 #include "team.h"
 
@@ -32,6 +33,7 @@ int main(int argc, char **argv)
                               : "interrupted before a motion was found: there are no tables of motions\n");
     }
     close_tables(&tables);
+    draw_plots(&tables);
     close_file(stdout, "standard output");
     free_model(&model);
     free_structure(&structure);

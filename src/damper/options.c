@@ -121,6 +121,14 @@ static void set_threads(const char *origin, const char *value, struct options *o
     o->threads = read_whole(origin, value, 1);
 }
 
+static void set_plot(const char *origin, const char *value, struct options *o)
+{
+    if (strcmp(value, "png") != 0 && strcmp(value, "svg") != 0) {
+        die("%s: must be png or svg", origin);
+    }
+    o->plot = value;
+}
+
 static void set_name(const char *origin, const char *value, struct options *o)
 {
     if (*value == '\0' || strcspn(value, "/ \t") != strlen(value)) {
@@ -149,7 +157,7 @@ static const struct option {
     {OPTION(drive)},     {OPTION(limits)},
     {OPTION(method)},    {OPTION(check)},
     {OPTION(step)},      {OPTION(law)},
-    {OPTION(threads)},
+    {OPTION(threads)},   {OPTION(plot)},
 };
 
 /* name has length characters, and no hyphens in front. */

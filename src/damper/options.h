@@ -9,6 +9,7 @@ enum { DEFAULT_MODES = 12 /* kept by default */ };
 struct options {
     const char *mass, *stiffness, *dofs;
     const char *out, *name;  /* folder of the tables, and how their names begin */
+    const char *plot;        /* png or svg: pictures; NULL: none */
     const char *frequencies; /* NULL for none */
     size_t modes;            /* 0: as many as the answer needs */
     int statics;             /* beside the modes, static responses of contacts and load */

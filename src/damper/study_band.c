@@ -4,6 +4,7 @@
 
 #include "output.h"
 #include "linear.h"
+#include "plot.h"
 #include "search.h"
 #include "study.h"
 #include "team.h"
@@ -77,12 +78,14 @@ static void largest_amplitudes(void *data, const double *limit, double *value, s
     free_family(&f, count);
 }
 
-static void report_best(struct study *s, double limit)
+/* Returns 1 if the curve of the best limit is in a table. */
+static int report_best(struct study *s, double limit)
 {
     struct family f = run_family(s, &limit, 1);
     const struct sample *top = largest_of(&f.curve[0]);
     end_telling();
-    if (top && !interrupted()) {
+    const int shown = top && !interrupted();
+    if (shown) {
         check_by_marching(s, &f.curve[0]);
         FILE *table = create_table(s->tables, "best");
         write_motion_head(table, s->damper);
@@ -95,6 +98,7 @@ static void report_best(struct study *s, double limit)
         s->gaps += gaps_of(&f.curve[0]);
     }
     free_family(&f, 1);
+    return shown;
 }
 
 /* Why a motion was not found. */
@@ -131,7 +135,8 @@ static double search_valleys(struct study *s, const double *limit, const double 
     return least <= value[0] && least <= value[count - 1] ? best : 0.0;
 }
 
-static void find_best(struct study *s, const struct family *f, const double *limit, size_t count)
+/* Returns the best limit; 0 if there is none. */
+static double find_best(struct study *s, const struct family *f, const double *limit, size_t count)
 {
     double *value = need_memory(count, sizeof *value), least = HUGE_VAL;
     for (size_t k = 0; k < count; k++) {
@@ -140,6 +145,7 @@ static void find_best(struct study *s, const struct family *f, const double *lim
         least = fmin(least, value[k]);
     }
     const double found = least < HUGE_VAL ? search_valleys(s, limit, value, count) : 0.0;
+    int shown = 0;
     end_telling();
     if (least == HUGE_VAL) {
         printf("no motion was found at any of these limits: %s\n", first_message(f, count));
@@ -148,9 +154,10 @@ static void find_best(struct study *s, const struct family *f, const double *lim
         printf("no limit within the range is better than its ends: widen --limits to find the best\n");
         check_by_marching(s, &f->curve[0]);
     } else if (!interrupted()) {
-        report_best(s, found);
+        shown = report_best(s, found);
     }
     free(value);
+    return shown ? found : 0.0;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- family */
@@ -196,11 +203,13 @@ void study_band(struct study *s)
         }
     } while (again);
     write_linear(s->tables, s->damper, &s->options->drive);
+    double best = 0.0;
     if (!interrupted() && count > 1) {
-        find_best(s, &f, limit, count);
+        best = find_best(s, &f, limit, count);
     } else {
         check_by_marching(s, &f.curve[0]);
     }
+    plot_family(s->tables, s->options, limit, count, best);
     free_family(&f, count);
     free(limit);
 }

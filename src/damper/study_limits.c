@@ -4,6 +4,7 @@
 
 #include "output.h"
 #include "linear.h"
+#include "plot.h"
 #include "search.h"
 #include "study.h"
 #include "team.h"
@@ -178,6 +179,7 @@ void study_limits(struct study *s)
     write_motion_head(table, s->damper);
     write_curve(s->tables, table, &c, s->damper);
     close_table(s->tables, table, "curve");
+    plot_curve(s->tables, s->options);
     s->gaps += gaps_of(&c);
     free_curve(&c);
 }

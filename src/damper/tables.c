@@ -9,10 +9,11 @@
 #include "output.h"
 #include "linear.h"
 #include "march.h"
+#include "plot.h"
 
 struct tables open_tables(const struct options *o)
 {
-    struct tables t = {.out = o->out, .name = o->name};
+    struct tables t = {.out = o->out, .name = o->name, .plot = o->plot, .script = open_plots(o)};
     char *name = new_text("values-%s.txt", t.name);
     t.values = create_file(t.out, name);
     free(name);
@@ -225,6 +226,7 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
         write_instant(table, d, cycle, now, state, v, f, slip);
     }
     close_table(t, table, what);
+    plot_loops(t, d->contacts, m->limit, what);
     tribo_driver_destroy(marcher);
     free(v);
     free(state);

@@ -7,7 +7,9 @@
 struct tables {
     const char *out, *name;
     FILE *values;
-    size_t motions; /* found, in tables */
+    size_t motions;   /* found, in tables */
+    const char *plot; /* format of pictures */
+    FILE *script;     /* that draws them; NULL: none */
 };
 struct tables open_tables(const struct options *o);
 void close_tables(struct tables *t);

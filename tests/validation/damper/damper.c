@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 
 #include "support.h"
@@ -327,5 +328,32 @@ TEST(interrupted)
 }
 END_TEST
 
-TEST_MAIN("damper", {beam, 1}, {as_many_modes_as_it_takes, 1}, {plate, 1}, {nothing_left_to_move, 1}, {spring, 1},
-          {loose_row, 1}, {own_limit, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1})
+/* --plot runs gnuplot on a script beside the tables, also where names hold a quote; without gnuplot it is refused before any work.
+ * A script stands for gnuplot: it keeps what it is given. */
+TEST(plots)
+{
+    char script[TEXT], path[4096], longer[4096 + 2];
+    snprintf(path, sizeof path, "%s", getenv("PATH"));
+    snprintf(longer, sizeof longer, ".:%s", path);
+    write_text("gnuplot", "#!/bin/sh\n[ \"$1\" = --version ] || { echo drawn by \"$1\"; cat \"$1\"; } >drawn\n");
+    assert_exact(chmod("gnuplot", 0755), 0);
+    assert_exact(setenv("PATH", longer, 1), 0);
+    assert_runs(READ_BEAM " --limits 0.001:1:5 --name o'b --plot svg");
+    read_text("drawn", script);
+    require(says(script, "drawn by o'b-plot.gp\n"), "%s", script);
+    require(says(script, "set output 'o''b-curve.svg'\n") && says(script, "plot 'o''b-curve.csv' using 1:3"), "%s", script);
+    require(says(script, "set output 'o''b-history.svg'\n") && says(script, "for [c = 1:3] 'o''b-history.csv'"), "%s", script);
+    assert_runs(READ_FAMILY " --plot png");
+    read_text("drawn", script);
+    require(says(script, "skip 1 every :::2::2 using 2:3") && !says(script, ":::3::3"), "%s", script);
+    write_text("gnuplot", "#!/bin/sh\n[ \"$1\" = --version ]\n");
+    assert_refused(READ_BEAM " --limits 0.01:0.01:1 --plot png", "gnuplot fails", "gnuplot could not draw");
+    assert_exact(setenv("PATH", "/nonexistent", 1), 0);
+    assert_refused(READ_BEAM " --plot png", "no gnuplot", "is it installed?");
+    assert_exact(setenv("PATH", path, 1), 0);
+    assert_refused(READ_BEAM " --plot pdf", "a format", "png or svg");
+}
+END_TEST
+
+TEST_MAIN("damper", {beam, 1}, {as_many_modes_as_it_takes, 1}, {plate, 1}, {nothing_left_to_move, 1}, {spring, 1}, {loose_row, 1},
+          {own_limit, 1}, {stiff_springs, 1}, {threads, 1}, {interrupted, 1}, {plots, 1})

@@ -1,0 +1,149 @@
+#include "plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "output.h"
+#include "study.h"
+
+/* Blue to red, as dark as lines on white must be. */
+static const char palette[] = "set palette defined (0 '#1d4f91', 1 '#0072b2', 2 '#2a9d8f', 3 '#8ab17d', 4 '#d9a528', "
+                              "5 '#e07a1f', 6 '#c1121f', 7 '#7a0019')\nunset colorbox\n";
+
+/* text between single quotes; a quote inside becomes `quote`. */
+static char *quoted(const char *text, const char *quote)
+{
+    char *to = need_memory(strlen(text) * strlen(quote) + 3, 1), *end = to;
+    *end++ = '\'';
+    for (; *text; text++) {
+        if (*text == '\'') {
+            end += strlen(strcpy(end, quote));
+        } else {
+            *end++ = *text;
+        }
+    }
+    strcpy(end, "'");
+    return to;
+}
+
+/* NAME-what.ending as gnuplot reads it. */
+static char *file_of(const struct tables *t, const char *what, const char *ending)
+{
+    char *name = new_text("%s-%s.%s", t->name, what, ending), *text = quoted(name, "''");
+    free(name);
+    return text;
+}
+
+FILE *open_plots(const struct options *o)
+{
+    if (!o->plot) {
+        return NULL;
+    }
+    if (system("gnuplot --version >/dev/null 2>&1") != 0) {
+        die("option --plot %s: gnuplot cannot be run: is it installed?", o->plot);
+    }
+    char *name = new_text("%s-plot.gp", o->name);
+    FILE *script = create_file(o->out, name);
+    const int png = strcmp(o->plot, "png") == 0;
+    fprintf(script, "# Pictures of tribo-damper's tables: gnuplot %s, in this folder.\n", name);
+    fprintf(script, "set terminal %s font 'DejaVu Sans,%d' linewidth 1.4 noenhanced%s\n",
+            png ? "pngcairo size 900,540" : "svg size 900,540 dynamic", png ? 11 : 13, png ? "" : " background 'white'");
+    fprintf(script,
+            "set datafile separator ','\nset encoding utf8\nset border linewidth 0.8 linecolor '#404040'\n"
+            "set tics nomirror\nset grid linetype 1 linecolor '#e4e4e4' linewidth 0.6\n"
+            "set key noautotitle outside right top Left reverse spacing 1.25 samplen 2.2\n%s",
+            palette);
+    free(name);
+    return script;
+}
+
+/* Begins a picture NAME-what. */
+static void begin_picture(const struct tables *t, const char *what, const char *along, const char *up)
+{
+    char *picture = file_of(t, what, t->plot);
+    fprintf(t->script, "\nset output %s\nset xlabel '%s'\nset ylabel '%s'\n", picture, along, up);
+    free(picture);
+}
+
+/* With mu= alone limits are normal loads. */
+static const char *word_for_limit(const struct options *o)
+{
+    for (size_t c = 0; c < o->contacts.count; c++) {
+        if (isnan(o->contacts.contact[c].limit) && o->contacts.contact[c].mu != 1.0) {
+            return "normal load";
+        }
+    }
+    return "limit of each contact";
+}
+
+void plot_curve(const struct tables *t, const struct options *o)
+{
+    if (t->script) {
+        char *file = file_of(t, "curve", "csv");
+        begin_picture(t, "curve", word_for_limit(o), "amplitude where the load acts");
+        fprintf(t->script,
+                "set logscale xy\nset y2label 'mean power that friction takes'\nset y2tics\nset key bottom\n"
+                "plot %s using 1:3 with lines linecolor '#0072b2' title 'amplitude', \\\n"
+                "     %s using 1:4 axes x1y2 with lines linecolor '#d55e00' dashtype (10, 5) title 'power'\n"
+                "unset logscale\nunset y2label\nunset y2tics\nset key top\n",
+                file, file);
+        free(file);
+    }
+}
+
+void plot_family(const struct tables *t, const struct options *o, const double *limit, size_t count, double best)
+{
+    if (!t->script) {
+        return;
+    }
+    char *family = file_of(t, "family", "csv"), *linear = file_of(t, "linear", "csv"), *optimum = file_of(t, "best", "csv");
+    begin_picture(t, "family", "frequency of the load", "amplitude where the load acts");
+    fprintf(t->script, "set logscale y\nset key title '%s'\n", word_for_limit(o));
+    fprintf(t->script, "plot %s using 1:2 with lines linecolor '#9a9a9a' dashtype (2, 3) title 'no friction', \\\n", linear);
+    for (size_t k = 0; k < count; k++) {
+        fprintf(t->script, "     %s skip 1 every :::%zu::%zu using 2:3 with lines linecolor palette frac %.4g title '%.3g', \\\n",
+                family, k, k, count > 1 ? (double)k / (double)(count - 1) : 0.0, limit[k]);
+    }
+    if (best > 0.0) {
+        fprintf(t->script, "     %s using 2:3 with lines linecolor '#000000' linewidth 2.2 title 'best: %.3g', \\\n", optimum,
+                best);
+    }
+    fprintf(t->script, "     %s using 1:3 with lines linecolor '#404040' dashtype (2, 3) title 'all stuck'\n", linear);
+    fprintf(t->script, "unset logscale\nset key title ''\n");
+    free(family);
+    free(linear);
+    free(optimum);
+}
+
+void plot_loops(const struct tables *t, size_t contacts, double limit, const char *what)
+{
+    if (t->script) {
+        char *file = file_of(t, what, "csv");
+        begin_picture(t, what, "displacement of the contact", "friction force");
+        fprintf(
+            t->script,
+            "set key title 'limit %.4g'\nset offsets graph 0.04, graph 0.04, graph 0.08, graph 0.08\nplot for [c = 1:%zu] %s \\\n"
+            "     using ($1 >= 2 ? column(%zu + c) : 1 / 0):(column(3 * c + 2)) with lines \\\n"
+            "     linecolor palette frac (%zu > 1 ? (c - 1.0) / %zu : 0) title sprintf('contact %%d', c)\n"
+            "set key title ''\nunset offsets\n",
+            limit, contacts, file, 3 + 3 * contacts, contacts, contacts > 1 ? contacts - 1 : 1);
+        free(file);
+    }
+}
+
+void draw_plots(const struct tables *t)
+{
+    if (t->script) {
+        char *name = new_text("%s-plot.gp", t->name), *script = quoted(name, "'\\''"), *folder = quoted(t->out, "'\\''");
+        close_file(t->script, name);
+        char *command = new_text("cd %s && gnuplot %s", folder, script);
+        if (system(command) != 0) {
+            die("gnuplot could not draw %s/%s", t->out, name);
+        }
+        free(name);
+        free(script);
+        free(folder);
+        free(command);
+    }
+}
