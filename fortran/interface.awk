@@ -95,7 +95,7 @@ function read_constants(line,    comment) {
     sub(/ *\*\/$/, "", comment)
     if (comment) comment = comment "\n"
     sub(/\/\*.*/, "", line)
-    while (match(line, /TRIBO_[A-Z0-9_]+ = [0-9]+/)) {
+    while (match(line, /TRIBO_[A-Z0-9_]+ = -?[0-9]+/)) {
         constants = constants comment "  integer, parameter, public :: " substr(line, RSTART, RLENGTH) "\n"
         comment = ""
         line = substr(line, 1, RSTART - 1) substr(line, RSTART + RLENGTH)

@@ -210,8 +210,8 @@ contains
     call finish(w, stat, errmsg)
   end subroutine tribo_law_eval
 
-  !> Elastic contacts, no context: each a spring in series with a Coulomb slider. f goes on by a displacement dz, and df_dz says
-  !> how it follows. dz, stiffness, limit, f and df_dz are of one size.
+  !> Elastic contacts, no context: each a spring in series with a Coulomb slider. f = clamp(f - stiffness*dz, -limit, limit) after a
+  !> displacement dz, and df_dz is its derivative by dz. dz, stiffness, limit, f and df_dz are of one size.
   subroutine elastic_force_line(dz, stiffness, limit, f, df_dz, stat, errmsg)
     real(dp), intent(in) :: dz(:), stiffness(:), limit(:)
     real(dp), intent(inout) :: f(:)
@@ -901,8 +901,7 @@ contains
 
   ! -------------------------------------------------------------------------------------------------------------------- queries
 
-  !> What each contact did in the last balance or step_force: 0 stuck, +1 and -1 sliding in that direction (the force is
-  !> -limit*slip), 2 open. An error (TRIBO_ERR_STATE) where there has been none, or a solve_box since.
+  !> What each contact did in the last balance or step_force, TRIBO_SLIP_STUCK, _FORTH, _BACK, _OPEN or _PLANE. An error (TRIBO_ERR_STATE) where there has been none, or a solve_box since.
   subroutine get_slip(this, slip, stat, errmsg)
     class(tribo_context), intent(in) :: this
     integer, intent(inout) :: slip(:)

@@ -55,6 +55,13 @@ module tribo_constants
   integer, parameter, public :: TRIBO_SHARE_LEAST_NORM = 0
   integer, parameter, public :: TRIBO_SHARE_PREVIOUS = 1
 
+  integer, parameter, public :: TRIBO_SLIP_BACK = -1
+  integer, parameter, public :: TRIBO_SLIP_STUCK = 0
+  integer, parameter, public :: TRIBO_SLIP_FORTH = 1
+  integer, parameter, public :: TRIBO_SLIP_OPEN = 2
+  !> both directions of a planar contact
+  integer, parameter, public :: TRIBO_SLIP_PLANE = 3
+
   !> contacts with slip 0; 0 where tribo_get_slip has none
   integer, parameter, public :: TRIBO_COUNT_STUCK = 0
   !> sum of the ranks of the matrices that the last call solved with

@@ -27,7 +27,7 @@ static struct joint new_joint(void)
     return j;
 }
 
-/* Takes the joint to z; returns its force, which resists. */
+/* Takes the joint to z; returns the force that this needs, minus the sum of f. */
 static double move(struct joint *j, double z)
 {
     double dz[ELEMENTS], sum = 0.0;
@@ -37,7 +37,7 @@ static double move(struct joint *j, double z)
     need(tribo_elastic_force(ELEMENTS, dz, j->stiffness, j->limit, j->f, NULL), NULL);
     j->z = z;
     for (int i = 0; i < ELEMENTS; i++) {
-        sum += j->f[i];
+        sum -= j->f[i];
     }
     return sum;
 }
@@ -89,8 +89,8 @@ static void single_element(FILE *values)
         const double before = f;
         need(tribo_elastic_force(1, &dz, &k, &limit, &f, NULL), NULL);
         if (i > steps) {
-            energy += 0.5 * (before + f) * dz;
-            in_phase += 2.0 * f * z / (amplitude * amplitude * steps);
+            energy -= 0.5 * (before + f) * dz;
+            in_phase -= 2.0 * f * z / (amplitude * amplitude * steps);
         }
     }
     const double theta = acos(1.0 - 2.0 * limit / (k * amplitude));

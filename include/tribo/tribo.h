@@ -133,21 +133,19 @@ TRIBO_API int tribo_law_find(const char *name, int *law);
 TRIBO_API int tribo_law_eval(int law, double v, double feq, double limit, double epsilon, double *f, double *df_dv,
                              double *df_dfeq, double *df_dlimit);
 
-/* Elastic contacts, no context: n elements, each a spring in series with a Coulomb slider (Jenkins, Masing), go on from the force
- * that they carry by a displacement. For integrators of one's own; forces, all the state that there is, stay with the caller.
- * dz         [n] in      displacement of one end against the other since f
+/* n elastic contacts, no context: each a spring in series with a Coulomb slider (Jenkins, Masing).
+ * Computes f = clamp(f - stiffness dz, -limit, limit) after a displacement dz; f is the whole state of an element.
+ * dz         [n] in      relative displacement dz since the last call: z = J x; bodies get J' f
  * stiffness  [n] in      of the spring, >= 0
- * limit      [n] in      mu times normal load, >= 0; where it has fallen below |f|, f follows
- * f          [n] in/out  force that the element holds against dz: f + stiffness dz, or +-limit where that is beyond. The body
- *                        gets -J'f
- * df_dz      [n] out, or NULL   stiffness, or 0 where the element slides
- * Thread-safe. Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (n), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE (stiffness, limit); on an
- * error nothing has been written. */
+ * limit      [n] in      mu times normal load, >= 0
+ * f          [n] in/out  friction force; 0 to begin with
+ * df_dz      [n] out, or NULL   -stiffness; 0 where the element slides
+ * Thread-safe. Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (n), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE (stiffness, limit). */
 TRIBO_API int tribo_elastic_force(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
                                   double *df_dz);
 
-/* The same in the plane, with |f| <= limit: dz, f [n][2]; stiffness, limit [n]; df_dz [n][2][2], symmetric. An element that
- * slides carries its limit in the direction of f + stiffness dz. Returns the same. */
+/* The same in the plane, |f| <= limit: f = p, or limit p/|p| where |p| > limit, with p = f - stiffness dz.
+ * dz, f [n][2]; stiffness, limit [n]; df_dz [n][2][2], symmetric. Returns the same. */
 TRIBO_API int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffness, const double *limit, double *f,
                                          double *df_dz);
 
@@ -440,9 +438,18 @@ TRIBO_API int tribo_accept(tribo_context *ctx, const double *v, const double *fe
 
 /* ----------------------------------------------------------------------------------------------------------- queries */
 
-/* What each contact did in the last tribo_balance or tribo_step_force. slip [n] out: 0 stuck, +1 and -1 sliding in that
- * direction (the force is -limit * slip), 2 open; both directions of a planar contact 0, 2, or 3 sliding in the plane; by the
- * limits that it had.
+/* What a contact does: slides towards -z (f = limit), sticks, slides towards +z (f = -limit), carries nothing since its limit
+ * is 0, slides in the plane. */
+enum {
+    TRIBO_SLIP_BACK = -1,
+    TRIBO_SLIP_STUCK = 0,
+    TRIBO_SLIP_FORTH = 1,
+    TRIBO_SLIP_OPEN = 2,
+    TRIBO_SLIP_PLANE = 3 /* both directions of a planar contact */
+};
+
+/* What each contact did in the last tribo_balance or tribo_step_force, by the limits of that call.
+ * slip  [n] out  TRIBO_SLIP_...
  * Returns TRIBO_ERR_NULL, and TRIBO_ERR_STATE if there has been none that found forces, or a tribo_solve_box or
  * tribo_set_operator_... since. */
 TRIBO_API int tribo_get_slip(const tribo_context *ctx, signed char *slip);

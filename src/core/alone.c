@@ -23,7 +23,7 @@ struct call {
 /* Which way a contact slides by its force: that reaches its limit, or the part of it at which the law lets go. */
 static inline signed char alone_slip_of(double f, double edge)
 {
-    const double forth = f <= -edge ? FORTH : 0.0, back = f >= edge ? -BACK : 0.0;
+    const double forth = f <= -edge ? TRIBO_SLIP_FORTH : 0.0, back = f >= edge ? -TRIBO_SLIP_BACK : 0.0;
     return (signed char)(int)(forth - back); /* numbers as wide as f: vectors of them stay whole */
 }
 
@@ -45,7 +45,7 @@ TRIBO_SIMD static void find_alike_slips(size_t n, double edge, const double *res
 TRIBO_SIMD static void find_open(size_t n, const double *restrict limit, signed char *restrict slip)
 {
     for (size_t i = 0; i < n; i++) {
-        slip[i] = (signed char)(limit[i] > 0.0 ? slip[i] : OPEN);
+        slip[i] = (signed char)(limit[i] > 0.0 ? slip[i] : TRIBO_SLIP_OPEN);
     }
 }
 

@@ -17,11 +17,11 @@ TRIBO_SIMD int tribo_any_in_band(size_t n, const double *v, double band)
 TRIBO_SIMD void tribo_find_directions(size_t n, const double *restrict v, signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
-        did[i] = v[i] > 0.0 ? FORTH : BACK;
+        did[i] = v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK;
     }
 }
 
-/* The same, and contacts near stick if all have one band: BACK, STORED and FORTH count -1, 0, 1. */
+/* The same, and contacts near stick if all have one band: TRIBO_SLIP_BACK, STORED and TRIBO_SLIP_FORTH count -1, 0, 1. */
 TRIBO_SIMD static void find_states(size_t n, const double *restrict v, double band, signed char *restrict did)
 {
     for (size_t i = 0; i < n; i++) {
@@ -35,11 +35,11 @@ TRIBO_SIMD static void find_near(size_t n, const double *restrict v, const doubl
 {
     for (size_t i = 0; band && i < n; i++) {
         const int near = (fabs(v[i]) <= band[i]) & (limit[i] > 0.0);
-        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? FORTH : BACK);
+        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
     }
     for (size_t i = 0; !band && i < n; i++) {
         const int near = (v[i] == 0.0) & (limit[i] > 0.0);
-        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? FORTH : BACK);
+        did[i] = (signed char)(near ? STORED : v[i] > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
     }
 }
 
@@ -82,14 +82,14 @@ void tribo_find_feq(const tribo_context *ctx, size_t i, size_t n, const double *
 TRIBO_SIMD static void force_of_slips(size_t n, const signed char *restrict did, const double *restrict limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
-        f[i] = did[i] == FORTH ? -limit[i] : limit[i];
+        f[i] = did[i] == TRIBO_SLIP_FORTH ? -limit[i] : limit[i];
     }
 }
 
 TRIBO_SIMD static void force_of_alike_slips(size_t n, const signed char *restrict did, double limit, double *restrict f)
 {
     for (size_t i = 0; i < n; i++) {
-        f[i] = did[i] == FORTH ? -limit : limit;
+        f[i] = did[i] == TRIBO_SLIP_FORTH ? -limit : limit;
     }
 }
 

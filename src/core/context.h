@@ -46,8 +46,8 @@ static inline size_t tribo_chunks(size_t n)
 
 /* What a contact did in the last call that found forces: it slid towards v < 0 or v > 0, which is to say that its force is its
  * limit; or its force is stored in f. Before limits change slips take the place of that, with the same numbers (see
- * tribo_get_slip): 0 for stuck, and OPEN. */
-enum { BACK = -1, STORED = 0, FORTH = 1, OPEN = 2 };
+ * tribo_get_slip): 0 for stuck, and TRIBO_SLIP_OPEN. */
+enum { STORED = TRIBO_SLIP_STUCK };
 
 /* Of how many contacts of a chunk the force is stored; of all only if they say so. */
 enum { NONE_STORED, SOME_STORED, ALL_STORED };
@@ -238,7 +238,7 @@ static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 {
     const int did = ctx->last.did.of[i];
     const double limit = ctx->follow.contacts.limit[i];
-    return did == STORED ? ctx->last.f[i] : did == FORTH ? -limit : limit;
+    return did == STORED ? ctx->last.f[i] : did == TRIBO_SLIP_FORTH ? -limit : limit;
 }
 
 /* static.c: what follows from settings and operator where limits are static. */

@@ -1,5 +1,5 @@
 /* The friction element of bladed-disc and joint codes: a spring in series with a Coulomb slider (Jenkins 1922; Masing 1926), by
- * return mapping: the spring takes the displacement, and what is beyond the limit the slider gives way. */
+ * return mapping: the spring takes the displacement; where |f| is beyond the limit, the slider moves until it is not. */
 #include "check.h"
 
 /* TRIBO_OK, or what is wrong with count numbers. */
@@ -35,10 +35,10 @@ int tribo_elastic_force(size_t n, const double *dz, const double *stiffness, con
 {
     const int status = check_all(n, 1, dz, stiffness, limit, f);
     for (size_t i = 0; !status && i < n; i++) {
-        const double to = cut(f[i]) + product(stiffness[i], dz[i]);
+        const double to = cut(f[i]) - product(stiffness[i], dz[i]);
         f[i] = clamp(to, -limit[i], limit[i]);
         if (df_dz) {
-            df_dz[i] = fabs(to) <= limit[i] ? stiffness[i] : 0.0;
+            df_dz[i] = fabs(to) <= limit[i] ? -stiffness[i] : 0.0;
         }
     }
     return status;
@@ -49,7 +49,7 @@ int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffne
     const int status = check_all(n, 2, dz, stiffness, limit, f);
     for (size_t i = 0; !status && i < n; i++) {
         const double k = stiffness[i];
-        const double to[2] = {cut(f[2 * i]) + product(k, dz[2 * i]), cut(f[2 * i + 1]) + product(k, dz[2 * i + 1])};
+        const double to[2] = {cut(f[2 * i]) - product(k, dz[2 * i]), cut(f[2 * i + 1]) - product(k, dz[2 * i + 1])};
         const double most = greater(greater(fabs(to[0]), fabs(to[1])), DBL_MIN), x = to[0] / most, y = to[1] / most;
         const double length = sqrt(x * x + y * y), room = quotient(limit[i], most);
         const double direction[2] = {x / greater(length, DBL_MIN), y / greater(length, DBL_MIN)};
@@ -57,14 +57,14 @@ int tribo_elastic_force_planar(size_t n, const double *dz, const double *stiffne
         f[2 * i] = slides ? limit[i] * direction[0] : to[0];
         f[2 * i + 1] = slides ? limit[i] * direction[1] : to[1];
         if (df_dz && slides) {
-            /* The derivative of limit to/|to|, to = f + stiffness dz: only what turns the force is left of it. */
-            const double rate = k * (room / length);
+            /* The derivative of limit to/|to|, to = f - stiffness dz. */
+            const double rate = -k * (room / length);
             double *d = df_dz + 4 * i;
             d[0] = rate * direction[1] * direction[1];
             d[1] = d[2] = -rate * direction[0] * direction[1];
             d[3] = rate * direction[0] * direction[0];
         } else if (df_dz) {
-            df_dz[4 * i] = df_dz[4 * i + 3] = k;
+            df_dz[4 * i] = df_dz[4 * i + 3] = -k;
             df_dz[4 * i + 1] = df_dz[4 * i + 2] = 0.0;
         }
     }

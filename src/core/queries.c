@@ -22,7 +22,7 @@ static inline signed char queries_slip_of(signed char did, double f, double limi
 {
     const double edge = holds * limit;
     const int open = !(limit > 0.0), stored = (f <= -edge) - (f >= edge), slip = did + (did == STORED) * stored;
-    return (signed char)(slip * !open + OPEN * open); /* no choice: that is what makes loops of it fast */
+    return (signed char)(slip * !open + TRIBO_SLIP_OPEN * open); /* no choice: that is what makes loops of it fast */
 }
 
 /* Slips take the place of what contacts did. */

@@ -49,8 +49,8 @@ static void look_at_clusters(tribo_context *ctx, struct step *s)
     }
     for (size_t k = 0; k < c->count; k++) {
         const size_t i = c->first[k];
-        if (tribo_planar_slip(ctx, k) == TRIBO_IN_PLANE) {
-            s->reverses[i] = s->reverses[i + 1] = TRIBO_IN_PLANE;
+        if (tribo_planar_slip(ctx, k) == TRIBO_SLIP_PLANE) {
+            s->reverses[i] = s->reverses[i + 1] = TRIBO_SLIP_PLANE;
         }
     }
     for (size_t q = 0; q < c->clusters; q++) {

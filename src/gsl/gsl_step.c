@@ -288,7 +288,7 @@ static int has_stuck(const struct gsl_step *g)
     int found = 0;
     if (!tribo_get_slip(g->sys->contacts, g->mode + n)) {
         for (size_t i = 0; i < n; i++) {
-            found |= g->mode[i] != g->mode[n + i] || g->mode[i] == 0;
+            found |= g->mode[i] != g->mode[n + i] || g->mode[i] == TRIBO_SLIP_STUCK;
         }
     }
     return found;

@@ -14,9 +14,6 @@
 #include "core/law/law.h"
 #include "core/operator/operator.h"
 
-/* Slip of a planar contact, see tribo_get_slip. */
-#define TRIBO_IN_PLANE 3
-
 /* What a direction is. */
 enum { ROLE_SCALAR, ROLE_FIRST, ROLE_SECOND };
 

@@ -449,10 +449,10 @@ signed char tribo_planar_slip(const tribo_context *ctx, size_t k)
     const size_t i = ctx->planar->first[k];
     const double *limit = ctx->follow.contacts.limit + i, *f = ctx->last.f + i, rounding = 8.0 * DBL_EPSILON;
     if (!(limit[0] > 0.0 || limit[1] > 0.0)) {
-        return OPEN;
+        return TRIBO_SLIP_OPEN;
     }
     const double y[2] = {limit[0] > 0.0 ? quotient(f[0], limit[0]) : 0.0, limit[1] > 0.0 ? quotient(f[1], limit[1]) : 0.0};
-    return tribo_length(2, y) >= ctx->last.holds * (1.0 - rounding) ? TRIBO_IN_PLANE : 0;
+    return tribo_length(2, y) >= ctx->last.holds * (1.0 - rounding) ? TRIBO_SLIP_PLANE : 0;
 }
 
 void tribo_planar_slips(const tribo_context *ctx, signed char *slip)
@@ -460,7 +460,7 @@ void tribo_planar_slips(const tribo_context *ctx, signed char *slip)
     for (size_t k = 0; k < ctx->planar->count; k++) {
         const signed char own = tribo_planar_slip(ctx, k);
         for (size_t i = ctx->planar->first[k]; i < ctx->planar->first[k] + 2; i++) {
-            slip[i] = (signed char)(ctx->follow.contacts.limit[i] > 0.0 ? own : OPEN);
+            slip[i] = (signed char)(ctx->follow.contacts.limit[i] > 0.0 ? own : TRIBO_SLIP_OPEN);
         }
     }
 }

@@ -57,7 +57,7 @@ static int take_ties(struct stick_slip *m)
 static void hold_all(size_t n, const signed char *restrict slip, const unsigned char *restrict can, unsigned char *restrict holds)
 {
     for (size_t i = 0; i < n; i++) {
-        holds[i] = (slip[i] == 0) & can[i];
+        holds[i] = (slip[i] == TRIBO_SLIP_STUCK) & can[i];
     }
 }
 
@@ -70,7 +70,7 @@ static void note_holds(struct stick_slip *m)
         m->unlisted |= loose != m->loose[i];
         m->dependents += tribo_stick_slip_depends(m, i);
         m->loose[i] = loose;
-        m->key[i] = (signed char)((m->slip[i] == 0) + m->holds[i]);
+        m->key[i] = (signed char)((m->slip[i] == TRIBO_SLIP_STUCK) + m->holds[i]);
     }
     m->hold_differs |= m->unlisted;
 }

@@ -37,7 +37,7 @@ void tribo_planar_slip_free(struct planar_slip *p)
 
 /* --------------------------------------------------------------------------------------------------------- contacts */
 
-/* slip [ncontact] = TRIBO_IN_PLANE for directions of planar contacts: what a context says of contacts that all slide. */
+/* slip [ncontact] = TRIBO_SLIP_PLANE for directions of planar contacts: what a context says of contacts that all slide. */
 static int find_planar(tribo_context *disc, size_t contacts, double *one, signed char *slip)
 {
     for (size_t i = 0; i < contacts; i++) {
@@ -54,7 +54,7 @@ static void take_contacts(struct planar_slip *p, const struct stick_slip *m, con
 {
     memset(p->in_plane, 0, m->contacts);
     for (size_t i = 0; i + 1 < m->contacts; i++) {
-        if (slip[i] != TRIBO_IN_PLANE) {
+        if (slip[i] != TRIBO_SLIP_PLANE) {
             continue;
         }
         if (m->limit[i] > 0.0 && m->limit[i + 1] > 0.0) {
@@ -169,7 +169,7 @@ int tribo_planar_slip_start(struct stick_slip *m, const tribo_system *sys, int c
     int status = check_limits(m, sys, planar);
     status = status ? status : create(m, sys);
     for (size_t k = 0; !status && k < m->plane->count; k++) {
-        set_slip(m, &m->plane->contact[k], TRIBO_IN_PLANE); /* whether it is at rest is seen by its speed alone */
+        set_slip(m, &m->plane->contact[k], TRIBO_SLIP_PLANE); /* whether it is at rest is seen by its speed alone */
         m->plane->contact[k].now = HUGE_VAL;
     }
     return status;
@@ -190,8 +190,8 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
         p->now = length(v);
         p->most = greater(p->most, p->now);
         p->begins = SLIDES_ON;
-        if (m->slip[p->at] == TRIBO_IN_PLANE && rests(m, p)) {
-            set_slip(m, p, 0);
+        if (m->slip[p->at] == TRIBO_SLIP_PLANE && rests(m, p)) {
+            set_slip(m, p, TRIBO_SLIP_STUCK);
             m->plane->stopped = p->at;
             found++;
         }
@@ -203,7 +203,7 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
 static int check_holds(const struct stick_slip *m, const tribo_system *sys)
 {
     for (size_t i = 0; m->dependents && i < m->contacts; i++) {
-        if (m->slip[i] == 0 && !m->holds[i]) {
+        if (m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i]) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,
                                      "at t = %.17g contact %zu rests by what others hold: method event knows no redundant "
                                      "contacts at rest where some are planar",
@@ -245,12 +245,12 @@ static double given_forces(struct stick_slip *m, const tribo_system *sys, const 
 {
     double fastest = 0.0;
     for (size_t i = 0; i < m->contacts; i++) {
-        m->lo[i] = m->slip[i] == 1 || m->slip[i] == -1 ? -m->slip[i] * m->limit[i] : 0.0;
+        m->lo[i] = tribo_slides(m->slip[i]) ? -m->slip[i] * m->limit[i] : 0.0;
         m->plane->rate[i] = 0.0;
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
-        if (m->slip[p->at] == TRIBO_IN_PLANE && p->begins == SLIDES_ON) {
+        if (m->slip[p->at] == TRIBO_SLIP_PLANE && p->begins == SLIDES_ON) {
             double v[2];
             velocity(m, sys, p, y, v);
             fastest = greater(fastest, slide(p, v, acc + p->at, m->lo + p->at, m->plane->rate + p->at));
@@ -284,7 +284,7 @@ static int find_forces(struct stick_slip *m, const tribo_system *sys, const doub
 {
     given_forces(m, sys, y, m->still);
     for (size_t i = 0; i < m->contacts; i++) {
-        m->hi[i] = m->slip[i] == 0 ? m->limit[i] : 0.0;
+        m->hi[i] = m->slip[i] == TRIBO_SLIP_STUCK ? m->limit[i] : 0.0;
     }
     return solve(m, sys, m->a, m->force);
 }
@@ -316,7 +316,7 @@ static void let_go(struct stick_slip *m, struct planar_contact *p, int begins)
 {
     double part[2] = {m->force[p->at] / p->limit[0], m->force[p->at + 1] / p->limit[1]};
     const double size = length(part);
-    set_slip(m, p, TRIBO_IN_PLANE);
+    set_slip(m, p, TRIBO_SLIP_PLANE);
     p->begins = begins;
     p->now = 0.0;
     for (size_t d = 0; d < 2; d++) {
@@ -333,13 +333,13 @@ static int leaves_line(const struct stick_slip *m, size_t i, const double *f)
 
 static void let_go_line(struct stick_slip *m, size_t i)
 {
-    tribo_stick_slip_set(m, i, m->force[i] > 0.0 ? -1 : 1);
+    tribo_stick_slip_set(m, i, m->force[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
     m->force[i] = -m->slip[i] * m->limit[i];
 }
 
 static int on_line(const struct stick_slip *m, size_t i)
 {
-    return !m->plane->in_plane[i] && m->slip[i] == 0;
+    return !m->plane->in_plane[i] && m->slip[i] == TRIBO_SLIP_STUCK;
 }
 
 /* Contacts at rest whose force is at its limit: marks in m->tied such that do not accelerate. Returns how many these are. */
@@ -359,7 +359,7 @@ static size_t break_away(struct stick_slip *m)
         struct planar_contact *p = &m->plane->contact[k];
         double noise;
         const double part = share(m, p, m->force, &noise);
-        m->tied[p->at] = (signed char)(m->slip[p->at] == 0 && (part >= 1.0 - noise || p->at == m->reached));
+        m->tied[p->at] = (signed char)(m->slip[p->at] == TRIBO_SLIP_STUCK && (part >= 1.0 - noise || p->at == m->reached));
         if (m->tied[p->at] && leaves(m, p, m->force)) {
             m->tied[p->at] = 0;
             let_go(m, p, BY_ACCELERATION);
@@ -374,13 +374,13 @@ static size_t break_away(struct stick_slip *m)
 static void set_limits_ahead(struct stick_slip *m)
 {
     for (size_t i = 0; i < m->contacts; i++) {
-        m->hi[i] = m->slip[i] != 0 ? 0.0 : m->tied[i] ? lesser(m->limit[i], fabs(m->force[i])) : m->limit[i];
+        m->hi[i] = m->slip[i] != TRIBO_SLIP_STUCK ? 0.0 : m->tied[i] ? lesser(m->limit[i], fabs(m->force[i])) : m->limit[i];
     }
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
         double noise;
         const double part = m->tied[p->at] ? lesser(share(m, p, m->force, &noise), 1.0) : 1.0;
-        for (size_t d = 0; d < 2 && (m->slip[p->at] == 0 || p->begins != SLIDES_ON); d++) {
+        for (size_t d = 0; d < 2 && (m->slip[p->at] == TRIBO_SLIP_STUCK || p->begins != SLIDES_ON); d++) {
             m->hi[p->at + d] = part * p->limit[d];
         }
     }

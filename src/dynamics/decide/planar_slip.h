@@ -6,9 +6,6 @@
 
 struct stick_slip;
 
-/* Slip of both directions of a planar contact that slides. */
-#define TRIBO_IN_PLANE 3
-
 /* How a contact slides: it has a velocity; or has none yet, and an acceleration; or neither, and its force is about to reach
  * beyond the limit. The velocity then begins with the power of time that this is. */
 enum { SLIDES_ON = 0, BY_ACCELERATION = 1, BY_FORCE = 2 };

@@ -34,7 +34,7 @@ static void begin_again(struct stick_slip *m)
 {
     memset(m->tied, 0, m->contacts);
     for (size_t i = 0; m->again && !m->uncoupled && i < m->contacts; i++) {
-        tribo_stick_slip_set(m, i, m->rested[i] ? 0 : m->slip[i]);
+        tribo_stick_slip_set(m, i, m->rested[i] ? TRIBO_SLIP_STUCK : m->slip[i]);
     }
     m->again = 0;
 }
@@ -51,7 +51,7 @@ static inline int breaks_away(const struct stick_slip *m, size_t i, signed char 
 static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     tribo_stick_slip_let_go(m, i, direction);
-    if (m->slip[i] == 0 || !tribo_stick_slip_alone(m, i)) {
+    if (m->slip[i] == TRIBO_SLIP_STUCK || !tribo_stick_slip_alone(m, i)) {
         return 1;
     }
     m->force[i] = -direction * m->limit[i];
@@ -61,7 +61,9 @@ static size_t let_go(struct stick_slip *m, size_t i, signed char direction)
 /* Where a contact at its limit slides by its force, or, if that is nothing, by its acceleration v. */
 static signed char direction_of(const struct stick_slip *m, size_t i, double force)
 {
-    return (signed char)(force != 0.0 ? (force > 0.0 ? -1 : 1) : m->v[i] < 0.0 ? -1 : 1);
+    return (signed char)(force != 0.0    ? (force > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH)
+                         : m->v[i] < 0.0 ? TRIBO_SLIP_BACK
+                                         : TRIBO_SLIP_FORTH);
 }
 
 /* Where contacts are not coupled, those that are not close to their limits are decided about, unless they may part. */
@@ -137,7 +139,7 @@ static double limit_ahead(const struct stick_slip *m, size_t i, double moment)
 {
     double rate;
     const double now = limit_now(m, i, &rate);
-    return m->slip[i] == 2 ? 0.0 : greater(now + moment * rate, 0.0);
+    return m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : greater(now + moment * rate, 0.0);
 }
 
 /* How far to look ahead: to the horizon, or less where a limit that counts until then is to change much faster than that. */
@@ -151,7 +153,8 @@ static double find_moment(const struct stick_slip *m)
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         const double now = limit_now(m, i, &rate);
-        if (m->slip[i] != 2 && now <= fabs(m->force[i]) + m->horizon * fabs(rate) && moment * fabs(rate) > CHANGES * force) {
+        if (m->slip[i] != TRIBO_SLIP_OPEN && now <= fabs(m->force[i]) + m->horizon * fabs(rate) &&
+            moment * fabs(rate) > CHANGES * force) {
             moment = force > 0.0 ? CHANGES * force / fabs(rate) : moment;
         }
     }
@@ -177,7 +180,8 @@ static void find_falling(struct stick_slip *m, const tribo_system *sys, const do
     for (size_t k = 0; k < m->asks; k++) {
         const size_t i = m->asked[k];
         const double v = m->rested[i] ? 0.0 : tribo_stick_slip_velocity(m, sys, i, y);
-        m->limit_rate[i] += m->slip[i] == 2 ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
+        m->limit_rate[i] +=
+            m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : m->slip[i] * m->v[i] * tribo_breakaway_slope(&m->breakaway, i, v);
     }
 }
 
@@ -190,8 +194,8 @@ static void set_bounds_ahead(struct stick_slip *m, double moment)
             m->lo[i] = m->hi[i] = m->spring[i] + moment * m->spring_rate[i];
             continue;
         }
-        if (m->slip[i] != 0) {
-            m->lo[i] = m->hi[i] = m->slip[i] == 2 ? 0.0 : -m->slip[i] * limit;
+        if (m->slip[i] != TRIBO_SLIP_STUCK) {
+            m->lo[i] = m->hi[i] = m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->slip[i] * limit;
             continue;
         }
         m->hi[i] = limit + (!m->tied[i] && now - m->force[i] < wider ? wider : 0.0);

@@ -115,11 +115,11 @@ void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, 
 
 double tribo_stick_slip_follows(const struct stick_slip *m, size_t i)
 {
-    if (m->slip[i] == 0) {
+    if (m->slip[i] == TRIBO_SLIP_STUCK) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         return m->holds[i] || !m->tied[i] ? 0.0 : m->force[i] > 0.0 ? ratio : -ratio;
     }
-    return m->slip[i] == 2 ? 0.0 : -m->slip[i];
+    return m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->slip[i];
 }
 
 double tribo_stick_slip_slack(const struct stick_slip *m, size_t i)

@@ -26,7 +26,7 @@ struct stick_slip {
     double doubt;   /* 1, or by how much more than rounding may be in doubt, where events make no headway */
     size_t reached; /* the contact whose force has just met its limit, whatever rounding says of it; ncontact if there is none */
     double horizon; /* a time short beside the fastest motion: so far decisions look ahead */
-    signed char *slip;     /* [ncontact] 0 at rest, +1 and -1 sliding in that direction, 2 open, TRIBO_IN_PLANE */
+    signed char *slip;     /* [ncontact] TRIBO_SLIP_... */
     unsigned char *holds;  /* [ncontact] 1: at rest, and needed to keep the contacts at rest where they are; the other ones rest
                               by themselves, and keep their forces */
     signed char *loose;    /* [ncontact] 1: it does not hold */
@@ -85,10 +85,16 @@ struct stick_slip {
 int tribo_stick_slip_create(struct stick_slip *m, tribo_system *sys);
 void tribo_stick_slip_free(struct stick_slip *m);
 
+/* 1 for a slip along the contact's direction, forth or back. */
+static inline int tribo_slides(signed char slip)
+{
+    return slip == TRIBO_SLIP_FORTH || slip == TRIBO_SLIP_BACK;
+}
+
 /* Whether contact i is at rest, and nothing that it holds keeps it there. */
 static inline int tribo_stick_slip_depends(const struct stick_slip *m, size_t i)
 {
-    return m->slip[i] == 0 && !m->holds[i];
+    return m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i];
 }
 
 /* Contact i does this from here on. Nobody else writes slip: who holds follows from it, at once where contacts do not depend on
@@ -98,7 +104,7 @@ static inline void tribo_stick_slip_set(struct stick_slip *m, size_t i, signed c
     if (slip == m->slip[i]) {
         return;
     }
-    const int rested = m->slip[i] == 0, rests = slip == 0;
+    const int rested = m->slip[i] == TRIBO_SLIP_STUCK, rests = slip == TRIBO_SLIP_STUCK;
     m->slip[i] = slip;
     if (!m->independent) {
         m->fresh = 1;
@@ -152,7 +158,7 @@ void tribo_stick_slip_contact_accelerations(const tribo_system *sys, const doubl
 /* Whether contact i is at rest by a force that is to be found; that of elastic ones is known. */
 static inline int tribo_stick_slip_searches(const struct stick_slip *m, size_t i)
 {
-    return m->slip[i] == 0 && !m->elastic[i];
+    return m->slip[i] == TRIBO_SLIP_STUCK && !m->elastic[i];
 }
 
 /* A force this close to the limit might be taken beyond it by rounding, or, by what other contacts do, in a moment. */
@@ -175,7 +181,7 @@ void tribo_stick_slip_accelerate(struct stick_slip *m, const tribo_system *sys, 
 static inline void tribo_stick_slip_let_go(struct stick_slip *m, size_t i, signed char direction)
 {
     const int again = m->breakaway.some && tribo_breakaway_lets_go(&m->breakaway, i);
-    tribo_stick_slip_set(m, i, again ? 0 : direction);
+    tribo_stick_slip_set(m, i, again ? TRIBO_SLIP_STUCK : direction);
     m->tied[i] = 0;
     m->again |= again;
 }
@@ -240,7 +246,7 @@ double tribo_stick_slip_follows(const struct stick_slip *m, size_t i);
 /* 1 if contact i rests by itself on a base that moves: then its velocity has to be looked after. */
 static inline int tribo_stick_slip_may_part(const struct stick_slip *m, size_t i)
 {
-    return m->base_moves && m->slip[i] == 0 && !m->holds[i];
+    return m->base_moves && m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i];
 }
 
 /* By how much more than its limit contact i may be pulled and hold: where it would let go of much, what may be rounding does not

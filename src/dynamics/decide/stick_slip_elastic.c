@@ -50,10 +50,10 @@ enum stand { OPEN, INSIDE, AT_LIMIT, STOPPED };
 static enum stand stand_of(const struct stick_slip *m, size_t i)
 {
     const signed char before = m->slip[i];
-    const int slid = m->slid[i] == 1 || m->slid[i] == -1;
-    const int slides = (before == 1 || before == -1) && m->slid[i] == before;
-    return before == 2                                                                    ? OPEN
-           : before == 0 && slid                                                          ? STOPPED
+    const int slid = tribo_slides(m->slid[i]);
+    const int slides = tribo_slides(before) && m->slid[i] == before;
+    return before == TRIBO_SLIP_OPEN                                                      ? OPEN
+           : before == TRIBO_SLIP_STUCK && slid                                           ? STOPPED
            : slides || i == m->reached || fabs(m->spring[i]) >= m->limit[i] - m->slack[i] ? AT_LIMIT
                                                                                           : INSIDE;
 }
@@ -62,7 +62,7 @@ static enum stand stand_of(const struct stick_slip *m, size_t i)
 static signed char against(const struct stick_slip *m, size_t i)
 {
     const signed char before = m->slip[i];
-    return before != 0 && m->slid[i] == before ? before : (signed char)(m->spring[i] > 0.0 ? -1 : 1);
+    return before != 0 && m->slid[i] == before ? before : (signed char)(m->spring[i] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH);
 }
 
 /* Force and slip of contact i, whose velocity is v if it slides. */
@@ -76,7 +76,7 @@ static void place_elastic(struct stick_slip *m, size_t i, double v)
         return;
     }
     m->spring[i] = stand == INSIDE ? m->spring[i] : -direction * m->limit[i];
-    tribo_stick_slip_set(m, i, (signed char)(slides ? direction : 0));
+    tribo_stick_slip_set(m, i, (signed char)(slides ? direction : TRIBO_SLIP_STUCK));
 }
 
 /* Velocities v [ncontact] become those with the rates of forces that shared compliance makes of them; 0 of contacts that hold. */

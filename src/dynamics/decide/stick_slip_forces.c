@@ -91,7 +91,7 @@ int tribo_stick_slip_solve(struct stick_slip *m, const tribo_system *sys, const 
 /* The force that contact i has whatever the others do. */
 static inline double given_force(const struct stick_slip *m, size_t i)
 {
-    return m->elastic[i] ? m->spring[i] : m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->limit[i];
+    return m->elastic[i] ? m->spring[i] : m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->slip[i] * m->limit[i];
 }
 
 /* Of contacts that are not coupled: force [n], as by given_force or force_alone, and over [n], how far it is above this part of
@@ -104,7 +104,7 @@ static inline void find_alone(size_t n, const signed char *restrict slip, const 
         const double far = a[i] > 0.0 ? HUGE_VAL : a[i] < 0.0 ? -HUGE_VAL : 0.0;
         const double by = diagonal[i] > 0.0 ? diagonal[i] : 1.0, pull = diagonal[i] > 0.0 ? a[i] / by : far;
         const double held = clamp(-pull, -stick[i], stick[i]), given = -slip[i] * limit[i];
-        const int rests = slip[i] == 0;
+        const int rests = slip[i] == TRIBO_SLIP_STUCK;
         force[i] = rests ? held : given;
         over[i] = rests ? fabs(held) - part * stick[i] : -1.0;
     }

@@ -8,7 +8,7 @@
 static signed char slip_of(struct stick_slip *m, const tribo_system *sys, size_t i, const double *y)
 {
     const double v = tribo_stick_slip_find_velocity(m, sys, i, y);
-    return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? 0 : v > 0.0 ? 1 : -1);
+    return (signed char)(fabs(v) <= m->doubt * m->noise[i] ? TRIBO_SLIP_STUCK : v > 0.0 ? TRIBO_SLIP_FORTH : TRIBO_SLIP_BACK);
 }
 
 static int presses(const struct stick_slip *m, const tribo_system *sys, size_t i)
@@ -29,8 +29,8 @@ void tribo_stick_slip_update_limits(struct stick_slip *m, const tribo_system *sy
     for (size_t i = 0; i < sys->ncontact; i++) {
         if (!presses(m, sys, i)) {
             m->limit[i] = m->limit_rate[i] = 0.0;
-            tribo_stick_slip_set(m, i, 2);
-        } else if (m->slip[i] == 2) {
+            tribo_stick_slip_set(m, i, TRIBO_SLIP_OPEN);
+        } else if (m->slip[i] == TRIBO_SLIP_OPEN) {
             tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
         }
         m->limit[i] = greater(m->limit[i], 0.0);
@@ -56,8 +56,8 @@ static size_t stop(struct stick_slip *m, const tribo_system *sys, const double *
     const signed char *const slip = m->slip;
     size_t found = 0;
     for (size_t i = 0; i < n; i++) {
-        if (slip[i] * slip[i] == 1 && slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->doubt * m->noise[i]) {
-            tribo_stick_slip_set(m, i, 0);
+        if (tribo_slides(slip[i]) && slip[i] * tribo_stick_slip_find_velocity(m, sys, i, y) <= m->doubt * m->noise[i]) {
+            tribo_stick_slip_set(m, i, TRIBO_SLIP_STUCK);
             found++;
         }
     }
@@ -69,7 +69,7 @@ static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
 {
     int status = TRIBO_OK;
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
-        if (m->slip[i] == 0 && !m->holds[i]) {
+        if (m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i]) {
             tribo_stick_slip_set(m, i, slip_of(m, sys, i, y));
             const int loses = m->rested[i] && !m->breakaway.falls && tribo_breakaway_is_sudden(&m->breakaway, i);
             status = m->slip[i] && loses ? not_unique(sys, i) : TRIBO_OK;
@@ -81,7 +81,7 @@ static int part(struct stick_slip *m, const tribo_system *sys, const double *y)
 static void note_rest(size_t n, const signed char *restrict slip, unsigned char *restrict rested)
 {
     for (size_t i = 0; i < n; i++) {
-        rested[i] = slip[i] == 0;
+        rested[i] = slip[i] == TRIBO_SLIP_STUCK;
     }
 }
 
@@ -122,9 +122,9 @@ static void find_sliding_limits(struct stick_slip *m, const tribo_system *sys, c
  * or follows its limit. */
 static double own_force(const struct stick_slip *m, size_t i)
 {
-    const double follows = m->slip[i] == 0 && m->swing[i] > 0.0 ? tribo_stick_slip_follows(m, i) : 0.0;
-    if (m->slip[i] != 0) {
-        return m->slip[i] == 2 ? 0.0 : -m->slip[i] * m->lo[i];
+    const double follows = m->slip[i] == TRIBO_SLIP_STUCK && m->swing[i] > 0.0 ? tribo_stick_slip_follows(m, i) : 0.0;
+    if (m->slip[i] != TRIBO_SLIP_STUCK) {
+        return m->slip[i] == TRIBO_SLIP_OPEN ? 0.0 : -m->slip[i] * m->lo[i];
     }
     if (follows != 0.0) {
         return follows * (m->breakaway.some ? m->breakaway.kinetic[i] : m->lo[i]);
@@ -182,7 +182,7 @@ static void start_anew(struct stick_slip *m, const tribo_system *sys, const doub
     for (size_t i = 0; i < sys->ncontact; i++) {
         const signed char slip = slip_of(m, sys, i, y);
         const int rests = slip == 0 || tribo_stick_slip_is_faint(m, sys, y, i);
-        tribo_stick_slip_set(m, i, (signed char)(m->limit[i] == 0.0 ? 2 : rests ? 0 : slip));
+        tribo_stick_slip_set(m, i, (signed char)(m->limit[i] == 0.0 ? TRIBO_SLIP_OPEN : rests ? TRIBO_SLIP_STUCK : slip));
         m->rested[i] = 0;
     }
 }

@@ -96,7 +96,7 @@ int tribo_stick_slip_relieve(struct stick_slip *m, tribo_system *sys, size_t *ch
 {
     int status = find_holding_forces(m, sys);
     size_t worst = most_overloaded(m);
-    const signed char direction = worst < m->contacts && m->f[worst] > 0.0 ? -1 : 1;
+    const signed char direction = worst < m->contacts && m->f[worst] > 0.0 ? TRIBO_SLIP_BACK : TRIBO_SLIP_FORTH;
     if (!status && worst < m->contacts && tribo_stick_slip_must_be_sure(m, worst)) {
         status = share_anew(m, sys);
         worst = most_overloaded(m) < m->contacts ? worst : m->contacts;

@@ -118,8 +118,8 @@ void tribo_events_guard_part(struct events *e, size_t i, const struct watch *wat
 void tribo_events_guard_limit(struct events *e, size_t i, const struct watch *watch)
 {
     const struct stick_slip *m = &e->stick_slip;
-    const int keeps = m->slip[i] == 0 && tribo_stick_slip_follows(m, i) == 0.0;
-    const double times = m->slip[i] == 2 ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
+    const int keeps = m->slip[i] == TRIBO_SLIP_STUCK && tribo_stick_slip_follows(m, i) == 0.0;
+    const double times = m->slip[i] == TRIBO_SLIP_OPEN ? -1.0 : keeps ? tribo_breakaway_ratio(&m->breakaway, i) : 1.0;
     const double allowance = keeps ? m->allowance[i] : 2.0 * TRIBO_LIMIT_NOISE * m->doubt * m->swing[i];
     struct guard *g = append(e, i, HOLDS, 0.0, allowance, watch);
     g->limit *= times;
@@ -290,7 +290,7 @@ static int cannot_follow(struct events *e, tribo_driver *drv, double t, double r
 static void mark_event(struct stick_slip *m, const struct guard *event)
 {
     if (event->slides == SLIDES) {
-        tribo_stick_slip_set(m, event->contact, 0);
+        tribo_stick_slip_set(m, event->contact, TRIBO_SLIP_STUCK);
     } else {
         m->reached = event->contact;
     }

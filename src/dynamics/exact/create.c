@@ -49,7 +49,7 @@ int tribo_modal_create(struct modal **modal, struct modal_shared *shared, const 
     struct modal_build b = {.shared = shared, .n = shared->sys->ndof, .h = tribo_modal_alloc()};
     signed char *key = b.h ? (signed char *)tribo_modal_keep_bytes(&b, contacts) : NULL;
     for (size_t i = 0; key && i < contacts; i++) {
-        key[i] = (signed char)((slip[i] == 0) + holds[i]);
+        key[i] = (signed char)((slip[i] == TRIBO_SLIP_STUCK) + holds[i]);
     }
     int status = TRIBO_ERR_MEMORY;
     if (key) {

@@ -188,7 +188,7 @@ double tribo_modal_motion_dissipated(struct modal_motion *x, double tau)
     for (size_t o = 0; o < x->h->sliding; o++) {
         const struct output *v = &x->h->output[o];
         const size_t i = v->contact;
-        if (x->sys->limit_harmonics && (slip[i] == 1 || slip[i] == -1)) {
+        if (x->sys->limit_harmonics && tribo_slides(slip[i])) {
             energy += swinging_work(x, i, v, tau);
         } else {
             energy -= slip[i] ? steady_work(x, i) : 0.0;

@@ -243,13 +243,13 @@ static int method_exact_begin(void *motion, double t, const double *y, double *r
         const size_t i = c->output->contact;
         const double v = m->rested[i] || !of_velocity ? 0.0 : tribo_stick_slip_velocity(m, x->sys, i, y);
         tribo_course_begin(&x->motion, c, of_velocity, of_velocity ? v : m->force[i]);
-        if (m->slip[i] == 2) {
+        if (m->slip[i] == TRIBO_SLIP_OPEN) {
             m->seen[i] = c->size;
         } else if (!of_velocity) {
             add_stick_guards(x, c);
         } else {
             const struct watch g = {.output = c};
-            (m->slip[i] == 0 ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
+            (m->slip[i] == TRIBO_SLIP_STUCK ? tribo_events_guard_part : tribo_events_guard_slip)(&x->events, i, &g);
         }
     }
     for (size_t i = 0; x->sys->limit_harmonics && i < x->sys->ncontact; i++) {

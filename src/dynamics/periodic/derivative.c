@@ -67,7 +67,7 @@ int tribo_derivative_add_phase(struct derivative *d, double tau, const signed ch
     const struct events *e = d->events;
     memcpy(d->slip + d->steps * d->sys->ncontact, slip, d->sys->ncontact);
     for (size_t i = 0; i < d->sys->ncontact; i++) {
-        d->rests[i] &= slip[i] == 0;
+        d->rests[i] &= slip[i] == TRIBO_SLIP_STUCK;
     }
     d->step[d->steps++] = (struct derivative_step){.phase = e->keep ? e->keep(e->motion) : NULL, .tau = tau};
     return 1;

@@ -159,7 +159,7 @@ static int add_energy(struct replay *r, double tau, const double *end)
     const struct events *e = r->map->events;
     (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
-        if (e->stick_slip.slip[i] == 1 || e->stick_slip.slip[i] == -1) {
+        if (tribo_slides(e->stick_slip.slip[i])) {
             r->sum[i] += r->map->sys->tally[i] * e->work(e->motion, i, tau);
         }
     }
@@ -170,7 +170,7 @@ static int period_quantities_add_rest(struct replay *r, double tau, const double
 {
     (void)end;
     for (size_t i = 0; i < r->map->sys->ncontact; i++) {
-        r->sum[i] += r->map->events->stick_slip.slip[i] == 0 ? tau / r->map->period : 0.0;
+        r->sum[i] += r->map->events->stick_slip.slip[i] == TRIBO_SLIP_STUCK ? tau / r->map->period : 0.0;
     }
     return TRIBO_OK;
 }

@@ -204,7 +204,7 @@ static int pulls_loose(const struct variation *x, size_t i)
     const signed char *now = x->events->stick_slip.slip;
     int loose = 0;
     for (size_t k = 0; k < x->sys->ncontact; k++) {
-        loose |= x->before[k] == 0 && (now[k] == 1 || now[k] == -1);
+        loose |= x->before[k] == 0 && tribo_slides(now[k]);
     }
     return loose && met && met->slides == SLIDES && met->contact == i;
 }
@@ -214,7 +214,7 @@ static int pulls_loose(const struct variation *x, size_t i)
 static int stops(const struct variation *x, size_t i)
 {
     const signed char before = x->before[i], now = x->events->stick_slip.slip[i];
-    const int slid = (before == 1 || before == -1) && !x->events->stick_slip.elastic[i];
+    const int slid = tribo_slides(before) && !x->events->stick_slip.elastic[i];
     return slid && now != 2 && before * x->slope[i] < 0.0 && (now != before || pulls_loose(x, i));
 }
 
@@ -283,7 +283,7 @@ static int together(struct variation *x, const size_t *contact, size_t count, co
 /* 1 if the force of contact i may have changed where others stop: it stops itself, or rests before or after. */
 static int takes_part(const struct variation *x, size_t i)
 {
-    const int rests = x->before[i] == 0 || x->events->stick_slip.slip[i] == 0;
+    const int rests = x->before[i] == 0 || x->events->stick_slip.slip[i] == TRIBO_SLIP_STUCK;
     return !x->events->stick_slip.elastic[i] && (rests || stops(x, i));
 }
 
@@ -348,7 +348,7 @@ static void stop_by_groups(struct variation *x, size_t count)
         } else {
             /* a contact of the group slides afterwards: then the order of stops matters, and there is no derivative */
             for (size_t i = 0; i < x->sys->ncontact; i++) {
-                if (x->group[i] == group && x->events->stick_slip.slip[i] != 0) {
+                if (x->group[i] == group && x->events->stick_slip.slip[i] != TRIBO_SLIP_STUCK) {
                     x->torn = i;
                     x->other = stopped[i == stopped[0]];
                 }
@@ -373,7 +373,7 @@ static void stop_earlier(struct variation *x)
     /* a contact that loses its static limit where another one stops, without cause: two jumps whose order counts */
     const struct stick_slip *m = &x->events->stick_slip;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
-        const int goes = x->before[i] == 0 && (m->slip[i] == 1 || m->slip[i] == -1);
+        const int goes = x->before[i] == 0 && tribo_slides(m->slip[i]);
         if (goes && (x->side[i] || !x->group[i]) && tribo_breakaway_is_sudden(&m->breakaway, i)) {
             x->torn = i;
             x->other = x->stopped[0];
@@ -392,7 +392,7 @@ static size_t find_bound(const struct variation *x)
     size_t bound = x->bond;
     for (size_t i = 0; i < x->sys->ncontact; i++) {
         const signed char now = x->events->stick_slip.slip[i];
-        bound = x->before[i] == 0 && (now == 1 || now == -1) && !x->side[i] ? i : bound;
+        bound = x->before[i] == 0 && tribo_slides(now) && !x->side[i] ? i : bound;
     }
     return bound;
 }

@@ -109,7 +109,7 @@ static int reserve(struct event *e, size_t slides)
 
 static int is_sliding(const struct stick_slip *m, size_t k)
 {
-    return m->slip[m->plane->contact[k].at] == TRIBO_IN_PLANE;
+    return m->slip[m->plane->contact[k].at] == TRIBO_SLIP_PLANE;
 }
 
 static size_t count_sliding(const struct stick_slip *m)

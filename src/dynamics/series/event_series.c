@@ -58,7 +58,7 @@ static void expand_falling(struct event *e, size_t k)
     const size_t c = e->sys->ncontact;
     for (size_t i = 0; i < c; i++) {
         double *part = e->part + i;
-        if (m->slip[i] == 1 || m->slip[i] == -1) {
+        if (tribo_slides(m->slip[i])) {
             part[k * c] = tribo_breakaway_part(&m->breakaway, i, m->slip[i], k, c, e->watch + i, part);
             e->fall[k * c + i] = tribo_breakaway_series(&m->breakaway, i, k, c, e->terms, e->limit + i, part);
         }
@@ -73,7 +73,7 @@ static int find_given(struct event *e, size_t k)
         /* rigid contacts: one that slides, or is just at its limit, follows the limit; others keep their force */
         const struct stick_slip *m = &e->events.stick_slip;
         for (size_t i = 0; i < e->sys->ncontact; i++) {
-            const int keeps = k == 0 && m->slip[i] == 0 && !m->holds[i];
+            const int keeps = k == 0 && m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i];
             const double *limit = (m->slip[i] ? e->slide : e->limit) + k * e->sys->ncontact,
                          side = tribo_stick_slip_follows(m, i);
             e->given[i] = keeps ? m->force[i] : side != 0.0 ? side * limit[i] : 0.0;
@@ -87,7 +87,7 @@ static int find_given(struct event *e, size_t k)
         const tribo_system *sys = e->sys;
         tribo_elastic_forces(sys, e->q + k * sys->ndof, e->work, e->spring, NULL);
         for (size_t i = 0; i < sys->ncontact; i++) {
-            if (m->slip[i] == 0 && m->elastic[i]) {
+            if (m->slip[i] == TRIBO_SLIP_STUCK && m->elastic[i]) {
                 e->given[i] = k == 0 ? m->force[i] : e->spring[i];
             }
         }
@@ -128,7 +128,7 @@ static void watch_forces(const struct event *e, size_t k, int given, double *wat
 {
     const struct stick_slip *m = &e->events.stick_slip;
     for (size_t i = 0; i < e->sys->ncontact; i++) {
-        if (m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i)) {
+        if (m->slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i)) {
             watch[i] = k == 0 ? m->force[i] : e->held[i] + (given ? e->given[i] : 0.0);
         }
     }
@@ -218,7 +218,7 @@ int tribo_event_series(struct event *e)
         for (size_t j = 0; j <= k && j < e->slide_terms; j++) {
             const double *limit = e->slide + j * c, *v = e->watch + (k - j) * c;
             for (size_t i = 0; i < c; i++) {
-                power += m->slip[i] == 1 || m->slip[i] == -1 ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
+                power += tribo_slides(m->slip[i]) ? sys->tally[i] * m->slip[i] * limit[i] * v[i] : 0.0;
             }
         }
         power += m->plane ? tribo_planar_series_power(&e->planar, m, sys, k) : 0.0;
@@ -241,7 +241,7 @@ void tribo_event_slopes(struct event *e)
     for (size_t k = 0; k <= e->order; k++) {
         for (size_t i = 0; i < c; i++) {
             const double more = e->fall[k * c + i] - e->limit[k * c + i];
-            e->slope[k * c + i] = m->slip[i] == 1 || m->slip[i] == -1 ? more / m->breakaway.velocity[i] : 0.0;
+            e->slope[k * c + i] = tribo_slides(m->slip[i]) ? more / m->breakaway.velocity[i] : 0.0;
         }
     }
 }

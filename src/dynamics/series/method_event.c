@@ -62,8 +62,8 @@ static double step_length(const struct event *e)
             const double force = tolerance * (greater(e->limit[i], 0.0) + m->swing[i] + rise);
             const double stick = tribo_breakaway_ratio(&m->breakaway, i) * force;
             const double speed = m->plane ? lesser(u, m->plane->error[i]) : u;
-            const double scale = m->slip[i] == 0 && !tribo_stick_slip_may_part(m, i) ? stick : speed;
-            term = m->slip[i] == 2 ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
+            const double scale = m->slip[i] == TRIBO_SLIP_STUCK && !tribo_stick_slip_may_part(m, i) ? stick : speed;
+            term = m->slip[i] == TRIBO_SLIP_OPEN ? term : greater(term, fabs(e->watch[k * c + i]) / scale);
             term = k < e->terms && m->swing[i] > 0.0 ? greater(term, fabs(e->limit[k * c + i]) / force) : term;
         }
         h = term > 0.0 ? lesser(h, pow(term, -1.0 / (double)k)) : h;
@@ -156,7 +156,7 @@ static double method_event_bound(void *motion, double tau)
  * limit that only follows a table has its zeros at knots, where steps end. */
 static int limit_tells(const struct stick_slip *m, size_t i, int varies)
 {
-    const int keeps = m->slip[i] == 0 && !m->holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
+    const int keeps = m->slip[i] == TRIBO_SLIP_STUCK && !m->holds[i] && tribo_stick_slip_follows(m, i) == 0.0;
     return keeps ? varies : m->swing[i] > 0.0 && !m->holds[i];
 }
 
@@ -171,7 +171,7 @@ static void set_planar_guards(struct event *e)
     for (size_t k = 0; k < m->plane->count; k++) {
         const struct planar_contact *p = &m->plane->contact[k];
         const struct planar_line *line = &e->planar.line[k];
-        const int moves = m->slip[p->at] == TRIBO_IN_PLANE;
+        const int moves = m->slip[p->at] == TRIBO_SLIP_PLANE;
         double *square = e->planar.square + k;
         const double limit = greater(p->limit[0], p->limit[1]);
         struct guard g = {.contact = p->at, .output = square, .slides = moves ? SLOWS : HOLDS, .side = moves ? 1.0 : -1.0};
@@ -199,13 +199,13 @@ static void set_guards(struct event *e)
     for (size_t i = 0; i < m->contacts; i++) {
         const double ratio = tribo_breakaway_ratio(&m->breakaway, i);
         struct watch g = {.output = e->watch + i};
-        if (m->slip[i] == 2) { /* not guarded, but when it touches down, rounding of its velocity counts */
+        if (m->slip[i] == TRIBO_SLIP_OPEN) { /* not guarded, but when it touches down, rounding of its velocity counts */
             e->events.stick_slip.seen[i] = e->size[i];
         }
         if (m->plane && m->plane->in_plane[i]) {
             continue;
         }
-        if (m->slip[i] == 1 || m->slip[i] == -1) {
+        if (tribo_slides(m->slip[i])) {
             tribo_events_guard_slip(&e->events, i, &g);
         } else if (tribo_stick_slip_may_part(m, i)) {
             /* size of the terms of v_i over [0, h] */
@@ -389,7 +389,7 @@ static int speeds_tell(const struct event *e, double h)
         for (size_t k = last + 1; k-- > 0;) {
             sum = sum * h + fabs(l->xn[k]) + fabs(l->xt[k]);
         }
-        tell &= e->events.stick_slip.slip[plane->contact[c].at] != TRIBO_IN_PLANE || sum <= FASTER * l->xn[0];
+        tell &= e->events.stick_slip.slip[plane->contact[c].at] != TRIBO_SLIP_PLANE || sum <= FASTER * l->xn[0];
     }
     return tell;
 }

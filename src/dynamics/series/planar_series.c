@@ -26,7 +26,7 @@ void tribo_planar_series_free(struct planar_series *s)
 
 static int slides(const struct stick_slip *m, const struct planar_contact *p)
 {
-    return m->slip[p->at] == TRIBO_IN_PLANE;
+    return m->slip[p->at] == TRIBO_SLIP_PLANE;
 }
 
 static int planar_series_reserve(struct planar_series *s, size_t terms, size_t contacts)

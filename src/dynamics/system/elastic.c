@@ -30,7 +30,7 @@ static void solve_compliance(const tribo_system *sys, const signed char *slip, s
         return;
     }
     for (size_t i = 0; i < sys->ncontact; i++) {
-        const int holds = is_elastic(sys, i) && (!slip || slip[i] == 0);
+        const int holds = is_elastic(sys, i) && (!slip || slip[i] == TRIBO_SLIP_STUCK);
         for (size_t j = i * columns; j < (i + 1) * columns; j++) {
             x[j] = holds ? x[j] / w->compliance[i] : 0.0;
         }

@@ -221,7 +221,7 @@ TEST(open_contacts)
         assert_exact(f[0], 0.0);
         assert_exact(feq[0], 0.0);
         assert_ok(tribo_get_slip(c, slip));
-        ck_assert_int_eq(slip[0], 2);
+        ck_assert_int_eq(slip[0], TRIBO_SLIP_OPEN);
         assert_ok(tribo_step_force(c, 1.0, a, f));
         assert_exact(f[0], 0.0);
         assert_ok(tribo_force(c, v, a, f));

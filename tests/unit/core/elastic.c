@@ -11,7 +11,7 @@ static void move_to(double *z, double to, double stiffness, double limit, double
     for (int k = 0; k < STEPS; k++) {
         const double before = *f;
         assert_ok(tribo_elastic_force(1, &dz, &stiffness, &limit, f, NULL));
-        *work += 0.5 * (before + *f) * dz;
+        *work -= 0.5 * (before + *f) * dz;
     }
     *z = to;
 }
@@ -23,16 +23,16 @@ TEST(masing)
     const double k = 2.0, limit = 3.0, most = 4.0;
     double z = 0.0, f = 0.0, work = 0.0;
     move_to(&z, most, k, limit, &f, &work);
-    assert_exact(f, 3.0);
+    assert_exact(f, -3.0);
     work = 0.0;
     move_to(&z, 2.0, k, limit, &f, &work);
-    assert_close(f, 3.0 - k * 2.0, 1e-12);
+    assert_close(f, k * 2.0 - 3.0, 1e-12);
     move_to(&z, 2.5, k, limit, &f, &work);
     assert_close(f, 0.0, 1e-12);
     move_to(&z, 2.0, k, limit, &f, &work);
-    assert_close(f, -1.0, 1e-12);
+    assert_close(f, 1.0, 1e-12);
     move_to(&z, -most, k, limit, &f, &work);
-    assert_exact(f, -3.0);
+    assert_exact(f, 3.0);
     move_to(&z, most, k, limit, &f, &work);
     assert_close(work, 30.0, 1e-2); /* corners of the loop are cut by steps of 8/1000 */
 }
@@ -42,11 +42,11 @@ TEST(equivalent_stiffness)
 {
     enum { STEPS = 20000 };
     const double k = 2.0, limit = 3.0, most = 4.0, theta = acos(1.0 - 2.0 * limit / (k * most));
-    double z = most, f = limit, sum = 0.0;
+    double z = most, f = -limit, sum = 0.0;
     for (int i = 1; i <= STEPS; i++) {
         const double to = most * cos(2.0 * PI * i / STEPS), dz = to - z;
         assert_ok(tribo_elastic_force(1, &dz, &k, &limit, &f, NULL));
-        sum += f * cos(2.0 * PI * i / STEPS);
+        sum -= f * cos(2.0 * PI * i / STEPS);
         z = to;
     }
     assert_close(k / PI * (theta - 0.5 * sin(2.0 * theta)), 0.6850376425, 1e-10);
@@ -84,7 +84,7 @@ TEST(plane)
     }
     assert_ok(tribo_elastic_force_planar(N, dz, k, limit, f, d));
     for (size_t i = 0; i < N; i++) {
-        const double to[] = {before[2 * i] + k[i] * dz[2 * i], before[2 * i + 1] + k[i] * dz[2 * i + 1]};
+        const double to[] = {before[2 * i] - k[i] * dz[2 * i], before[2 * i + 1] - k[i] * dz[2 * i + 1]};
         const double part = fmin(1.0, limit[i] / hypot(to[0], to[1]));
         assert_close(f[2 * i], part * to[0], 1e-15);
         assert_close(f[2 * i + 1], part * to[1], 1e-15);
@@ -105,12 +105,46 @@ TEST(plane)
 
 TEST(slope)
 {
-    const double dz[] = {0.1, 1.0, -1.0, 0.0}, k[] = {2.0, 2.0, 2.0, 2.0}, limit[] = {1.0, 1.0, 1.0, 0.25},
-                 want[] = {2.0, 0.0, 0.0, 0.0};
+    const double dz[] = {-0.1, -1.0, 1.0, 0.0}, k[] = {2.0, 2.0, 2.0, 2.0}, limit[] = {1.0, 1.0, 1.0, 0.25},
+                 want[] = {-2.0, 0.0, 0.0, 0.0};
     double f[] = {0.5, 0.5, 0.5, 0.5}, d[4];
     assert_ok(tribo_elastic_force(4, dz, k, limit, f, d));
     assert_all_exact(f, ((const double[]){0.7, 1.0, -1.0, 0.25}), 4);
     assert_all_exact(d, want, 4);
+}
+
+/* Bodies get J' f as from every other call: a mass on an elastic contact, z = x, swings about the spring's zero at sqrt(k/m), and
+ * what the contact does to it never adds energy; z = x_1 - x_2 puts f on body 1 and -f on body 2. */
+TEST(signs)
+{
+    enum { STEPS = 20000 };
+    const double k = 4.0, limit = 1e3, dt = 0.5 * PI / STEPS;
+    const double direction[] = {1.0, -1.0};
+    double x[] = {0.25, -0.25}, u[] = {0.0, 0.0}, f = -k * 0.5;
+    for (int i = 0; i < STEPS; i++) {
+        double dz = 0.0;
+        for (int b = 0; b < 2; b++) { /* masses 2: the relative motion has m = 1, omega = 2 */
+            u[b] += dt * direction[b] * f / 2.0 * (i ? 1.0 : 0.5);
+            x[b] += dt * u[b];
+            dz += direction[b] * dt * u[b];
+        }
+        assert_ok(tribo_elastic_force(1, &dz, &k, &limit, &f, NULL));
+    }
+    assert_close(x[0] - x[1], -0.5, 1e-6); /* half a period: pi/omega */
+    const double v = 3.0, slide = 10.0, small = 1.0;
+    double sliding = 0.0, kinetic;
+    signed char slip;
+    tribo_context *c;
+    assert_ok(tribo_create(&c, 1));
+    assert_ok(tribo_set_limit_all(c, small));
+    assert_ok(tribo_elastic_force(1, &slide, &k, &small, &sliding, NULL));
+    const double none = 0.0, one = 1.0;
+    assert_ok(tribo_set_operator_diagonal(c, &one));
+    assert_ok(tribo_balance(c, &v, &none, NULL, &kinetic));
+    assert_ok(tribo_get_slip(c, &slip));
+    assert_exact(sliding, kinetic);
+    ck_assert_int_eq(slip, TRIBO_SLIP_FORTH);
+    tribo_destroy(c);
 }
 
 /* Nothing is written on errors, and numbers of any size raise no exception that matters. */
@@ -146,4 +180,5 @@ TEST(bad_input)
     }
 }
 
-TEST_MAIN("elastic", {masing, 1}, {equivalent_stiffness, 1}, {plane_on_a_line, 20}, {plane, 20}, {slope, 1}, {bad_input, 1})
+TEST_MAIN("elastic", {masing, 1}, {equivalent_stiffness, 1}, {plane_on_a_line, 20}, {plane, 20}, {slope, 1}, {signs, 1},
+          {bad_input, 1})

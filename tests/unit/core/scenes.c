@@ -163,7 +163,10 @@ TEST(mostly_sliding)
         assert_ok(tribo_get_slip(c, slip));
         for (size_t i = 0; i < SCENE && law != TRIBO_SMOOTH; i++) {
             const int holds = fabs(f[i]) < limit[i];
-            ck_assert_int_eq(slip[i], limit[i] == 0.0 ? 2 : holds ? 0 : f[i] < 0.0 ? 1 : -1);
+            ck_assert_int_eq(slip[i], limit[i] == 0.0 ? TRIBO_SLIP_OPEN
+                                      : holds         ? TRIBO_SLIP_STUCK
+                                      : f[i] < 0.0    ? TRIBO_SLIP_FORTH
+                                                      : TRIBO_SLIP_BACK);
         }
         /* the same calls from the same beginning give the same bits, whether f_eq is wanted or not */
         assert_ok(tribo_balance(d, v, a, call % 2 ? NULL : feq, again));

@@ -100,13 +100,13 @@ TEST(rest)
     assert_all_close(f, TWO(-1.2, 0.6), 2, 1e-15);
     assert_all_close(feq, f, 2, 1e-15);
     assert_ok(tribo_get_slip(c, slip));
-    ck_assert(slip[0] == 0 && slip[1] == 0);
+    ck_assert(slip[0] == TRIBO_SLIP_STUCK && slip[1] == TRIBO_SLIP_STUCK);
     ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 2);
     assert_ok(tribo_balance(c, TWO(0.0, 0.0), TWO(3.0, -4.0), feq, f));
     assert_all_close(f, TWO(-1.2, 1.6), 2, 1e-15);
     assert_all_close(feq, TWO(-6.0, 8.0), 2, 1e-14);
     assert_ok(tribo_get_slip(c, slip));
-    ck_assert(slip[0] == 3 && slip[1] == 3);
+    ck_assert(slip[0] == TRIBO_SLIP_PLANE && slip[1] == TRIBO_SLIP_PLANE);
     ck_assert_uint_eq(count_of(c, TRIBO_COUNT_STUCK), 0);
     assert_ok(tribo_balance(c, TWO(0.0, 0.0), TWO(0.0, 0.0), NULL, f));
     assert_all_exact(f, TWO(0.0, 0.0), 2);
@@ -221,7 +221,7 @@ TEST(open)
     assert_all_exact(f, TWO(0.0, 0.0), 2);
     assert_all_exact(feq, TWO(0.0, 0.0), 2);
     assert_ok(tribo_get_slip(c, slip));
-    ck_assert(slip[0] == 2 && slip[1] == 2);
+    ck_assert(slip[0] == TRIBO_SLIP_OPEN && slip[1] == TRIBO_SLIP_OPEN);
     assert_ok(tribo_step_force(c, 0.1, TWO(1.0, 1.0), f));
     assert_all_exact(f, TWO(0.0, 0.0), 2);
     tribo_destroy(c);
