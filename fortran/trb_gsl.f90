@@ -46,19 +46,25 @@
 !>                                                                                     by Y(J); DFDT(2*NDOF+1) by T
 !>   TRBSAC(IH, NDOF, T, Y, IERR)                    T, Y: the step was accepted
 !> Integrators of the library
-!>   TRBDRV(IH, NAME, DT, ATOL, RTOL, IERR)          NAME of a method, e.g. 'exact', DT step, tolerances: an integrator in the
-!>                                                   place of the one before
+!>   TRBDRV(IH, NAME, DT, ATOL, RTOL, IERR)          NAME of a method, e.g. 'exact': an integrator in the place of the one
+!>                                                   before. DT > 0 as TRBHST, or for exact, event and auto as TRBOUT; ATOL > 0
+!>                                                   and RTOL as TRBTOL where NAME takes them; 0: not set
+!>   TRBHST(IH, DT, IERR)                            DT > 0: the step of a method with fixed steps, or the first step
+!>   TRBTOL(IH, ATOL, RTOL, IERR)                    ATOL > 0, RTOL >= 0: tolerances of event, auto and adaptive methods
+!>   TRBOUT(IH, DT, IERR)                            DT > 0: exact, event and auto call SEEN of TRBOBS also every DT
 !>   TRBMTH(IH, TEXT, IERR)                                                            TEXT its name; of 'auto', the one at work
 !>   TRBNMT(NMETH, IERR)                                                               NMETH methods: 0 to NMETH - 1
 !>   TRBMNM(METH, TEXT, IERR)                        METH                              TEXT its name
 !>   TRBHMX(IH, H, IERR)                             H > 0: the largest step of an adaptive method
-!>   TRBOBS(IH, SEEN, RPAR, IPAR, IERR)              CALL SEEN(T, NY, Y, IEVENT, RPAR, IPAR, ISTOP) after each step (IEVENT 0) and
-!>                                                   at events (1), NY being 2*NDOF+1: SEEN, which is EXTERNAL in your program,
-!>                                                   ends the run by an ISTOP, 0 before, that is not 0. RPAR(*) and IPAR(*) are
-!>                                                   SEEN's alone. Until the next TRBOBS or TRBDRV
+!>   TRBOBS(IH, SEEN, RPAR, IPAR, IERR)              CALL SEEN(T, NY, Y, KIND, ICON, RPAR, IPAR, ISTOP) at each moment, NY being
+!>                                                   2*NDOF+1, KIND TRIBO_MOMENT_... and ICON the contact, 0 for a step (KIND 0):
+!>                                                   SEEN, which is EXTERNAL in your program, ends the run by an ISTOP, 0 before,
+!>                                                   that is not 0. RPAR(*), IPAR(*) are SEEN's alone. Until the next TRBOBS or
+!>                                                   TRBDRV
 !>   TRBADV(IH, NDOF, T, T1, Y, IERR)                T, Y, T1 >= T                     T, Y there; on error the last good step
 !>   TRBPER(IH, NDOF, T, PERIOD, Y, IERR)            T, PERIOD of the loads; Y guess   Y at T of a motion that comes back after it
 !> Of the periodic motion found last
+!>   TRBFAM(IH, NFREE, IERR)                                                           NFREE: dimension of the family it belongs to
 !>   TRBMUL(IH, NDOF, RE, AI, IERR)                                                    RE(2*NDOF), AI(2*NDOF): Floquet multipliers
 !>   TRBEXT(IH, NDOF, CV, XMIN, XMAX, TMIN, TMAX,    CV(2*NDOF)                        the extremes of CV'Y, and when
 !>          IERR)
@@ -84,10 +90,10 @@ module tribo_fixed_gsl
 
   abstract interface
     !> SEEN of TRBOBS.
-    subroutine sees(t, ny, y, ievent, rpar, ipar, istop)
+    subroutine sees(t, ny, y, kind, icon, rpar, ipar, istop)
       import :: dp
       real(dp), intent(in) :: t, y(*)
-      integer, intent(in) :: ny, ievent
+      integer, intent(in) :: ny, kind, icon
       real(dp), intent(inout) :: rpar(*)
       integer, intent(inout) :: ipar(*), istop
     end subroutine sees
@@ -110,12 +116,11 @@ module tribo_fixed_gsl
 
 contains
 
-  integer function call_see(this, t, y, event) result(istop)
+  integer function call_see(this, moment) result(istop)
     class(external_observer), intent(inout) :: this
-    real(dp), intent(in) :: t, y(:)
-    integer, intent(in) :: event
+    type(tribo_moment), intent(in) :: moment
     istop = 0
-    call this%see(t, size(y), y, event, this%rpar, this%ipar, istop)
+    call this%see(moment%t, size(moment%y), moment%y, moment%kind, moment%contact, this%rpar, this%ipar, istop)
   end function call_see
 
   !> The structure of a handle, which must have ndof degrees of freedom, and nfull of its matrices, as far as these are given.
@@ -558,16 +563,65 @@ end subroutine trbmnm
 
 subroutine trbdrv(ih, name, dt, atol, rtol, ierr)
   use tribo_fixed_gsl
+  use tribo_support, only: take
   implicit none
   integer, intent(in) :: ih
   character(len=*), intent(in) :: name
   real(dp), intent(in) :: dt, atol, rtol
   integer, intent(out) :: ierr
   type(structure), pointer :: s
+  type(tribo_driver) :: trial
+  integer :: status
 
   call find_structure(ih, s, ierr)
-  if (ierr == TRIBO_OK) call s%driver%create(s%system, name, dt, atol, rtol, ierr)
+  if (ierr /= TRIBO_OK) return
+  call trial%create(s%system, name, stat=ierr)
+  if (ierr == TRIBO_OK .and. abs(dt) > 0) then
+    call trial%set_output(dt, ierr)
+    if (ierr == TRIBO_ERR_UNSUPPORTED) call trial%set_step(dt, ierr)
+  end if
+  if (ierr == TRIBO_OK .and. abs(atol) > 0) then
+    call trial%set_tolerance(atol, rtol, status)
+    if (status /= TRIBO_ERR_UNSUPPORTED) ierr = status
+  end if
+  if (ierr == TRIBO_OK) call take(s%driver, trial)
 end subroutine trbdrv
+
+subroutine trbhst(ih, dt, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: dt
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%driver%set_step(dt, ierr)
+end subroutine trbhst
+
+subroutine trbtol(ih, atol, rtol, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: atol, rtol
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%driver%set_tolerance(atol, rtol, ierr)
+end subroutine trbtol
+
+subroutine trbout(ih, dt, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  real(dp), intent(in) :: dt
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%driver%set_output(dt, ierr)
+end subroutine trbout
 
 subroutine trbmth(ih, text, ierr)
   use tribo_fixed_gsl
@@ -675,6 +729,18 @@ subroutine trbmul(ih, ndof, re, ai, ierr)
   if (ierr == TRIBO_OK) call s%driver%get_multipliers(re(:2*ndof), ai(:2*ndof), ierr)
 end subroutine trbmul
 
+subroutine trbfam(ih, nfree, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(inout) :: nfree
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_driven(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%driver%get_freedom(nfree, ierr)
+end subroutine trbfam
+
 subroutine trbext(ih, ndof, cv, xmin, xmax, tmin, tmax, ierr)
   use tribo_fixed_gsl
   implicit none
@@ -685,7 +751,7 @@ subroutine trbext(ih, ndof, cv, xmin, xmax, tmin, tmax, ierr)
   type(structure), pointer :: s
 
   call find_driven(ih, s, ierr, ndof)
-  if (ierr == TRIBO_OK) call s%driver%period_extremes_at(cv(:2*ndof), xmin, xmax, tmin, tmax, ierr)
+  if (ierr == TRIBO_OK) call s%driver%period_extremes(cv(:2*ndof), xmin, xmax, tmin, tmax, ierr)
 end subroutine trbext
 
 subroutine trbhar(ih, ndof, cv, k, xc, xs, ierr)

@@ -10,7 +10,7 @@
 !>     type(tribo_driver) :: driver
 !>     call chain%chain(20, limit=0.1_dp, alpha=1.0_dp, omega=0.5_dp)
 !>     allocate (y(chain%dimension()), source=0.0_dp)
-!>     call driver%create(chain, 'exact', dt=0.1_dp)
+!>     call driver%create(chain, 'exact')
 !>     call driver%advance(t, t1, y)
 !>
 !> Arguments, errors and threads as in module tribo; a system and its drivers belong to one thread. What creates a system or a
@@ -74,13 +74,22 @@ module tribo_systems
     procedure :: real => driver_real
     procedure :: find_periodic
     procedure :: get_multipliers
-    procedure :: period_extremes, period_extremes_at, period_harmonic, period_dissipation, period_stick
+    procedure :: get_freedom
+    procedure :: period_extremes, period_harmonic, period_dissipation, period_stick
     procedure :: set_observer
-    procedure :: set_max_step
+    procedure :: set_step, set_tolerance, set_output, set_max_step
     procedure :: message => driver_message
     procedure, private :: assign_driver
     generic :: assignment(=) => assign_driver
   end type tribo_driver
+
+  !> A moment of the motion: time, state, kind TRIBO_MOMENT_..., and the contact that changes, 0 for TRIBO_MOMENT_STEP. y is
+  !> valid during the call.
+  type, public :: tribo_moment
+    real(dp) :: t = 0
+    real(dp), pointer :: y(:) => null()
+    integer :: kind = 0, contact = 0
+  end type tribo_moment
 
   !> What watches a driver: a type of the caller's that extends this one, and so has the caller's data at hand.
   type, abstract, public :: tribo_observer
@@ -89,13 +98,12 @@ module tribo_systems
   end type tribo_observer
 
   abstract interface
-    !> Called after every accepted step (event 0) and at events (event 1: a contact sticks, breaks away or reverses). What it
-    !> answers ends the run unless 0. It must not change the system or the driver.
-    integer function seen(this, t, y, event)
-      import :: dp, tribo_observer
+    !> Called at every moment, see tribo_driver_set_observer. Answers 0 to go on; else the advance ends with TRIBO_ERR_STOPPED.
+    !> Must not change the system or the driver.
+    integer function seen(this, moment)
+      import :: tribo_moment, tribo_observer
       class(tribo_observer), intent(inout) :: this
-      real(dp), intent(in) :: t, y(:)
-      integer, intent(in) :: event
+      type(tribo_moment), intent(in) :: moment
     end function seen
   end interface
 
@@ -110,6 +118,15 @@ module tribo_systems
     type(held_system), pointer :: system
     class(tribo_observer), pointer :: observer => null()
   end type held_driver
+
+  !> tribo_moment of tribo_dynamics.h.
+  type, bind(c) :: c_moment
+    integer(c_size_t) :: size
+    real(c_double) :: t
+    type(c_ptr) :: y
+    integer(c_int) :: kind
+    integer(c_size_t) :: contact
+  end type c_moment
 
   !> tribo_rows of gsl.h.
   type, bind(c) :: rows_of
@@ -665,42 +682,26 @@ contains
 
   ! -------------------------------------------------------------------------------------------------------------------- drivers
 
-  !> An integrator for a system. Methods, in any case of letters: see tribo_method_name.
-  !>   Coulomb's law itself, epsilon to 0:
-  !>   exact      the motion in closed form between events, to 12 digits; linear systems with harmonic loads. dt: how often an
-  !>              observer sees the motion between events
-  !>   event      high-order steps between events, with the tolerances; any system
-  !>   central/fixed, moreau/fixed   fixed steps of dt in the step form, by central differences (explicit; a dt that is not stable
-  !>              is refused) and by the implicit midpoint rule (Moreau and Jean); second order
-  !>   auto       exact where it can do the system and that is small, else event
-  !>   The law, coupling and epsilon of the context:
-  !>   rk4/fixed  the classical Runge-Kutta method in steps of dt, as in the paper
-  !>   rk2, rk4, rkf45, rkck, rk8pd   explicit Runge-Kutta methods, adaptive from dt on
-  !>   rk1imp, rk2imp, rk4imp, msbdf  implicit ones, adaptive: Euler's, those of Gauss, backward differences; for small epsilon:
-  !>              msbdf
-  !> dt > 0: step, or first step. abstol, reltol >= 0, where absent 0; abstol > 0 for adaptive methods and event. Adaptive: the
-  !> error of a step is below abstol + reltol times the largest displacement, velocity, or the energy, and for velocities of
-  !> contacts below epsilon/1000 at least. See also set_max_step.
-  subroutine create(this, sys, method, dt, abstol, reltol, stat, errmsg)
+  !> A driver of a system by a method, in any case of letters, and its settings as far as they are given. Coulomb's law: exact,
+  !> event, auto; central/fixed, moreau/fixed. The law of the context: rk4/fixed; adaptive rk2, rk4, rkf45, rkck, rk8pd, rk1imp,
+  !> rk2imp, rk4imp, bsimp, msadams, msbdf. Methods with fixed steps need step; all else has a default.
+  !> step      see set_step; abstol, reltol: see set_tolerance, reltol where absent 0; output: see set_output;
+  !> max_step  see set_max_step. A method that does not take one of them refuses it, TRIBO_ERR_UNSUPPORTED
+  subroutine create(this, sys, method, step, abstol, reltol, output, max_step, stat, errmsg)
     class(tribo_driver), intent(inout) :: this
     class(tribo_system), intent(inout) :: sys
     character(len=*), intent(in) :: method
-    real(dp), intent(in) :: dt
-    real(dp), intent(in), optional :: abstol, reltol
+    real(dp), intent(in), optional :: step, abstol, reltol, output, max_step
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(held_driver), pointer :: held
     type(work) :: w
     type(c_ptr) :: drv
-    real(dp) :: tolerance(2)
 
     call find_system(sys, w)
-    tolerance = 0
-    if (present(abstol)) tolerance(1) = abstol
-    if (present(reltol)) tolerance(2) = reltol
-    if (w%status == TRIBO_OK) then
-      w%status = c_driver_create(drv, w%object, trim(method) // c_null_char, dt, tolerance(1), tolerance(2))
-    end if
+    if (present(reltol) .and. .not. present(abstol)) call fail(w, TRIBO_ERR_NULL, 'reltol is given, but abstol is not')
+    if (w%status == TRIBO_OK) w%status = c_driver_create(drv, w%object, trim(method) // c_null_char)
+    if (w%status == TRIBO_OK) call set_all(w, drv, step, abstol, reltol, output, max_step)
     if (w%status == TRIBO_OK) then
       allocate (held)
       held%drv = drv
@@ -711,6 +712,25 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine create
+
+  !> Settings of a new driver, as far as they are given; on error destroys it.
+  subroutine set_all(w, drv, step, abstol, reltol, output, max_step)
+    type(work), intent(inout) :: w
+    type(c_ptr), intent(in) :: drv
+    real(dp), intent(in), optional :: step, abstol, reltol, output, max_step
+    real(dp) :: relative
+
+    relative = 0
+    if (present(reltol)) relative = reltol
+    if (present(step)) w%status = c_driver_set_step(drv, step)
+    if (w%status == TRIBO_OK .and. present(abstol)) w%status = c_driver_set_tolerance(drv, abstol, relative)
+    if (w%status == TRIBO_OK .and. present(output)) w%status = c_driver_set_output(drv, output)
+    if (w%status == TRIBO_OK .and. present(max_step)) w%status = c_driver_set_max_step(drv, max_step)
+    if (w%status == TRIBO_OK) return
+    w%object = drv
+    call keep_message(w)
+    call c_driver_destroy(drv)
+  end subroutine set_all
 
   !> Name of the method; for auto, of the one at work. Empty for a driver that has not been created.
   function method(this) result(text)
@@ -759,8 +779,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine advance
 
-  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, _PERIODS, _NEWTON, _RESTED, since creation,
-  !> and TRIBO_COUNT_FREEDOM, of the last periodic motion found.
+  !> One of TRIBO_COUNT_STEPS, _REJECTED, _EVALUATIONS, _JACOBIANS, _EVENTS, _PERIODS, _NEWTON, _RESTED, since creation.
   subroutine count_long(this, which, value, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     integer, intent(in) :: which
@@ -864,23 +883,30 @@ contains
     call finish(w, stat, errmsg)
   end subroutine get_multipliers
 
-  !> The extremes over that period of c(1:ndof)*q + c(ndof+1:2*ndof)*q'.
-  subroutine period_extremes(this, c, least, most, stat, errmsg)
+  !> The dimension of the family that the last periodic motion found belongs to; see tribo_driver_get_freedom.
+  subroutine get_freedom(this, freedom, stat, errmsg)
+    class(tribo_driver), intent(in) :: this
+    integer, intent(inout) :: freedom
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    integer(c_size_t) :: found
+
+    call find_driver(this, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_get_freedom(w%object, found)
+      call keep_message(w)
+    end if
+    if (w%status == TRIBO_OK) freedom = int(found)
+    call finish(w, stat, errmsg)
+  end subroutine get_freedom
+
+  !> The extremes over that period of c(1:ndof)*q + c(ndof+1:2*ndof)*q', and when it has them, from the t of find_periodic on.
+  subroutine period_extremes(this, c, least, most, at_least, at_most, stat, errmsg)
     class(tribo_driver), intent(in) :: this
     real(dp), intent(in) :: c(:)
     real(dp), intent(inout) :: least, most
-    integer, intent(out), optional :: stat
-    character(len=*), intent(inout), optional :: errmsg
-    real(dp) :: times(2)
-
-    call this%period_extremes_at(c, least, most, times(1), times(2), stat, errmsg)
-  end subroutine period_extremes
-
-  !> The same and when it has them, from the t that was given to find_periodic on.
-  subroutine period_extremes_at(this, c, least, most, at_least, at_most, stat, errmsg)
-    class(tribo_driver), intent(in) :: this
-    real(dp), intent(in) :: c(:)
-    real(dp), intent(inout) :: least, most, at_least, at_most
+    real(dp), intent(inout), optional :: at_least, at_most
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
@@ -889,17 +915,17 @@ contains
     call find_driver(this, w)
     call expect_size(w, 'c', c, w%dimension - 1)
     if (w%status == TRIBO_OK) then
-      w%status = c_driver_period_extremes_at(w%object, c, low, high, at_low, at_high)
+      w%status = c_driver_period_extremes(w%object, c, low, high, at_low, at_high)
       call keep_message(w)
     end if
     if (w%status == TRIBO_OK) then
       least = low(1)
       most = high(1)
-      at_least = at_low(1)
-      at_most = at_high(1)
+      if (present(at_least)) at_least = at_low(1)
+      if (present(at_most)) at_most = at_high(1)
     end if
     call finish(w, stat, errmsg)
-  end subroutine period_extremes_at
+  end subroutine period_extremes
 
   !> Its harmonic k >= 0, cosine*cos(k*2*pi*t/period) + sine*sin(k*2*pi*t/period).
   subroutine period_harmonic(this, c, k, cosine, sine, stat, errmsg)
@@ -984,6 +1010,55 @@ contains
     end if
     call finish(w, stat, errmsg)
   end subroutine set_observer
+
+  !> The step dt > 0 of a method with fixed steps; the first one of an adaptive method.
+  subroutine set_step(this, dt, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_set_step(w%object, dt)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine set_step
+
+  !> event, auto and adaptive methods: the error of a step, below abstol + reltol times the largest displacement, velocity, or the
+  !> energy; abstol > 0, reltol >= 0.
+  subroutine set_tolerance(this, abstol, reltol, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: abstol, reltol
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_set_tolerance(w%object, abstol, reltol)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine set_tolerance
+
+  !> exact, event, auto: an observer also sees the motion every dt > 0 from the start of an advance on. Default: not.
+  subroutine set_output(this, dt, stat, errmsg)
+    class(tribo_driver), intent(inout) :: this
+    real(dp), intent(in) :: dt
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_driver(this, w)
+    if (w%status == TRIBO_OK) then
+      w%status = c_driver_set_output(w%object, dt)
+      call keep_message(w)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine set_output
 
   !> The largest step h > 0 of an adaptive method; by default 0.1 over the highest frequency of structure and loads, since while
   !> all contacts rest no estimate sees how long a step is. An infinite h: none.
@@ -1122,17 +1197,19 @@ contains
     deallocate (held)
   end subroutine leave
 
-  !> Passes on what the library sees.
-  integer(c_int) function tell_observer(t, y, event, data) bind(c, name='')
-    real(c_double), value :: t
-    type(c_ptr), value :: y, data
-    integer(c_int), value :: event
+  !> Passes on what the library sees. SIZE_MAX, the contact of a step, is -1 here.
+  integer(c_int) function tell_observer(seen, data) bind(c, name='')
+    type(c_moment), intent(in) :: seen
+    type(c_ptr), value :: data
     type(held_driver), pointer :: held
-    real(dp), pointer :: state(:)
+    type(tribo_moment) :: moment
 
     call c_f_pointer(data, held)
-    call c_f_pointer(y, state, [2*c_system_ndof(held%system%sys) + 1])
-    tell_observer = to_int(held%observer%seen(t, state, int(event)))
+    moment%t = seen%t
+    moment%kind = int(seen%kind)
+    moment%contact = int(seen%contact + 1)
+    call c_f_pointer(seen%y, moment%y, [c_system_dimension(held%system%sys)])
+    tell_observer = to_int(held%observer%seen(moment))
   end function tell_observer
 
   impure elemental subroutine assign_system(to, from)

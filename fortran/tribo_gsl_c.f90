@@ -9,6 +9,19 @@ module tribo_gsl_constants
   integer, parameter, public :: TRIBO_STATICS_MASS = 1
   integer, parameter, public :: TRIBO_STATICS_COMPLIANCE = 2
 
+  !> end of a step, output, end of an advance, or an event at which no contact changes
+  integer, parameter, public :: TRIBO_MOMENT_STEP = 0
+  !> a contact comes to rest
+  integer, parameter, public :: TRIBO_MOMENT_STICK = 1
+  !> a contact breaks away
+  integer, parameter, public :: TRIBO_MOMENT_SLIP = 2
+  !> the direction of sliding turns without rest
+  integer, parameter, public :: TRIBO_MOMENT_REVERSE = 3
+  !> the limit falls to 0
+  integer, parameter, public :: TRIBO_MOMENT_LIFT = 4
+  !> the limit rises from 0
+  integer, parameter, public :: TRIBO_MOMENT_TOUCH = 5
+
   !> accepted steps
   integer, parameter, public :: TRIBO_COUNT_STEPS = 100
   !> steps tried and undone
@@ -19,18 +32,16 @@ module tribo_gsl_constants
   integer, parameter, public :: TRIBO_COUNT_JACOBIANS = 103
   !> events located
   integer, parameter, public :: TRIBO_COUNT_EVENTS = 104
-  !> periods that tribo_driver_find_periodic integrated, of each search rounded up
+  !> periods integrated by tribo_driver_find_periodic, of each search rounded up
   integer, parameter, public :: TRIBO_COUNT_PERIODS = 105
-  !> steps of Newton's method that it took
+  !> steps of Newton's method of these searches
   integer, parameter, public :: TRIBO_COUNT_NEWTON = 106
-  !> no count: the dimension of the family that the last periodic motion found belongs to
-  integer, parameter, public :: TRIBO_COUNT_FREEDOM = 107
   !> degrees of freedom that steps left out since nothing moved there
-  integer, parameter, public :: TRIBO_COUNT_RESTED = 108
+  integer, parameter, public :: TRIBO_COUNT_RESTED = 107
 
   !> the largest force of a contact at rest beyond its limit
   integer, parameter, public :: TRIBO_REAL_EXCESS = 100
-  !> the largest velocity of a contact against the direction in which its force takes it to slide
+  !> the largest velocity of a sliding contact against its direction of sliding
   integer, parameter, public :: TRIBO_REAL_BACKSLIP = 101
 end module tribo_gsl_constants
 
@@ -225,14 +236,11 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_accept
 
-    function c_driver_create(drv, sys, method, dt, abstol, reltol) result(answer) bind(c,name='tribo_driver_create')
+    function c_driver_create(drv, sys, method) result(answer) bind(c,name='tribo_driver_create')
       import
       type(c_ptr), intent(inout) :: drv
       type(c_ptr), value :: sys
       character(kind=c_char), intent(in), optional :: method(*)
-      real(c_double), value :: dt
-      real(c_double), value :: abstol
-      real(c_double), value :: reltol
       integer(c_int) :: answer
     end function c_driver_create
 
@@ -253,6 +261,35 @@ module tribo_gsl_c
       type(c_ptr) :: answer
     end function c_method_name
 
+    function c_driver_set_step(drv, dt) result(answer) bind(c,name='tribo_driver_set_step')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: dt
+      integer(c_int) :: answer
+    end function c_driver_set_step
+
+    function c_driver_set_tolerance(drv, abstol, reltol) result(answer) bind(c,name='tribo_driver_set_tolerance')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: abstol
+      real(c_double), value :: reltol
+      integer(c_int) :: answer
+    end function c_driver_set_tolerance
+
+    function c_driver_set_output(drv, dt) result(answer) bind(c,name='tribo_driver_set_output')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: dt
+      integer(c_int) :: answer
+    end function c_driver_set_output
+
+    function c_driver_set_max_step(drv, h) result(answer) bind(c,name='tribo_driver_set_max_step')
+      import
+      type(c_ptr), value :: drv
+      real(c_double), value :: h
+      integer(c_int) :: answer
+    end function c_driver_set_max_step
+
     function c_driver_advance(drv, t, t1, y) result(answer) bind(c,name='tribo_driver_advance')
       import
       type(c_ptr), value :: drv
@@ -261,6 +298,14 @@ module tribo_gsl_c
       real(c_double), intent(inout), optional :: y(*)
       integer(c_int) :: answer
     end function c_driver_advance
+
+    function c_driver_set_observer(drv, seen, data) result(answer) bind(c,name='tribo_driver_set_observer')
+      import
+      type(c_ptr), value :: drv
+      type(c_funptr), value :: seen
+      type(c_ptr), value :: data
+      integer(c_int) :: answer
+    end function c_driver_set_observer
 
     function c_driver_find_periodic(drv, t, period, y) result(answer) bind(c,name='tribo_driver_find_periodic')
       import
@@ -279,17 +324,15 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_driver_get_multipliers
 
-    function c_driver_period_extremes(drv, c, least, most) result(answer) bind(c,name='tribo_driver_period_extremes')
+    function c_driver_get_freedom(drv, freedom) result(answer) bind(c,name='tribo_driver_get_freedom')
       import
       type(c_ptr), value :: drv
-      real(c_double), intent(in), optional :: c(*)
-      real(c_double), intent(inout), optional :: least(*)
-      real(c_double), intent(inout), optional :: most(*)
+      integer(c_size_t), intent(inout) :: freedom
       integer(c_int) :: answer
-    end function c_driver_period_extremes
+    end function c_driver_get_freedom
 
-    function c_driver_period_extremes_at(drv, c, least, most, at_least, at_most) result(answer) &
-      bind(c,name='tribo_driver_period_extremes_at')
+    function c_driver_period_extremes(drv, c, least, most, at_least, at_most) result(answer) &
+      bind(c,name='tribo_driver_period_extremes')
       import
       type(c_ptr), value :: drv
       real(c_double), intent(in), optional :: c(*)
@@ -298,7 +341,7 @@ module tribo_gsl_c
       real(c_double), intent(inout), optional :: at_least(*)
       real(c_double), intent(inout), optional :: at_most(*)
       integer(c_int) :: answer
-    end function c_driver_period_extremes_at
+    end function c_driver_period_extremes
 
     function c_driver_period_harmonic(drv, c, k, cosine, sine) result(answer) bind(c,name='tribo_driver_period_harmonic')
       import
@@ -339,21 +382,6 @@ module tribo_gsl_c
       real(c_double), intent(inout), optional :: value(*)
       integer(c_int) :: answer
     end function c_driver_real
-
-    function c_driver_set_observer(drv, seen, data) result(answer) bind(c,name='tribo_driver_set_observer')
-      import
-      type(c_ptr), value :: drv
-      type(c_funptr), value :: seen
-      type(c_ptr), value :: data
-      integer(c_int) :: answer
-    end function c_driver_set_observer
-
-    function c_driver_set_max_step(drv, h) result(answer) bind(c,name='tribo_driver_set_max_step')
-      import
-      type(c_ptr), value :: drv
-      real(c_double), value :: h
-      integer(c_int) :: answer
-    end function c_driver_set_max_step
 
     function c_driver_message(drv) result(answer) bind(c,name='tribo_driver_message')
       import

@@ -10,7 +10,7 @@ module tribo_support
   !> Kind of all reals here: double precision.
   integer, parameter, public :: dp = c_double
 
-  public :: object_of, adopt, lend
+  public :: object_of, adopt, take, lend
   public :: begin, finish, fail, expect_size, expect_shape, expect_count, expect_index, check_rows, blame
   public :: from_zero, to_int, transpose_in_place
   public :: to_text, message_of
@@ -89,6 +89,14 @@ contains
     this%handle = handle
     status = TRIBO_OK
   end function adopt
+
+  !> Moves the object of from to this, in the place of the one before.
+  subroutine take(this, from)
+    class(tribo_object), intent(inout) :: this, from
+    call this%destroy()
+    this%handle = from%handle
+    from%handle = 0
+  end subroutine take
 
   !> Lets this name an object of another owner's, by its number.
   subroutine lend(this, handle)

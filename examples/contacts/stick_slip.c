@@ -17,14 +17,13 @@ struct events {
     double breaks[2], sticks[2];
 };
 
-/* It breaks away where the spring pulls with the static limit. */
-static int note_event(double t, const double *y, int event, void *data)
+static int note_event(const tribo_moment *moment, void *data)
 {
     struct events *e = data;
-    double *last = fabs(y[0] - 1.0) < 1e-9 ? e->breaks : e->sticks;
-    if (event) {
+    double *last = moment->kind == TRIBO_MOMENT_STICK ? e->sticks : e->breaks;
+    if (moment->kind != TRIBO_MOMENT_STEP) {
         last[0] = last[1];
-        last[1] = t;
+        last[1] = moment->t;
     }
     return 0;
 }
@@ -53,7 +52,7 @@ int main(int argc, char **argv)
     tribo_driver *drv;
     struct events e = {{0.0, 0.0}, {0.0, 0.0}};
     double t = 0.0, y[3] = {0.0, 0.0, 0.0}, least = 1.0, most = -1.0;
-    need(tribo_driver_create(&drv, sys, "exact", 0.01, 0.0, 0.0), tribo_message(tribo_system_context(sys)));
+    need(tribo_driver_create(&drv, sys, "exact"), tribo_message(tribo_system_context(sys)));
     need(tribo_driver_set_observer(drv, note_event, &e), tribo_driver_message(drv));
     fprintf(table, "t,x,v,friction\n");
     for (int k = 0; k <= 3500; k++) {

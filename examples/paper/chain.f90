@@ -53,7 +53,8 @@ contains
     call chain%context(contacts)
     call contacts%set_law(trim(law))
     call contacts%set_epsilon(10*omega*dt)
-    call driver%create(chain, method, dt=dt)
+    call driver%create(chain, method)
+    if (method == 'rk4/fixed') call driver%set_step(dt)
     t = 0
     y = 0
     before = 0

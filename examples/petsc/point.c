@@ -86,7 +86,7 @@ static PetscErrorCode Measure(const Study *s, tribo_driver *drv, double *amplitu
 
     PetscFunctionBeginUser;
     PetscCall(PetscMalloc1(s->contacts.count, &each));
-    PetscCallTribo(tribo_driver_period_extremes(drv, s->shape, &least, &most), tribo_driver_message(drv), "structure of %zu rows",
+    PetscCallTribo(tribo_driver_period_extremes(drv, s->shape, &least, &most, NULL, NULL), tribo_driver_message(drv), "structure of %zu rows",
                    s->rows);
     PetscCallTribo(tribo_driver_period_dissipation(drv, each), tribo_driver_message(drv), "structure of %zu rows", s->rows);
     *amplitude = 0.5 * (most - least);
@@ -114,8 +114,7 @@ PetscErrorCode ComputePoint(const Study *s, double omega, double scale, double *
     }
     PetscCallTribo(tribo_set_limit(contacts, s->limit), tribo_message(contacts), "structure of %zu rows", s->rows);
     PetscCallTribo(tribo_system_add_load(sys, omega, NULL, s->load), tribo_message(contacts), "structure of %zu rows", s->rows);
-    PetscCallTribo(tribo_driver_create(&drv, sys, "exact", period, 0.0, 0.0), tribo_message(contacts), "structure of %zu rows",
-                   s->rows);
+    PetscCallTribo(tribo_driver_create(&drv, sys, "exact"), tribo_message(contacts), "structure of %zu rows", s->rows);
     PetscCall(PetscCalloc1(tribo_system_dimension(sys), &y));
     *amplitude = *energy = NAN;
     *status = tribo_driver_find_periodic(drv, 0.0, period, y);

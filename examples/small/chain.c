@@ -18,7 +18,8 @@ int main(void)
     }
     tribo_context *contacts = tribo_system_context(chain);
     status = tribo_set_epsilon_step(contacts, dt, 0.4); /* the paper's epsilon = 10 omega dt */
-    status = status ? status : tribo_driver_create(&driver, chain, "rk4/fixed", dt, 0.0, 0.0);
+    status = status ? status : tribo_driver_create(&driver, chain, "rk4/fixed");
+    status = status ? status : tribo_driver_set_step(driver, dt);
     if (status) {
         fprintf(stderr, "%s: %s\n", tribo_strerror(status), tribo_message(contacts));
     }

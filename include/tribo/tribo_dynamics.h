@@ -162,121 +162,113 @@ TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 
 typedef struct tribo_driver tribo_driver;
 
-/* An integrator for a system, which it borrows and which must live longer.
- * method   in   in any case of letters. Coulomb's law itself, epsilon -> 0:
- *               "exact": the motion in closed form between events, to 12 digits; linear systems with harmonic loads and limits
- *               "event": high-order steps between events, with the tolerances; any system
- *               "central/fixed", "moreau/fixed": fixed steps of dt in the step form, by central differences (explicit; a dt that
- *               is not stable is refused: above 2/omega_max, or less with damping) and by the implicit midpoint rule (Moreau and
- *               Jean; a dt with which its matrix is not positive definite, since stiffness or damping is negative, is refused).
- *               Second order; but for scalar contacts that reverse without sticking, and central with damping: there first order.
- *               With planar contacts, and with static limits, by tribo_step_force_mean, else by tribo_step_force. Where no two
- *               contacts share a body, central leaves out bodies that rest among others at rest, and TRIBO_COUNT_RESTED counts
- *               them, but in systems of up to 4 degrees of freedom
- *               "auto": exact where it can do the system, of up to 200 degrees of freedom, else event; see tribo_driver_method
- *               exact and event look over all of the motion for what goes beyond Coulomb's law, see tribo_driver_real.
- *               Planar contacts: event, and not exact. Limits must not change then, nor be static ones, and contacts at rest
- *               must not be redundant (TRIBO_ERR_UNSUPPORTED, where that happens). Where a planar one creeps, much slower than
- *               friction would stop it, event takes steps as long as loads and structure allow, while up to 128 slide and once
- *               its direction has settled; otherwise steps of that short time, and where too many of these lead nowhere
- *               (TRIBO_ERR_STEP) moreau/fixed is the one to take
- *               With static limits (tribo_set_static) contacts at rest hold by these; event, and exact where limits drop at
- *               once (else TRIBO_ERR_UNSUPPORTED), locate where they break away, and it takes a force that is beyond them by
- *               more than rounding. Redundant contacts at rest hold as long as any forces within their limits hold all of them;
- *               when none do any more, those that move all the same under the forces that come nearest break away together.
- *               Where contacts that tie each other come to rest on bases that part in the same instant, which of them keeps its
- *               limit is not unique if limits drop at once, and event and exact refuse to choose (TRIBO_ERR_UNSUPPORTED); where
- *               bases part by their accelerations only, they choose a motion that the rule allows, which need not be that of
- *               methods with steps, and which may go with rounding. All methods with steps are of first order with static limits.
- *               The law, coupling and epsilon of the context:
- *               "rk4/fixed": the classical Runge-Kutta method in steps of dt, as in the paper, 4 evaluations a step
- *               "rk2", "rk4", "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf": the GSL
- *               stepper of that name tries the steps, and the driver decides how long they are. Those of the explicit ones
- *               (rk2 to rk8pd, msadams) follow the stiffness of contacts at rest; the others solve with dense matrices of the
- *               whole state. For small epsilon: msbdf, or rk4imp
- * dt       in   step, or first step; > 0. A fixed-step method ends an advance with a shorter step where t1 asks for it.
- *               exact: how often an observer sees the motion between events
- * abstol   in   >= 0; > 0 for adaptive methods and event (and auto, where it takes event)
- * reltol   in   >= 0
- *               Adaptive: the estimated error of a step is below abstol + reltol times the largest displacement, of velocities
- *               below abstol + reltol times the largest velocity, and of the energy below abstol + reltol |energy|, in the
- *               units of y. Velocities that make contact i's are found to limit_max/limit_i epsilon_i/1000 at least: a
- *               tolerance beside which epsilon is small gives Coulomb's law nevertheless. Errors of steps add up: the energy
- *               is off, relative, by less than 1e-2 at tolerance 1e-4, and at 1e-8 by less than 1e-6 (msbdf 2e-6, rk2imp
- *               5e-6, rk1imp 4e-4), for oscillator and belt, epsilon 1e-2 to 1e-4. Contacts with Coulomb's law itself chatter
- *               about v = 0 in very short steps.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_MEMORY,
- * TRIBO_ERR_UNSUPPORTED (planar contacts, static limits, tables, degrees of freedom without mass, or no accelerations, where the
- * method cannot do such systems); the message is on the system's context. */
-TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
-                                  double reltol);
+/* A driver advances the state of sys by a method: the manual says what each method solves, and where its limits are.
+ * sys      in/out   borrowed; must live longer than the driver
+ * method   in       a name in any case of letters. Coulomb's law: "exact", "event", "auto" (exact where it can do the system,
+ *                   else event); "central/fixed", "moreau/fixed" (fixed steps). The law of the context: "rk4/fixed"; "rk2", "rk4",
+ *                   "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf" (adaptive steps)
+ * Methods with fixed steps need tribo_driver_set_step; for all other settings there are defaults.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED (the method cannot do the system); the message
+ * is on the system's context. */
+TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method);
 
-/* Name of the method; for "auto", of the one at work: the choice is made anew with each advance. NULL for NULL. */
+/* Name of the method; for "auto" that of the method at work, which each advance chooses anew. NULL for NULL. */
 TRIBO_API const char *tribo_driver_method(const tribo_driver *drv);
 
 /* Names of the methods, method 0 to tribo_method_count() - 1; NULL outside. */
 TRIBO_API int tribo_method_count(void);
 TRIBO_API const char *tribo_method_name(int method);
 
+/* Settings may be changed between advances; the motion then goes on from y. Each returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE,
+ * TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_NEGATIVE (reltol), TRIBO_ERR_UNSUPPORTED (the method does not take it). */
+
+/* The step dt > 0 of a method with fixed steps; of an adaptive method the first step (default: a thousandth of the shortest time
+ * 1/omega of structure and loads). A method with fixed steps ends an advance with a shorter step where t1 asks for it. */
+TRIBO_API int tribo_driver_set_step(tribo_driver *drv, double dt);
+
+/* The error of a step of event, auto or an adaptive method: below abstol + reltol times the largest displacement, the largest
+ * velocity, or the energy, each for its own part of y.
+ * abstol   in   > 0, in the units of y. Default: event 1e-12 of what moves within the shortest time 1/omega; adaptive 1e-12
+ * reltol   in   >= 0. Default: adaptive 1e-8 */
+TRIBO_API int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol);
+
+/* exact, event, auto: the observer also sees the motion every dt > 0 from the start of an advance on. Default: not. */
+TRIBO_API int tribo_driver_set_output(tribo_driver *drv, double dt);
+
+/* The largest step of an adaptive method, h > 0; HUGE_VAL: none. Default: 0.1 times the shortest time 1/omega of structure and
+ * loads. Events within a step may be missed while all contacts rest, so a longer one is for implicit methods on structures with
+ * frequencies that do not matter. Steps also end at the knots of tables. */
+TRIBO_API int tribo_driver_set_max_step(tribo_driver *drv, double h);
+
 /* Integrates from *t to t1 >= *t.
  * t  in/out   time
  * y  [dimension] in/out   state; may be changed between calls, and so may the system, its loads and its context's settings
- * On error t and y hold the last good step, always finite. (central/fixed without an observer: velocities and energy half a step
- * before.) Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (also where the motion grows without bound), TRIBO_ERR_RANGE (t1 < t),
- * TRIBO_ERR_STOPPED, TRIBO_ERR_STEP (a step below what time resolves, or a dt that is not stable), TRIBO_ERR_CHATTER,
- * TRIBO_ERR_UNSUPPORTED (loads and contacts that the method does not take, see tribo_driver_create), TRIBO_ERR_UNSUPPORTED and
- * TRIBO_ERR_INDEFINITE (exact: a structure with contacts held whose motion has no closed form, or is not known to two digits),
- * TRIBO_ERR_INDEFINITE (moreau/fixed: the matrix of a step of dt), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
+ * On error t and y hold the last good step, always finite (central/fixed without an observer: velocities and energy half a step
+ * before). Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (also where the motion grows without bound), TRIBO_ERR_RANGE (t1 < t),
+ * TRIBO_ERR_STATE (no step was set), TRIBO_ERR_STOPPED, TRIBO_ERR_STEP (a step below what time resolves, or an unstable dt),
+ * TRIBO_ERR_CHATTER, TRIBO_ERR_UNSUPPORTED (the method cannot do the system as it is, or knows no closed form to two digits),
+ * TRIBO_ERR_INDEFINITE (matrix of a step of moreau/fixed, or of exact), TRIBO_ERR_MEMORY, and what tribo_balance returns. */
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 
-/* Finds a motion that comes back after a period: the steady response, without the way there. Methods exact, event, and auto by
- * one of the two; others return TRIBO_ERR_UNSUPPORTED. Without negative damping or stiffness motions never part from each other
- * (in energy), and there is such a motion, as symmetric as its loads, wherever motions are bounded. With it, or with static
- * limits, there may be none, or several, or none is found. Of several it is one near the guess, as a rule, stable or not (see
- * tribo_driver_get_multipliers). Before the search gives up, it follows the motion from the guess for a while, and begins anew
- * there. With static limits that fall with the speed take event or auto: exact cannot be created for them, and refuses such that
- * are set later.
- * t       in       time at which the period begins
- * period  in       > 0; that of the loads, or a multiple of it
- * y       [dimension] in/out   a guess, zeros will do; out: the state at t to which the motion comes back, its energy 0
- * event follows the motion in steps of an error of 1e-13, whatever the tolerances, which are for advance.
- * The state comes back to 1e-10 of the largest state on the way (as a rule to 1e-12), in the energy norm: the root of
- * q^T K q + q'^T M q', where modes below 0.1 (2 pi/period) count with that frequency. The size of a motion is taken to be 1e-4 of
- * what the loads would do against stiffness or inertia alone, at least. That it comes back is seen by following it through the
- * period; if it does not, y is untouched and the message tells how near it came.
- * Where all loads and motions of bases are odd harmonics of the period, the motion is one whose second half is minus the first.
- * Where there is a family of motions (contacts that never slip keep any place within their limits), it is one near the guess; of
- * such that may be odd, the odd one, unless the guess is clearly another one of the family. TRIBO_COUNT_FREEDOM counts its
- * dimensions, when it is asked for.
- * The observer sees nothing of the search: advance over the period to look. The next advance begins anew.
+/* A moment of the motion, as an observer sees it. Valid during the call. */
+typedef struct {
+    size_t size;     /* sizeof(tribo_moment) of the library: later versions may add members at the end */
+    double t;        /* time */
+    const double *y; /* [dimension] state */
+    int kind;        /* TRIBO_MOMENT_... */
+    size_t contact;  /* the contact that changes; SIZE_MAX for TRIBO_MOMENT_STEP */
+} tribo_moment;
+
+enum {
+    TRIBO_MOMENT_STEP = 0,    /* end of a step, output, end of an advance, or an event at which no contact changes */
+    TRIBO_MOMENT_STICK = 1,   /* a contact comes to rest */
+    TRIBO_MOMENT_SLIP = 2,    /* a contact breaks away */
+    TRIBO_MOMENT_REVERSE = 3, /* the direction of sliding turns without rest */
+    TRIBO_MOMENT_LIFT = 4,    /* the limit falls to 0 */
+    TRIBO_MOMENT_TOUCH = 5    /* the limit rises from 0 */
+};
+
+/* Calls seen at every moment. exact, event and auto: a call for each contact that changes at an event, in ascending order, with
+ * the same t and y, a planar contact by its first direction; a step at the end of the advance, and as tribo_driver_set_output
+ * says. Other methods: a step after each step.
+ * seen   in   answers 0 to go on; else the advance ends with TRIBO_ERR_STOPPED, and the next advance goes on with the next
+ *             moment. Must not change the system. NULL: no observer
+ * data   in   passed to seen
+ * Returns TRIBO_ERR_NULL. */
+TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment *moment, void *data), void *data);
+
+/* Finds a state at t to which the motion comes back after a period: the steady response without the transient. Methods exact,
+ * event, auto. The manual says which of several motions is found, and how accurately. The observer sees nothing of the search.
+ * t        in       time at which the period begins
+ * period   in       > 0; that of the loads, or a multiple of it
+ * y        [dimension] in/out   a guess, zeros will do; the state found, its energy 0; untouched on error
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_STEP (a period below what time resolves),
- * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (tables; static limits beside elastic
- * contacts; planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
+ * TRIBO_ERR_RANGE (a load or base that is not periodic in it), TRIBO_ERR_UNSUPPORTED (other methods; tables; static limits beside
+ * elastic contacts; planar contacts), TRIBO_ERR_NO_CONVERGENCE, and what tribo_driver_advance returns. */
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 
-/* Floquet multipliers of the last periodic motion found, the largest first; of a complex pair the one with the positive imaginary
- * part. Motions next to it, in which contacts that rest do so too, come closer by these factors a period. Contacts at rest
- * forget: multipliers of 0. They are found when they are asked for, in a time of the third power of ndof.
- * re, im  [2 ndof] out
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (none was found, or the last search found
- * none), TRIBO_ERR_UNSUPPORTED (contacts that bear upon each other stop, or reach their static limits, at one instant: what
- * motions next to it do is not linear; or one reaches its static limit at an instant at which another one stops). */
+/* Floquet multipliers re + i im of the last periodic motion found, the largest first; of a complex pair the one with im > 0.
+ * re, im   [2 ndof] out
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE, TRIBO_ERR_STATE (the last search found none, or there was
+ * none), TRIBO_ERR_UNSUPPORTED (contacts that act on each other stop or break away at one instant: the motion nearby is not
+ * linear). */
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
 
-/* What the last periodic motion found holds, in closed form from event to event: nothing is sampled. Each call follows the motion
- * through its period once. The system must be as it was when the motion was found.
- * c             [2 ndof] in   a combination of displacements and velocities, c'[q, q']
- * least, most          out   its extremes
- * at_least, at_most    out   a time in the period from t on at which it has them; where it stays there for long, any of that
- * k             in            a harmonic: cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
+/* The dimension of the family that the last periodic motion found belongs to: contacts that never slip keep any place within
+ * their limits. 0: the motion stands alone. Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (as above), TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom);
+
+/* Quantities of the last periodic motion found, in closed form from event to event. The system must be as it was then.
+ * c                    [2 ndof] in   a combination of displacements and velocities, c'[q, q']
+ * least, most          out           its extremes
+ * at_least, at_most    out, or NULL  times of these in the period from t on
+ * k                    in            a harmonic, cosine cos(k 2 pi t/period) + sine sin(k 2 pi t/period); 0: cosine is the mean
  * cosine, sine         out
- * energy        [ncontact] out   what each contact dissipates in a period
- * share         [ncontact] out   the share of the period for which it is at rest
+ * energy, share        [ncontact] out   dissipated in a period; the part of it for which the contact is at rest
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE (c), TRIBO_ERR_STATE (no motion found, or the system changed), TRIBO_ERR_MEMORY,
  * TRIBO_ERR_UNSUPPORTED (extremes, harmonic by exact: a load in resonance with a mode that has next to no damping). */
-TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
-TRIBO_API int tribo_driver_period_extremes_at(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
-                                              double *at_most);
+TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
+                                           double *at_most);
 TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
 TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
 TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
@@ -288,35 +280,19 @@ enum {
     TRIBO_COUNT_EVALUATIONS = 102, /* evaluations of the right-hand side */
     TRIBO_COUNT_JACOBIANS = 103,   /* evaluations of its Jacobian */
     TRIBO_COUNT_EVENTS = 104,      /* events located */
-    TRIBO_COUNT_PERIODS = 105,     /* periods that tribo_driver_find_periodic integrated, of each search rounded up */
-    TRIBO_COUNT_NEWTON = 106,      /* steps of Newton's method that it took */
-    TRIBO_COUNT_FREEDOM = 107,     /* no count: the dimension of the family that the last periodic motion found belongs to */
-    TRIBO_COUNT_RESTED = 108       /* degrees of freedom that steps left out since nothing moved there */
+    TRIBO_COUNT_PERIODS = 105,     /* periods integrated by tribo_driver_find_periodic, of each search rounded up */
+    TRIBO_COUNT_NEWTON = 106,      /* steps of Newton's method of these searches */
+    TRIBO_COUNT_RESTED = 107       /* degrees of freedom that steps left out since nothing moved there */
 };
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
 
-/* How far the motion has strayed from Coulomb's law since creation, "exact", "event" and "auto": bounds, over all of the motion
- * and not only where it was looked at. What a contact is off, the motion is off by no more than the impulse of that. */
+/* Bounds on how far the motion strayed from Coulomb's law since creation: exact, event and auto, over all of the motion. */
 enum {
     TRIBO_REAL_EXCESS = 100,  /* the largest force of a contact at rest beyond its limit */
-    TRIBO_REAL_BACKSLIP = 101 /* the largest velocity of a contact against the direction in which its force takes it to slide */
+    TRIBO_REAL_BACKSLIP = 101 /* the largest velocity of a sliding contact against its direction of sliding */
 };
 /* Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE, TRIBO_ERR_UNSUPPORTED (other methods). */
 TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
-
-/* Has seen called after every accepted step (event 0) and at events (event 1: a contact sticks, breaks away or reverses). What
- * it answers ends the run unless 0: the advance then returns TRIBO_ERR_STOPPED. It must not change the system. NULL: no
- * observer. Returns TRIBO_ERR_NULL. */
-TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data),
-                                        void *data);
-
-/* The largest step of an adaptive method, h > 0 in; HUGE_VAL: none. By default it is 0.1 over the highest frequency of structure
- * and loads. While all contacts rest nothing moves, whatever the loads are about to do, and no estimate sees how long a step is:
- * what happens within one may be overlooked, a slip as short as a third of the step and so weak that it dissipates about
- * limit^2/stiffness times the fourth power of h times that frequency (at 0.1: 1e-6, seen at worst). Larger ones are for implicit
- * methods on structures with frequencies that do not matter. Steps also end where tables have knots. Returns TRIBO_ERR_NULL,
- * TRIBO_ERR_NOT_FINITE (NaN), TRIBO_ERR_NOT_POSITIVE, TRIBO_ERR_UNSUPPORTED (other methods). */
-TRIBO_API int tribo_driver_set_max_step(tribo_driver *drv, double h);
 
 /* What the last failing call found; "" before any. */
 TRIBO_API const char *tribo_driver_message(const tribo_driver *drv);

@@ -15,7 +15,7 @@ struct worker create_worker(const struct damper *d, int march)
     struct worker w = {.d = d, .march = march, .dimension = 2 * d->motions + 1};
     need(tribo_system_clone(d->sys, &w.sys), NULL);
     if (!d->planar) {
-        need(tribo_driver_create(&w.drv, w.sys, "exact", 1.0, 0.0, 0.0), tribo_message(tribo_system_context(w.sys)));
+        need(tribo_driver_create(&w.drv, w.sys, "exact"), tribo_message(tribo_system_context(w.sys)));
     }
     w.limit = need_memory(d->contacts, sizeof *w.limit);
     w.c = need_memory(2 * d->motions, sizeof *w.c);
@@ -58,7 +58,7 @@ static int measure_outputs(struct worker *w, double *output)
     for (size_t k = 0; k < d->outputs && !status; k++) {
         double least, most, cosine, sine;
         memcpy(w->c, d->output_shape + k * d->modes, d->modes * sizeof *w->c);
-        status = tribo_driver_period_extremes(w->drv, w->c, &least, &most);
+        status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
         status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
         output[2 * k] = status ? 0.0 : 0.5 * (most - least);
         output[2 * k + 1] = status ? 0.0 : atan2(cosine, sine) * 360.0 / TURN;
@@ -73,7 +73,7 @@ static int measure(struct worker *w, struct motion *m, double *power)
 {
     const struct damper *d = w->d;
     double least, most, cosine, sine;
-    int status = tribo_driver_period_extremes(w->drv, w->c, &least, &most);
+    int status = tribo_driver_period_extremes(w->drv, w->c, &least, &most, NULL, NULL);
     status = status ? status : tribo_driver_period_harmonic(w->drv, w->c, 1, &cosine, &sine);
     status = status ? status : tribo_driver_period_dissipation(w->drv, power);
     status = status ? status : tribo_driver_period_stick(w->drv, power + d->contacts);

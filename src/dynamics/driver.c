@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -63,27 +64,6 @@ static int unknown(const tribo_system *sys, const char *name)
     return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%.20s\" is unknown; there are %s", name, list);
 }
 
-static int check_parameters(const tribo_system *sys, const struct method *method, double dt, double abstol, double reltol)
-{
-    const struct {
-        const char *name;
-        double value;
-        int positive;
-    } all[] = {{"dt", dt, 1}, {"abstol", abstol, method->adaptive != 0}, {"reltol", reltol, 0}};
-    for (size_t i = 0; i < 3; i++) {
-        if (!isfinite(all[i].value)) {
-            return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", all[i].name, all[i].value);
-        }
-        if (all[i].positive && all[i].value <= 0.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", all[i].name, all[i].value);
-        }
-        if (all[i].value < 0.0) {
-            return tribo_system_fail(sys, TRIBO_ERR_NEGATIVE, "%s = %g is negative", all[i].name, all[i].value);
-        }
-    }
-    return TRIBO_OK;
-}
-
 /* What has no mass follows statically in methods that know the stiffness, and not only what it accelerates. */
 static int driver_check_mass(const tribo_system *sys, const struct method *m)
 {
@@ -125,10 +105,9 @@ static int check_contacts(const tribo_system *sys, const struct method *m)
     return status || sys->massless.count == 0 ? status : driver_check_static(sys);
 }
 
-static int driver_create(tribo_driver **drv, tribo_system *sys, const struct method *m, double dt, double abstol, double reltol)
+static int driver_create(tribo_driver **drv, tribo_system *sys, const struct method *m)
 {
-    int status = check_parameters(sys, m, dt, abstol, reltol);
-    status = status ? status : check_contacts(sys, m);
+    int status = check_contacts(sys, m);
     status = status ? status : driver_check_mass(sys, m);
     status = status || m == &tribo_method_moreau_fixed ? status : tribo_system_check_solved(sys, m->name);
     if (status) {
@@ -143,9 +122,6 @@ static int driver_create(tribo_driver **drv, tribo_system *sys, const struct met
     d->sys = sys;
     d->message = d->text;
     d->method = d->at_work = m;
-    d->dt = dt;
-    d->abstol = abstol;
-    d->reltol = reltol;
     d->state = (double *)(d + 1);
     d->slope = d->state + dimension;
     d->excess = d->backslip = NAN;
@@ -159,7 +135,7 @@ static int driver_create(tribo_driver **drv, tribo_system *sys, const struct met
     return TRIBO_OK;
 }
 
-int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol, double reltol)
+int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method)
 {
     if (!sys) {
         return TRIBO_ERR_NULL;
@@ -168,7 +144,7 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
     }
     const struct method *m = driver_find(method);
-    return m ? driver_create(drv, sys, m, dt, abstol, reltol) : unknown(sys, method);
+    return m ? driver_create(drv, sys, m) : unknown(sys, method);
 }
 
 void tribo_driver_destroy(tribo_driver *drv)
@@ -207,7 +183,9 @@ int tribo_driver_explain(tribo_driver *drv, double t, double h)
     return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_message(drv->sys->contacts));
 }
 
-int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data), void *data)
+/* -------------------------------------------------------------------------------------------------------------- settings */
+
+int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment *moment, void *data), void *data)
 {
     if (!drv) {
         return TRIBO_ERR_NULL;
@@ -217,23 +195,95 @@ int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const dou
     return TRIBO_OK;
 }
 
+/* The settings, by their bit: 1, 2, 4, 8. */
+static const struct {
+    const char *name, *taken_by;
+} settings[] = {
+    {"step", "rk4/fixed, central/fixed, moreau/fixed and GSL's adaptive methods do"},
+    {"tolerance", "event, auto and GSL's adaptive methods do"},
+    {"output", "exact, event and auto do"},
+    {"largest step", "GSL's adaptive methods do"},
+};
+
+/* Returns TRIBO_OK if drv's method takes the setting. */
+static int check_setting(const tribo_driver *drv, int setting)
+{
+    size_t k = 0;
+    while (setting >> k != 1) {
+        k++;
+    }
+    return drv->method->takes & setting
+               ? TRIBO_OK
+               : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s; %s", drv->method->name, settings[k].name,
+                                   settings[k].taken_by);
+}
+
+static int check_positive(const tribo_driver *drv, const char *name, double value)
+{
+    return !isfinite(value) ? tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, value)
+           : value <= 0.0   ? tribo_driver_fail(drv, TRIBO_ERR_NOT_POSITIVE, "%s = %g is not positive", name, value)
+                            : TRIBO_OK;
+}
+
+int tribo_driver_set_step(tribo_driver *drv, double dt)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_setting(drv, TAKES_STEP);
+    status = status ? status : check_positive(drv, "dt", dt);
+    if (!status) {
+        drv->dt = dt;
+        drv->knows = 0;
+    }
+    return status;
+}
+
+int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_setting(drv, TAKES_TOLERANCE);
+    status = status ? status : check_positive(drv, "abstol", abstol);
+    if (status) {
+        return status;
+    }
+    if (!isfinite(reltol)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "reltol = %g is not finite", reltol);
+    }
+    if (reltol < 0.0) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NEGATIVE, "reltol = %g is negative", reltol);
+    }
+    drv->abstol = abstol;
+    drv->reltol = reltol;
+    drv->knows = 0;
+    return TRIBO_OK;
+}
+
+int tribo_driver_set_output(tribo_driver *drv, double dt)
+{
+    if (!drv) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = check_setting(drv, TAKES_OUTPUT);
+    status = status ? status : check_positive(drv, "dt", dt);
+    drv->output = status ? drv->output : dt;
+    return status;
+}
+
 int tribo_driver_set_max_step(tribo_driver *drv, double h)
 {
     if (!drv) {
         return TRIBO_ERR_NULL;
     }
-    if (drv->method->adaptive != WITH_LARGEST_STEP) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s has no largest step", drv->method->name);
-    }
-    if (isnan(h)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "h = %g is not a number", h);
-    }
-    if (h <= 0.0) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NOT_POSITIVE, "h = %g is not positive", h);
-    }
-    drv->max_step = h;
-    return TRIBO_OK;
+    int status = check_setting(drv, TAKES_MAX_STEP);
+    status = status || h == HUGE_VAL ? status : check_positive(drv, "h", h);
+    drv->max_step = status ? drv->max_step : h;
+    return status;
 }
+
+/* --------------------------------------------------------------------------------------------------------------- queries */
 
 /* Of a query. */
 static int check_query(const tribo_driver *drv, const void *value)
@@ -269,9 +319,6 @@ int tribo_driver_count(const tribo_driver *drv, int which, size_t *value)
     case TRIBO_COUNT_NEWTON:
         *value = drv->newton;
         return TRIBO_OK;
-    case TRIBO_COUNT_FREEDOM:
-        *value = 0;
-        return drv->shooting ? drv->find_freedom(drv->shooting, value) : TRIBO_OK;
     case TRIBO_COUNT_RESTED:
         *value = drv->rested;
         return TRIBO_OK;
@@ -309,9 +356,12 @@ int tribo_driver_check(tribo_driver *drv, const double *y)
     while (isfinite(y[i])) {
         i++;
     }
-    return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
-                             "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", i, y[i],
-                             drv->time, drv->dt);
+    return drv->dt > 0.0
+               ? tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE,
+                                   "y[%zu] = %g after t = %.17g: the motion grows without bound, or dt = %g is too long", i, y[i],
+                                   drv->time, drv->dt)
+               : tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "y[%zu] = %g after t = %.17g: the motion grows without bound", i,
+                                   y[i], drv->time);
 }
 
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
@@ -324,16 +374,17 @@ int tribo_driver_keep(tribo_driver *drv, double t, const double *y)
     return status;
 }
 
-int tribo_driver_show(tribo_driver *drv, double t, const double *y, int event)
+int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, size_t contact)
 {
-    const int answer = drv->seen ? drv->seen(t, y, event, drv->data) : 0;
+    const tribo_moment moment = {sizeof moment, t, y, kind, contact};
+    const int answer = drv->seen ? drv->seen(&moment, drv->data) : 0;
     return answer ? tribo_driver_fail(drv, TRIBO_ERR_STOPPED, "the observer answered %d at t = %.17g", answer, t) : TRIBO_OK;
 }
 
-int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event)
+int tribo_driver_accept(tribo_driver *drv, double t, const double *y)
 {
     const int status = tribo_driver_keep(drv, t, y);
-    return status ? status : tribo_driver_show(drv, t, y, event);
+    return status ? status : tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX);
 }
 
 static int check_times(tribo_driver *drv, const double *t, double t1, const double *y)
@@ -350,6 +401,9 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     }
     if (t1 < *t) {
         return tribo_driver_fail(drv, TRIBO_ERR_RANGE, "t1 = %.17g is before t = %.17g", t1, *t);
+    }
+    if (drv->method->takes == TAKES_STEP && drv->dt == 0.0) {
+        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
     const int unfit = check_contacts(drv->sys, drv->method);
     return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
@@ -405,13 +459,13 @@ static int driver_choose(const tribo_driver *drv)
     return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
 }
 
-/* Makes sure that there is the driver. The message of a failure is on the system's context. */
+/* Creates inner[which] where it is missing. The message of a failure is on the system's context. */
 static int provide(tribo_driver *drv, int which)
 {
     static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
     struct choice *c = drv->own;
     drv->at_work = of[which];
-    return c->inner[which] ? TRIBO_OK : driver_create(&c->inner[which], drv->sys, of[which], drv->dt, drv->abstol, drv->reltol);
+    return c->inner[which] ? TRIBO_OK : driver_create(&c->inner[which], drv->sys, of[which]);
 }
 
 static int create_choice(tribo_driver *drv)
@@ -448,6 +502,10 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     }
     tribo_driver *inner = c->inner[which];
     const tribo_driver before = *inner;
+    inner->knows &= inner->abstol == drv->abstol && inner->reltol == drv->reltol;
+    inner->abstol = drv->abstol;
+    inner->reltol = drv->reltol;
+    inner->output = drv->output;
     inner->seen = drv->seen;
     inner->data = drv->data;
     status =
@@ -463,7 +521,6 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     drv->backslip = greater(drv->backslip, inner->backslip);
     if (x->finds) {
         drv->shooting = inner->shooting;
-        drv->find_freedom = inner->find_freedom;
     }
     const int kept = x->finds ? TRIBO_OK : tribo_driver_keep(drv, *x->t, x->y);
     if (status && !(which == EXACT && status == TRIBO_ERR_UNSUPPORTED)) {
@@ -497,5 +554,5 @@ static int find_by_choice(tribo_driver *drv, double t, double period, double *y)
     return choose_and_delegate(drv, &(struct task){.t = &t, .period = period, .y = y, .finds = 1});
 }
 
-static const struct method automatic = {"auto", WITHOUT_TOLERANCES, create_choice, destroy_choice, advance_choice, NULL,
-                                        NULL,   find_by_choice};
+static const struct method automatic = {
+    "auto", TAKES_TOLERANCE | TAKES_OUTPUT, create_choice, destroy_choice, advance_choice, NULL, NULL, find_by_choice};

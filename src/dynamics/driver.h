@@ -4,14 +4,14 @@
 
 #include "dynamics/system/system.h"
 
-/* What a method wants to be told: no tolerances, tolerances, or these and a largest step. */
-enum { WITHOUT_TOLERANCES, WITH_TOLERANCES, WITH_LARGEST_STEP };
+/* The settings that a method takes. */
+enum { TAKES_STEP = 1, TAKES_TOLERANCE = 2, TAKES_OUTPUT = 4, TAKES_MAX_STEP = 8 };
 
 struct events;
 
 struct method {
     const char *name;
-    int adaptive; /* one of these */
+    int takes; /* sum of these */
     int (*create)(tribo_driver *drv);
     void (*destroy)(tribo_driver *drv); /* also after a create that failed */
     /* From *t to t1 > *t. continues: (t, y) is where the method's last advance ended well, and nothing has been changed since.
@@ -27,23 +27,30 @@ struct method {
 struct tribo_driver {
     tribo_system *sys;
     const struct method *method, *at_work; /* the latter is what tribo_driver_method names */
-    double dt, abstol, reltol;
+
+    /* settings */
+    double dt;             /* step, or first step; 0: not set */
+    double abstol, reltol; /* abstol 0: not set */
+    double output;         /* time between moments shown between events; 0: none are */
     double max_step;       /* 0: what the system suggests */
+    int (*seen)(const tribo_moment *moment, void *data);
+    void *data;
+
+    /* state */
     void *own;             /* the method's own */
     double *state, *slope; /* [dimension] the state accepted last; workspace */
     double time;           /* of the state accepted last */
     size_t revision;       /* of the system when the last advance ended */
     int knows;             /* what the method keeps is about time, state and revision */
-    size_t steps, rejected, evaluations, jacobians, events, periods, newton;
-    double excess, backslip; /* largest so far; NaN for methods that do not know them */
-    int (*seen)(double t, const double *y, int event, void *data);
-    void *data;
     struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting; NULL: borrowed */
     void (*free_shooting)(struct shooting *s);
-    int (*find_freedom)(struct shooting *s, size_t *freedom); /* the dimension of the family of the last one; a status */
-    size_t rested; /* degrees of freedom left out, step by step */
-    char *message; /* is text, which a const driver keeps, too */
+    char *message;                                            /* is text, which a const driver keeps, too */
     char text[240];
+
+    /* counters */
+    size_t steps, rejected, evaluations, jacobians, events, periods, newton;
+    size_t rested;           /* degrees of freedom left out, step by step */
+    double excess, backslip; /* largest so far; NaN for methods that do not know them */
 };
 
 /* Keeps the message and returns status. */
@@ -59,15 +66,16 @@ int tribo_driver_explain(tribo_driver *drv, double t, double h);
 /* TRIBO_ERR_NOT_FINITE if a value of y is not finite. */
 int tribo_driver_check(tribo_driver *drv, const double *y);
 
-/* Every state that a method has found goes through this before anything is built on it: if a value of it is not finite, it fails
- * with TRIBO_ERR_NOT_FINITE and nobody sees the state. Otherwise the state is kept as the last good one, to which
- * tribo_driver_advance goes back on any failure, and the observer is told, who may end the run (TRIBO_ERR_STOPPED).
- * event: 0 for a step, 1 for an event. */
-int tribo_driver_accept(tribo_driver *drv, double t, const double *y, int event);
-
-/* The two halves of that: the state is kept; the observer is told. */
+/* Keeps (t, y) as the last good state, to which tribo_driver_advance goes back on any failure. TRIBO_ERR_NOT_FINITE if a value of
+ * y is not finite. Every state that a method finds is kept before anything is built on it. */
 int tribo_driver_keep(tribo_driver *drv, double t, const double *y);
-int tribo_driver_show(tribo_driver *drv, double t, const double *y, int event);
+
+/* Calls the observer, if there is one, for a state that was kept: kind TRIBO_MOMENT_..., contact SIZE_MAX for a step. Returns
+ * TRIBO_ERR_STOPPED if the observer answers anything but 0. */
+int tribo_driver_show(tribo_driver *drv, double t, const double *y, int kind, size_t contact);
+
+/* Keeps (t, y), and shows it as a step. */
+int tribo_driver_accept(tribo_driver *drv, double t, const double *y);
 
 /* A step from the state at t to that at next, y, all of which it writes and finds finite. */
 typedef int tribo_fixed_step(tribo_driver *drv, double t, double next, const double *from, double *y);
@@ -86,7 +94,7 @@ struct fixed_method {
 };
 
 /* Steps of drv->dt from y, which is the last good state, to t1, the last one shorter where it must be. States are kept as by
- * tribo_driver_accept, but not copied. */
+ * tribo_driver_keep, but not copied. */
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
 
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,

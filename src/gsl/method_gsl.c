@@ -16,6 +16,11 @@
  * fastest motion of structure and loads it may be. */
 #define LARGEST_STEP 0.1
 
+/* Defaults: tolerances, and the first step in terms of the largest one. */
+#define ABSTOL 1e-12
+#define RELTOL 1e-8
+#define FIRST_STEP 1e-2
+
 /* Velocities of contacts are found to this part of epsilon, over which friction changes from one end to the other. */
 #define PART_OF_EPSILON 1e-3
 
@@ -70,6 +75,8 @@ static int create(tribo_driver *drv)
     a->cap = a->memory + 3 * n;
     a->band = a->memory + 4 * n;
     a->rate = a->band + c;
+    drv->abstol = ABSTOL;
+    drv->reltol = RELTOL;
     return TRIBO_OK;
 }
 
@@ -258,7 +265,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     int status = gsl_prepare(a, drv);
     if (!continues) {
         tribo_gsl_step_restart(a->step);
-        a->h = drv->dt;
+        a->h = drv->dt > 0.0 ? drv->dt : FIRST_STEP * lesser(a->largest, t1 - *t);
     }
     a->since = *t;
     a->span = t1 - *t;
@@ -271,15 +278,17 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
             tribo_gsl_step_restart(a->step);
         }
         if (!status) {
-            status = tribo_driver_accept(drv, *t, y, 0);
+            status = tribo_driver_accept(drv, *t, y);
             drv->steps += !status || status == TRIBO_ERR_STOPPED;
         }
     }
     return status;
 }
 
+enum { TAKES_ALL = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP };
+
 #define ADAPTIVE(id)                                                                                                             \
-    const struct method tribo_method_##id = {#id, WITH_LARGEST_STEP, create, destroy, advance, &tribo_kind_##id, NULL, NULL};
+    const struct method tribo_method_##id = {#id, TAKES_ALL, create, destroy, advance, &tribo_kind_##id, NULL, NULL};
 ADAPTIVE(rk2)
 ADAPTIVE(rk4)
 ADAPTIVE(rkf45)

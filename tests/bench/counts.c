@@ -8,6 +8,7 @@
 #include "../../src/damper/output.h"
 #include "kernel_scene.h"
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 enum { WARM = 100 };
 
@@ -115,7 +116,7 @@ static double count_motion(tribo_system *sys, size_t n, const char *method, doub
     for (size_t i = 0; i < 2 * n + 1; i++) {
         m.y[i] = i >= n && i < 2 * n ? speed : 0.0;
     }
-    need(tribo_driver_create(&m.drv, sys, method, dt > 0.0 ? dt : 0.01, 1e-11, 1e-11), NULL);
+    need(set_up_driver(&m.drv, sys, method, dt > 0.0 ? dt : 0.01, 1e-11, 1e-11), NULL);
     run_motion(&m);
     const double before = progress(&m, which);
     counted(&w);

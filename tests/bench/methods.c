@@ -9,6 +9,7 @@
 
 #include "../../src/damper/output.h"
 #include "harness.h"
+#include "../set_up_driver.h"
 
 void outcome_fail(struct outcome *o, const char *format, ...)
 {
@@ -72,9 +73,9 @@ static void advance(tribo_driver *drv, double *t, double t1, double *y, struct o
     }
 }
 
-static int in_time(double t, const double *y, int event, void *deadline)
+static int in_time(const tribo_moment *moment, void *deadline)
 {
-    (void)t, (void)y, (void)event;
+    (void)moment;
     return cpu_seconds() > *(const double *)deadline;
 }
 
@@ -89,7 +90,7 @@ static void run(const struct method *m, const struct scene *s, double setting, s
     double *y = need_memory(dimension, sizeof *y), t = 0.0, d = 0.0;
     set_law(m, s, m->sweep == STEP ? dt : setting, contacts);
     tribo_driver *drv;
-    need(tribo_driver_create(&drv, sys, m->name, dt, tolerance * s->size, m->sweep == TOLERANCE ? tolerance : 0.0),
+    need(set_up_driver(&drv, sys, m->name, dt, tolerance * s->size, m->sweep == TOLERANCE ? tolerance : 0.0),
          tribo_message(contacts));
     if (o->deadline > 0.0 && m->sweep != NO_SETTING) {
         need(tribo_driver_set_observer(drv, in_time, &o->deadline), NULL);

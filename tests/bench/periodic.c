@@ -9,6 +9,7 @@
 #include "beam.h"
 #include "harmonic_balance.h"
 #include "harness.h"
+#include "../set_up_driver.h"
 
 static const char help[] = "bench_periodic: what the steady motion of a structure with friction costs.\n"
                            "\n"
@@ -77,7 +78,7 @@ struct pass {
 static tribo_driver *open_driver(const struct pass *p, double dt, double tolerance)
 {
     tribo_driver *drv;
-    need(tribo_driver_create(&drv, p->study->sys, p->method, dt, tolerance, tolerance),
+    need(set_up_driver(&drv, p->study->sys, p->method, dt, tolerance, tolerance),
          tribo_message(tribo_system_context(p->study->sys)));
     return drv;
 }
@@ -105,7 +106,7 @@ static void measure_period(const struct study *s, tribo_driver *drv, double peri
     *found = (struct steady){HUGE_VAL, 0.0};
     if (drv) {
         memcpy(c, s->model.beam.load, sizeof s->model.beam.load);
-        need(tribo_driver_period_extremes(drv, c, &least, &most), tribo_driver_message(drv));
+        need(tribo_driver_period_extremes(drv, c, &least, &most, NULL, NULL), tribo_driver_message(drv));
         need(tribo_driver_period_dissipation(drv, energy), tribo_driver_message(drv));
         found->amplitude = 0.5 * (most - least);
         for (size_t i = 0; i < CONTACTS; i++) {

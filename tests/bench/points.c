@@ -16,6 +16,7 @@
 #include "../../src/damper/structure.h"
 #include "harness.h"
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 #define PI 3.14159265358979323846
 #define DAMPING 0.002
@@ -109,7 +110,7 @@ static struct cost run(const struct scene *x, tribo_system *sys, double first)
     memset(load, 0, x->s.ndof * sizeof *load);
     load[x->load] = x->force;
     tribo_driver *drv;
-    need(tribo_driver_create(&drv, sys, "exact", 1.0, 0.0, 0.0), NULL);
+    need(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0), NULL);
     for (size_t k = 0; k < POINTS; k++) {
         const double omega = x->omega * first * (1.0 + 0.05 * (double)(k / LIMITS)), period = 2.0 * PI / omega;
         need(tribo_system_clear_loads(sys), tribo_message(c));

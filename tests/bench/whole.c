@@ -13,6 +13,7 @@
 #include "harness.h"
 #include "memory.h"
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 #define PI 3.14159265358979323846
 #define SAME 1e-3
@@ -82,7 +83,7 @@ static void march(tribo_system *sys, const struct scene *x, int reduced, double 
 {
     const double h = 1.0 / (PER_PERIOD * x->hz);
     tribo_driver *drv;
-    const int status = tribo_driver_create(&drv, sys, "moreau/fixed", h, 0.0, 0.0);
+    const int status = set_up_driver(&drv, sys, "moreau/fixed", h, 0.0, 0.0);
     need(status, status ? tribo_message(tribo_system_context(sys)) : NULL);
     double *y = need_memory(tribo_system_dimension(sys), sizeof *y), *full = need_memory(x->s.ndof, sizeof *full), t = 0.0;
     for (size_t i = 0; i < tribo_system_dimension(sys); i++) {

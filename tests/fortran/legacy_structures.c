@@ -1,6 +1,7 @@
 /* What legacy_structures.f does, by the functions of C. */
 #include "tape.h"
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 enum { N = 2, FULL = 6, WHOLE = 2 * FULL + 1, REDUCED = 4 };
 
@@ -77,7 +78,7 @@ static void put_reduced(void)
     tribo_set_limit_all(tribo_system_context(sys), 0.2);
     tribo_system_clone(sys, &copy);
     tribo_system_destroy(sys);
-    tribo_driver_create(&drv, copy, "auto", 0.1, 1e-9, 1e-9);
+    set_up_driver(&drv, copy, "auto", 0.1, 1e-9, 1e-9);
     put_one(tribo_driver_advance(drv, &t, 20.0, y));
     put(2 * REDUCED + 1, y);
     put_text(tribo_driver_method(drv));
@@ -115,11 +116,11 @@ struct watch {
     double sum;
 };
 
-static int seen(double t, const double *y, int event, void *data)
+static int seen(const tribo_moment *moment, void *data)
 {
     struct watch *w = data;
-    w->seen += 1 + event;
-    w->sum += t * y[WHOLE - 1];
+    w->seen += 1 + moment->kind + (moment->kind ? (int)moment->contact + 1 : 0);
+    w->sum += moment->t * moment->y[WHOLE - 1];
     return w->seen == w->last;
 }
 
@@ -138,7 +139,10 @@ static void put_whole(int damped)
         y[i + FULL] = 0.3 - 0.1 * (i + 1);
     }
     put_look(sys, y);
-    tribo_driver_create(&drv, sys, "rkf45", 0.1, 1e-6, 1e-6);
+    tribo_driver_create(&drv, sys, "rkf45");
+    put_one(tribo_driver_set_step(drv, 0.1));
+    put_one(tribo_driver_set_tolerance(drv, 1e-6, 1e-6));
+    put_one(tribo_driver_set_output(drv, 0.1));
     put_one(tribo_driver_set_max_step(drv, 0.05));
     put_one(tribo_driver_set_observer(drv, seen, &watch));
     put_one(tribo_driver_advance(drv, &t, 5.0, y));

@@ -150,7 +150,13 @@ C     The whole structure under a table of loads, its limits in another.
       CALL CMPI('TRBLMT', IERR)
       CALL START(Y)
       CALL LOOK(IH, Y)
-      CALL TRBDRV(IH, 'rkf45', 0.1D0, 1D-6, 1D-6, IERR)
+      CALL TRBDRV(IH, 'rkf45', 0D0, 0D0, 0D0, IERR)
+      CALL TRBHST(IH, 0.1D0, IERR)
+      CALL CMPI('TRBHST', IERR)
+      CALL TRBTOL(IH, 1D-6, 1D-6, IERR)
+      CALL CMPI('TRBTOL', IERR)
+      CALL TRBOUT(IH, 0.1D0, IERR)
+      CALL CMPI('TRBOUT', IERR)
       CALL TRBHMX(IH, 0.05D0, IERR)
       CALL CMPI('TRBHMX', IERR)
       ISEEN(1) = 0
@@ -207,10 +213,10 @@ C     What the contacts do in a state, and what integrators ask for.
       END
 C
 C     Counts the steps, sums their times, and ends the run at the last.
-      SUBROUTINE WATCH(T, NY, Y, IEVENT, RPAR, IPAR, ISTOP)
-      INTEGER NY, IEVENT, IPAR(*), ISTOP
+      SUBROUTINE WATCH(T, NY, Y, KIND, ICON, RPAR, IPAR, ISTOP)
+      INTEGER NY, KIND, ICON, IPAR(*), ISTOP
       DOUBLE PRECISION T, Y(*), RPAR(*)
-      IPAR(1) = IPAR(1) + 1 + IEVENT
+      IPAR(1) = IPAR(1) + 1 + KIND + ICON
       RPAR(1) = RPAR(1) + T*Y(NY)
       IF (IPAR(1) .EQ. IPAR(2)) ISTOP = 1
       END
@@ -312,6 +318,14 @@ C     and, if it works on a driver, without one.
          CALL WANTED('TRBMTH', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBHMX(IH, 1D0, IERR)
          CALL WANTED('TRBHMX', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBHST(IH, 1D0, IERR)
+         CALL WANTED('TRBHST', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBTOL(IH, 1D0, 0D0, IERR)
+         CALL WANTED('TRBTOL', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBOUT(IH, 1D0, IERR)
+         CALL WANTED('TRBOUT', IH, IERR, ICODE(K), TEXT(K))
+         CALL TRBFAM(IH, IDLE, IERR)
+         CALL WANTED('TRBFAM', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBOBS(IH, WATCH, X, IDLE, IERR)
          CALL WANTED('TRBOBS', IH, IERR, ICODE(K), TEXT(K))
          CALL TRBDVL(IH, 100, X(1), IERR)

@@ -1,6 +1,7 @@
 /* What legacy_systems.f does, by the functions of C. */
 #include "tape.h"
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 #define N 2
 #define DIMENSION (2 * N + 1)
@@ -15,7 +16,7 @@ static void put_period(tribo_driver *drv, double *y)
     tribo_driver_get_multipliers(drv, re, im);
     put(2 * N, re);
     put(2 * N, im);
-    tribo_driver_period_extremes_at(drv, c, &a, &b, &at[0], &at[1]);
+    tribo_driver_period_extremes(drv, c, &a, &b, &at[0], &at[1]);
     put_one(a);
     put_one(b);
     put(2, at);
@@ -47,10 +48,10 @@ void legacy_systems_play(void)
         tribo_system_add_load(sys, omega, cosine, sine);
         tribo_system_add_base_motion(sys, omega, base, zero);
         tribo_system_add_limit(sys, 2.0 * omega, zero, swing);
-        tribo_driver_create(&drv, sys, "event", 0.1, 1e-9, 1e-9);
+        set_up_driver(&drv, sys, "event", 0.1, 1e-9, 1e-9);
         put_period(drv, y);
         tribo_driver_destroy(drv);
-        tribo_driver_create(&drv, sys, "exact", 0.1, 0.0, 0.0);
+        set_up_driver(&drv, sys, "exact", 0.1, 0.0, 0.0);
         put_period(drv, y);
         put_one(tribo_driver_advance(drv, &t, 3.0, y));
         put_one(t);

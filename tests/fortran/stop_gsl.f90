@@ -11,7 +11,7 @@ program stop_gsl
   real(dp) :: t, y(3)
 
   call s%oscillator(0.1_dp, 1.0_dp, 1.0_dp)
-  call d%create(s, 'exact', 0.1_dp)
+  call d%create(s, 'exact')
   call get_command_argument(1, which)
   select case (which)
   case ('system')
@@ -19,7 +19,7 @@ program stop_gsl
   case ('driver')
     other_driver = d
   case ('no_system')
-    call other_driver%create(other_system, 'exact', 0.1_dp)
+    call other_driver%create(other_system, 'exact')
   case ('advance')
     t = 1
     y = 0

@@ -1,8 +1,7 @@
 !> Every error that a procedure of module tribo_gsl can answer: status, text, outputs left alone; and how systems, drivers and
 !> borrowed contexts end.
 module stoppers
-  use tribo, only: dp
-  use tribo_gsl, only: tribo_observer
+  use tribo_gsl, only: tribo_moment, tribo_observer
   implicit none
   private
 
@@ -14,11 +13,10 @@ module stoppers
 
 contains
 
-  integer function answer_it(this, t, y, event)
+  integer function answer_it(this, moment)
     class(stopper), intent(inout) :: this
-    real(dp), intent(in) :: t, y(:)
-    integer, intent(in) :: event
-    this%calls = this%calls + merge(1, 0, t >= 0 .and. size(y) > 0 .and. event >= 0)
+    type(tribo_moment), intent(in) :: moment
+    this%calls = this%calls + merge(1, 0, moment%t >= 0 .and. size(moment%y) > 0 .and. moment%contact == 0)
     answer_it = this%answer
   end function answer_it
 end module stoppers
@@ -103,7 +101,7 @@ contains
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_system)
     call s%accept(0.0_dp, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_system)
-    call d%create(s, 'exact', 0.1_dp, stat=stat, errmsg=msg)
+    call d%create(s, 'exact', stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_system)
     call d%advance(t, 1.0_dp, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
@@ -112,6 +110,14 @@ contains
     call d%set_observer(stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
     call d%set_max_step(1.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
+    call d%set_step(1.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
+    call d%set_tolerance(1.0_dp, 1.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
+    call d%set_output(1.0_dp, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
+    call d%get_freedom(i, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NULL, no_driver)
     call require(all(untouched([x, y, z, w, t])) .and. all(untouched(q)) .and. untouched(i), 'nothing: outputs')
     call s%destroy()
@@ -344,16 +350,25 @@ contains
     integer :: i
 
     call s%oscillator(0.1_dp, 1.0_dp, 1.0_dp)
-    call d%create(s, 'exact', 0.1_dp)
-    call d%create(s, 'exactly', 0.1_dp, stat=stat, errmsg=msg)
+    call d%create(s, 'exact')
+    call d%create(s, 'exactly', stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NAME, 'method "exactly" is unknown; there are ' // &
       'rk4/fixed, rk2, rk4, rkf45, rkck, rk8pd, rk1imp, rk2imp, rk4imp, ' // &
       'bsimp, msadams, msbdf, exact, event, central/fixed, moreau/fixed, auto')
     call d%create(s, 'rkf45', 0.0_dp, 1e-6_dp, stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'dt = 0 is not positive')
-    call d%create(s, 'rkf45', 0.1_dp, stat=stat, errmsg=msg)
+    call d%create(s, 'rkf45', 0.1_dp, 0.0_dp, stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'abstol = 0 is not positive')
-    call d%create(s, 'rkf45', 0.1_dp, 1e-6_dp, -1.0_dp, stat, msg)
+    call d%create(s, 'rkf45', reltol=1e-6_dp, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, 'reltol is given, but abstol is not')
+    call d%create(s, 'auto', step=0.1_dp, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, &
+      "method auto takes no step; rk4/fixed, central/fixed, moreau/fixed and GSL's adaptive methods do")
+    call d%create(s, 'rk4/fixed', output=0.1_dp, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'method rk4/fixed takes no output; exact, event and auto do')
+    call d%create(s, 'event', max_step=0.1_dp, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, "method event takes no largest step; GSL's adaptive methods do")
+    call d%create(s, 'rkf45', 0.1_dp, 1e-6_dp, -1.0_dp, stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'reltol = -1 is negative')
     call require(d%method() == 'exact', 'create: the old driver stays')
     call require(d%message() == 'reltol = -1 is negative', 'create: message of the old driver')
@@ -378,7 +393,7 @@ contains
     call d%real(7, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 7 is no real quantity of a driver')
     call d%set_max_step(1.0_dp, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'method exact has no largest step')
+    call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, "method exact takes no largest step; GSL's adaptive methods do")
     call d%period_harmonic(y(:2), -1, x, t, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'k = -1 is negative')
     call d%get_multipliers(pair, pair, stat, msg)
@@ -388,16 +403,19 @@ contains
     call d%real(TRIBO_REAL_EXCESS, x, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'method rk8pd does not bound how far the motion strays')
     call require(untouched(x), 'real: output')
-    call d%create(s, 'mode 3[1]', 0.1_dp, stat=stat, errmsg=msg)
+    call d%create(s, 'mode 3[1]', stat=stat, errmsg=msg)
     call require(index(msg, '"mode 3[1]"') > 0, 'create: a name stays as it is: ' // msg)
     call d%set_max_step(0.0_dp, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_NOT_POSITIVE, 'h = 0 is not positive')
     call d%set_max_step(nan, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'h = nan is not a number')
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'h = nan is not finite')
     ! The observer's answer ends the run.
-    call d%create(s, 'rk4/fixed', 0.25_dp)
+    call d%create(s, 'rk4/fixed')
     t = 0
     y = 0
+    call d%advance(t, 1.0_dp, y, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, 'method rk4/fixed has no step: call tribo_driver_set_step')
+    call d%set_step(0.25_dp)
     sees%answer = 5
     call d%set_observer(sees)
     call d%advance(t, 1.0_dp, y, stat, msg)
@@ -410,7 +428,7 @@ contains
     call d%advance(t, 1.0_dp, y)
     call require(sees%calls == 4, 'what the observer saw')
     ! A method that cannot do what the system has become.
-    call d%create(s, 'exact', 0.1_dp)
+    call d%create(s, 'exact')
     call s%add_load_table([0.0_dp, 1.0_dp], [0.0_dp, 1.0_dp], [1.0_dp])
     call d%advance(t, 2.0_dp, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, &
@@ -470,8 +488,8 @@ contains
     real(dp) :: t, y(3), u, z(3)
 
     call s%oscillator(0.1_dp, 1.0_dp, 1.0_dp)
-    call d%create(s, 'exact', 0.1_dp)
-    call e%create(s, 'exact', 0.1_dp)
+    call d%create(s, 'exact')
+    call e%create(s, 'exact')
     t = 0
     y = 0
     u = 0
@@ -499,7 +517,7 @@ contains
 
     allocate (s, d)
     call s%oscillator(0.1_dp, 1.0_dp, 1.0_dp)
-    call d%create(s, 'exact', 0.1_dp)
+    call d%create(s, 'exact')
     allocate (r, source=s)
     allocate (e, source=d)
     deallocate (s, d)

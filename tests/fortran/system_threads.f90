@@ -44,7 +44,7 @@ contains
       call chain%context(contacts)
       call contacts%set_limit(-1.0_dp*i, stat, text)
       fine = fine .and. stat == TRIBO_ERR_NEGATIVE .and. text == wanted
-      call driver%create(chain, 'exact', 0.1_dp)
+      call driver%create(chain, 'exact')
       t = 0
       y = 0
       call driver%advance(t, 10.0_dp, y)

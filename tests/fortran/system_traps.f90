@@ -74,7 +74,9 @@ contains
     y = 0
     t = 0
     message = ''
-    call drv%create(sys, method, 0.05_dp, 1e-4_dp, 1e-4_dp)
+    call drv%create(sys, method)
+    call drv%set_step(0.05_dp, stat)
+    call drv%set_tolerance(1e-4_dp, 1e-4_dp, stat)
     call drv%advance(t, 2.0_dp, y, stat, message)
     call require(stat == TRIBO_OK, method // ', law ' // tribo_law_name(law) // ': ' // trim(message))
   end subroutine run

@@ -23,13 +23,20 @@ static void put_size(size_t n)
     put_one((double)n);
 }
 
-static int seen(double t, const double *y, int event, void *data)
+struct sums {
+    size_t dimension;
+    double most, sum[5];
+};
+
+static int seen(const tribo_moment *moment, void *data)
 {
-    double *sums = data;
-    sums[0] += 1.0;
-    sums[1] += t;
-    sums[2] += y[0] * (1 + event);
-    return sums[0] >= sums[3] ? 3 : 0;
+    struct sums *s = data;
+    s->sum[0] += 1.0;
+    s->sum[1] += moment->t;
+    s->sum[2] += moment->y[s->dimension - 1];
+    s->sum[3] += moment->kind;
+    s->sum[4] += moment->kind == TRIBO_MOMENT_STEP ? 0.0 : (double)moment->contact + 1.0;
+    return s->sum[0] >= s->most ? 3 : 0;
 }
 
 static void state(tribo_system *sys)
@@ -55,20 +62,24 @@ static void state(tribo_system *sys)
 static void run(tribo_system *sys, const char *method, double most)
 {
     const size_t n = tribo_system_dimension(sys);
-    double y[32] = {0.0}, sums[4] = {0.0, 0.0, 0.0, most}, t = 0.0;
+    struct sums sums = {n, most, {0.0}};
+    double y[32] = {0.0}, t = 0.0;
     tribo_driver *drv = NULL;
-    put_one(tribo_driver_create(&drv, sys, method, 0.05, 1e-5, 1e-5));
+    put_one(tribo_driver_create(&drv, sys, method));
+    put_one(tribo_driver_set_step(drv, 0.05));
+    put_one(tribo_driver_set_tolerance(drv, 1e-5, 1e-5));
+    put_one(tribo_driver_set_output(drv, 0.05));
     put_text(tribo_driver_method(drv));
     put_one(tribo_driver_set_max_step(drv, 0.04));
     put_one(tribo_driver_advance(drv, &t, 0.5, y));
-    put_one(tribo_driver_set_observer(drv, seen, sums));
+    put_one(tribo_driver_set_observer(drv, seen, &sums));
     put_one(tribo_driver_advance(drv, &t, 2.5, y));
     put_one(t);
     put(n, y);
-    put(3, sums);
+    put(5, sums.sum);
     put_one(tribo_driver_set_observer(drv, NULL, NULL));
     put_one(tribo_driver_advance(drv, &t, 3.0, y));
-    put(3, sums);
+    put(5, sums.sum);
     put(n, y);
     for (int which = TRIBO_COUNT_STEPS; which <= TRIBO_COUNT_RESTED; which++) {
         size_t count = 0;
@@ -169,21 +180,25 @@ static void periodic(void)
 {
     const double period = 8.975979010256552, c[] = {1.0, 0.5};
     double y[3] = {0.0}, re[2], im[2], a, b;
+    size_t freedom = 0;
     tribo_system *sys = NULL;
     tribo_driver *drv = NULL;
     put_one(tribo_system_oscillator(&sys, 0.3, 1.0, 0.7));
-    tribo_driver_create(&drv, sys, "exact", 0.1, 0.0, 0.0);
+    tribo_driver_create(&drv, sys, "exact");
     put_one(tribo_driver_get_multipliers(drv, re, im));
+    put_one(tribo_driver_get_freedom(drv, &freedom));
     put_one(tribo_driver_find_periodic(drv, 0.5, period, y));
     put(3, y);
+    tribo_driver_get_freedom(drv, &freedom);
+    put_size(freedom);
     tribo_driver_get_multipliers(drv, re, im);
     put(2, re);
     put(2, im);
-    put_one(tribo_driver_period_extremes(drv, c, &a, &b));
+    put_one(tribo_driver_period_extremes(drv, c, &a, &b, NULL, NULL));
     put_one(a);
     put_one(b);
     double least, most;
-    put_one(tribo_driver_period_extremes_at(drv, c, &least, &most, &a, &b));
+    put_one(tribo_driver_period_extremes(drv, c, &least, &most, &a, &b));
     put_one(least);
     put_one(most);
     put_one(a);

@@ -2,24 +2,23 @@
 !> the same on its tape.
 module counting
   use tribo, only: dp
-  use tribo_gsl, only: tribo_observer
+  use tribo_gsl, only: tribo_moment, tribo_observer
   implicit none
   private
 
   !> Adds up what it sees, and has enough after most times.
   type, extends(tribo_observer), public :: counter
-    real(dp) :: sums(3) = 0, most = 0
+    real(dp) :: sums(5) = 0, most = 0
   contains
     procedure :: seen => count_up
   end type counter
 
 contains
 
-  integer function count_up(this, t, y, event)
+  integer function count_up(this, moment)
     class(counter), intent(inout) :: this
-    real(dp), intent(in) :: t, y(:)
-    integer, intent(in) :: event
-    this%sums = this%sums + [1.0_dp, t, y(1)*(1 + event)]
+    type(tribo_moment), intent(in) :: moment
+    this%sums = this%sums + [1.0_dp, moment%t, moment%y(size(moment%y)), real(moment%kind, dp), real(moment%contact, dp)]
     count_up = merge(3, 0, this%sums(1) >= this%most)
   end function count_up
 end module counting
@@ -243,8 +242,14 @@ contains
 
     y = 0
     t = 0
-    call drv%create(sys, method, 0.05_dp, 1e-5_dp, 1e-5_dp, stat)
+    call drv%create(sys, method, stat=stat)
     call compare('create', stat)
+    call drv%set_step(0.05_dp, stat)
+    call compare('set_step', stat)
+    call drv%set_tolerance(1e-5_dp, 1e-5_dp, stat)
+    call compare('set_tolerance', stat)
+    call drv%set_output(0.05_dp, stat)
+    call compare('set_output', stat)
     call compare('method', drv%method())
     call drv%set_max_step(0.04_dp, stat)
     call compare('set_max_step', stat)
@@ -286,28 +291,34 @@ contains
     type(tribo_driver) :: drv
     real(dp), parameter :: period = 8.975979010256552_dp, c(2) = [1.0_dp, 0.5_dp]
     real(dp) :: y(3), re(2), im(2), a, b, at(2), contact(1)
-    integer :: stat
+    integer :: stat, freedom
 
     y = 0
     call sys%oscillator(0.3_dp, 1.0_dp, 0.7_dp, stat)
     call compare('oscillator', stat)
-    call drv%create(sys, 'exact', 0.1_dp, 0.0_dp, 0.0_dp)
+    call drv%create(sys, 'exact')
     call drv%get_multipliers(re, im, stat)
     call compare('get_multipliers', stat)
+    freedom = -1
+    call drv%get_freedom(freedom, stat)
+    call compare('get_freedom', stat)
+    call require(freedom == -1, 'get_freedom: output')
     call drv%find_periodic(0.5_dp, period, y, stat)
     call compare('find_periodic', stat)
     call compare('find_periodic: y', y)
+    call drv%get_freedom(freedom, stat)
+    call compare('get_freedom', freedom)
     call drv%get_multipliers(re, im)
     call compare('get_multipliers: re', re)
     call compare('get_multipliers: im', im)
-    call drv%period_extremes(c, a, b, stat)
+    call drv%period_extremes(c, a, b, stat=stat)
     call compare('period_extremes', stat)
     call compare('period_extremes: least', a)
     call compare('period_extremes: most', b)
-    call drv%period_extremes_at(c, a, b, at(1), at(2), stat)
-    call compare('period_extremes_at', stat)
-    call compare('period_extremes_at: extremes', [a, b])
-    call compare('period_extremes_at: times', at)
+    call drv%period_extremes(c, a, b, at(1), at(2), stat)
+    call compare('period_extremes', stat)
+    call compare('period_extremes: extremes', [a, b])
+    call compare('period_extremes: times', at)
     call drv%period_harmonic(c, 3, a, b, stat)
     call compare('period_harmonic', stat)
     call compare('period_harmonic: cosine', a)
@@ -377,10 +388,11 @@ contains
     call a%accept(0.5_dp, x(:, 1))
     call b%accept(0.5_dp, y(1, :, 1))
     t = 0.5_dp
-    call drv%create(a, 'rkf45', 0.01_dp, 1e-6_dp)
+    call drv%create(a, 'rkf45', abstol=1e-6_dp, step=0.01_dp, max_step=0.02_dp)
     call drv%advance(t, 1.0_dp, x(:, 1))
     t = 0.5_dp
     call drv%create(b, 'rkf45', 0.01_dp, 1e-6_dp, 0.0_dp)
+    call drv%set_max_step(0.02_dp)
     call drv%advance(t, 1.0_dp, y(1, :, 1))
     call require(all(same_bits(x(:, 1), y(1, :, 1))) .and. all(same_bits(y(2, :, :), gap)), 'sections: advance')
     call a%linear(mass, stiffness, direction, nmode=2)

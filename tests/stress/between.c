@@ -9,6 +9,7 @@
 
 #include "memory.h"
 #include "structure.h"
+#include "../set_up_driver.h"
 
 #define BLOCK 5
 #define ADVANCES 20
@@ -181,7 +182,7 @@ static void set_state(struct life *l)
 static tribo_driver *new_driver(tribo_system *sys, const struct way *way)
 {
     tribo_driver *drv = NULL;
-    const int status = tribo_driver_create(&drv, sys, way->method, way->dt, way->tolerance, 0.0);
+    const int status = set_up_driver(&drv, sys, way->method, way->dt, way->tolerance, 0.0);
     require(!status, "%s: %s", way->method, tribo_message(tribo_system_context(sys)));
     return drv;
 }
@@ -215,9 +216,9 @@ static void ask_in_vain(struct life *l)
     assert_status(tribo_system_add_base_motion(l->sys, 1.0, bad, NULL), TRIBO_ERR_NOT_FINITE);
 }
 
-static int stop_here(double t, const double *y, int event, void *left)
+static int stop_here(const tribo_moment *moment, void *left)
 {
-    (void)t, (void)y, (void)event;
+    (void)moment;
     return --*(int *)left <= 0;
 }
 

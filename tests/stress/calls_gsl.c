@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -291,8 +292,10 @@ static void ask(struct bytes *b, struct scene *s, const struct run *r)
 
 /* ------------------------------------------------------------------------------------------------------------ drivers */
 
-static int observe(double t, const double *y, int event, void *data)
+static int observe(const tribo_moment *moment, void *data)
 {
+    const double t = moment->t, *y = moment->y;
+    const int event = moment->kind != TRIBO_MOMENT_STEP;
     struct run *r = data;
     demand(event == 0 || event == 1, "event %d", event);
     demand(t >= r->last && t <= r->to, "%.17g after %.17g, from %.17g to %.17g", t, r->last, r->from, r->to);
@@ -312,7 +315,7 @@ static void create_run(struct bytes *b, struct scene *s, struct run *r)
                  reltol = tolerances[choose(b, 16) % COUNT(tolerances)];
     tribo_driver_destroy(r->drv);
     memset(r, 0, sizeof *r);
-    const int status = tribo_driver_create(&r->drv, s->sys, name, dt, abstol, reltol);
+    const int status = set_up_driver(&r->drv, s->sys, name, dt, abstol, reltol);
     check(s, status);
     demand((status == TRIBO_OK) == (r->drv != NULL), "status %d", status);
     demand(status || strlen(tribo_driver_method(r->drv)) > 1, "no name");

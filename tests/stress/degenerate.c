@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "structure.h"
+#include "../set_up_driver.h"
 
 #define BLOCK 25
 #define DURATION 8.0
@@ -357,7 +358,7 @@ static double move(const struct scene *c, double duration, int seed, const struc
         assert_ok(tribo_system_add_limit(sys, c->swing[k].omega, c->swing[k].cosine, c->swing[k].sine));
     }
     memcpy(y, s->start, (2 * s->ndof + 1) * sizeof *y);
-    assert_ok(tribo_driver_create(&drv, sys, method, dt, 1e-12, 1e-12));
+    assert_ok(set_up_driver(&drv, sys, method, dt, 1e-12, 1e-12));
     for (int k = 1; k <= cuts; k++) {
         const int status = tribo_driver_advance(drv, &t, s->begin + duration * k / cuts, y);
         require(status == TRIBO_OK, "%s, seed %d, %s: %d at t = %g: %s", kind->name, seed, method, status, t,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "structure.h"
+#include "../set_up_driver.h"
 
 #define BLOCK 10
 #define BODIES 3 /* at most */
@@ -98,7 +99,7 @@ static void move(const struct structure *s, int seed, int planar, double *y)
     tribo_system *sys = structure_system(s);
     tribo_driver *drv = NULL;
     assert_ok(tribo_set_planar(tribo_system_context(sys), planar ? s->ncontact / 2 : 0, first));
-    assert_ok(tribo_driver_create(&drv, sys, "event", 0.5, TOLERANCE, 0.0));
+    assert_ok(set_up_driver(&drv, sys, "event", 0.5, TOLERANCE, 0.0));
     memcpy(y, s->start, (2 * s->ndof + 1) * sizeof *y);
     const int status = tribo_driver_advance(drv, &t, 10.0, y);
     require(!status, "seed %d, %s: %s", seed, s->name, tribo_driver_message(drv));

@@ -2,6 +2,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "../set_up_driver.h"
 
 /* -------------------------------------------------------------------------------------------------------- construction */
 
@@ -258,7 +259,7 @@ int structure_run(const struct structure *s, const char *method, double dt, doub
     tribo_driver *drv = NULL;
     double t = s->begin;
     memcpy(y, s->start, (2 * s->ndof + 1) * sizeof *y);
-    assert_ok(tribo_driver_create(&drv, sys, method, dt, tolerance, tolerance));
+    assert_ok(set_up_driver(&drv, sys, method, dt, tolerance, tolerance));
     const int status = tribo_driver_advance(drv, &t, s->begin + duration, y);
     snprintf(text, 200, "%s", tribo_driver_message(drv));
     tribo_driver_destroy(drv);

@@ -1,6 +1,7 @@
 #include "coulomb.h"
 
 #include <string.h>
+#include "../set_up_driver.h"
 
 static tribo_system *free_oscillator(void)
 {
@@ -51,7 +52,7 @@ const struct reference references[REFERENCES] = {
 tribo_driver *driver_relative(tribo_system *sys, const char *method, double dt, double abstol, double reltol)
 {
     tribo_driver *drv = NULL;
-    const int status = tribo_driver_create(&drv, sys, method, dt, abstol, reltol);
+    const int status = set_up_driver(&drv, sys, method, dt, abstol, reltol);
     require(status == TRIBO_OK, "%s: %s", method, tribo_message(tribo_system_context(sys)));
     return drv;
 }
@@ -92,8 +93,10 @@ tribo_system *block(double mass, double stiffness, double limit)
     return sys;
 }
 
-int log_event(double t, const double *y, int event, void *data)
+int log_event(const tribo_moment *moment, void *data)
 {
+    const double t = moment->t, *y = moment->y;
+    const int event = moment->kind != TRIBO_MOMENT_STEP;
     struct log *log = data;
     require(t >= log->last, "seen at %.17g after %.17g", t, log->last);
     log->last = t;

@@ -39,6 +39,6 @@ struct log {
     double t[MOST_SEEN], y[MOST_SEEN][8]; /* at events, the first values of the state */
     double last;
 };
-int log_event(double t, const double *y, int event, void *log);
+int log_event(const tribo_moment *moment, void *log);
 
 #endif

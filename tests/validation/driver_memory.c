@@ -5,6 +5,7 @@
 
 #include "memory.h"
 #include "model.h"
+#include "../set_up_driver.h"
 
 static tribo_system *start(const struct model *m, int planar, double *y)
 {
@@ -27,7 +28,7 @@ static void create_within_bounds(const char *method, int planar)
         tribo_driver *drv = NULL;
         const long none = memory_live();
         memory_bound(bytes);
-        status = tribo_driver_create(&drv, sys, method, 0.01, 1e-6, 0.0);
+        status = set_up_driver(&drv, sys, method, 0.01, 1e-6, 0.0);
         memory_unbound();
         failures += status != TRIBO_OK;
         require(!status || status == TRIBO_ERR_MEMORY, "%s, %zu bytes: %d", method, bytes, status);

@@ -32,11 +32,11 @@ static double power_at(const struct account *a, double t, const double *y)
     return power;
 }
 
-static int add_up(double t, const double *y, int event, void *data)
+static int add_up(const tribo_moment *moment, void *data)
 {
+    const double t = moment->t, *y = moment->y;
     struct account *a = data;
     const double power = power_at(a, t, y);
-    (void)event;
     a->work += 0.5 * (t - a->t) * (a->power + power);
     a->t = t;
     a->power = power;

@@ -9,6 +9,7 @@
 
 #include "memory.h"
 #include "model.h"
+#include "../set_up_driver.h"
 
 /* Gives CHOLMOD the allocations that are counted. */
 static void count_cholmod(void)
@@ -143,7 +144,7 @@ static int make_compliant(tribo_system **sys, tribo_driver **drv)
 static int make_driver(tribo_system **sys, tribo_driver **drv)
 {
     const int status = tribo_system_oscillator(sys, 1.0, 1.5, 0.5);
-    return status ? status : tribo_driver_create(drv, *sys, "rk4/fixed", 0.1, 0.0, 0.0);
+    return status ? status : set_up_driver(drv, *sys, "rk4/fixed", 0.1, 0.0, 0.0);
 }
 
 /* A system with all that can be added to it. */
@@ -188,7 +189,7 @@ static int advance_exact(tribo_system **sys, tribo_driver **drv, int damped)
     status = status ? status : tribo_set_limit_all(tribo_system_context(*sys), 1.0);
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
     status = status ? status : tribo_system_add_base_motion(*sys, 1.0, NULL, model->motion[0]);
-    status = status ? status : tribo_driver_create(drv, *sys, "exact", 1.0, 0.0, 0.0);
+    status = status ? status : set_up_driver(drv, *sys, "exact", 1.0, 0.0, 0.0);
     return status ? status : tribo_driver_advance(*drv, &t, 0.1, y);
 }
 
@@ -227,7 +228,7 @@ static int advance_massless(tribo_system **sys, tribo_driver **drv, double coupl
     status = status ? status : tribo_set_limit(tribo_system_context(*sys), limit);
     status = status ? status : tribo_system_add_load(*sys, 1.0, load, NULL);
     status = status ? status : tribo_system_add_base_motion(*sys, 1.0, base, NULL);
-    status = status ? status : tribo_driver_create(drv, *sys, method, 0.1, 1e-9, 0.0);
+    status = status ? status : set_up_driver(drv, *sys, method, 0.1, 1e-9, 0.0);
     status = status ? status : tribo_driver_advance(*drv, &t, 0.1, y);
     return status || strcmp(method, "exact") != 0 ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI, y);
 }
@@ -269,9 +270,9 @@ static int find_periodic(tribo_system **sys, tribo_driver **drv, const char *met
     int status = make_linear(sys, model, 1, 0);
     status = status ? status : tribo_set_limit(tribo_system_context(*sys), limits);
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
-    status = status ? status : tribo_driver_create(drv, *sys, method, 1.0, 1e-13, 0.0);
+    status = status ? status : set_up_driver(drv, *sys, method, 1.0, 1e-13, 0.0);
     status = status ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI, y);
-    status = status ? status : tribo_driver_period_extremes(*drv, c, &a, &b);
+    status = status ? status : tribo_driver_period_extremes(*drv, c, &a, &b, NULL, NULL);
     return status ? status : tribo_driver_period_stick(*drv, contact);
 }
 

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "../set_up_driver.h"
 
 int pile_create(tribo_system **sys, double ratio, int even)
 {
@@ -35,7 +36,7 @@ int pile_run(double ratio, int even, const char *method, int coupling, double dt
     int status = pile_create(&sys, ratio, even);
     status = status ? status : tribo_set_coupling(tribo_system_context(sys), coupling);
     status = status ? status : tribo_set_epsilon_step(tribo_system_context(sys), dt, 1.0);
-    status = status ? status : tribo_driver_create(&drv, sys, method, dt, tolerance, 0.0);
+    status = status ? status : set_up_driver(&drv, sys, method, dt, tolerance, 0.0);
     status = status ? status : tribo_driver_advance(drv, &t, PILE_TIME, y);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);

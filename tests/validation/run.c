@@ -1,11 +1,12 @@
 #include "run.h"
 
 #include <stdlib.h>
+#include "../set_up_driver.h"
 
 tribo_driver *driver_create(tribo_system *sys, const char *method, double dt, double tolerance)
 {
     tribo_driver *drv = NULL;
-    const int status = tribo_driver_create(&drv, sys, method, dt, tolerance, 0.0);
+    const int status = set_up_driver(&drv, sys, method, dt, tolerance, 0.0);
     require(status == TRIBO_OK, "%s: %s", method, tribo_message(tribo_system_context(sys)));
     return drv;
 }
@@ -21,6 +22,13 @@ size_t driver_count(const tribo_driver *drv, int which)
 {
     size_t value;
     assert_ok(tribo_driver_count(drv, which, &value));
+    return value;
+}
+
+size_t driver_freedom(const tribo_driver *drv)
+{
+    size_t value;
+    assert_ok(tribo_driver_get_freedom(drv, &value));
     return value;
 }
 

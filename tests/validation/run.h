@@ -9,6 +9,7 @@
 tribo_driver *driver_create(tribo_system *sys, const char *method, double dt, double tolerance);
 void driver_advance(tribo_driver *drv, double *t, double t1, double *y);
 size_t driver_count(const tribo_driver *drv, int which);
+size_t driver_freedom(const tribo_driver *drv);
 
 /* Advances y from 0 to t1 with a driver of its own. */
 void run(tribo_system *sys, const char *method, double dt, double tolerance, double t1, double *y);

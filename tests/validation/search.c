@@ -34,7 +34,7 @@ double amplitude(const struct search *s, size_t dof)
 {
     double c[2 * MOST_DOFS] = {0}, least, most;
     c[dof] = 1.0;
-    const int status = tribo_driver_period_extremes(s->drv, c, &least, &most);
+    const int status = tribo_driver_period_extremes(s->drv, c, &least, &most, NULL, NULL);
     require(!status, "%s", tribo_driver_message(s->drv));
     assert_close(least, -most, 1e-9);
     return most;

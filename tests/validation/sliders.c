@@ -64,10 +64,9 @@ tribo_system *structure(double between)
     return s;
 }
 
-int see_most(double t, const double *y, int event, void *most)
+int see_most(const tribo_moment *moment, void *most)
 {
-    (void)t;
-    (void)event;
+    const double *y = moment->y;
     *(double *)most = fmax(*(double *)most, y[0]);
     return 0;
 }

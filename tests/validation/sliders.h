@@ -12,7 +12,7 @@ tribo_system *linear(size_t n, size_t c, const double *mass, const double *dampi
 tribo_system *element(double limit, size_t elements);
 
 /* An observer: most, a double, becomes the largest q_0 that it sees. */
-int see_most(double t, const double *y, int event, void *most);
+int see_most(const tribo_moment *moment, void *most);
 
 /* Masses 1, 2, 1.5 on springs, loads, and a rigid contact on mass 2; sliders: on mass 0 to the ground, between masses 0 and 1,
  * and on mass 1 to a moving base. */

@@ -5,6 +5,7 @@
 #include "tribo/tribo_gsl.h"
 
 #include "traps.h"
+#include "../set_up_driver.h"
 
 enum { OSCILLATOR, CHAIN, BELT, IMMOVABLE, SYSTEMS };
 
@@ -58,7 +59,7 @@ static void play(int which, const char *method, int law, int coupling)
     assert_quiet(tribo_set_law(c, law));
     assert_quiet(tribo_set_coupling(c, coupling));
     assert_quiet(tribo_set_epsilon_step(c, 0.01, 0.4));
-    assert_quiet(tribo_driver_create(&d, s, method, 0.01, 1e-5, 1e-5));
+    assert_quiet(set_up_driver(&d, s, method, 0.01, 1e-5, 1e-5));
     for (int k = 1, status = TRIBO_OK; k <= 6 && !status; k++) {
         status = quiet(tribo_driver_advance(d, &t, 0.5 * k, y));
         require(!status || (status == TRIBO_ERR_STEP && !strchr(method, '/')), "%s, system %d, law %d: %d, %s", method, which,
@@ -110,7 +111,7 @@ TEST(thrown)
     tribo_driver *d;
     assert_ok(tribo_system_linear(&s, 2, 2, mass, NULL, nothing, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(s), limit));
-    assert_quiet(tribo_driver_create(&d, s, "exact", 0.01, 0.0, 0.0));
+    assert_quiet(set_up_driver(&d, s, "exact", 0.01, 0.0, 0.0));
     if (_i == 0 || set_traps()) {
         assert_quiet(tribo_driver_advance(d, &t, 10.0, y));
         assert_close(y[2], 0.0, 1e-15);

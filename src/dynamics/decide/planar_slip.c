@@ -59,7 +59,8 @@ static void take_contacts(struct planar_slip *p, const struct stick_slip *m, con
         }
         if (m->limit[i] > 0.0 && m->limit[i + 1] > 0.0) {
             p->contact[p->count++] = (struct planar_contact){.at = i, .limit = {m->limit[i], m->limit[i + 1]}};
-            p->in_plane[i] = p->in_plane[i + 1] = 1;
+            p->in_plane[i] = 1;
+            p->in_plane[i + 1] = 2;
         }
         i++;
     }

@@ -24,7 +24,7 @@ struct planar_slip {
     size_t count;
     struct planar_contact *contact; /* [count] those with two limits */
     size_t stopped;                 /* a contact that the last decision found to stick; ncontact if there is none */
-    unsigned char *in_plane;        /* [ncontact] directions of theirs */
+    unsigned char *in_plane;        /* [ncontact] 1: first direction of one, 2: second direction, 0: of none */
     double *error;                  /* [ncontact] errors that velocities may have in a step */
     double *rate, *ahead;           /* [ncontact] workspace: of forces that slide; accelerations of a moment later */
 };

@@ -75,6 +75,15 @@ static double find_size(struct stick_slip *m, const tribo_system *sys, const dou
     return m->size[d] = size;
 }
 
+double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_system *sys, const double *y)
+{
+    double size = 0.0;
+    for (size_t d = 0; d < sys->ndof; d++) {
+        size = greater(size, find_size(m, sys, y, d));
+    }
+    return size;
+}
+
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i)
 {
     const struct matrix *j = &sys->direction;

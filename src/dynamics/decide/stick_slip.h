@@ -142,6 +142,9 @@ void tribo_stick_slip_forget_gains(struct stick_slip *m);
 void tribo_stick_slip_find_gain(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);
 void tribo_stick_slip_find_gains(struct stick_slip *m, const tribo_system *sys, const double *y);
 
+/* How large the parts of q'' are, at most. */
+double tribo_stick_slip_acceleration_size(struct stick_slip *m, const tribo_system *sys, const double *y);
+
 /* Whether contact i moves by less than rounding of what its accelerations make of it: several contacts that hold a body together
  * leave so much. */
 int tribo_stick_slip_is_faint(struct stick_slip *m, const tribo_system *sys, const double *y, size_t i);

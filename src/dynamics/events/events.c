@@ -5,6 +5,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +40,7 @@ static void lay_out_events(struct events *e, struct layout *l, const tribo_syste
     e->lasted = tribo_layout_array(l, SLIPS * c, sizeof *e->lasted);
     e->search.guard = tribo_layout_array(l, 3 * c, sizeof *e->search.guard);
     e->search.watched = tribo_layout_array(l, 3 * c, sizeof *e->search.watched);
+    e->shown = tribo_layout_array(l, c, sizeof *e->shown);
 }
 
 int tribo_events_create(struct events *e, tribo_driver *drv)
@@ -57,8 +59,6 @@ int tribo_events_create(struct events *e, tribo_driver *drv)
                                  plural(sys->ncontact));
     }
     memset(e->lasted, 0, SLIPS * sys->ncontact * sizeof *e->lasted);
-    e->stick_slip.abstol = drv->abstol;
-    e->stick_slip.reltol = drv->reltol;
     drv->excess = drv->backslip = 0.0;
     return TRIBO_OK;
 }
@@ -240,13 +240,45 @@ static int on_context(tribo_driver *drv, int status)
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 
-/* Shows the observer the motion between t and t + tau at begin + k dt. */
+/* Shows the observer the motion between t and t + tau at begin + k output. */
 static int show_between(struct events *e, tribo_driver *drv, double begin, double *shown, double t, double tau, const double *y)
 {
     int status = TRIBO_OK;
-    for (double at; e->shows_between && drv->seen && !status && (at = begin + *shown * drv->dt) < t + tau; *shown += 1.0) {
+    const int shows = drv->seen && drv->output > 0.0;
+    for (double at; shows && !status && (at = begin + *shown * drv->output) < t + tau; *shown += 1.0) {
         e->state(e->motion, greater((at - t) - drv->sys->low, 0.0), y, drv->slope);
-        status = tribo_driver_accept(drv, at, drv->slope, 0);
+        status = tribo_driver_accept(drv, at, drv->slope);
+    }
+    return status;
+}
+
+/* Stands in shown[] for a planar contact that stopped and slides again at one instant. */
+#define TURNS (-TRIBO_SLIP_PLANE)
+
+/* The moment at which the slip of a contact changes. */
+static int kind_of(signed char from, signed char to)
+{
+    return to == TRIBO_SLIP_OPEN      ? TRIBO_MOMENT_LIFT
+           : from == TRIBO_SLIP_OPEN  ? TRIBO_MOMENT_TOUCH
+           : to == TRIBO_SLIP_STUCK   ? TRIBO_MOMENT_STICK
+           : from == TRIBO_SLIP_STUCK ? TRIBO_MOMENT_SLIP
+                                      : TRIBO_MOMENT_REVERSE;
+}
+
+/* Shows the observer each contact whose slip differs from shown[], in ascending order, until it answers anything but 0; the next
+ * advance shows the others if it continues. Sets *some = 1 if a contact is shown. Returns a status. */
+static int show_changes(struct events *e, tribo_driver *drv, double t, const double *y, int *some)
+{
+    const struct stick_slip *m = &e->stick_slip;
+    int status = TRIBO_OK;
+    for (size_t i = 0; i < m->contacts && !status; i++) {
+        const signed char from = e->shown[i];
+        const int second = m->plane && m->plane->in_plane[i] == 2;
+        e->shown[i] = m->slip[i];
+        if (!second && from != m->slip[i]) {
+            *some = 1;
+            status = tribo_driver_show(drv, t, y, kind_of(from, m->slip[i]), i);
+        }
     }
     return status;
 }
@@ -267,10 +299,12 @@ static double to_a_number(const tribo_system *sys, double t, double reach, doubl
     return fabs(there - reach) <= 1e-3 * reach ? there : reach;
 }
 
-static int decide(struct stick_slip *m, tribo_system *sys, double t, double *y)
+static int decide(struct events *e, tribo_system *sys, double t, double *y)
 {
+    struct stick_slip *m = &e->stick_slip;
     const int status = m->plane ? tribo_planar_slip_decide(m, sys, t, y) : tribo_stick_slip_decide(m, sys, t, y);
     memset(m->seen, 0, m->contacts * sizeof *m->seen);
+    e->decided = status == TRIBO_OK;
     return status;
 }
 
@@ -296,18 +330,26 @@ static void mark_event(struct stick_slip *m, const struct guard *event)
     }
 }
 
-/* Counts a planar contact that the decision at t has stopped, and shows the observer the state after it, if that is seen. */
+/* Counts a planar contact that the decision at t has stopped; keeps the state after it; and shows contacts that change, or the
+ * state alone at other events and at the end of the advance. */
 static int show_decided(struct events *e, tribo_driver *drv, const struct guard *event, double t, double t1, const double *y,
                         double fastest)
 {
     const struct planar_slip *plane = e->stick_slip.plane;
     const int stops = plane && plane->stopped < e->stick_slip.contacts;
-    const int status = stops ? count_event(e, drv, plane->stopped, t, fastest) : TRIBO_OK;
-    if (status) {
+    int status = stops ? count_event(e, drv, plane->stopped, t, fastest) : TRIBO_OK, some = 0;
+    status = status ? status : tribo_driver_keep(drv, t, y);
+    if (status || !drv->seen) {
         return status;
     }
-    const int seen = event || (t >= t1 && drv->sys->low == 0.0) || !e->shows_between;
-    return seen ? tribo_driver_accept(drv, t, y, event || stops) : tribo_driver_keep(drv, t, y);
+    for (size_t k = 0; plane && k < plane->count; k++) {
+        const struct planar_contact *p = &plane->contact[k];
+        const int turns = p->begins != SLIDES_ON && e->shown[p->at] == TRIBO_SLIP_PLANE;
+        e->shown[p->at] = turns ? TURNS : e->shown[p->at];
+    }
+    status = show_changes(e, drv, t, y, &some);
+    const int seen = !some && (event || stops || (t >= t1 && drv->sys->low == 0.0));
+    return seen ? tribo_driver_show(drv, t, y, TRIBO_MOMENT_STEP, SIZE_MAX) : status;
 }
 
 /* Over this part of the time of the fastest motion accelerations do not change; nor do they where the second derivative of a
@@ -362,6 +404,7 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     const double end = lesser(t1, tribo_system_next_kink(sys, *t));
     const struct guard *event = NULL;
     double reach = (end - *t) - sys->low, when = 0.0;
+    e->decided = 0;
     int status = on_context(drv, e->begin(e->motion, *t, y, &reach));
     if (status) {
         return status;
@@ -396,14 +439,13 @@ static int phase(struct events *e, tribo_driver *drv, double begin, double *show
     drv->steps++;
     learn(e, drv, brief, when);
     event = event && event->slides != SLOWS ? event : NULL;
-    sys->evaluations += e->shows_between ? e->search.looks : 0;
     if (event) {
         status = count_event(e, drv, event->contact, *t, fastest);
         mark_event(&e->stick_slip, event);
     } else if (*t < end) {
         status = count_step(e, drv, *t, when, fastest);
     }
-    status = status ? status : on_context(drv, decide(&e->stick_slip, sys, *t, y));
+    status = status ? status : on_context(drv, decide(e, sys, *t, y));
     expect(e, event, when);
     if (!status && event && e->company) {
         e->company->decided(e->company);
@@ -415,14 +457,27 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
 {
     const double begin = *t, own = tribo_system_fastest(drv->sys), fastest = own > 0.0 ? own : 1.0 / (t1 - begin);
     double shown = 1.0;
-    if (e->shows_between && drv->seen && !(begin + drv->dt > begin && t1 - drv->dt < t1)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "dt = %g, in which an observer sees the motion, is lost beside t = %.17g",
-                                 drv->dt, t1);
+    if (drv->seen && drv->output > 0.0 && !(begin + drv->output > begin && t1 - drv->output < t1)) {
+        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "output every %g is below what time resolves at t = %.17g", drv->output, t1);
     }
+    if (!e->watched) {
+        memcpy(e->shown, e->stick_slip.slip, drv->sys->ncontact);
+    }
+    e->watched = drv->seen != NULL;
     tribo_stick_slip_start(&e->stick_slip, drv->sys, *t, y, continues);
     int status = tribo_planar_slip_start(&e->stick_slip, drv->sys, continues);
-    status = on_context(drv, status ? status : decide(&e->stick_slip, drv->sys, *t, y));
+    if (!status && !(continues && e->decided)) {
+        status = decide(e, drv->sys, *t, y);
+    }
+    status = on_context(drv, status);
     forget(e, *t, continues);
+    if (!continues) {
+        memcpy(e->shown, e->stick_slip.slip, drv->sys->ncontact);
+    } else if (!status && drv->seen) {
+        int some;
+        status = tribo_driver_keep(drv, *t, y);
+        status = status ? status : show_changes(e, drv, *t, y, &some);
+    }
     while (!status && (*t < t1 || drv->sys->low < 0.0)) {
         status = phase(e, drv, begin, &shown, t, t1, y, fastest);
     }

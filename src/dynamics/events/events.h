@@ -45,10 +45,13 @@ struct events {
     int (*signal)(void *motion, const double *c, double tau, const double *end, struct signal *to);
     /* The energy that contact i, which slides, dissipated in the phase that lasted tau, if its force is counted once. */
     double (*work)(void *motion, size_t i, double tau);
-    int shows_between; /* an observer sees the motion in steps of dt, otherwise phase by phase */
+
+    signed char *shown; /* [ncontact] slip of contacts as the observer saw it last */
+    int watched;        /* the last advance had an observer, and kept shown up to date */
 
     struct company *company; /* NULL: nobody */
     const struct guard *met; /* what ended the phase that ends; NULL: no event did */
+    int decided;             /* nothing has moved since contacts were decided about */
     int anew;                /* this run does not continue another one; the method takes note, and clears it */
     int sharp;               /* the motion is followed to rounding, whatever tolerances say */
 

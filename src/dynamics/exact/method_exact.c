@@ -168,7 +168,9 @@ static void move_to(void *motion, double tau, const double *from, double *to)
 /* The load at the end of a phase, where its terms are. */
 static void arrive(void *motion, double t)
 {
-    const struct modal_motion *x = &((struct exact *)motion)->motion;
+    const struct exact *exact = motion;
+    const struct modal_motion *x = &exact->motion;
+    x->sys->evaluations += exact->events.search.looks;
     tribo_system_set_time(x->sys, t);
     for (size_t s = 0; s < x->h->given; s++) {
         const struct number at = tribo_harmonic(x, s);
@@ -361,7 +363,6 @@ static int method_exact_create(tribo_driver *drv)
     x->events.transition = method_exact_transition;
     x->events.signal = method_exact_combine;
     x->events.work = work;
-    x->events.shows_between = 1;
     if (!x->course || !tribo_modal_motion_create(&x->motion, drv->sys, &x->events.stick_slip)) {
         return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method exact");
     }
@@ -387,6 +388,11 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
     return TRIBO_OK;
 }
 
-const struct method tribo_method_exact = {
-    "exact", WITHOUT_TOLERANCES,       method_exact_create,       method_exact_destroy, tribo_events_method,
-    NULL,    method_exact_open_events, tribo_events_find_periodic};
+const struct method tribo_method_exact = {"exact",
+                                          TAKES_OUTPUT,
+                                          method_exact_create,
+                                          method_exact_destroy,
+                                          tribo_events_method,
+                                          NULL,
+                                          method_exact_open_events,
+                                          tribo_events_find_periodic};

@@ -80,7 +80,7 @@ static void event_decided(struct company *company)
 static int period_map_integrate(struct period_map *m, double t, double end, struct company *company)
 {
     tribo_driver *drv = m->drv;
-    int (*const seen)(double, const double *, int, void *) = drv->seen;
+    int (*const seen)(const tribo_moment *, void *) = drv->seen;
     const size_t evaluations = m->sys->evaluations, halves = end - t < 0.75 * m->period ? 1 : 2;
     m->y[m->n] = 0.0;
     drv->time = t;

@@ -83,36 +83,30 @@ static int find_extremes(struct replay *r, double tau, const double *end)
                : period_quantities_no_memory(r);
 }
 
-int tribo_driver_period_extremes_at(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
-                                    double *at_most)
+int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
+                                 double *at_most)
 {
     if (!drv) {
         return TRIBO_ERR_NULL;
     }
-    if (!c || !least || !most || !at_least || !at_most) {
-        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL",
-                                 !c         ? "c"
-                                 : !least   ? "least"
-                                 : !most    ? "most"
-                                 : at_least ? "at_most"
-                                            : "at_least");
+    if (!c || !least || !most) {
+        return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", !c ? "c" : !least ? "least" : "most");
     }
     struct replay r = {.phase = find_extremes, .c = c, .extremes = {HUGE_VAL, -HUGE_VAL, 0.0, 0.0}};
     int status = check_combination(drv, c);
     status = status ? status : replay(drv, &r);
-    if (!status) {
-        *least = r.extremes.least;
-        *most = r.extremes.most;
+    if (status) {
+        return status;
+    }
+    *least = r.extremes.least;
+    *most = r.extremes.most;
+    if (at_least) {
         *at_least = r.extremes.at_least;
+    }
+    if (at_most) {
         *at_most = r.extremes.at_most;
     }
-    return status;
-}
-
-int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most)
-{
-    double at_least, at_most;
-    return tribo_driver_period_extremes_at(drv, c, least, most, &at_least, &at_most);
+    return TRIBO_OK;
 }
 
 /* -------------------------------------------------------------------------------------------------------------- harmonics */

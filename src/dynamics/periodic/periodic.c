@@ -82,7 +82,6 @@ int tribo_events_find_periodic(tribo_driver *drv, double t, double period, doubl
 {
     drv->shooting = drv->shooting ? drv->shooting : tribo_shooting_create(drv);
     drv->free_shooting = tribo_shooting_free;
-    drv->find_freedom = tribo_shooting_freedom;
     return drv->shooting
                ? tribo_shooting_find(drv->shooting, t, period, y)
                : tribo_driver_fail(drv, TRIBO_ERR_MEMORY, "out of memory for periodic motions of %zu degree%s of freedom",
@@ -102,6 +101,20 @@ int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, doubl
     return status ? status : drv->method->find_periodic(drv, t, period, y);
 }
 
+static int none_found(const tribo_driver *drv)
+{
+    return tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
+}
+
+int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom)
+{
+    if (!drv || !freedom) {
+        return drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "freedom is NULL") : TRIBO_ERR_NULL;
+    }
+    struct shooting *s = drv->shooting;
+    return s && s->found ? tribo_shooting_freedom(s, freedom) : none_found(drv);
+}
+
 int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im)
 {
     if (!drv || !re || !im) {
@@ -109,7 +122,7 @@ int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im
     }
     struct shooting *s = drv->shooting;
     if (!s || !s->found) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STATE, "no periodic motion was found: call tribo_driver_find_periodic first");
+        return none_found(drv);
     }
     if (s->best.torn < s->map.sys->ncontact) {
         return tribo_driver_fail(

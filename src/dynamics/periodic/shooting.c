@@ -480,8 +480,8 @@ static int approach_guess(struct shooting *s)
 
 int tribo_shooting_freedom(struct shooting *s, size_t *freedom)
 {
-    const int status = s->found && s->freedom == UNKNOWN ? find_family(s, s->guess) : TRIBO_OK;
-    *freedom = s->found && !status ? s->freedom : 0;
+    const int status = s->freedom == UNKNOWN ? find_family(s, s->guess) : TRIBO_OK;
+    *freedom = status ? *freedom : s->freedom;
     return status;
 }
 

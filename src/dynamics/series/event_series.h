@@ -13,9 +13,10 @@ struct event {
     tribo_system *sys;
     struct events events;
     size_t order, most_order; /* that of a phase, and what there is room for */
-    double tolerance;         /* relative */
+    double tolerance, abstol; /* relative; that of the driver as it was taken */
     double fastest;           /* bound on the frequencies of the motion, but for what falling friction makes grow */
     size_t revision;
+    double moves[3];                 /* of q, u and d within the time of the fastest motion; where abstol is not set */
     double length;                   /* of the step, and what bounds hold for */
     double *q, *u;                   /* [order + 1][ndof] coefficients of the powers of time */
     double *watch;                   /* [order + 1][ncontact] velocities of sliding contacts, forces of those at rest */

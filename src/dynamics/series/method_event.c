@@ -20,6 +20,9 @@
 /* A motion that is to come back must not depend on where steps happen to end: followed so, their errors are this part of it. */
 #define SHARP 1e-13
 
+/* Errors of a step without tolerances are this part of how far values move within the time of the fastest motion. */
+#define USUAL 1e-12
+
 /* The largest value of a series, [order + 1][n], on a step of this length, by its terms. */
 static double size_on_step(const struct event *e, const double *series, size_t n, double length)
 {
@@ -31,18 +34,39 @@ static double size_on_step(const struct event *e, const double *series, size_t n
     return size;
 }
 
-/* The error that a step may have in a series, [order + 1][n]: not less than the rounding of its first term. */
-static double wanted(const struct event *e, const double *series, size_t n, double most)
+static double fastest(const struct event *e)
+{
+    return e->fastest + e->events.stick_slip.breakaway.steepest;
+}
+
+/* The error that a step may have in values of this size, which within the time of the fastest motion move by `moves`. */
+static double tolerated(const struct event *e, double size, double moves)
 {
     const tribo_driver *drv = e->drv;
-    const double size = tribo_largest(series, n), error = drv->abstol + drv->reltol * size;
+    return drv->abstol > 0.0 ? drv->abstol + drv->reltol * size : greater(USUAL * moves, DBL_MIN);
+}
+
+/* The error that a step of at most `most` may have in a series, [order + 1][n]: not less than the rounding of its first term. */
+static double wanted(const struct event *e, const double *series, size_t n, double moves, double most)
+{
+    const double size = tribo_largest(series, n), error = tolerated(e, size, moves);
     const double sharp = e->events.sharp && most < HUGE_VAL ? SHARP * size_on_step(e, series, n, most) : 0.0;
     return greater(sharp > 0.0 ? lesser(error, sharp) : error, DBL_EPSILON * size);
 }
 
-static double fastest(const struct event *e)
+/* Where no tolerances are set: how far displacements, velocities and energy move within the time of the fastest motion, by the
+ * velocities of y, and by accelerations as large as all their parts. */
+static void event_find_moves(struct event *e, const double *y)
 {
-    return e->fastest + e->events.stick_slip.breakaway.steepest;
+    struct stick_slip *m = &e->events.stick_slip;
+    const size_t n = e->sys->ndof;
+    const double radian = fastest(e) > 0.0 ? 1.0 / fastest(e) : 1.0;
+    if (e->drv->abstol > 0.0) {
+        return;
+    }
+    e->moves[1] = tribo_largest(y + n, n) + radian * tribo_stick_slip_acceleration_size(m, e->sys, y);
+    e->moves[0] = tribo_largest(y, n) + radian * e->moves[1];
+    e->moves[2] = fabs(y[2 * n]) + radian * tribo_largest(m->force, m->contacts) * e->moves[1];
 }
 
 /* The step on which the last two terms of everything stay below the tolerance. */
@@ -51,7 +75,8 @@ static double step_length(const struct event *e)
     const struct stick_slip *m = &e->events.stick_slip;
     const size_t n = e->sys->ndof, c = e->sys->ncontact;
     const double most = fastest(e) > 0.0 ? 0.5 * (double)(e->order + 1) / fastest(e) : HUGE_VAL;
-    const double q = wanted(e, e->q, n, most), u = wanted(e, e->u, n, most), d = wanted(e, e->d, 1, most);
+    const double q = wanted(e, e->q, n, e->moves[0], most), u = wanted(e, e->u, n, e->moves[1], most),
+                 d = wanted(e, e->d, 1, e->moves[2], most);
     const double tolerance = e->events.sharp ? lesser(e->tolerance, SHARP) : e->tolerance;
     double h = most;
     for (size_t k = e->order - 1; k <= e->order; k++) {
@@ -265,28 +290,25 @@ static size_t best_order(double tolerance, double fastest, double digits)
     return (size_t)(fastest > 0.0 ? greater(lesser(wanted, digits / (1.0 + fabs(log10(fastest)))), LEAST_ORDER) : wanted);
 }
 
-static int create(tribo_driver *drv)
+/* Takes the driver's tolerances, and makes room for the terms that they want. */
+static int take_tolerances(struct event *e)
 {
-    tribo_system *sys = drv->sys;
-    const size_t n = sys->ndof, c = sys->ncontact;
-    struct event *e = tribo_zeros(1, sizeof *e);
-    drv->own = e;
-    if (!e) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+    const tribo_driver *drv = e->drv;
+    const size_t n = e->sys->ndof, c = e->sys->ncontact;
+    if (e->q && e->abstol == drv->abstol) {
+        return TRIBO_OK;
     }
-    const int status = tribo_events_create(&e->events, drv);
-    if (status) {
-        return status;
-    }
-    e->tolerance = lesser(greater(lesser(drv->abstol, greater(drv->reltol, drv->abstol)), 1e-16), 1e-2);
-    e->order = e->most_order = best_order(e->tolerance, 0.0, MOST_DIGITS);
-    const size_t terms = e->order + 1;
-    double *all = malloc((terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
+    const double tolerance = drv->abstol > 0.0 ? clamp(drv->abstol, 1e-16, 1e-2) : USUAL;
+    const size_t order = best_order(tolerance, 0.0, MOST_DIGITS), terms = order + 1;
+    double *all = realloc(e->q, (terms * (2 * n + 6 * c + 1) + 2 * n + 9 * c + 1) * sizeof *all);
     if (!all) {
-        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+        return tribo_system_fail(e->sys, TRIBO_ERR_MEMORY, "out of memory for method event");
     }
-    e->drv = drv;
-    e->sys = sys;
+    e->abstol = drv->abstol;
+    e->tolerance = tolerance;
+    e->order = e->most_order = order;
+    free(e->cosine); /* prepare makes room for the new order */
+    e->cosine = NULL;
     e->q = all;
     e->u = e->q + terms * n;
     e->watch = e->u + terms * n;
@@ -306,6 +328,20 @@ static int create(tribo_driver *drv)
     e->limit_bend = e->limit_size + c;
     e->spring = e->limit_bend + c;
     e->work = e->spring + c;
+    return TRIBO_OK;
+}
+
+static int method_event_create(tribo_driver *drv)
+{
+    tribo_system *sys = drv->sys;
+    struct event *e = tribo_zeros(1, sizeof *e);
+    drv->own = e;
+    if (!e) {
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for method event");
+    }
+    const int status = tribo_events_create(&e->events, drv);
+    e->drv = drv;
+    e->sys = sys;
     e->events.search.look = method_event_look;
     e->events.search.bound = method_event_bound;
     e->events.search.motion = e->events.motion = e;
@@ -314,17 +350,20 @@ static int create(tribo_driver *drv)
     e->events.transition = transition;
     e->events.signal = combine;
     e->events.work = method_event_work;
-    return TRIBO_OK;
+    return status ? status : take_tolerances(e);
 }
 
-/* Room for the harmonics, which may have become more, and the highest frequency. */
+/* Tolerances, room for the harmonics, which may have become more, and the highest frequency. */
 static int method_event_prepare(struct event *e)
 {
     const tribo_system *sys = e->sys;
-    if (e->cosine && e->revision == sys->revision) {
-        return TRIBO_OK;
+    int status = take_tolerances(e);
+    e->events.stick_slip.abstol = e->drv->abstol;
+    e->events.stick_slip.reltol = e->drv->abstol > 0.0 ? e->drv->reltol : USUAL;
+    if (status || (e->cosine && e->revision == sys->revision)) {
+        return status;
     }
-    const int status = tribo_elastic_check(sys);
+    status = tribo_elastic_check(sys);
     if (status) {
         return status;
     }
@@ -397,7 +436,7 @@ static int speeds_tell(const struct event *e, double h)
 static double planar_length(struct event *e, double most)
 {
     const struct stick_slip *m = &e->events.stick_slip;
-    const double error = wanted(e, e->u, e->sys->ndof, HUGE_VAL);
+    const double error = wanted(e, e->u, e->sys->ndof, e->moves[1], HUGE_VAL);
     tribo_planar_series_errors(&e->planar, m, m->plane->error);
     double h = lesser(step_length(e), longest(e, most));
     while ((!(tribo_planar_series_defect(&e->planar, m, h, error) <= 1.0) || !speeds_tell(e, h)) && h > 0.0) {
@@ -471,7 +510,8 @@ static int creep(struct event *e, double t, const double *y, double most, double
     if (!(least < most)) {
         return TRIBO_OK;
     }
-    const double error = wanted(e, y + e->sys->ndof, e->sys->ndof, HUGE_VAL);
+    const double speed = tribo_largest(y + e->sys->ndof, e->sys->ndof);
+    const double error = greater(tolerated(e, speed, e->moves[1]), DBL_EPSILON * speed);
     const double last = c->length, first = first_trial(e, y, least, most, error);
     if (first == 0.0) {
         return TRIBO_OK;
@@ -509,6 +549,7 @@ static int method_event_begin(void *motion, double t, const double *y, double *r
 {
     struct event *e = motion;
     double length;
+    event_find_moves(e, y);
     const int status = method_event_expand(e, t, y, *reach, &length);
     if (status) {
         return status;
@@ -564,5 +605,11 @@ static int open_events(tribo_driver *drv, struct events **events)
     return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
 }
 
-const struct method tribo_method_event = {"event",     WITH_TOLERANCES,           create, destroy, tribo_events_method, NULL,
-                                          open_events, tribo_events_find_periodic};
+const struct method tribo_method_event = {"event",
+                                          TAKES_TOLERANCE | TAKES_OUTPUT,
+                                          method_event_create,
+                                          destroy,
+                                          tribo_events_method,
+                                          NULL,
+                                          open_events,
+                                          tribo_events_find_periodic};

@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdint.h>
 #include <string.h>
 
 /* Steps of one length from begin to t1. */
@@ -39,7 +40,7 @@ static void take_steps(tribo_driver *drv, size_t count, const double *t, double 
             *to = last;
             drv->time = t[s + 1];
             drv->steps++;
-            *status = drv->seen ? tribo_driver_show(drv, drv->time, *from, 0) : TRIBO_OK;
+            *status = drv->seen ? tribo_driver_show(drv, drv->time, *from, TRIBO_MOMENT_STEP, SIZE_MAX) : TRIBO_OK;
         }
     }
 }

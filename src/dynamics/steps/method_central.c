@@ -257,4 +257,4 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
 }
 
 const struct method tribo_method_central_fixed = {
-    "central/fixed", WITHOUT_TOLERANCES, central_create, central_destroy, central_advance, NULL, NULL, NULL};
+    "central/fixed", TAKES_STEP, central_create, central_destroy, central_advance, NULL, NULL, NULL};

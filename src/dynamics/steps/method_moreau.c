@@ -449,4 +449,4 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
 }
 
 const struct method tribo_method_moreau_fixed = {
-    "moreau/fixed", WITHOUT_TOLERANCES, moreau_create, moreau_destroy, moreau_advance, NULL, NULL, NULL};
+    "moreau/fixed", TAKES_STEP, moreau_create, moreau_destroy, moreau_advance, NULL, NULL, NULL};

@@ -225,4 +225,4 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
     return status;
 }
 
-const struct method tribo_method_rk4_fixed = {"rk4/fixed", WITHOUT_TOLERANCES, create, destroy, advance, NULL, NULL, NULL};
+const struct method tribo_method_rk4_fixed = {"rk4/fixed", TAKES_STEP, create, destroy, advance, NULL, NULL, NULL};

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "run.h"
+#include "../../set_up_driver.h"
 
 #define BODIES 3
 #define CONTACTS 6
@@ -177,7 +178,7 @@ static void between_ground_and_base(const char *method, double begin, size_t swi
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
     assert_ok(tribo_system_add_base_motion(sys, 0.5, cosine, NULL));
-    assert_ok(tribo_driver_create(&drv, sys, method, 0.1, 1e-11, 1e-11));
+    assert_ok(set_up_driver(&drv, sys, method, 0.1, 1e-11, 1e-11));
     memcpy(y, start, sizeof start);
     const int status = tribo_driver_advance(drv, &t, begin + 15.0, y);
     require(status == TRIBO_OK, "%s, contact %zu swings: %s", method, swings, tribo_driver_message(drv));

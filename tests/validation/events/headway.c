@@ -3,6 +3,7 @@
 
 #include "dynamics/events/events.h"
 #include "support.h"
+#include "../../set_up_driver.h"
 
 static int (*honest_begin)(void *motion, double t, const double *y, double *reach);
 static struct events *spoilt;
@@ -13,7 +14,7 @@ static tribo_driver *drv;
 static void spoil(const char *method, int (*begin)(void *motion, double t, const double *y, double *reach))
 {
     assert_ok(tribo_system_oscillator(&sys, 1.0, 1.5, 0.5));
-    assert_ok(tribo_driver_create(&drv, sys, method, 0.01, 1e-10, 1e-10));
+    assert_ok(set_up_driver(&drv, sys, method, 0.01, 1e-10, 1e-10));
     assert_ok(drv->method->open(drv, &spoilt));
     honest_begin = spoilt->begin;
     spoilt->begin = begin;
@@ -89,7 +90,7 @@ TEST(guards_overflow)
     double y[3] = {_i ? 3.0 : 0.0}, t = 0.0;
     assert_ok(tribo_system_oscillator(&sys, 0.0, 1.5, 0.5));
     assert_ok(tribo_system_add_limit(sys, fast[_i], NULL, sine));
-    assert_ok(tribo_driver_create(&drv, sys, _i ? "exact" : "event", 0.01, 1e-9, 1e-9));
+    assert_ok(set_up_driver(&drv, sys, _i ? "exact" : "event", 0.01, 1e-9, 1e-9));
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_STEP);
     assert_says(tribo_driver_message(drv), _i ? "after 1 look" : "the step is down to 0");
     assert_exact(t, 0.0);

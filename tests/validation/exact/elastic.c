@@ -2,11 +2,12 @@
 #include "sliders.h"
 
 #include <string.h>
+#include "../../set_up_driver.h"
 
 static tribo_driver *exact(tribo_system *s)
 {
     tribo_driver *d = NULL;
-    const int status = tribo_driver_create(&d, s, "exact", 1e-3, 0.0, 0.0);
+    const int status = set_up_driver(&d, s, "exact", 1e-3, 0.0, 0.0);
     require(!status, "%s", tribo_message(tribo_system_context(s)));
     return d;
 }
@@ -70,7 +71,7 @@ TEST(steady_state)
     tribo_system *s = element(0.5, 1);
     tribo_driver *d = NULL;
     double t = 0.0, y[5] = {0.0}, most = 0.0;
-    assert_ok(tribo_driver_create(&d, s, "auto", 1e-4, 0.0, 0.0));
+    assert_ok(set_up_driver(&d, s, "auto", 1e-4, 0.0, 0.0));
     assert_exact(strcmp(tribo_driver_method(d), "exact"), 0);
     advance(d, &t, 80.0 * period, y);
     const double before[2] = {y[0], y[2]};
@@ -438,7 +439,7 @@ TEST(refused_methods)
         const char *name = tribo_method_name(k);
         const int able =
             !strcmp(name, "exact") || !strcmp(name, "auto") || !strcmp(name, "event") || !strcmp(name, "moreau/fixed");
-        assert_status(tribo_driver_create(&d, copy, name, 1e-3, 1e-6, 1e-6), able ? TRIBO_OK : TRIBO_ERR_UNSUPPORTED);
+        assert_status(set_up_driver(&d, copy, name, 1e-3, 1e-6, 1e-6), able ? TRIBO_OK : TRIBO_ERR_UNSUPPORTED);
         if (!able) {
             assert_says(message, name);
             assert_says(message, "degree of freedom 1 has none");

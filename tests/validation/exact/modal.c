@@ -2,6 +2,7 @@
 #include "dynamics/exact/divided.h"
 #include "dynamics/exact/modal.h"
 #include "support.h"
+#include "../../set_up_driver.h"
 
 static int decompose(struct modal **h, tribo_system *sys, const signed char *slip, const unsigned char *holds)
 {
@@ -321,7 +322,7 @@ TEST(moved_alike)
         assert_ok(tribo_system_add_load(sys, 0.8, load, NULL));
         assert_ok(tribo_system_contacts(sys, 0.0, y[alone], v, NULL, NULL));
         assert_close(v[0], alone ? 0.1 : 0.0, alone ? 1e-12 : 0.0);
-        assert_ok(tribo_driver_create(&drv, sys, "exact", 1.0, 0.0, 0.0));
+        assert_ok(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0));
         t = 0.0;
         assert_ok(tribo_driver_advance(drv, &t, 20.0, y[alone]));
         tribo_driver_destroy(drv);

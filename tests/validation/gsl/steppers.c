@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "coulomb.h"
+#include "../../set_up_driver.h"
 
 static const struct {
     const char *name;
@@ -221,10 +222,10 @@ TEST(coulombs_law)
 
 /* -------------------------------------------------------------------------------------------------------- largest step */
 
-static int longest_step(double t, const double *y, int event, void *data)
+static int longest_step(const tribo_moment *moment, void *data)
 {
+    const double t = moment->t;
     double *seen = data;
-    (void)y, (void)event;
     seen[1] = fmax(seen[1], t - seen[0]);
     seen[0] = t;
     return 0;
@@ -291,7 +292,7 @@ TEST(singular_matrices)
             tribo_system *sys;
             assert_ok(tribo_system_linear(&sys, 1, 0, &one, k ? &drive[k] : NULL, &stiffness, NULL, 0, NULL, 0));
             tribo_driver *drv = NULL;
-            assert_ok(tribo_driver_create(&drv, sys, steppers[_i].name, dt, 1e-7, 1e-7));
+            assert_ok(set_up_driver(&drv, sys, steppers[_i].name, dt, 1e-7, 1e-7));
             driver_advance(drv, &t, 4.0, y);
             const double p = k ? 2.0 : 1.0, q = k ? -0.5 : -1.0; /* exponents */
             const double want = (p * exp(q * 4.0) - q * exp(p * 4.0)) / (p - q);

@@ -6,11 +6,9 @@
 
 static const char *const methods[] = {"exact", "event", "auto"};
 
-static int seen_by(double t, const double *y, int event, void *data)
+static int seen_by(const tribo_moment *moment, void *data)
 {
-    (void)t;
-    (void)y;
-    (void)event;
+    (void)moment;
     ++*(int *)data;
     return 0;
 }
@@ -63,17 +61,17 @@ TEST(errors)
     assert_says(tribo_driver_message(s.drv), "load[0], omega = 0.8");
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1e-12 * s.period, y), TRIBO_ERR_RANGE); /* no whole turn at all */
     assert_status(tribo_driver_get_multipliers(s.drv, re, im), TRIBO_ERR_STATE);
-    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_NOT_FINITE);
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b, NULL, NULL), TRIBO_ERR_NOT_FINITE);
     c[1] = 0.0;
-    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_STATE);
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b, NULL, NULL), TRIBO_ERR_STATE);
     find(&s, 0.0, y);
     assert_status(tribo_driver_get_multipliers(s.drv, NULL, im), TRIBO_ERR_NULL);
-    assert_status(tribo_driver_period_extremes(s.drv, NULL, &a, &b), TRIBO_ERR_NULL);
+    assert_status(tribo_driver_period_extremes(s.drv, NULL, &a, &b, NULL, NULL), TRIBO_ERR_NULL);
     assert_status(tribo_driver_period_harmonic(s.drv, c, 1, NULL, &b), TRIBO_ERR_NULL);
     assert_status(tribo_driver_period_stick(s.drv, NULL), TRIBO_ERR_NULL);
     assert_status(tribo_driver_period_dissipation(NULL, &a), TRIBO_ERR_NULL);
     assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.6));
-    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b), TRIBO_ERR_STATE);
+    assert_status(tribo_driver_period_extremes(s.drv, c, &a, &b, NULL, NULL), TRIBO_ERR_STATE);
     assert_says(tribo_driver_message(s.drv), "has changed");
     assert_ok(tribo_system_set_limit_table(s.sys, 1, &one, &one));
     assert_status(tribo_driver_find_periodic(s.drv, 0.0, s.period, y), TRIBO_ERR_UNSUPPORTED);
@@ -202,7 +200,7 @@ TEST(automatic)
         assert_status(tribo_driver_get_multipliers(s.drv, re[k], im[k]), TRIBO_ERR_STATE);
         find(&s, 0.0, y[k]);
         assert_says(tribo_driver_method(s.drv), "exact");
-        assert_ok(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1]));
+        assert_ok(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1], NULL, NULL));
         assert_ok(tribo_driver_get_multipliers(s.drv, re[k], im[k]));
         count[k] = driver_count(s.drv, TRIBO_COUNT_PERIODS);
         assert_status(tribo_driver_find_periodic(s.drv, 0.0, 1.1 * s.period, y[k]), TRIBO_ERR_RANGE);
@@ -210,7 +208,7 @@ TEST(automatic)
         t = 0.0;
         driver_advance(s.drv, &t, 10.0, z[k]);
         assert_ok(tribo_set_limit_all(tribo_system_context(s.sys), 0.6));
-        assert_status(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1]), TRIBO_ERR_STATE);
+        assert_status(tribo_driver_period_extremes(s.drv, one, &e[k][0], &e[k][1], NULL, NULL), TRIBO_ERR_STATE);
         assert_says(tribo_driver_message(s.drv), "has changed");
         search_free(&s);
     }
@@ -233,7 +231,7 @@ TEST(any_size)
     find(&ordinary, 0.0, want);
     assert_close(y[0] / size, want[0], 1e-11);
     assert_close(y[1] / size, want[1], 1e-11);
-    assert_ok(tribo_driver_period_extremes(s.drv, e, &least, &most));
+    assert_ok(tribo_driver_period_extremes(s.drv, e, &least, &most, NULL, NULL));
     assert_close(least / most, -1.0, 1e-11);
     search_free(&s);
     search_free(&ordinary);

@@ -134,9 +134,9 @@ static void keep_awake(tribo_system *sys)
     free(limit);
 }
 
-static int seen(double t, const double *y, int event, void *data)
+static int seen(const tribo_moment *moment, void *data)
 {
-    (void)t, (void)event;
+    const double *y = moment->y;
     *(double *)data += y[0] * y[0];
     return 0;
 }

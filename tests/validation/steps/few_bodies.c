@@ -107,9 +107,9 @@ static void change(tribo_system *sys, const struct scene *s, int setting)
     }
 }
 
-static int seen(double t, const double *y, int event, void *data)
+static int seen(const tribo_moment *moment, void *data)
 {
-    (void)t, (void)event;
+    const double *y = moment->y;
     *(double *)data += y[0] * y[0];
     return 0;
 }

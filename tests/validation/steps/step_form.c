@@ -136,10 +136,10 @@ static void add_central(struct account *a, double t, const double *y)
     memcpy(a->u, u, sizeof u);
 }
 
-static int add_up(double t, const double *y, int event, void *data)
+static int add_up(const tribo_moment *moment, void *data)
 {
+    const double t = moment->t, *y = moment->y;
     struct account *a = data;
-    (void)event;
     (a->implicit ? add_implicit : add_central)(a, t, y);
     a->t = t;
     a->steps++;
@@ -387,11 +387,11 @@ TEST(damping)
 /* ------------------------------------------------------------------------------------------------------------- observers */
 
 /* What an observer sees, and where it stops, are velocities and energy of that time: second order, as at the end. */
-static int compare(double t, const double *y, int event, void *data)
+static int compare(const tribo_moment *moment, void *data)
 {
+    const double t = moment->t, *y = moment->y;
     struct account *a = data;
     double z[3] = {0.5, 1.0, 0.0}, begin = 0.0;
-    (void)event;
     tribo_system *sys;
     assert_ok(tribo_system_oscillator(&sys, 1.0, 1.5, 0.5));
     tribo_driver *drv = driver_create(sys, "exact", 100.0, 0.0);
@@ -429,11 +429,10 @@ TEST(synchronous)
     require(order_of(dt, error, 4) > 1.7, "order %.2f, errors %g to %g", order_of(dt, error, 4), error[0], error[3]);
 }
 
-static int raise_static(double t, const double *y, int event, void *data)
+static int raise_static(const tribo_moment *moment, void *data)
 {
+    const double t = moment->t;
     const double ratio = 4.0;
-    (void)y;
-    (void)event;
     if (fabs(t - 0.5) < 1e-9) {
         assert_ok(tribo_set_static(data, &ratio, NULL));
     }
@@ -457,7 +456,7 @@ TEST(static_limits_by_an_observer)
             assert_ok(tribo_driver_set_observer(drv, raise_static, contacts));
         } else {
             driver_advance(drv, &t, 0.5, y[0]);
-            raise_static(t, y[0], 0, contacts);
+            raise_static(&(tribo_moment){.t = t, .y = y[0]}, contacts);
         }
         driver_advance(drv, &t, 2.0, y[watched]);
         tribo_driver_destroy(drv);
@@ -496,10 +495,9 @@ TEST(tables)
 }
 
 /* The observer may end a run; it goes on from there. */
-static int stop_at(double t, const double *y, int event, void *data)
+static int stop_at(const tribo_moment *moment, void *data)
 {
-    (void)y;
-    (void)event;
+    const double t = moment->t;
     return t >= *(double *)data ? 5 : 0;
 }
 

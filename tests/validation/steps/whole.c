@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "run.h"
+#include "../../set_up_driver.h"
 
 /* Masses on a grid with springs between them and to the ground all around; M = 1 + K/12, which changes no shape. Copies of a grid
  * hold nothing of each other. */
@@ -399,7 +400,7 @@ TEST(refused)
     for (int m = 0; m < tribo_method_count(); m++) {
         const char *name = tribo_method_name(m);
         if (strcmp(name, "moreau/fixed") != 0) {
-            assert_status(tribo_driver_create(&drv, sys, name, 0.1, 1e-6, 1e-6), TRIBO_ERR_UNSUPPORTED);
+            assert_status(set_up_driver(&drv, sys, name, 0.1, 1e-6, 1e-6), TRIBO_ERR_UNSUPPORTED);
             assert_says(tribo_message(contacts), name);
             assert_says(tribo_message(contacts), part);
         }

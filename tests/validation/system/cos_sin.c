@@ -8,6 +8,7 @@
 #include "support.h"
 #include "dynamics/system/cos_sin.h"
 #include "dynamics/system/system.h"
+#include "../../set_up_driver.h"
 
 enum { TIMES = 16 };
 
@@ -112,7 +113,7 @@ TEST(turned_on)
     assert_ok(tribo_system_oscillator(&sys, 1.0, 2.0, omega));
     sys->harmonic[0].turns = 16;
     assert_close(worst_of_turns(sys, each), 16.0 * each, 1e-3 * each);
-    assert_ok(tribo_driver_create(&drv, sys, "exact", 0.1, 0.0, 0.0));
+    assert_ok(set_up_driver(&drv, sys, "exact", 0.1, 0.0, 0.0));
     assert_ok(tribo_driver_advance(drv, &t, 30.0, y));
     ck_assert(isnan(sys->harmonic[0].time));
     tribo_driver_destroy(drv);

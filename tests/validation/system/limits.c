@@ -3,6 +3,7 @@
 
 #include "coulomb.h"
 #include "model.h"
+#include "../../set_up_driver.h"
 
 /* Every test of a single block is run with both methods that locate events. */
 static const char *const methods[] = {"exact", "event"};
@@ -529,7 +530,7 @@ TEST(automatic)
     assert_ok(tribo_system_set_limit_table(sys, 2, time, limit));
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
     tribo_driver_destroy(drv);
-    assert_status(tribo_driver_create(&drv, sys, "exact", 1.0, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
+    assert_status(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_message(tribo_system_context(sys)), "table");
     tribo_system_destroy(sys);
 }

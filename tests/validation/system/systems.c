@@ -123,11 +123,10 @@ struct way {
     double before[BLOCKS], all, last;
 };
 
-static int measure(double t, const double *y, int event, void *data)
+static int measure(const tribo_moment *moment, void *data)
 {
+    const double *y = moment->y;
     struct way *way = data;
-    (void)t;
-    (void)event;
     for (size_t i = 0; i < BLOCKS; i++) {
         way->all += fabs(y[i] - way->before[i]);
     }

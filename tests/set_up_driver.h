@@ -1,0 +1,37 @@
+/* A driver with settings for any method. */
+#ifndef TEST_SET_UP_DRIVER_H
+#define TEST_SET_UP_DRIVER_H
+
+#include <string.h>
+
+#include "tribo/tribo_dynamics.h"
+
+/* Creates a driver, and sets what its method takes: dt as step, for exact and auto as output; tolerances where abstol > 0.
+ * Returns a status; *drv = NULL if it fails. */
+static inline int set_up_driver(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol, double reltol)
+{
+    tribo_driver *made;
+    int status = tribo_driver_create(&made, sys, method);
+    *drv = NULL;
+    if (status) {
+        return status;
+    }
+    const int fixed = strstr(method, "/fixed") != NULL, exact = strcmp(method, "exact") == 0, automatic = strcmp(method, "auto") == 0;
+    if (exact || automatic) {
+        status = tribo_driver_set_output(made, dt);
+    } else if (strcmp(method, "event") != 0) {
+        status = tribo_driver_set_step(made, dt);
+    }
+    if (!status && abstol > 0.0 && !fixed && !exact) {
+        status = tribo_driver_set_tolerance(made, abstol, reltol);
+    }
+    status = status == TRIBO_ERR_UNSUPPORTED ? TRIBO_OK : status; /* a method by other letters */
+    if (status) {
+        tribo_driver_destroy(made);
+        return status;
+    }
+    *drv = made;
+    return TRIBO_OK;
+}
+
+#endif
