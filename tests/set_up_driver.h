@@ -8,7 +8,8 @@
 
 /* Creates a driver, and sets what its method takes: dt as step, for exact and auto as output; tolerances where abstol > 0.
  * Returns a status; *drv = NULL if it fails. */
-static inline int set_up_driver(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol, double reltol)
+static inline int set_up_driver(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
+                                double reltol)
 {
     tribo_driver *made;
     int status = tribo_driver_create(&made, sys, method);
@@ -16,7 +17,8 @@ static inline int set_up_driver(tribo_driver **drv, tribo_system *sys, const cha
     if (status) {
         return status;
     }
-    const int fixed = strstr(method, "/fixed") != NULL, exact = strcmp(method, "exact") == 0, automatic = strcmp(method, "auto") == 0;
+    const int fixed = strstr(method, "/fixed") != NULL, exact = strcmp(method, "exact") == 0;
+    const int automatic = strcmp(method, "auto") == 0;
     if (exact || automatic) {
         status = tribo_driver_set_output(made, dt);
     } else if (strcmp(method, "event") != 0) {

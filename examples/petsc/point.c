@@ -86,8 +86,8 @@ static PetscErrorCode Measure(const Study *s, tribo_driver *drv, double *amplitu
 
     PetscFunctionBeginUser;
     PetscCall(PetscMalloc1(s->contacts.count, &each));
-    PetscCallTribo(tribo_driver_period_extremes(drv, s->shape, &least, &most, NULL, NULL), tribo_driver_message(drv), "structure of %zu rows",
-                   s->rows);
+    PetscCallTribo(tribo_driver_period_extremes(drv, s->shape, &least, &most, NULL, NULL), tribo_driver_message(drv),
+                   "structure of %zu rows", s->rows);
     PetscCallTribo(tribo_driver_period_dissipation(drv, each), tribo_driver_message(drv), "structure of %zu rows", s->rows);
     *amplitude = 0.5 * (most - least);
     *energy = 0.0;

@@ -18,7 +18,6 @@
 #include <string.h>
 
 #include "tribo/tribo_gsl.h"
-#include "../set_up_driver.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -98,6 +97,7 @@ static int wild(const double *x, size_t n)
 struct run {
     tribo_driver *drv;
     int events; /* exact, event or auto */
+    size_t contacts;
     double t, y[MOST_STATES], stop;
     /* what the observer knows */
     double from, to, last;
@@ -295,9 +295,11 @@ static void ask(struct bytes *b, struct scene *s, const struct run *r)
 static int observe(const tribo_moment *moment, void *data)
 {
     const double t = moment->t, *y = moment->y;
-    const int event = moment->kind != TRIBO_MOMENT_STEP;
+    const int step = moment->kind == TRIBO_MOMENT_STEP;
     struct run *r = data;
-    demand(event == 0 || event == 1, "event %d", event);
+    demand(moment->size == sizeof *moment, "size %zu", moment->size);
+    demand(step || (r->events && moment->kind > 0 && moment->kind <= TRIBO_MOMENT_TOUCH), "kind %d", moment->kind);
+    demand(step ? moment->contact == SIZE_MAX : moment->contact < r->contacts, "contact %zu", moment->contact);
     demand(t >= r->last && t <= r->to, "%.17g after %.17g, from %.17g to %.17g", t, r->last, r->from, r->to);
     for (size_t i = 0; i < 3; i++) {
         demand(isfinite(y[i]), "y[%zu] = %g", i, y[i]);
@@ -306,36 +308,58 @@ static int observe(const tribo_moment *moment, void *data)
     return ++r->seen >= r->patience ? 1 : 0;
 }
 
-static void create_run(struct bytes *b, struct scene *s, struct run *r)
+/* A setting, or what it must refuse. */
+static void tune(struct bytes *b, struct run *r)
 {
     static const double tolerances[] = {1e-6, 1e-3, 1e-9, 0.0, 1e-1, -1.0, NAN};
+    const double h = 0.1 * positive(b);
+    int status;
+    switch (choose(b, 4)) {
+    case 0:
+        status = tribo_driver_set_max_step(r->drv, h);
+        break;
+    case 1:
+        status = tribo_driver_set_tolerance(r->drv, tolerances[choose(b, 16) % COUNT(tolerances)],
+                                            tolerances[choose(b, 16) % COUNT(tolerances)]);
+        break;
+    case 2:
+        status = tribo_driver_set_output(r->drv, h);
+        break;
+    default:
+        status = tribo_driver_set_step(r->drv, h);
+        break;
+    }
+    demand(status == TRIBO_OK || tribo_driver_message(r->drv)[0] != '\0', "status %d without a message", status);
+}
+
+static void create_run(struct bytes *b, struct scene *s, struct run *r)
+{
     const int kind = (int)choose(b, (size_t)tribo_method_count() + 1);
     const char *const name = kind < tribo_method_count() ? tribo_method_name(kind) : "rk5";
-    const double dt = 0.1 * positive(b), abstol = tolerances[choose(b, 16) % COUNT(tolerances)],
-                 reltol = tolerances[choose(b, 16) % COUNT(tolerances)];
     tribo_driver_destroy(r->drv);
     memset(r, 0, sizeof *r);
-    const int status = set_up_driver(&r->drv, s->sys, name, dt, abstol, reltol);
+    const int status = tribo_driver_create(&r->drv, s->sys, name);
     check(s, status);
     demand((status == TRIBO_OK) == (r->drv != NULL), "status %d", status);
     demand(status || strlen(tribo_driver_method(r->drv)) > 1, "no name");
     r->events = strcmp(name, "exact") == 0 || strcmp(name, "event") == 0 || strcmp(name, "auto") == 0;
     r->patience = PATIENCE;
+    r->contacts = s->c;
+    for (int k = 0; !status && k < 3; k++) {
+        tune(b, r);
+    }
 }
 
 static void set_run(struct bytes *b, const struct scene *s, struct run *r)
 {
-    const double h = 0.1 * positive(b);
     size_t count;
     switch (choose(b, 4)) {
     case 0:
         fill(b, r->y, s->dimension);
         break;
-    case 1: {
-        const int status = tribo_driver_set_max_step(r->drv, h);
-        demand(status == TRIBO_OK || tribo_driver_message(r->drv)[0] != '\0', "status %d without a message", status);
+    case 1:
+        tune(b, r);
         break;
-    }
     case 2:
         r->patience = 1 + choose(b, 40);
         break;

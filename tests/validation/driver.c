@@ -579,6 +579,7 @@ TEST(rounding_modes)
     }
 }
 
-TEST_MAIN("driver", {rounding_modes, 5}, {reals, 1}, {four_evaluations_a_step, 6}, {last_steps, 1}, {classical_runge_kutta, 1}, {pieces, 6},
-          {observer_stops, 3}, {creation_errors, 1}, {settings, 8}, {defaults, METHODS}, {settings_change, 5}, {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3},
-          {overflow, 3}, {names, 1}, {resolution, 3}, {growth, METHODS}, {no_contacts, METHODS})
+TEST_MAIN("driver", {rounding_modes, 5}, {reals, 1}, {four_evaluations_a_step, 6}, {last_steps, 1}, {classical_runge_kutta, 1},
+          {pieces, 6}, {observer_stops, 3}, {creation_errors, 1}, {settings, 8}, {defaults, METHODS}, {settings_change, 5},
+          {advance_errors, 3}, {other_errors, 1}, {inconsistent_under_way, 3}, {overflow, 3}, {names, 1}, {resolution, 3},
+          {growth, METHODS}, {no_contacts, METHODS})

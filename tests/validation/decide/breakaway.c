@@ -21,7 +21,8 @@ static int note(const tribo_moment *moment, void *data)
     const double t = moment->t, *y = moment->y;
     const int event = moment->kind != TRIBO_MOMENT_STEP;
     struct tape *tape = data;
-    const int another = event && !(tape->count && tape->t[tape->count - 1] == t); /* contacts that change together are one event */
+    /* contacts that change together are one event */
+    const int another = event && !(tape->count && tape->t[tape->count - 1] == t);
     if (another && tape->count < EVENTS) {
         tape->t[tape->count] = t;
         memcpy(tape->y[tape->count++], y, sizeof *tape->y);
