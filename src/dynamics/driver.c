@@ -1,4 +1,4 @@
-/* Integration in time: a method by name, and what is around it. */
+/* Drivers: the table of methods, settings, queries, the advance with its last good state, and method "auto". */
 #include "driver.h"
 
 #include <math.h>
@@ -64,7 +64,7 @@ static int unknown(const tribo_system *sys, const char *name)
     return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%.20s\" is unknown; there are %s", name, list);
 }
 
-/* What has no mass follows statically in methods that know the stiffness, and not only what it accelerates. */
+/* Returns TRIBO_OK if all degrees of freedom have mass, or m is exact, event, moreau/fixed or auto, which need none. */
 static int driver_check_mass(const tribo_system *sys, const struct method *m)
 {
     const int able = m == &tribo_method_exact || m == &tribo_method_event || m == &tribo_method_moreau_fixed || m == &automatic;
@@ -76,7 +76,7 @@ static int driver_check_mass(const tribo_system *sys, const struct method *m)
     return tribo_system_check_mass(sys, who);
 }
 
-/* Elastic contacts hold up to the limit by which they slide; and static limits may be set at any time. */
+/* Returns TRIBO_ERR_UNSUPPORTED if an elastic contact has a static limit above its limit. */
 static int driver_check_static(const tribo_system *sys)
 {
     double *ratio = sys->feq;
@@ -91,10 +91,10 @@ static int driver_check_static(const tribo_system *sys)
                                    "contact %zu is elastic, and takes no static limit: ratio[%zu] = %g", i, i, ratio[i]);
 }
 
-/* What the contacts are, which may change at any time. */
+/* Returns TRIBO_ERR_UNSUPPORTED if m takes no planar contacts and there are some, or an elastic contact has a static limit.
+ * Called by each advance, since contacts may change between advances. */
 static int check_contacts(const tribo_system *sys, const struct method *m)
 {
-    /* Motions in closed form are those of scalar contacts only; and contacts may become planar at any time. */
     const int scalar_only = m == &tribo_method_exact || sys->massless.count;
     const size_t planar = scalar_only ? tribo_system_planar(sys) : 0;
     const int status = !planar ? TRIBO_OK
@@ -195,7 +195,7 @@ int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment 
     return TRIBO_OK;
 }
 
-/* The settings, by their bit: 1, 2, 4, 8. */
+/* [bit of TAKES_...] Name of the setting, and the methods that take it. */
 static const struct {
     const char *name, *taken_by;
 } settings[] = {
@@ -285,7 +285,7 @@ int tribo_driver_set_max_step(tribo_driver *drv, double h)
 
 /* --------------------------------------------------------------------------------------------------------------- queries */
 
-/* Of a query. */
+/* Returns TRIBO_OK if drv and value are not NULL. */
 static int check_query(const tribo_driver *drv, const void *value)
 {
     return drv && value ? TRIBO_OK : drv ? tribo_driver_fail(drv, TRIBO_ERR_NULL, "value is NULL") : TRIBO_ERR_NULL;
@@ -442,14 +442,14 @@ int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
 
 enum { EVENT, EXACT };
 
-/* Two drivers, made when they are needed. */
+/* The two drivers of auto, each created when it is first chosen. */
 struct choice {
     tribo_driver *inner[2];
-    int refused;     /* exact cannot do the system */
-    size_t revision; /* as it was then */
+    int refused;     /* 1: exact cannot do the system of this revision */
+    size_t revision;
 };
 
-/* Exact pays while modes are found in no time. */
+/* Returns EXACT for up to 200 degrees of freedom, whose modes cost little, and a system that exact can do. */
 static int driver_choose(const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
@@ -486,13 +486,13 @@ static void destroy_choice(tribo_driver *drv)
     }
 }
 
-/* What one of the two is to do: an advance to t1, or to find a periodic motion. */
+/* An advance from *t to t1; or, if finds is 1, the search of a periodic motion from *t on. */
 struct task {
     double *t, t1, period, *y;
     int finds;
 };
 
-/* A task for one of the two, which sees for itself whether an advance continues. */
+/* Runs task x by inner[which] with the settings of drv, and adds its counts. Returns a status. */
 static int delegate(tribo_driver *drv, int which, const struct task *x)
 {
     const struct choice *c = drv->own;
@@ -510,7 +510,7 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     inner->data = drv->data;
     status =
         x->finds ? inner->method->find_periodic(inner, *x->t, x->period, x->y) : tribo_driver_advance(inner, x->t, x->t1, x->y);
-    /* Adds what inner has counted since it was what before says. Evaluations in an advance are counted by the caller. */
+    /* The caller counts the evaluations of an advance. */
     drv->steps += inner->steps - before.steps;
     drv->rejected += inner->rejected - before.rejected;
     drv->events += inner->events - before.events;

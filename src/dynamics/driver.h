@@ -1,50 +1,50 @@
-/* What a method of integration is, and what all of them share. */
+/* The interface of a method of integration, and what all methods share. */
 #ifndef TRIBO_DRIVER_H
 #define TRIBO_DRIVER_H
 
 #include "dynamics/system/system.h"
 
-/* The settings that a method takes. */
+/* Settings of a driver, bit by bit: see tribo_driver_set_step and its neighbours. */
 enum { TAKES_STEP = 1, TAKES_TOLERANCE = 2, TAKES_OUTPUT = 4, TAKES_MAX_STEP = 8 };
 
 struct events;
 
 struct method {
     const char *name;
-    int takes; /* sum of these */
+    int takes; /* sum of the settings that the method takes */
     int (*create)(tribo_driver *drv);
     void (*destroy)(tribo_driver *drv); /* also after a create that failed */
-    /* From *t to t1 > *t. continues: (t, y) is where the method's last advance ended well, and nothing has been changed since.
-     * Returns a status; if it fails, t and y may be anything, since the driver goes back to the state accepted last. */
+    /* Advances from *t to t1 > *t. continues = 1: the method's last advance ended at (t, y), and nothing has changed since.
+     * Returns a status; on error t and y may be anything: the driver restores the state kept last. */
     int (*advance)(tribo_driver *drv, double *t, double t1, double *y, int continues);
     const void *with; /* the method's own */
-    /* Methods that are a loop over events (events.h): makes it ready and hands it out. Others: NULL. */
+    /* Methods that loop over events (events.h): prepares *events. Other methods: NULL. */
     int (*open)(tribo_driver *drv, struct events **events);
-    /* As tribo_driver_find_periodic, arguments being checked; NULL: the method cannot. */
+    /* tribo_driver_find_periodic for checked arguments; NULL: TRIBO_ERR_UNSUPPORTED. */
     int (*find_periodic)(tribo_driver *drv, double t, double period, double *y);
 };
 
 struct tribo_driver {
     tribo_system *sys;
-    const struct method *method, *at_work; /* the latter is what tribo_driver_method names */
+    const struct method *method, *at_work; /* at_work: the method that tribo_driver_method names */
 
     /* settings */
     double dt;             /* step, or first step; 0: not set */
     double abstol, reltol; /* abstol 0: not set */
-    double output;         /* time between moments shown between events; 0: none are */
-    double max_step;       /* 0: what the system suggests */
+    double output;         /* time between outputs; 0: no outputs */
+    double max_step;       /* 0: 0.1 times the shortest 1/omega */
     int (*seen)(const tribo_moment *moment, void *data);
     void *data;
 
     /* state */
-    void *own;             /* the method's own */
-    double *state, *slope; /* [dimension] the state accepted last; workspace */
-    double time;           /* of the state accepted last */
-    size_t revision;       /* of the system when the last advance ended */
-    int knows;             /* what the method keeps is about time, state and revision */
-    struct shooting *shooting; /* of periodic motions, made when it is first needed, and freed by free_shooting; NULL: borrowed */
+    void *own;                 /* the method's own */
+    double *state, *slope;     /* [dimension] the state kept last; workspace */
+    double time;               /* of the state kept last */
+    size_t revision;           /* of the system when the last advance ended */
+    int knows;                 /* 1: what the method keeps belongs to time, state and revision */
+    struct shooting *shooting; /* the last search; borrowed if free_shooting is NULL */
     void (*free_shooting)(struct shooting *s);
-    char *message;                                            /* is text, which a const driver keeps, too */
+    char *message; /* text: also for calls on a const driver */
     char text[240];
 
     /* counters */
