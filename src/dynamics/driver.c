@@ -212,10 +212,9 @@ static int check_setting(const tribo_driver *drv, int setting)
     while (setting >> k != 1) {
         k++;
     }
-    return drv->method->takes & setting
-               ? TRIBO_OK
-               : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s; %s", drv->method->name, settings[k].name,
-                                   settings[k].taken_by);
+    return drv->method->takes & setting ? TRIBO_OK
+                                        : tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "method %s takes no %s; %s",
+                                                            drv->method->name, settings[k].name, settings[k].taken_by);
 }
 
 static int check_positive(const tribo_driver *drv, const char *name, double value)
@@ -445,7 +444,7 @@ enum { EVENT, EXACT };
 /* The two drivers of auto, each created when it is first chosen. */
 struct choice {
     tribo_driver *inner[2];
-    int refused;     /* 1: exact cannot do the system of this revision */
+    int refused; /* 1: exact cannot do the system of this revision */
     size_t revision;
 };
 

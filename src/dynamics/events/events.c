@@ -458,7 +458,8 @@ int tribo_events_advance(struct events *e, tribo_driver *drv, double *t, double 
     const double begin = *t, own = tribo_system_fastest(drv->sys), fastest = own > 0.0 ? own : 1.0 / (t1 - begin);
     double shown = 1.0;
     if (drv->seen && drv->output > 0.0 && !(begin + drv->output > begin && t1 - drv->output < t1)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "output every %g is below what time resolves at t = %.17g", drv->output, t1);
+        return tribo_driver_fail(drv, TRIBO_ERR_STEP, "output every %g is below what time resolves at t = %.17g", drv->output,
+                                 t1);
     }
     if (!e->watched) {
         memcpy(e->shown, e->stick_slip.slip, drv->sys->ncontact);

@@ -256,5 +256,5 @@ static int central_advance(tribo_driver *drv, double *t, double t1, double *y, i
     return status || drv->seen ? status : synchronise(drv, t1, y);
 }
 
-const struct method tribo_method_central_fixed = {
-    "central/fixed", TAKES_STEP, central_create, central_destroy, central_advance, NULL, NULL, NULL};
+const struct method tribo_method_central_fixed = {"central/fixed", TAKES_STEP, central_create, central_destroy,
+                                                  central_advance, NULL,       NULL,           NULL};

@@ -448,5 +448,5 @@ static int moreau_advance(tribo_driver *drv, double *t, double t1, double *y, in
     return tribo_driver_fixed_steps(drv, t, t1, y, &method);
 }
 
-const struct method tribo_method_moreau_fixed = {
-    "moreau/fixed", TAKES_STEP, moreau_create, moreau_destroy, moreau_advance, NULL, NULL, NULL};
+const struct method tribo_method_moreau_fixed = {"moreau/fixed", TAKES_STEP, moreau_create, moreau_destroy,
+                                                 moreau_advance, NULL,       NULL,          NULL};

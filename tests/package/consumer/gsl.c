@@ -14,9 +14,9 @@ int main(void)
 
     gsl_spmatrix_set(one, 0, 0, 1);
     ok = tribo_system_linear_sparse(&sys, one, NULL, one, one, 0, NULL, 0) == TRIBO_OK &&
-         tribo_set_limit_all(tribo_system_context(sys), 1) == TRIBO_OK &&
-         tribo_driver_create(&drv, sys, "rk8pd") == TRIBO_OK && tribo_driver_set_tolerance(drv, 1e-9, 1e-9) == TRIBO_OK &&
-         tribo_driver_advance(drv, &t, M_PI, y) == TRIBO_OK && gsl_fcmp(y[0], 0.5, 1e-9) == 0;
+         tribo_set_limit_all(tribo_system_context(sys), 1) == TRIBO_OK && tribo_driver_create(&drv, sys, "rk8pd") == TRIBO_OK &&
+         tribo_driver_set_tolerance(drv, 1e-9, 1e-9) == TRIBO_OK && tribo_driver_advance(drv, &t, M_PI, y) == TRIBO_OK &&
+         gsl_fcmp(y[0], 0.5, 1e-9) == 0;
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
     gsl_spmatrix_free(one);

@@ -545,7 +545,29 @@ TEST(long_slide)
     tribo_system_destroy(sys);
 }
 
-TEST_MAIN("event", {errors_follow_the_tolerance, REFERENCES}, {work_for_the_chain, 1}, {nothing_is_missed, REFERENCES},
+/* Without tolerances the motion is found in any units of length and time: x'' + x = 1.5 sin(t/2) + f, from rest. */
+TEST(units_by_default)
+{
+    const double length[] = {1e-12, 1e-6, 1.0, 1e9}, time[] = {1e-6, 1.0, 1e4}, end = 60.0;
+    const double s = length[_i % 4], w = 1.0 / time[_i / 4], load = 1.5 * s * w * w;
+    double t = 0.0, u = 0.0, y[3] = {0.0}, want[3] = {0.0};
+    tribo_system *sys = block(1.0, w * w, s * w * w), *other = oscillator(TRIBO_COULOMB, 1.5, 0.5);
+    tribo_driver *drv, *exact;
+    assert_ok(tribo_system_add_load(sys, 0.5 * w, NULL, &load));
+    assert_ok(tribo_driver_create(&drv, sys, "event"));
+    assert_ok(tribo_driver_create(&exact, other, "exact"));
+    driver_advance(drv, &t, end * time[_i / 4], y);
+    driver_advance(exact, &u, end, want);
+    assert_close(y[0] / s, want[0], 1e-10);
+    assert_close(y[1] / (s * w), want[1], 1e-10);
+    assert_close(y[2] / (s * s * w * w), want[2], 1e-10);
+    tribo_driver_destroy(drv);
+    tribo_driver_destroy(exact);
+    tribo_system_destroy(sys);
+    tribo_system_destroy(other);
+}
+
+TEST_MAIN("event", {units_by_default, 12}, {errors_follow_the_tolerance, REFERENCES}, {work_for_the_chain, 1}, {nothing_is_missed, REFERENCES},
           {fast_and_small, 1}, {rest_on_a_belt, 1}, {rest_on_each_other, 2}, {nothing_left_over, 4}, {state_changed, 2},
           {reversal, 2}, {stop, 2}, {grazing_velocity, 2}, {grazing_force, 4}, {break_away_and_stick, 2}, {twins, 2},
           {redundant_contacts, 4}, {driven_from_both_sides, 2}, {beside_one_at_its_limit, 1}, {load_table, 3}, {limit_table, 3},
