@@ -5,7 +5,7 @@ set -eu
 CDPATH= cd -- "$(dirname -- "$0")/.."
 . tests/setup.sh
 
-setup gcc g++ gfortran libc6-dev make cmake pkg-config libgsl-dev libsuitesparse-dev zlib1g-dev check clang valgrind
+setup gcc g++ gfortran libc6-dev make cmake pkg-config libgsl-dev liblapack-dev libsuitesparse-dev zlib1g-dev check clang valgrind
 
 echo "== Building in build/release"
 cmake --preset release

@@ -6,6 +6,7 @@
 setup_has() {
     case $1 in
     libc6-dev) echo '#include <math.h>' | gcc -E - ;;
+    liblapack-dev) echo 'int main(void) { return 0; }' | gcc -x c -o /dev/null - -llapack -lblas ;;
     libgsl-dev) pkg-config --exists 'gsl >= 2.7' ;;
     libsuitesparse-dev) echo '#include <suitesparse/cholmod.h>' | gcc -E - ;;
     zlib1g-dev) echo '#include <zlib.h>' | gcc -E - ;;

@@ -36,7 +36,7 @@ struct gsl_step {
 
     /* implicit kinds */
     double *jacobian, *matrix; /* [dimension][dimension] the last one, if known; workspace of a factorization */
-    size_t *pivot;
+    int *pivot;
     int known;
     double regular;    /* all matrices of the step h with this Jacobian can be solved with; 0: of none known */
     double *end;       /* [dimension] slope where it ends, newton kinds */

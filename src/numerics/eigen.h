@@ -1,5 +1,4 @@
-/* Eigenvalues and eigenvectors of a general real matrix, by the implicit double-shift QR algorithm (Francis 1961; Golub and Van
- * Loan, Matrix Computations, 7.5). GSL's own calls the error handler where it does not converge. */
+/* Eigenvalues and eigenvectors of a general real matrix (LAPACK's dgeev). */
 #ifndef TRIBO_EIGEN_H
 #define TRIBO_EIGEN_H
 

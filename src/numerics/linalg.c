@@ -2,16 +2,12 @@
 #include "common/layout.h"
 #include "common/real.h"
 #include "common/simd.h"
+#include "lapack.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <gsl/gsl_blas.h>
-#include <gsl/gsl_eigen.h>
-#include <gsl/gsl_linalg.h>
-#include <gsl/gsl_permute_vector.h>
 
 #include "tribo/tribo.h"
 
@@ -195,7 +191,7 @@ void tribo_cholesky_free(struct cholesky *c)
 static void lay_out_cholesky(struct cholesky *c, struct layout *l, int diagonal)
 {
     c->root = tribo_layout_array(l, c->n, sizeof *c->root);
-    c->order = tribo_layout_array(l, c->n, sizeof *c->order);
+    c->pivot = tribo_layout_array(l, c->n, sizeof *c->pivot);
     c->factor = diagonal ? NULL : tribo_layout_array(l, c->n * c->n, sizeof *c->factor);
 }
 
@@ -223,11 +219,60 @@ int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from)
         return 0;
     }
     memcpy(c->root, from->root, from->n * sizeof *c->root);
-    memcpy(c->order, from->order, from->n * sizeof *c->order);
+    memcpy(c->pivot, from->pivot, from->n * sizeof *c->pivot);
     if (from->factor) {
         memcpy(c->factor, from->factor, from->n * from->n * sizeof *c->factor);
     }
     return 1;
+}
+
+static void exchange_rows(double *a, size_t cols, size_t i, size_t j)
+{
+    for (size_t k = 0; i != j && k < cols; k++) {
+        const double x = a[i * cols + k];
+        a[i * cols + k] = a[j * cols + k];
+        a[j * cols + k] = x;
+    }
+}
+
+/* Moves the largest pivot of rows k to n - 1 to row k, and returns the pivot. */
+static double exchange_pivot(struct cholesky *c, size_t k)
+{
+    const size_t n = c->n;
+    size_t best = k;
+    for (size_t i = k + 1; i < n; i++) {
+        best = c->factor[i * n + i] > c->factor[best * n + best] ? i : best;
+    }
+    exchange_rows(c->factor, n, k, best);
+    for (size_t i = k; best != k && i < n; i++) {
+        const double x = c->factor[i * n + k];
+        c->factor[i * n + k] = c->factor[i * n + best];
+        c->factor[i * n + best] = x;
+    }
+    c->pivot[k] = best;
+    return c->factor[k * n + k];
+}
+
+size_t tribo_cholesky_row(const struct cholesky *c, size_t k)
+{
+    size_t row = k;
+    for (size_t j = k + 1; j-- > 0;) {
+        row = row == j ? c->pivot[j] : row == c->pivot[j] ? j : row;
+    }
+    return row;
+}
+
+/* Column k of L below the diagonal, and the pivots of the rows there without column k; above the diagonal A stays. */
+static void eliminate(struct cholesky *c, size_t k)
+{
+    const size_t n = c->n;
+    double *row = c->factor + k * n;
+    row[k] = c->root[k];
+    for (size_t i = k + 1; i < n; i++) {
+        double *below = c->factor + i * n;
+        below[k] = (below[k] - tribo_dot(row, below, k)) / c->root[k];
+        below[i] -= below[k] * below[k];
+    }
 }
 
 /* As tribo_cholesky_create; spent as tribo_sparse_factor_create has it. */
@@ -246,25 +291,24 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
     if (!create_cholesky(c, a->rows, diagonal)) {
         return TRIBO_ERR_MEMORY;
     }
-    if (diagonal) {
-        for (size_t i = 0; i < c->n; i++) {
-            c->order[i] = i;
-        }
-    } else {
+    for (size_t i = 0; i < c->n; i++) {
+        c->pivot[i] = i;
+    }
+    if (!diagonal) {
         tribo_matrix_spread(a, c->factor);
-        gsl_matrix_view m = gsl_matrix_view_array(c->factor, c->n, c->n);
-        gsl_permutation p = {c->n, c->order};
-        gsl_linalg_pcholesky_decomp(&m.matrix, &p);
     }
     for (size_t i = 0; i < c->n; i++) {
-        const double d = diagonal ? tribo_matrix_get(a, i, i) : c->factor[i * c->n + i];
+        const double d = diagonal ? tribo_matrix_get(a, i, i) : exchange_pivot(c, i);
         if (!(d > 1.0 / DBL_MAX)) { /* looked at first, since neither roots nor quotients may raise exceptions */
-            *where = c->order[i];
+            *where = tribo_cholesky_row(c, i);
             *pivot = d;
             tribo_cholesky_free(c);
             return TRIBO_ERR_INDEFINITE;
         }
         c->root[i] = sqrt(d);
+        if (!diagonal) {
+            eliminate(c, i);
+        }
     }
     return TRIBO_OK;
 }
@@ -293,9 +337,15 @@ int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x)
     return 1;
 }
 
-static void divide_by_root(const struct cholesky *c, double *x, size_t cols)
+/* x [n][cols] = L^-1 x or L'^-1 x. */
+static void solve_triangle(const struct cholesky *c, int transposed, double *x, size_t cols)
 {
-    for (size_t i = 0; i < c->n; i++) {
+    const double one = 1.0;
+    const int n = (int)c->n, count = (int)cols;
+    if (c->factor && c->n && cols) {
+        dtrsm_("R", "U", transposed ? "T" : "N", "N", &count, &n, &one, c->factor, &n, x, &count, 1, 1, 1, 1);
+    }
+    for (size_t i = 0; !c->factor && i < c->n; i++) {
         for (size_t j = 0; j < cols; j++) {
             x[i * cols + j] /= c->root[i];
         }
@@ -308,16 +358,10 @@ void tribo_half_solve(const struct cholesky *c, double *x, size_t cols)
         tribo_sparse_factor_half_solve(c->sparse, x, cols);
         return;
     }
-    if (c->factor && cols) {
-        gsl_permutation p = {c->n, c->order};
-        gsl_matrix_view l = gsl_matrix_view_array(c->factor, c->n, c->n), b = gsl_matrix_view_array(x, c->n, cols);
-        for (size_t j = 0; j < cols; j++) {
-            gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
-            gsl_permute_vector(&p, &column.vector);
-        }
-        gsl_blas_dtrsm(CblasLeft, CblasLower, CblasNoTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
+    for (size_t k = 0; c->factor && k < c->n; k++) {
+        exchange_rows(x, cols, k, c->pivot[k]);
     }
-    divide_by_root(c, x, cols);
+    solve_triangle(c, 0, x, cols);
 }
 
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
@@ -326,76 +370,42 @@ void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols)
         tribo_sparse_factor_half_solve_back(c->sparse, x, cols);
         return;
     }
-    divide_by_root(c, x, cols);
-    if (c->factor && cols) {
-        gsl_permutation p = {c->n, c->order};
-        gsl_matrix_view l = gsl_matrix_view_array(c->factor, c->n, c->n), b = gsl_matrix_view_array(x, c->n, cols);
-        gsl_blas_dtrsm(CblasLeft, CblasLower, CblasTrans, CblasUnit, 1.0, &l.matrix, &b.matrix);
-        for (size_t j = 0; j < cols; j++) {
-            gsl_vector_view column = gsl_matrix_column(&b.matrix, j);
-            gsl_permute_vector_inverse(&p, &column.vector);
-        }
+    solve_triangle(c, 1, x, cols);
+    for (size_t k = c->n; c->factor && k-- > 0;) {
+        exchange_rows(x, cols, k, c->pivot[k]);
     }
 }
 
-static void exchange_rows(double *a, size_t cols, size_t i, size_t j)
+double tribo_lu_create(double *a, size_t n, int *pivot)
 {
-    for (size_t k = 0; i != j && k < cols; k++) {
-        const double x = a[i * cols + k];
-        a[i * cols + k] = a[j * cols + k];
-        a[j * cols + k] = x;
-    }
-}
-
-/* Row i -= factor times row k, columns first to cols - 1. */
-static void subtract_row(double *a, size_t cols, size_t first, size_t i, double factor, size_t k)
-{
-    double *restrict to = a + i * cols;
-    const double *restrict from = a + k * cols;
-    for (size_t j = first; factor != 0.0 && j < cols; j++) {
-        to[j] -= factor * from[j];
-    }
-}
-
-double tribo_lu_create(double *a, size_t n, size_t *pivot)
-{
+    const int rows = (int)n;
     double least = HUGE_VAL;
+    int info = 0;
+    if (n == 0) {
+        return HUGE_VAL;
+    }
+    if (!tribo_lapack_takes(n) || !tribo_dense_finite(a, n * n)) {
+        return 0.0;
+    }
+    dgetrf_(&rows, &rows, a, &rows, pivot, &info);
     for (size_t k = 0; k < n; k++) {
-        pivot[k] = k;
-        for (size_t i = k + 1; i < n; i++) {
-            pivot[k] = fabs(a[i * n + k]) > fabs(a[pivot[k] * n + k]) ? i : pivot[k];
-        }
-        exchange_rows(a, n, k, pivot[k]);
         const double size = fabs(a[k * n + k]);
         least = size < least ? size : least;
-        if (!(size > 0.0)) {
-            return 0.0;
-        }
-        for (size_t i = k + 1; i < n; i++) {
-            a[i * n + k] /= a[k * n + k];
-            subtract_row(a, n, k + 1, i, a[i * n + k], k);
-        }
     }
-    return least;
+    return info == 0 && tribo_dense_finite(a, n * n) ? least : 0.0;
 }
 
-void tribo_lu_solve(const double *lu, size_t n, const size_t *pivot, double *x, size_t cols)
+void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, size_t cols)
 {
-    for (size_t k = 0; k < n; k++) {
-        exchange_rows(x, cols, k, pivot[k]);
+    const int rows = (int)n, count = (int)cols;
+    const double one = 1.0;
+    if (n == 0 || cols == 0) {
+        return;
     }
-    for (size_t i = 0; i < n; i++) {
-        for (size_t k = 0; k < i; k++) {
-            subtract_row(x, cols, 0, i, lu[i * n + k], k);
-        }
-    }
-    for (size_t i = n; i-- > 0;) {
-        for (size_t k = i + 1; k < n; k++) {
-            subtract_row(x, cols, 0, i, lu[i * n + k], k);
-        }
-        for (size_t j = 0; j < cols; j++) {
-            x[i * cols + j] /= lu[i * n + i];
-        }
+    dtrsm_("R", "U", "N", "N", &count, &rows, &one, lu, &rows, x, &count, 1, 1, 1, 1);
+    dtrsm_("R", "L", "N", "U", &count, &rows, &one, lu, &rows, x, &count, 1, 1, 1, 1);
+    for (size_t k = n; k-- > 0;) {
+        exchange_rows(x, cols, k, (size_t)pivot[k] - 1);
     }
 }
 
@@ -419,25 +429,36 @@ int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors)
 {
     if (n == 2) {
         rotate_two(a, values, vectors);
-        return 1;
+        return TRIBO_OK;
     }
     if (n == 1) {
         values[0] = a[0];
         vectors[0] = 1.0;
     }
     if (n <= 1) {
-        return 1;
+        return TRIBO_OK;
     }
-    /* gsl_eigen_symmv_alloc would abort if there were no memory */
-    double *memory = malloc(4 * n * sizeof *memory);
-    if (!memory) {
-        return 0;
+    enum { BLOCK = 32 };
+    const int rows = (int)n, size = (2 + BLOCK) * rows;
+    double *work = tribo_lapack_takes(n) ? malloc((size_t)size * sizeof *work) : NULL;
+    int info;
+    if (!work) {
+        return TRIBO_ERR_MEMORY;
     }
-    gsl_eigen_symmv_workspace work = {n, memory, memory + n, memory + 2 * n, memory + 3 * n};
-    gsl_matrix_view m = gsl_matrix_view_array(a, n, n), v = gsl_matrix_view_array(vectors, n, n);
-    gsl_vector_view e = gsl_vector_view_array(values, n);
-    gsl_eigen_symmv(&m.matrix, &e.vector, &v.matrix, &work);
-    gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_ASC);
-    free(memory);
-    return 1;
+    /* Of a matrix whose entries decrease along the diagonal, QL from the first column on knows eigenvectors entry by entry, and not
+     * only to rounding of the largest: residuals in Krylov spaces are found from the smallest ones. Divide and conquer does not. */
+    dsyev_("V", "L", &rows, a, &rows, values, work, &size, &info, 1, 1);
+    free(work);
+    for (size_t k = 0; k < n; k++) {
+        /* Every LAPACK gives the same sign. */
+        size_t most = 0;
+        for (size_t i = 1; i < n; i++) {
+            most = fabs(a[k * n + i]) > fabs(a[k * n + most]) ? i : most;
+        }
+        const double sign = a[k * n + most] < 0.0 ? -1.0 : 1.0;
+        for (size_t i = 0; i < n; i++) {
+            vectors[i * n + k] = sign * a[k * n + i];
+        }
+    }
+    return info ? TRIBO_ERR_NO_CONVERGENCE : TRIBO_OK;
 }

@@ -1,4 +1,4 @@
-/* Dense matrices, in factors that never make GSL's error handler speak. */
+/* Dense matrices and their factors. */
 #ifndef TRIBO_LINALG_H
 #define TRIBO_LINALG_H
 
@@ -44,13 +44,13 @@ void tribo_even_out(size_t n, double *a);
 #define SPARSE_LEAST 200
 #define DENSE_MOST 3000
 
-/* A^-1 = S S'. Dense: S = P' L^-T D^-1/2 from P A P' = L D L', with L in the lower triangle of factor. A diagonal A has only
- * root, a sparse one neither. */
+/* A^-1 = S S'. Dense: S = P' L'^-1 from P A P' = L L', with L in the lower triangle of factor. A diagonal A has only root, a
+ * sparse one neither. */
 struct cholesky {
     size_t n; /* 0: the identity */
     double *factor;
-    size_t *order;
-    double *root; /* [n] D^1/2; has the memory of all three */
+    size_t *pivot; /* [n] P exchanges row k and row pivot[k] >= k, for k = 0, 1, ... */
+    double *root;  /* [n] the diagonal of L; has the memory of all three */
     struct sparse_factor *sparse;
 };
 
@@ -61,6 +61,9 @@ int tribo_cholesky_consume(struct cholesky *c, struct matrix *a, size_t *where, 
 int tribo_cholesky_copy(struct cholesky *c, const struct cholesky *from);                       /* 1, or 0 if out of memory */
 void tribo_cholesky_free(struct cholesky *c);
 
+/* The row of A that the k-th pivot belongs to, of a factor with root. */
+size_t tribo_cholesky_row(const struct cholesky *c, size_t k);
+
 /* count vectors x [count][n] = A^-1 x. 1, or 0 if out of memory, which does not happen to a single one. */
 int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x);
 
@@ -68,15 +71,15 @@ int tribo_cholesky_solve(const struct cholesky *c, size_t count, double *x);
 void tribo_half_solve(const struct cholesky *c, double *x, size_t cols);
 void tribo_half_solve_back(const struct cholesky *c, double *x, size_t cols);
 
-/* L U of a [n][n] with its rows exchanged (row k with row pivot[k] >= k, one after the other), in place. Returns the smallest
- * pivot's size: 0 if a is singular, or holds a NaN, and then there are no factors. */
-double tribo_lu_create(double *a, size_t n, size_t *pivot);
+/* Factors of a [n][n] with its columns exchanged, in place; pivot [n]. Returns the smallest pivot's size: 0 if a is singular, or
+ * not finite, and then there are no factors. */
+double tribo_lu_create(double *a, size_t n, int *pivot);
 
 /* x [n][cols] = A^-1 x. */
-void tribo_lu_solve(const double *lu, size_t n, const size_t *pivot, double *x, size_t cols);
+void tribo_lu_solve(const double *lu, size_t n, const int *pivot, double *x, size_t cols);
 
-/* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. 0 if out of
- * memory. */
+/* Eigenvalues (ascending) and orthonormal eigenvectors (columns) of a symmetric a [n][n], which is overwritten. Returns TRIBO_OK,
+ * TRIBO_ERR_MEMORY, TRIBO_ERR_NO_CONVERGENCE. */
 int tribo_symmetric_eigen(double *a, size_t n, double *values, double *vectors);
 
 #endif

@@ -11,14 +11,14 @@ CDPATH= cd -- "$(dirname -- "$0")/../.."
 case " $* " in *" --counts "*)
     # Instructions instead of times, which repeat: see counts.sh. `--counts --refresh` writes the table anew.
     case " $* " in *" --refresh "*) refresh=--refresh ;; *) refresh= ;; esac
-    setup gcc libc6-dev gfortran make cmake pkg-config libgsl-dev check valgrind
+    setup gcc libc6-dev gfortran make cmake pkg-config libgsl-dev liblapack-dev check valgrind
     cmake -S . -B build/counts -DCMAKE_BUILD_TYPE=Release -DTRIBO_FORTRAN=ON -DTRIBO_BUILD_EXAMPLES=OFF
     cmake --build build/counts --parallel "$(getconf _NPROCESSORS_ONLN)" --target bench_counts
     exec sh tests/bench/counts.sh build/counts/tests/bench/bench_counts tests/bench/counts.txt $refresh
     ;;
 esac
 
-setup gcc libc6-dev make cmake pkg-config libgsl-dev libsuitesparse-dev zlib1g-dev check gnuplot-nox
+setup gcc libc6-dev make cmake pkg-config libgsl-dev liblapack-dev libsuitesparse-dev zlib1g-dev check gnuplot-nox
 
 build=build/bench results=$PWD/build/bench/results
 echo "== Building in $build"

@@ -141,7 +141,7 @@ static int keep_exponents(struct modal_build *b, const double *s, const double *
 }
 
 /* Inverse of the matrix that has the vectors x in columns. Returns a status. */
-static int invert(const struct modal_build *b, const double *x, double *lu, size_t *pivot, double *inverse)
+static int invert(const struct modal_build *b, const double *x, double *lu, int *pivot, double *inverse)
 {
     const size_t size = 2 * b->h->modes;
     for (size_t i = 0; i < size; i++) {
@@ -164,7 +164,7 @@ static int exponents_coupled(struct modal_build *b)
     double *a = tribo_modal_scratch(b, size * size), *s = tribo_modal_scratch(b, m), *re = tribo_modal_scratch(b, size);
     double *im = tribo_modal_scratch(b, size), *x = tribo_modal_scratch(b, size * size);
     double *inverse = tribo_modal_scratch(b, size * size);
-    size_t *pivot = tribo_modal_scratch_indices(b, size);
+    int *pivot = (int *)tribo_modal_scratch_indices(b, size);
     if (!a || !s || !re || !im || !x || !inverse || !pivot) {
         return TRIBO_ERR_MEMORY;
     }

@@ -211,7 +211,7 @@ static void respond_alone(struct modal_build *b, size_t w)
 }
 
 /* Response of modes that damping couples: real and imaginary parts are the unknowns. a [2 modes][2 modes], x [2 modes]. */
-static int respond_together(struct modal_build *b, size_t w, double *a, double *x, size_t *pivot)
+static int respond_together(struct modal_build *b, size_t w, double *a, double *x, int *pivot)
 {
     struct modal *h = b->h;
     const size_t m = h->modes, size = 2 * m;
@@ -245,7 +245,7 @@ int tribo_modal_response(struct modal_build *b)
     struct modal *h = b->h;
     const size_t m = h->modes, count = h->harmonics, size = h->coupling ? 2 * m : 0;
     double *kept = tribo_modal_keep(b, 2 * count * m), *a = tribo_modal_scratch(b, size * size + size);
-    size_t *pivot = tribo_modal_scratch_indices(b, size);
+    int *pivot = (int *)tribo_modal_scratch_indices(b, size);
     h->resonant = tribo_modal_keep_bytes(b, count * m);
     int done = kept && a && pivot && h->resonant;
     double *x = done ? a + size * size : NULL;

@@ -73,8 +73,9 @@ static int find(struct energy_norm *e, const tribo_system *sys, double *k)
     if (!tribo_dense_finite(e->psi, n * n)) {
         return TRIBO_ERR_NOT_FINITE;
     }
-    if (!tribo_symmetric_eigen(e->psi, n, e->natural, e->phi)) {
-        return TRIBO_ERR_MEMORY;
+    const int status = tribo_symmetric_eigen(e->psi, n, e->natural, e->phi);
+    if (status) {
+        return status;
     }
     tribo_half_solve_back(&sys->factor, e->phi, n);
     energy_norm_weigh(e, sys);

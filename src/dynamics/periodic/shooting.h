@@ -12,7 +12,7 @@ struct shooting {
     double *space;        /* of Krylov spaces, and */
     double *free;         /* [2 n] the inverse of I - derivative that the free structure has: [n/2] matrices of two rows */
     double *step, *guess; /* [n] */
-    size_t *pivot;        /* [n] */
+    int *pivot;           /* [n] */
     double ratio;         /* what is left along the step after it, beside what was before */
     double first, rate;   /* that of the step from best; that of the last one, if it was good */
     double stride;        /* spans followed at once; 0: steps are Newton's */

@@ -184,7 +184,7 @@ static int project(struct lanczos *l)
             l->work[i * m + j] = -l->h[i * l->room + j];
         }
     }
-    if (!tribo_symmetric_eigen(l->work, m, l->theta, l->s)) {
+    if (tribo_symmetric_eigen(l->work, m, l->theta, l->s)) {
         return 0;
     }
     tribo_transpose(m, m, l->s, l->work);

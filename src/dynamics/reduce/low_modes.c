@@ -468,8 +468,8 @@ static int largest_part(size_t n, double *a, double *b, double *part)
         tribo_half_solve(&c, a, n);
         tribo_transpose(n, n, a, b);
         tribo_half_solve(&c, b, n);
-        status = tribo_symmetric_eigen(b, n, value, a) ? TRIBO_OK : TRIBO_ERR_MEMORY;
-        *part = clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
+        status = tribo_symmetric_eigen(b, n, value, a);
+        *part = status ? 1.0 : clamp(n ? value[n - 1] : 0.0, 0.0, 1.0);
     }
     tribo_cholesky_free(&c);
     tribo_matrix_free(&whole);

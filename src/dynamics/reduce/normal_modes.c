@@ -54,8 +54,9 @@ static int find_all(struct spectrum *s, const struct cholesky *mass)
     if (!tribo_dense_finite(s->block, n * n)) {
         return TRIBO_ERR_NOT_FINITE;
     }
-    if (!tribo_symmetric_eigen(s->block, n, s->value, s->turn)) {
-        return TRIBO_ERR_MEMORY;
+    const int status = tribo_symmetric_eigen(s->block, n, s->value, s->turn);
+    if (status) {
+        return status;
     }
     tribo_half_solve_back(mass, s->turn, n);
     tribo_transpose(n, n, s->turn, s->y);
@@ -159,8 +160,9 @@ static int find_low(struct spectrum *s, size_t low)
 {
     const size_t n = s->n;
     modes_share(s, low, 0, low);
-    if (!tribo_symmetric_eigen(s->block, low, s->value, s->turn)) {
-        return TRIBO_ERR_MEMORY;
+    const int status = tribo_symmetric_eigen(s->block, low, s->value, s->turn);
+    if (status) {
+        return status;
     }
     tribo_transpose(low, low, s->turn, s->block);
     memset(s->ky, 0, low * n * sizeof *s->ky);

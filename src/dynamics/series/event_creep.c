@@ -77,7 +77,7 @@ static int reserve(struct event *e, size_t slides)
     c->rest = c->matrix + unknowns * unknowns;
     c->angle = c->rest + unknowns;
     c->holds = (unsigned char *)c->slip + e->sys->ncontact;
-    c->pivot = c->slides + contacts;
+    c->pivot = (int *)(c->slides + contacts);
     c->contacts = contacts;
     c->room = slides;
     c->terms = terms;

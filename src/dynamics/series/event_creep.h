@@ -31,7 +31,8 @@ struct creep {
     unsigned char *holds;                               /* [ncontact] or held, */
     size_t revision;                                    /* and this system; */
     int known;
-    size_t *slides, *pivot; /* [contacts] those that slide; [room NODES] */
+    size_t *slides; /* [contacts] those that slide */
+    int *pivot;     /* [room NODES] */
     double *matrix, *rest;  /* [room NODES][room NODES], [room NODES] */
 };
 

@@ -63,7 +63,7 @@ static int reserve_begins(struct planar_series *s, const tribo_system *sys, size
     if (!s->begin || !s->s) {
         return 0;
     }
-    s->pivot = s->begin + begins;
+    s->pivot = (int *)(s->begin + begins);
     s->lu = s->s + begins * begins;
     s->tau = s->lu + begins * begins;
     s->answer = s->tau + begins;

@@ -29,7 +29,8 @@ struct planar_series {
     double *work;
     double *square;            /* [2 order + 1][room] coefficients */
     size_t begins, begin_room; /* contacts that begin to slide, */
-    size_t *begin, *pivot;     /* [begins] which; and room for */
+    size_t *begin;             /* [begins] which; and room for */
+    int *pivot;                /* [begins] */
     double *s, *lu, *tau;      /* [begins][begins] S, S + D, [begins] */
     double *answer, *held;     /* [begins][ndof], [ncontact] what t-parts do to q'', and to the forces of contacts that hold */
 };

@@ -2,9 +2,8 @@
 
 #include <stdlib.h>
 
-#include <gsl/gsl_linalg.h>
-
 #include "numerics/band.h"
+#include "numerics/lapack.h"
 
 int tribo_step_matrix_indefinite(const tribo_system *sys, double h, size_t where)
 {
@@ -113,7 +112,7 @@ static int factorize_band(struct step_matrix *m, const struct matrix *a, size_t 
 static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, size_t *where)
 {
     const size_t n = m->n, width = 2 * m->below + m->above + 1, middle = m->below + m->above;
-    m->band = calloc(n * width, sizeof *m->band);
+    m->band = n < INT_MAX && width < INT_MAX ? calloc(n * width, sizeof *m->band) : NULL;
     m->pivot = malloc(n * sizeof *m->pivot);
     if (!m->band || !m->pivot) {
         return TRIBO_ERR_MEMORY;
@@ -123,15 +122,11 @@ static int factorize_lopsided(struct step_matrix *m, const struct matrix *a, siz
             m->band[a->col[k] * width + middle + i - a->col[k]] = a->val[k];
         }
     }
-    gsl_matrix_view view = gsl_matrix_view_array(m->band, n, width);
-    gsl_vector_uint pivot = {n, 1, m->pivot, NULL, 0};
-    gsl_linalg_LU_band_decomp(n, m->below, m->above, &view.matrix, &pivot);
-    for (*where = 0; *where < n; ++*where) {
-        if (m->band[*where * width + middle] == 0.0) {
-            return TRIBO_ERR_INDEFINITE;
-        }
-    }
-    return TRIBO_OK;
+    const int rows = (int)n, below = (int)m->below, above = (int)m->above, stride = (int)width;
+    int info;
+    dgbtrf_(&rows, &rows, &below, &above, m->band, &stride, m->pivot, &info);
+    *where = info > 0 ? (size_t)info - 1 : n;
+    return info > 0 ? TRIBO_ERR_INDEFINITE : TRIBO_OK;
 }
 
 int tribo_step_matrix_factorize(struct step_matrix *m, const tribo_system *sys, double h)
@@ -162,15 +157,14 @@ int tribo_step_matrix_solve(const struct step_matrix *m, size_t count, double *x
     if (m->sparse.n) {
         return tribo_cholesky_solve(&m->sparse, count, x);
     }
+    if (m->pivot) {
+        const int n = (int)m->n, below = (int)m->below, above = (int)m->above, all = (int)count, stride = 2 * below + above + 1;
+        int info;
+        dgbtrs_("N", &n, &below, &above, &all, m->band, &stride, m->pivot, x, &n, &info, 1);
+        return 1;
+    }
     for (size_t k = 0; k < count; k++) {
-        if (m->pivot) {
-            gsl_matrix_view a = gsl_matrix_view_array(m->band, m->n, 2 * m->below + m->above + 1);
-            gsl_vector_view b = gsl_vector_view_array((x + k * m->n), m->n);
-            const gsl_vector_uint pivot = {m->n, 1, m->pivot, NULL, 0};
-            gsl_linalg_LU_band_svx(m->below, m->above, &a.matrix, &pivot, &b.vector);
-        } else {
-            tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
-        }
+        tribo_band_solve(m->n, m->below, m->band, x + k * m->n);
     }
     return 1;
 }

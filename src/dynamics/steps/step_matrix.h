@@ -14,11 +14,11 @@ struct step_part {
 struct step_part tribo_step_stiffness(const tribo_system *sys);
 struct step_part tribo_step_damping(const tribo_system *sys);
 
-/* A band, as in band.h, or a sparse factor; or a band in GSL's format, if damping is not symmetric. */
+/* A band, as in band.h, or a sparse factor; or a band in LAPACK's format, if damping is not symmetric. */
 struct step_matrix {
     size_t n, below, above;
     double *band;
-    unsigned int *pivot; /* NULL: the band is symmetric */
+    int *pivot; /* NULL: the band is symmetric */
     struct cholesky sparse;
 };
 

@@ -133,9 +133,9 @@ static int massless_factorize(const struct model *m, struct statics *s, const st
         return no_hold(m, s->dof[where], pivot);
     }
     for (size_t k = 0; !status && s->factor.root && k < s->n; k++) {
-        const size_t at = s->factor.order ? s->factor.order[k] : k;
+        const size_t at = tribo_cholesky_row(&s->factor, k);
         const double found = s->factor.root[k] * s->factor.root[k];
-        if (s->factor.order && found <= ROUNDING * tribo_matrix_get(kww, at, at)) {
+        if (found <= ROUNDING * tribo_matrix_get(kww, at, at)) {
             return no_hold(m, s->dof[at], found);
         }
     }

@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <gsl/gsl_blas.h>
-
 int tribo_model_fail(const struct model *m, int status, const char *format, ...)
 {
     if (m->message && m->size) {
@@ -87,14 +85,13 @@ static double *own_responses(const tribo_system *sys)
     return own;
 }
 
-int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z, size_t n)
+int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n)
 {
     const size_t c = m->ncontact;
     double *r = calloc(c * c + 1, sizeof *r), *own = m->nmode ? NULL : own_responses(sys);
     int status = r && (own || m->nmode) ? TRIBO_OK : tribo_model_no_memory(m);
-    if (!status && c) {
-        gsl_matrix_view rv = gsl_matrix_view_array(r, c, c), zv = gsl_matrix_view_array(z, n, c);
-        gsl_blas_dgemm(CblasTrans, CblasNoTrans, 1.0, &zv.matrix, &zv.matrix, 0.0, &rv.matrix);
+    if (!status) {
+        tribo_multiply_transposed_add(n, c, c, z, z, r);
     }
     status = status ? status : tribo_model_give_operator(m, sys, r, own);
     free(r);

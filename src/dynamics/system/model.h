@@ -36,7 +36,7 @@ int tribo_model_build_whole(struct model *m, tribo_system **sys);
 int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);
 
 /* Gives the context R = Z'Z, Z [n][ncontact], which is as symmetric and semidefinite as rounding lets it be. */
-int tribo_model_set_operator(const struct model *m, tribo_system *sys, double *z, size_t n);
+int tribo_model_set_operator(const struct model *m, tribo_system *sys, const double *z, size_t n);
 
 /* The same for R itself, with what tribo_hidden asks for, or NULL where no body is hidden. */
 int tribo_model_give_operator(const struct model *m, tribo_system *sys, const double *r, const double *own);

@@ -355,7 +355,7 @@ TEST(pairs)
     const int kind = _i % KINDS;
     pair_of_kind(kind, &g, a);
     memcpy(spent, a, sizeof a);
-    require(tribo_symmetric_eigen(spent, 2, value, x), "out of memory");
+    assert_ok(tribo_symmetric_eigen(spent, 2, value, x));
     const long double half = 0.5L * ((long double)a[0] - a[3]), middle = 0.5L * ((long double)a[0] + a[3]);
     const double high = (double)(middle + hypotl(half, a[1]));
     const double low = high > 0.0 ? (double)(((long double)a[0] * a[3] - (long double)a[1] * a[1]) / high) : 0.0;
@@ -376,7 +376,7 @@ TEST(pairs)
 TEST(one_alone)
 {
     double a = -3.5, value, x;
-    require(tribo_symmetric_eigen(&a, 1, &value, &x), "out of memory");
+    assert_ok(tribo_symmetric_eigen(&a, 1, &value, &x));
     assert_exact(value, -3.5);
     assert_exact(x, 1.0);
 }
@@ -450,12 +450,54 @@ TEST(eigenvalues_of_what_is_none)
 
 /* ---------------------------------------------------------------------------------------------------- linear equations */
 
+/* A = L L' with rows of any size: its factor solves; and less a part of one row's pivot, that row is the one that is not definite. */
+TEST(definite_factor)
+{
+    enum { N = 30 };
+    struct random g = random_of(_i);
+    double l[N][N] = {{0}}, a[N * N], x[N], rest[N], pivot;
+    size_t where;
+    struct cholesky c;
+    for (size_t i = 0; i < N; i++) {
+        for (size_t j = 0; j <= i; j++) {
+            l[i][j] = i == j ? 1.0 : uniform(&g, -0.5, 0.5);
+        }
+    }
+    for (size_t i = 0; i < N * N; i++) {
+        a[i] = 0.0;
+        for (size_t k = 0; k < N; k++) {
+            a[i] += l[i / N][k] * l[i % N][k];
+        }
+    }
+    struct matrix m = dense(N, N, a);
+    for (size_t i = 0; i < N; i++) {
+        x[i] = rest[i] = uniform(&g, -1.0, 1.0);
+    }
+    assert_ok(tribo_cholesky_create(&c, &m, &where, &pivot));
+    ck_assert(tribo_cholesky_solve(&c, 1, x));
+    for (size_t i = 0; i < N; i++) {
+        for (size_t k = 0; k < N; k++) {
+            rest[i] -= a[i * N + k] * x[k];
+        }
+        assert_close(rest[i], 0.0, 1e-11);
+    }
+    tribo_cholesky_free(&c);
+    tribo_matrix_free(&m);
+    const size_t bad = below(&g, N);
+    a[bad * N + bad] = -1e-3;
+    m = dense(N, N, a);
+    assert_status(tribo_cholesky_create(&c, &m, &where, &pivot), TRIBO_ERR_INDEFINITE);
+    ck_assert_uint_eq(where, bad);
+    require(pivot < 0.0, "pivot %g", pivot);
+    tribo_matrix_free(&m);
+}
+
 TEST(equations)
 {
     enum { N = 12, COLS = 3 };
     struct random g = random_of(_i);
     double a[N * N], lu[N * N], want[N * COLS], x[N * COLS] = {0};
-    size_t pivot[N];
+    int pivot[N];
     for (size_t k = 0; k < N * N; k++) {
         a[k] = lu[k] = uniform(&g, -1.0, 1.0);
     }
@@ -532,4 +574,4 @@ TEST(krylov)
 TEST_MAIN("linalg", {light_between, 31}, {light_follows, 1}, {piles, 20}, {clusters, 20}, {graded_rows, 45},
           {forces_and_displacements, 20}, {nearly_dependent, 17}, {touches_nothing, 1}, {graded_stiffness, 20}, {pairs, 400},
           {one_alone, 1}, {negative_stiffness, 1}, {overflowing_stiffness, 1}, {random_eigenvalues, 120}, {circles, 20},
-          {eigenvalues_of_what_is_none, 1}, {equations, 10}, {krylov, 20})
+          {eigenvalues_of_what_is_none, 1}, {equations, 10}, {definite_factor, 50}, {krylov, 20})

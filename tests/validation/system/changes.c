@@ -131,9 +131,10 @@ static int possible(const char *method, size_t change)
     return strcmp(method, "exact") || !(falls || table);
 }
 
+/* Where rkf45 rejects a step depends on the last bits: at 1e-8 two runs are now and then 1e-6 apart. */
 static tribo_driver *start(const char *method, tribo_system *sys)
 {
-    tribo_driver *drv = driver_create(sys, method, 0.02, 1e-8);
+    tribo_driver *drv = driver_create(sys, method, 0.02, strcmp(method, "rkf45") ? 1e-8 : 1e-9);
     ck_assert_int_eq(tribo_method_count(), METHODS);
     return drv;
 }
