@@ -24,12 +24,15 @@ TRIBO_API TRIBO_PURE size_t tribo_fortran_ndof(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_ncontact(const struct tribo_held *held);
 TRIBO_API TRIBO_PURE size_t tribo_fortran_given(const struct tribo_held *held);
 
-/* tribo_system_linear_sparse; damping may be NULL. */
+/* A system of all degrees of freedom, or, with nmode > 0, of the lowest modes; damping may be NULL. message [size]: the model's. */
+TRIBO_API int tribo_fortran_dense(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
+                                  const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
+
 TRIBO_API int tribo_fortran_linear(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *damping,
                                    const struct tribo_rows *stiffness, const struct tribo_rows *direction, size_t nmode,
                                    char *message, size_t size);
 
-/* tribo_system_reduced. */
+/* The same of the lowest modes and static responses. */
 TRIBO_API int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows *mass, const struct tribo_rows *stiffness,
                                     const struct tribo_rows *direction, size_t nmode, int static_contacts, char *message,
                                     size_t size);

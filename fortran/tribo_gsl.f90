@@ -338,7 +338,7 @@ contains
     end if
     if (w%status == TRIBO_OK) then
       message = c_null_char
-      w%status = c_system_linear(sys, int(n, c_size_t), size(direction, 1, c_size_t), transpose(mass), given_damping, &
+      w%status = c_fortran_dense(sys, int(n, c_size_t), size(direction, 1, c_size_t), transpose(mass), given_damping, &
         transpose(stiffness), transpose(direction), modes(nmode), message, size(message, kind=c_size_t))
       call note(w, message)
     end if

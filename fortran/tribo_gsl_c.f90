@@ -52,6 +52,153 @@ module tribo_gsl_c
   public
 
   interface
+    function c_model_create(model, ndof, ncontact) result(answer) bind(c,name='tribo_model_create')
+      import
+      type(c_ptr), intent(inout) :: model
+      integer(c_size_t), value :: ndof
+      integer(c_size_t), value :: ncontact
+      integer(c_int) :: answer
+    end function c_model_create
+
+    subroutine c_model_destroy(model) bind(c,name='tribo_model_destroy')
+      import
+      type(c_ptr), value :: model
+    end subroutine c_model_destroy
+
+    function c_model_message(model) result(answer) bind(c,name='tribo_model_message')
+      import
+      type(c_ptr), value :: model
+      type(c_ptr) :: answer
+    end function c_model_message
+
+    function c_model_set_mass(model, m) result(answer) bind(c,name='tribo_model_set_mass')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: m(*)
+      integer(c_int) :: answer
+    end function c_model_set_mass
+
+    function c_model_set_mass_diagonal(model, m) result(answer) bind(c,name='tribo_model_set_mass_diagonal')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: m(*)
+      integer(c_int) :: answer
+    end function c_model_set_mass_diagonal
+
+    function c_model_set_mass_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_mass_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_mass_csr
+
+    function c_model_set_damping(model, c) result(answer) bind(c,name='tribo_model_set_damping')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_int) :: answer
+    end function c_model_set_damping
+
+    function c_model_set_damping_diagonal(model, c) result(answer) bind(c,name='tribo_model_set_damping_diagonal')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_int) :: answer
+    end function c_model_set_damping_diagonal
+
+    function c_model_set_damping_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_damping_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_damping_csr
+
+    function c_model_set_stiffness(model, k) result(answer) bind(c,name='tribo_model_set_stiffness')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: k(*)
+      integer(c_int) :: answer
+    end function c_model_set_stiffness
+
+    function c_model_set_stiffness_diagonal(model, k) result(answer) bind(c,name='tribo_model_set_stiffness_diagonal')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: k(*)
+      integer(c_int) :: answer
+    end function c_model_set_stiffness_diagonal
+
+    function c_model_set_stiffness_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_stiffness_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_stiffness_csr
+
+    function c_model_set_direction(model, j) result(answer) bind(c,name='tribo_model_set_direction')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: j(*)
+      integer(c_int) :: answer
+    end function c_model_set_direction
+
+    function c_model_set_direction_csr(model, rowptr, col, val) result(answer) bind(c,name='tribo_model_set_direction_csr')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t), intent(in), optional :: rowptr(*)
+      integer(c_size_t), intent(in), optional :: col(*)
+      real(c_double), intent(in), optional :: val(*)
+      integer(c_int) :: answer
+    end function c_model_set_direction_csr
+
+    function c_model_set_compliance(model, c) result(answer) bind(c,name='tribo_model_set_compliance')
+      import
+      type(c_ptr), value :: model
+      real(c_double), intent(in), optional :: c(*)
+      integer(c_int) :: answer
+    end function c_model_set_compliance
+
+    function c_model_ndof(model) result(answer) bind(c,name='tribo_model_ndof')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t) :: answer
+    end function c_model_ndof
+
+    function c_model_ncontact(model) result(answer) bind(c,name='tribo_model_ncontact')
+      import
+      type(c_ptr), value :: model
+      integer(c_size_t) :: answer
+    end function c_model_ncontact
+
+    function c_model_refuse(model, status, message) result(answer) bind(c,name='tribo_model_refuse')
+      import
+      type(c_ptr), value :: model
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: message(*)
+      integer(c_int) :: answer
+    end function c_model_refuse
+
+    function c_system_create(sys, model) result(answer) bind(c,name='tribo_system_create')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: model
+      integer(c_int) :: answer
+    end function c_system_create
+
+    function c_system_reduce(sys, model, nmode, static_contacts) result(answer) bind(c,name='tribo_system_reduce')
+      import
+      type(c_ptr), intent(inout) :: sys
+      type(c_ptr), value :: model
+      integer(c_size_t), value :: nmode
+      integer(c_int), value :: static_contacts
+      integer(c_int) :: answer
+    end function c_system_reduce
+
     function c_system_oscillator(sys, limit, alpha, omega) result(answer) bind(c,name='tribo_system_oscillator')
       import
       type(c_ptr), intent(inout) :: sys
@@ -81,22 +228,6 @@ module tribo_gsl_c
       real(c_double), value :: omega
       integer(c_int) :: answer
     end function c_system_belt
-
-    function c_system_linear(sys, ndof, ncontact, mass, damping, stiffness, direction, nmode, message, size) &
-      result(answer) bind(c,name='tribo_system_linear')
-      import
-      type(c_ptr), intent(inout) :: sys
-      integer(c_size_t), value :: ndof
-      integer(c_size_t), value :: ncontact
-      real(c_double), intent(in), optional :: mass(*)
-      real(c_double), intent(in), optional :: damping(*)
-      real(c_double), intent(in), optional :: stiffness(*)
-      real(c_double), intent(in), optional :: direction(*)
-      integer(c_size_t), value :: nmode
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
-      integer(c_int) :: answer
-    end function c_system_linear
 
     subroutine c_system_destroy(sys) bind(c,name='tribo_system_destroy')
       import
@@ -394,33 +525,33 @@ module tribo_gsl_c
       type(c_ptr), value :: drv
     end subroutine c_driver_destroy
 
-    function c_system_linear_sparse(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
-      bind(c,name='tribo_system_linear_sparse')
+    function c_gsl_model_set_mass(model, m) result(answer) bind(c,name='tribo_gsl_model_set_mass')
       import
-      type(c_ptr), intent(inout) :: sys
-      type(c_ptr), value :: mass
-      type(c_ptr), value :: damping
-      type(c_ptr), value :: stiffness
-      type(c_ptr), value :: direction
-      integer(c_size_t), value :: nmode
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
+      type(c_ptr), value :: model
+      type(c_ptr), value :: m
       integer(c_int) :: answer
-    end function c_system_linear_sparse
+    end function c_gsl_model_set_mass
 
-    function c_system_reduced(sys, mass, stiffness, direction, nmode, static_contacts, message, size) result(answer) &
-      bind(c,name='tribo_system_reduced')
+    function c_gsl_model_set_damping(model, c) result(answer) bind(c,name='tribo_gsl_model_set_damping')
       import
-      type(c_ptr), intent(inout) :: sys
-      type(c_ptr), value :: mass
-      type(c_ptr), value :: stiffness
-      type(c_ptr), value :: direction
-      integer(c_size_t), value :: nmode
-      integer(c_int), value :: static_contacts
-      character(kind=c_char), intent(inout), optional :: message(*)
-      integer(c_size_t), value :: size
+      type(c_ptr), value :: model
+      type(c_ptr), value :: c
       integer(c_int) :: answer
-    end function c_system_reduced
+    end function c_gsl_model_set_damping
+
+    function c_gsl_model_set_stiffness(model, k) result(answer) bind(c,name='tribo_gsl_model_set_stiffness')
+      import
+      type(c_ptr), value :: model
+      type(c_ptr), value :: k
+      integer(c_int) :: answer
+    end function c_gsl_model_set_stiffness
+
+    function c_gsl_model_set_direction(model, j) result(answer) bind(c,name='tribo_gsl_model_set_direction')
+      import
+      type(c_ptr), value :: model
+      type(c_ptr), value :: j
+      integer(c_int) :: answer
+    end function c_gsl_model_set_direction
 
     function c_system_odeiv2(sys) result(answer) bind(c,name='tribo_system_odeiv2')
       import
@@ -445,6 +576,22 @@ module tribo_gsl_c
       type(c_ptr), intent(in), value :: held
       integer(c_size_t) :: answer
     end function c_fortran_given
+
+    function c_fortran_dense(sys, ndof, ncontact, mass, damping, stiffness, direction, nmode, message, size) &
+      result(answer) bind(c,name='tribo_fortran_dense')
+      import
+      type(c_ptr), intent(inout) :: sys
+      integer(c_size_t), value :: ndof
+      integer(c_size_t), value :: ncontact
+      real(c_double), intent(in), optional :: mass(*)
+      real(c_double), intent(in), optional :: damping(*)
+      real(c_double), intent(in), optional :: stiffness(*)
+      real(c_double), intent(in), optional :: direction(*)
+      integer(c_size_t), value :: nmode
+      character(kind=c_char), intent(inout), optional :: message(*)
+      integer(c_size_t), value :: size
+      integer(c_int) :: answer
+    end function c_fortran_dense
 
     function c_fortran_linear(sys, mass, damping, stiffness, direction, nmode, message, size) result(answer) &
       bind(c,name='tribo_fortran_linear')

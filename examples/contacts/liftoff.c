@@ -15,9 +15,15 @@ static const double omega = 0.35, drive = 1.0, limit = 0.6, swing = 1.0;
 static tribo_system *create_system(void)
 {
     const double one = 1.0, damping = 0.1;
-    char message[200] = "";
+    tribo_model *model;
     tribo_system *sys;
-    need(tribo_system_linear(&sys, 1, 1, &one, &damping, &one, &one, 0, message, sizeof message), message);
+    need(tribo_model_create(&model, 1, 1), NULL);
+    need(tribo_model_set_mass(model, &one), tribo_model_message(model));
+    need(tribo_model_set_damping(model, &damping), tribo_model_message(model));
+    need(tribo_model_set_stiffness(model, &one), tribo_model_message(model));
+    need(tribo_model_set_direction(model, &one), tribo_model_message(model));
+    need(tribo_system_create(&sys, model), tribo_model_message(model));
+    tribo_model_destroy(model);
     tribo_context *contact = tribo_system_context(sys);
     need(tribo_set_limit(contact, &limit), tribo_message(contact));
     need(tribo_system_add_load(sys, omega, &drive, NULL), tribo_message(contact));

@@ -31,9 +31,14 @@ static int note_event(const tribo_moment *moment, void *data)
 static tribo_system *create_system(void)
 {
     const double one = 1.0, ratio = 1.0 / kinetic;
-    char message[200] = "";
+    tribo_model *model;
     tribo_system *sys;
-    need(tribo_system_linear(&sys, 1, 1, &one, NULL, &one, &one, 0, message, sizeof message), message);
+    need(tribo_model_create(&model, 1, 1), NULL);
+    need(tribo_model_set_mass(model, &one), tribo_model_message(model));
+    need(tribo_model_set_stiffness(model, &one), tribo_model_message(model));
+    need(tribo_model_set_direction(model, &one), tribo_model_message(model));
+    need(tribo_system_create(&sys, model), tribo_model_message(model));
+    tribo_model_destroy(model);
     tribo_context *contact = tribo_system_context(sys);
     need(tribo_set_limit(contact, &kinetic), tribo_message(contact));
     need(tribo_set_static(contact, &ratio, NULL), tribo_message(contact));

@@ -4,25 +4,37 @@
 
 #include "tribo_petsc.h"
 
-/* A matrix of PETSc's, which ends here, as one of GSL's. */
-static PetscErrorCode Convert(Mat *from, gsl_spmatrix **to)
+/* A setter of tribo_model for compressed rows. */
+typedef int SetRows(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+
+/* Hands a matrix of PETSc's, which ends here, to the model. */
+static PetscErrorCode Convert(Mat *from, tribo_model *model, SetRows *set)
 {
-    PetscInt rows, columns;
+    PetscInt rows, count;
+    MatInfo info;
+    size_t *rowptr, *col, entries = 0;
+    double *val;
 
     PetscFunctionBeginUser;
-    PetscCall(MatGetSize(*from, &rows, &columns));
-    *to = gsl_spmatrix_alloc((size_t)rows, (size_t)columns);
-    PetscCheck(*to, PETSC_COMM_SELF, PETSC_ERR_MEM, "no memory for a matrix");
+    PetscCall(MatGetSize(*from, &rows, NULL));
+    PetscCall(MatGetInfo(*from, MAT_LOCAL, &info));
+    PetscCall(PetscMalloc3((size_t)rows + 1, &rowptr, (size_t)info.nz_used + 1, &col, (size_t)info.nz_used + 1, &val));
+    rowptr[0] = 0;
     for (PetscInt i = 0; i < rows; i++) {
-        PetscInt count;
         const PetscInt *column;
         const PetscScalar *value;
         PetscCall(MatGetRow(*from, i, &count, &column, &value));
         for (PetscInt k = 0; k < count; k++) {
-            gsl_spmatrix_set(*to, (size_t)i, (size_t)column[k], PetscRealPart(value[k]));
+            if (value[k] != 0.0) {
+                col[entries] = (size_t)column[k];
+                val[entries++] = PetscRealPart(value[k]);
+            }
         }
         PetscCall(MatRestoreRow(*from, i, &count, &column, &value));
+        rowptr[i + 1] = entries;
     }
+    PetscCallTribo(set(model, rowptr, col, val), tribo_model_message(model), "matrix of %zu rows", (size_t)rows);
+    PetscCall(PetscFree3(rowptr, col, val));
     PetscCall(MatDestroy(from));
     PetscFunctionReturn(0);
 }
@@ -50,9 +62,9 @@ PetscErrorCode CreateStudy(Study *s, const Options *o)
 {
     const size_t modes = (size_t)o->modes;
     Mat matrix[3];
-    gsl_spmatrix *mass, *stiffness, *direction;
+    tribo_model *model;
+    PetscInt rows;
     Vec limit;
-    char message[256] = "";
 
     PetscFunctionBeginUser;
     PetscCall(ReadMatrix(PETSC_COMM_SELF, o->mass, 1, &matrix[0]));
@@ -60,19 +72,19 @@ PetscErrorCode CreateStudy(Study *s, const Options *o)
     PetscCall(ReadContacts(o->contacts, matrix[0], 1, &s->contacts));
     PetscCall(CreateDirection(&s->contacts, matrix[0], &matrix[2], &limit));
     PetscCall(VecDestroy(&limit));
-    PetscCall(Convert(&matrix[0], &mass));
-    PetscCall(Convert(&matrix[1], &stiffness));
-    PetscCall(Convert(&matrix[2], &direction));
-    s->rows = mass->size1;
+    PetscCall(MatGetSize(matrix[0], &rows, NULL));
+    s->rows = (size_t)rows;
     PetscCheck((size_t)o->load_row <= s->rows, PETSC_COMM_WORLD, PETSC_ERR_ARG_OUTOFRANGE, "-load_row %" PetscInt_FMT ", of %zu",
                o->load_row, s->rows);
-    PetscCallTribo(tribo_system_linear_sparse(&s->sys, mass, NULL, stiffness, direction, modes, message, sizeof message), message,
+    PetscCallTribo(tribo_model_create(&model, s->rows, s->contacts.count), NULL, "structure of %zu rows", s->rows);
+    PetscCall(Convert(&matrix[0], model, tribo_model_set_mass_csr));
+    PetscCall(Convert(&matrix[1], model, tribo_model_set_stiffness_csr));
+    PetscCall(Convert(&matrix[2], model, tribo_model_set_direction_csr));
+    PetscCallTribo(tribo_system_reduce(&s->sys, model, modes, TRIBO_STATICS_NONE), tribo_model_message(model),
                    "structure of %zu rows", s->rows);
+    tribo_model_destroy(model);
     PetscCallTribo(tribo_system_set_damping_ratio(s->sys, o->damping), tribo_message(tribo_system_context(s->sys)),
                    "structure of %zu rows", s->rows);
-    gsl_spmatrix_free(mass);
-    gsl_spmatrix_free(stiffness);
-    gsl_spmatrix_free(direction);
     PetscCall(PetscCalloc3(s->rows, &s->load, 2 * modes, &s->shape, s->contacts.count, &s->limit));
     s->load[o->load_row - 1] = o->load;
     PetscCall(FindShape(s, (size_t)o->load_row - 1));

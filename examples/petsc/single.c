@@ -9,6 +9,7 @@
 #include "../../src/damper/output.h"
 #include "../../src/damper/lines.h"
 #include "../../src/damper/matrix_file.h"
+#include "../../src/damper/structure.h"
 #include "tribo/tribo_gsl.h"
 
 enum { MAX_CONTACTS = 64 };
@@ -36,53 +37,49 @@ static void chain(char **argument)
     tribo_system_destroy(sys);
 }
 
-/* Contacts "row other limit" a line as a matrix of directions. */
-static gsl_spmatrix *read_contacts(const char *path, size_t rows, double *limit, size_t *count)
+/* Contacts "row other limit" a line. */
+struct contacts {
+    size_t count, at[MAX_CONTACTS], to[MAX_CONTACTS]; /* rows from 0; to: as many as there are for the ground */
+    double limit[MAX_CONTACTS];
+};
+
+static struct contacts read_contacts(const char *path, size_t rows)
 {
-    size_t row[MAX_CONTACTS][2];
+    struct contacts c = {0};
     struct lines l = open_lines(path);
-    for (*count = 0; next_data(&l); ++*count) {
-        if (*count == MAX_CONTACTS) {
+    for (; next_data(&l); c.count++) {
+        if (c.count == MAX_CONTACTS) {
             die_at(&l, "more than %d contacts", (int)MAX_CONTACTS);
         }
-        row[*count][0] = next_whole(&l, "row", 1, rows);
-        row[*count][1] = next_whole(&l, "other row", 0, rows);
-        limit[*count] = next_real(&l, "limit");
+        c.at[c.count] = next_whole(&l, "row", 1, rows) - 1;
+        const size_t other = next_whole(&l, "other row", 0, rows);
+        c.to[c.count] = other ? other - 1 : rows;
+        c.limit[c.count] = next_real(&l, "limit");
         expect_end(&l);
     }
     close_lines(&l);
-    gsl_spmatrix *direction = gsl_spmatrix_alloc(*count, rows);
-    for (size_t i = 0; i < *count; i++) {
-        gsl_spmatrix_set(direction, i, row[i][0] - 1, 1.0);
-        if (row[i][1]) {
-            gsl_spmatrix_set(direction, i, row[i][1] - 1, -1.0);
-        }
-    }
-    return direction;
+    return c;
 }
 
 /* In all of its modes, where stiff ones leave no rounding in the forces of soft ones; with damping, as it is. */
 static tribo_system *read_system(char **file, size_t n, double damping)
 {
-    double limit[MAX_CONTACTS];
-    size_t contacts;
-    char message[200] = "";
     tribo_system *sys;
     const struct rows rows = {n, "the arguments"};
-    gsl_spmatrix *mass = read_matrix(file[0], &rows), *stiffness = read_matrix(file[1], &rows), *damper = NULL,
-                 *direction = read_contacts(file[2], n, limit, &contacts);
+    const struct contacts contacts = read_contacts(file[2], n);
+    struct structure s = {.ndof = n, .mass = read_matrix(file[0], &rows), .stiffness = read_matrix(file[1], &rows)};
+    tribo_model *model = model_of(&s, contacts.count, contacts.at, contacts.to);
     if (damping > 0.0) {
-        damper = read_matrix(file[1], &rows);
-        gsl_spmatrix_scale(damper, damping);
+        for (size_t k = 0; k < s.stiffness.first[n]; k++) {
+            s.stiffness.val[k] *= damping;
+        }
+        need(tribo_model_set_damping_csr(model, s.stiffness.first, s.stiffness.col, s.stiffness.val), tribo_model_message(model));
     }
-    need(tribo_system_linear_sparse(&sys, mass, damper, stiffness, direction, damper ? 0 : n, message, sizeof message), message);
-    need(tribo_set_limit(tribo_system_context(sys), limit), tribo_message(tribo_system_context(sys)));
-    gsl_spmatrix_free(mass);
-    gsl_spmatrix_free(stiffness);
-    gsl_spmatrix_free(direction);
-    if (damper) {
-        gsl_spmatrix_free(damper);
-    }
+    need(damping > 0.0 ? tribo_system_create(&sys, model) : tribo_system_reduce(&sys, model, n, TRIBO_STATICS_NONE),
+         tribo_model_message(model));
+    need(tribo_set_limit(tribo_system_context(sys), contacts.limit), tribo_message(tribo_system_context(sys)));
+    tribo_model_destroy(model);
+    free_structure(&s);
     return sys;
 }
 

@@ -16,9 +16,76 @@
 extern "C" {
 #endif
 
+/* --------------------------------------------------------------------------------------------------------- models */
+
+/* A linear structure as given, in the caller's units: mass, damping, stiffness, the directions of its contacts. A model copies its
+ * arguments, is looked at as a whole when a system is made of it, may make several systems, and may be destroyed then. */
+typedef struct tribo_model tribo_model;
+
+/* A model of ndof degrees of freedom and ncontact contacts. Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (none, or above 2^24),
+ * TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_model_create(tribo_model **model, size_t ndof, size_t ncontact);
+TRIBO_API void tribo_model_destroy(tribo_model *model);
+
+/* What the last call that failed on the model found, also one that made no system of it. A NULL model gets a text, too. */
+TRIBO_API const char *tribo_model_message(const tribo_model *model);
+
+/* The matrices of the model, each in one of three forms; a new one replaces the last one.
+ * m, c, k           [ndof][ndof] in, or _diagonal [ndof] in
+ * rowptr, col, val  [ndof + 1], [rowptr[ndof]] in   compressed rows, counted from 0, columns in any order; no entry twice
+ * Mass symmetric and positive definite (diagonal is fastest; a degree of freedom may be massless if the stiffness holds it),
+ * stiffness symmetric. No damping is set: there is none.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_SIZE (rowptr), TRIBO_ERR_RANGE (col), TRIBO_ERR_DUPLICATE,
+ * TRIBO_ERR_MEMORY; on error the matrix stays as it was. */
+TRIBO_API int tribo_model_set_mass(tribo_model *model, const double *m);
+TRIBO_API int tribo_model_set_mass_diagonal(tribo_model *model, const double *m);
+TRIBO_API int tribo_model_set_mass_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_model_set_damping(tribo_model *model, const double *c);
+TRIBO_API int tribo_model_set_damping_diagonal(tribo_model *model, const double *c);
+TRIBO_API int tribo_model_set_damping_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_model_set_stiffness(tribo_model *model, const double *k);
+TRIBO_API int tribo_model_set_stiffness_diagonal(tribo_model *model, const double *k);
+TRIBO_API int tribo_model_set_stiffness_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+
+/* J: row i is how the velocities of the degrees of freedom make that of contact i.
+ * j                 [ncontact][ndof] in
+ * rowptr, col, val  [ncontact + 1], [rowptr[ncontact]] in   compressed rows
+ * Returns as above. */
+TRIBO_API int tribo_model_set_direction(tribo_model *model, const double *j);
+TRIBO_API int tribo_model_set_direction_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+
+/* Springs before the sliders of contacts (Jenkins, Masing): v = J q' + c f'.
+ * c  [ncontact] in   1/stiffness of the spring, >= 0; 0: a rigid contact
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (1/c overflows), TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_model_set_compliance(tribo_model *model, const double *c);
+
+/* Sizes; 0 for NULL. */
+TRIBO_API size_t tribo_model_ndof(const tribo_model *model);
+TRIBO_API size_t tribo_model_ncontact(const tribo_model *model);
+
+/* Makes message that of the model and returns status: for readers of files and other forms of matrices on top of these calls. */
+TRIBO_API int tribo_model_refuse(tribo_model *model, int status, const char *message);
+
 /* --------------------------------------------------------------------------------------------------------- systems */
 
 typedef struct tribo_system tribo_system;
+
+/* The system of all degrees of freedom of the model, dense or sparse as given. Its context starts with Quinn's law, limit 0 (all
+ * contacts open) and R = J M^-1 J'. No load, no motion yet. Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (a matrix is not set),
+ * TRIBO_ERR_SIZE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE, TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_MEMORY. */
+TRIBO_API int tribo_system_create(tribo_system **sys, tribo_model *model);
+
+/* What stands for the displacements by steady forces at contacts, beside the modes of a reduced system. */
+enum { TRIBO_STATICS_NONE = 0, TRIBO_STATICS_MASS = 1, TRIBO_STATICS_COMPLIANCE = 2 };
+
+/* The system of the nmode lowest modes of the model, nmode > 0, with modal mass 1 (the first of the largest displacements of a mode
+ * is positive), without damping (tribo_system_set_damping_ratio). static_contacts:
+ *   TRIBO_STATICS_NONE        nothing beside the modes
+ *   TRIBO_STATICS_MASS        and motions, orthonormal in M and orthogonal in K: ndof is nmode and at most one more a contact. The
+ *                             response to a load is had in the same way, from a row of J whose limit stays 0
+ *   TRIBO_STATICS_COMPLIANCE  and the flexibility that the modes leave to contacts, as compliance that contacts share
+ * Returns what tribo_system_create does, and TRIBO_ERR_RANGE (static_contacts), TRIBO_ERR_NO_CONVERGENCE. */
+TRIBO_API int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, int static_contacts);
 
 /* Quinn's three reference systems (Quinn 2004, doi:10.1115/1.1760564), nondimensional. limits >= 0, everything finite.
  * All return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_SIZE, TRIBO_ERR_MEMORY. */
@@ -36,38 +103,6 @@ TRIBO_API int tribo_system_chain(tribo_system **sys, size_t n, double limit, dou
 /* Two blocks, the upper on the lower, the lower on a belt that moves with speed * sin(omega t): contact 0 is between belt and
  * lower block (limit1), contact 1 between the blocks (limit2); kappa is the stiffness of the upper spring. Eq. 7, Fig. 10. */
 TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega);
-
-/* Any linear structure, from its matrices in the caller's units.
- * mass       [ndof][ndof] in  symmetric, positive definite, but see below; diagonal is fastest
- * damping    [ndof][ndof] in, or NULL for none
- * stiffness  [ndof][ndof] in  symmetric
- * direction  [ncontact][ndof] in  J: row i is how the velocities of the degrees of freedom make that of contact i
- * nmode      in   0, or: keep only the motion in the nmode lowest modes of (K, M); q then holds their amplitudes (modes have
- *                 modal mass 1, and the first of their largest displacements is positive), ndof of the system is nmode, and
- *                 damping must be NULL (see tribo_system_set_damping_ratio)
- * message    [size] out, or NULL: on error, the text that says what is wrong and where
- * The context starts with Quinn's law and limit 0 (all contacts open), and with R = J M^-1 J'. No load, no motion yet.
- * Modes are found to the accuracy of the stiffness's own entries, however soft beside the stiffest, and omega of rigid-body
- * motions is 0; one of which rounding of the entries leaves less than two digits is refused (TRIBO_ERR_UNSUPPORTED). So are
- * bodies that contacts join, if the mass matrix is not diagonal and one weighs so little that R hides the other.
- *
- * Elastic contacts. With nmode = 0 degrees of freedom w may be massless: their rows of mass are zero, and of damping, and the
- * stiffness holds them, K_ww definite. They follow statically, K_ww w = J_w'f - K_wq q. A contact on one is elastic, a spring in
- * series with a slider (Jenkins, Masing): with a row [k -k; -k k] of stiffness between a mass and w, and a contact on w, it holds
- * with the stiffness k, and slides at its limit. Its force follows from the state; one that starts beyond the limit goes back to
- * it at once, and dissipates limit times the way of the slider. Contacts may share compliance: J_w K_ww^-1 J_w' must be positive
- * definite over elastic contacts.
- * Methods "exact" and "event" (and "auto", by them) take such systems, and "moreau/fixed", to second order. What else needs mass
- * says so, TRIBO_ERR_UNSUPPORTED: other methods, loads on what has none, limits of elastic contacts that change with time, or
- * static ones (tribo_set_static), planar contacts, tribo_system_contacts where elastic contacts touch mass themselves,
- * tribo_system_accept, and the GSL system's functions. Multipliers of periodic motions have 0 for velocities of what has no mass.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NOT_SYMMETRIC, TRIBO_ERR_INDEFINITE,
- * TRIBO_ERR_UNSUPPORTED, TRIBO_ERR_NO_CONVERGENCE (modes), TRIBO_ERR_MEMORY. */
-TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
-                                  const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
-
-/* What stands for the displacements by steady forces at contacts, beside the modes of a reduced system. */
-enum { TRIBO_STATICS_NONE = 0, TRIBO_STATICS_MASS = 1, TRIBO_STATICS_COMPLIANCE = 2 };
 
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 
@@ -150,7 +185,7 @@ TRIBO_API tribo_context *tribo_system_context(tribo_system *sys);
 /* What the contacts do in a state.
  * y    [dimension] in
  * v, feq, f   [ncontact] out, each or NULL, as in tribo_balance; of elastic contacts both forces are what the state says
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (see tribo_system_linear), and what tribo_balance
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no accelerations), and what tribo_balance
  * returns. */
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
 

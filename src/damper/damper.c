@@ -7,17 +7,17 @@
 #include "output.h"
 #include "linear.h"
 
-/* Rows of the structure where a contact slides; to is no row for the ground. */
-struct rows {
+/* Rows of the structure where a contact slides; to is ndof for the ground. Behind the contacts stands the load. */
+struct places {
     size_t *at, *to, *output, load;
 };
 
-static struct rows find_rows(const struct options *o, const struct structure *s)
+static struct places find_rows(const struct options *o, const struct structure *s)
 {
-    struct rows r = {.load = find_degree(s, &o->load)};
-    r.at = need_memory(2 * o->contacts.count + o->outputs, sizeof *r.at);
-    r.to = r.at + o->contacts.count;
-    r.output = r.to + o->contacts.count;
+    struct places r = {.load = find_degree(s, &o->load)};
+    r.at = need_memory(2 * (o->contacts.count + 1) + o->outputs, sizeof *r.at);
+    r.to = r.at + o->contacts.count + 1;
+    r.output = r.to + o->contacts.count + 1;
     for (size_t k = 0; k < o->outputs; k++) {
         r.output[k] = find_degree(s, &o->output[k]);
     }
@@ -29,40 +29,9 @@ static struct rows find_rows(const struct options *o, const struct structure *s)
             die("%s: both ends are the same node", contact->at.origin);
         }
     }
+    r.at[o->contacts.count] = r.load;
+    r.to[o->contacts.count] = s->ndof;
     return r;
-}
-
-static gsl_spmatrix *new_matrix(size_t rows, size_t columns)
-{
-    gsl_spmatrix *matrix = gsl_spmatrix_alloc(rows, columns);
-    if (!matrix) {
-        die("out of memory for %zu times %zu", rows, columns);
-    }
-    return matrix;
-}
-
-/* Zeros are not kept: an entry couples its row and column, whatever its value is. */
-static void set_entry(gsl_spmatrix *matrix, size_t i, size_t j, double value)
-{
-    if (value != 0.0 && gsl_spmatrix_set(matrix, i, j, value)) {
-        die("out of memory for %zu times %zu", matrix->size1, matrix->size2);
-    }
-}
-
-/* Rows of contacts, and with statics one of the load, whose static response is needed as those of contacts. */
-static gsl_spmatrix *directions(const struct rows *r, size_t contacts, size_t ndof, int statics)
-{
-    gsl_spmatrix *j = new_matrix(contacts + (size_t)statics, ndof);
-    for (size_t c = 0; c < contacts; c++) {
-        set_entry(j, c, r->at[c], 1.0);
-        if (r->to[c] < ndof) {
-            set_entry(j, c, r->to[c], -1.0);
-        }
-    }
-    if (statics) {
-        set_entry(j, contacts, r->load, 1.0);
-    }
-    return j;
 }
 
 /* A mode that moves a contact by less than this part of what the strongest mode does, does not move it: what is left there is
@@ -81,7 +50,7 @@ static void clean_shape(const struct damper *d, double *shape)
 }
 
 /* What a unit amplitude of each mode does at the load and at the contacts. */
-static void read_shapes(struct damper *d, const struct rows *r)
+static void read_shapes(struct damper *d, const struct places *r)
 {
     double *unit = need_memory(d->modes, sizeof *unit), *full = need_memory(d->ndof + 1, sizeof *full);
     for (size_t k = 0; k < d->modes; k++) {
@@ -103,16 +72,16 @@ static void read_shapes(struct damper *d, const struct rows *r)
     free(full);
 }
 
-static void reduce(struct damper *d, const struct options *o, const struct structure *s, const struct rows *r)
+static void reduce(struct damper *d, const struct options *o, const struct structure *s, const struct places *r)
 {
-    gsl_spmatrix *direction = directions(r, d->contacts, d->ndof, o->statics);
-    char message[200] = "";
-    if (tribo_system_reduced(&d->reduced, s->mass, s->stiffness, direction, d->kept,
-                             o->statics ? TRIBO_STATICS_MASS : TRIBO_STATICS_NONE, message, sizeof message)) {
+    /* with statics the load is a contact, too: its static response is needed as those of contacts */
+    tribo_model *model = model_of(s, d->contacts + (size_t)o->statics, r->at, r->to);
+    if (tribo_system_reduce(&d->reduced, model, d->kept, o->statics ? TRIBO_STATICS_MASS : TRIBO_STATICS_NONE)) {
+        const char *message = tribo_model_message(model);
         const int counts = strchr(message, '[') || strstr(message, "degree of freedom ");
         die("%s and %s: %s%s", o->mass, o->stiffness, message, counts ? " (counted from 0)" : "");
     }
-    gsl_spmatrix_free(direction);
+    tribo_model_destroy(model);
     d->modes = tribo_system_ndof(d->reduced);
     d->omega = need_memory(d->modes, sizeof *d->omega);
     d->load_shape = need_memory(d->modes, sizeof *d->load_shape);
@@ -139,45 +108,6 @@ static void check_spring(const struct damper *d, size_t c, const char *origin)
     }
 }
 
-/* Modes with a spring from contact c to the slider in row w, on top of what springs [modes][modes] has. */
-static void add_slider(const struct damper *d, size_t c, size_t w, double *springs, gsl_spmatrix *stiffness)
-{
-    const double *shape = d->contact_shape + c * d->modes, k = d->stiffness[c];
-    for (size_t i = 0; i < d->modes; i++) {
-        for (size_t j = 0; j < d->modes; j++) {
-            springs[i * d->modes + j] += k * shape[i] * shape[j];
-        }
-        set_entry(stiffness, i, w, -k * shape[i]);
-        set_entry(stiffness, w, i, -k * shape[i]);
-    }
-    set_entry(stiffness, w, w, k);
-}
-
-/* The stiffness of modes and sliders, and the directions of contacts. */
-static void connect(const struct damper *d, const struct options *o, gsl_spmatrix *stiffness, gsl_spmatrix *direction)
-{
-    const int sliders = d->motions > d->modes;
-    double *springs = need_memory(sliders ? d->modes * d->modes : 1, sizeof *springs);
-    for (size_t c = 0, w = d->modes; c < d->contacts; c++) {
-        if (d->stiffness[c] > 0.0) {
-            check_spring(d, c, o->contacts.contact[c].at.origin);
-            add_slider(d, c, w, springs, stiffness);
-            set_entry(direction, c, w++, 1.0);
-            continue;
-        }
-        for (size_t k = 0; k < d->modes; k++) {
-            set_entry(direction, c, k, d->contact_shape[c * d->modes + k]);
-        }
-    }
-    for (size_t k = 0; k < d->modes; k++) {
-        for (size_t i = 0; sliders && i < d->modes; i++) {
-            set_entry(stiffness, k, i, springs[k * d->modes + i]);
-        }
-        set_entry(stiffness, k, k, (sliders ? springs[k * d->modes + k] : 0.0) + d->omega[k] * d->omega[k]);
-    }
-    free(springs);
-}
-
 static void set_contacts(struct damper *d, const struct options *o)
 {
     tribo_context *contacts = tribo_system_context(d->sys);
@@ -192,25 +122,34 @@ static void set_contacts(struct damper *d, const struct options *o)
     free(first);
 }
 
-/* The system of modes and sliders. */
+/* The system of modes, and of sliders behind springs. */
 static void build(struct damper *d, const struct options *o)
 {
-    const size_t n = d->motions;
-    gsl_spmatrix *mass = new_matrix(n, n), *damping = new_matrix(n, n), *stiffness = new_matrix(n, n),
-                 *direction = new_matrix(d->contacts, n);
-    char message[200] = "";
+    double *mass = need_memory(3 * d->modes + d->contacts, sizeof *mass);
+    double *damping = mass + d->modes, *stiffness = damping + d->modes, *compliance = stiffness + d->modes;
+    tribo_model *model = NULL;
     for (size_t k = 0; k < d->modes; k++) {
-        set_entry(mass, k, k, 1.0);
-        set_entry(damping, k, k, 2.0 * d->damping * d->omega[k]);
+        mass[k] = 1.0;
+        damping[k] = 2.0 * d->damping * d->omega[k];
+        stiffness[k] = d->omega[k] * d->omega[k];
     }
-    connect(d, o, stiffness, direction);
-    if (tribo_system_linear_sparse(&d->sys, mass, damping, stiffness, direction, 0, message, sizeof message)) {
-        die("modes and sliders: %s", message);
+    for (size_t c = 0; c < d->contacts; c++) {
+        if (d->stiffness[c] > 0.0) {
+            check_spring(d, c, o->contacts.contact[c].at.origin);
+            compliance[c] = 1.0 / d->stiffness[c];
+        }
     }
-    gsl_spmatrix_free(mass);
-    gsl_spmatrix_free(damping);
-    gsl_spmatrix_free(stiffness);
-    gsl_spmatrix_free(direction);
+    need(tribo_model_create(&model, d->modes, d->contacts), NULL);
+    need(tribo_model_set_mass_diagonal(model, mass), tribo_model_message(model));
+    need(tribo_model_set_damping_diagonal(model, damping), tribo_model_message(model));
+    need(tribo_model_set_stiffness_diagonal(model, stiffness), tribo_model_message(model));
+    need(tribo_model_set_direction(model, d->contact_shape), tribo_model_message(model));
+    need(tribo_model_set_compliance(model, compliance), tribo_model_message(model));
+    if (tribo_system_create(&d->sys, model)) {
+        die("modes and sliders: %s", tribo_model_message(model));
+    }
+    tribo_model_destroy(model);
+    free(mass);
     set_contacts(d, o);
 }
 
@@ -238,7 +177,7 @@ struct damper create_damper(const struct options *o, const struct structure *s, 
     if (o->modes > s->ndof) {
         die("option --modes %zu: the structure has %zu degrees of freedom", o->modes, s->ndof);
     }
-    const struct rows rows = find_rows(o, s);
+    const struct places rows = find_rows(o, s);
     d.limit = need_memory(d.contacts, sizeof *d.limit);
     d.mu = need_memory(d.contacts, sizeof *d.mu);
     d.stiffness = need_memory(d.contacts, sizeof *d.stiffness);

@@ -2,6 +2,7 @@
 
 #include <limits.h>
 #include <stdlib.h>
+#include <string.h>
 
 static size_t next_index(struct lines *l, const char *what, const struct rows *rows)
 {
@@ -72,7 +73,7 @@ static int is_mirrored(const struct entry *e, int symmetric)
 }
 
 /* Where each row begins: first[row], counted from 0; first [rows + 1], zeros before. */
-static void count_rows(const struct entries *all, size_t rows, int symmetric, int *first)
+static void count_rows(const struct entries *all, size_t rows, int symmetric, size_t *first)
 {
     for (size_t k = 0; k < all->count; k++) {
         const struct entry *e = &all->entry[k];
@@ -85,36 +86,36 @@ static void count_rows(const struct entries *all, size_t rows, int symmetric, in
 }
 
 /* Rows come one after the other, so that each gets its lower triangle first, and then what other rows mirror into it. */
-static void fill_rows(const struct entries *all, int symmetric, int *next, gsl_spmatrix *m)
+static void fill_rows(const struct entries *all, int symmetric, size_t *next, struct sparse *m)
 {
     for (size_t k = 0; k < all->count; k++) {
         const struct entry *e = &all->entry[k];
         for (int mirrored = 0; e->value != 0.0 && mirrored <= is_mirrored(e, symmetric); mirrored++) {
-            const int at = next[(mirrored ? e->column : e->row) - 1]++;
-            m->i[at] = (int)(mirrored ? e->row : e->column) - 1;
-            m->data[at] = e->value;
+            const size_t at = next[(mirrored ? e->column : e->row) - 1]++;
+            m->col[at] = (mirrored ? e->row : e->column) - 1;
+            m->val[at] = e->value;
         }
     }
 }
 
-gsl_spmatrix *make_matrix(const char *path, struct entries *all, size_t rows, int symmetric)
+struct sparse make_matrix(const char *path, struct entries *all, size_t rows, int symmetric)
 {
     sort_entries(all, rows);
     refuse_doubles(path, all);
-    if (all->count > INT_MAX / 2) {
-        die("%s: %zu entries are more than a matrix of GSL may have", path, all->count);
-    }
-    gsl_spmatrix *m = gsl_spmatrix_alloc_nzmax(rows, rows, (symmetric ? 2 : 1) * all->count + 1, GSL_SPMATRIX_CSR);
-    int *next = need_memory(rows + 1, sizeof *next);
-    if (!m) {
-        die("%s: out of memory for %zu entries", path, all->count);
-    }
-    count_rows(all, rows, symmetric, next);
-    for (size_t i = 0; i <= rows; i++) {
-        m->p[i] = next[i];
-    }
-    m->nz = (size_t)next[rows];
-    fill_rows(all, symmetric, next, m);
+    struct sparse m = {.rows = rows, .first = need_memory(rows + 1, sizeof *m.first)};
+    size_t *next = need_memory(rows + 1, sizeof *next);
+    count_rows(all, rows, symmetric, m.first);
+    memcpy(next, m.first, (rows + 1) * sizeof *next);
+    m.col = need_memory(m.first[rows] + 1, sizeof *m.col);
+    m.val = need_memory(m.first[rows] + 1, sizeof *m.val);
+    fill_rows(all, symmetric, next, &m);
     free(next);
     return m;
+}
+
+void free_sparse(struct sparse *m)
+{
+    free(m->first);
+    free(m->col);
+    free(m->val);
 }

@@ -3,8 +3,6 @@
 
 #include <stddef.h>
 
-#include <gsl/gsl_spmatrix.h>
-
 #include "lines.h"
 
 /* How many rows and columns a matrix has, by the degrees of freedom in the file of that path. */
@@ -12,6 +10,13 @@ struct rows {
     size_t count;
     const char *path;
 };
+
+/* A square matrix in compressed rows, counted from 0. */
+struct sparse {
+    size_t rows, *first, *col; /* [rows + 1], [first[rows]] */
+    double *val;
+};
+void free_sparse(struct sparse *m);
 
 /* Entries of a matrix as a file has them. */
 struct entry {
@@ -31,6 +36,6 @@ void add_entry(struct entries *all, const struct entry *e);
 
 /* Sorts the entries, and makes a matrix of those that are not zero, in compressed rows; of symmetric ones, which lie in the lower
  * triangle, also what is above. Ends the program if a place has been given twice in the file of that path. */
-gsl_spmatrix *make_matrix(const char *path, struct entries *all, size_t rows, int symmetric);
+struct sparse make_matrix(const char *path, struct entries *all, size_t rows, int symmetric);
 
 #endif

@@ -10,7 +10,7 @@ static int is_calculix(const char *path)
     return is_named(path, ".sti") || is_named(path, ".mas");
 }
 
-gsl_spmatrix *read_matrix(const char *path, const struct rows *rows)
+struct sparse read_matrix(const char *path, const struct rows *rows)
 {
     struct entries all = {0, 0, NULL};
     int symmetric = 1;
@@ -19,7 +19,7 @@ gsl_spmatrix *read_matrix(const char *path, const struct rows *rows)
     } else {
         symmetric = read_matrix_market(path, rows, &all);
     }
-    gsl_spmatrix *matrix = make_matrix(path, &all, rows->count, symmetric);
+    const struct sparse matrix = make_matrix(path, &all, rows->count, symmetric);
     free(all.entry);
     return matrix;
 }

@@ -20,8 +20,8 @@ struct structure read_structure(const char *mass, const char *stiffness, const c
 
 void free_structure(struct structure *s)
 {
-    gsl_spmatrix_free(s->mass);
-    gsl_spmatrix_free(s->stiffness);
+    free_sparse(&s->mass);
+    free_sparse(&s->stiffness);
     free(s->dof);
 }
 
@@ -29,8 +29,8 @@ void tell_of_loose_rows(const struct structure *s, const char *stiffness)
 {
     char *held = need_memory(s->ndof, sizeof *held);
     size_t loose = 0, first = 0;
-    for (size_t k = 0; k < s->stiffness->nz; k++) {
-        held[s->stiffness->i[k]] |= s->stiffness->data[k] != 0.0;
+    for (size_t k = 0; k < s->stiffness.first[s->ndof]; k++) {
+        held[s->stiffness.col[k]] |= s->stiffness.val[k] != 0.0;
     }
     for (size_t i = s->ndof; i-- > 0;) {
         loose += !held[i];
@@ -76,6 +76,31 @@ size_t find_degree(const struct structure *s, const struct place *p)
         die("%s: the node there cannot move along %c", p->origin, "xyz"[p->direction - 1]);
     }
     return found;
+}
+
+tribo_model *model_of(const struct structure *s, size_t contacts, const size_t *at, const size_t *to)
+{
+    tribo_model *model = NULL;
+    size_t *first = need_memory(contacts + 1, sizeof *first), *col = need_memory(2 * contacts + 1, sizeof *col), count = 0;
+    double *val = need_memory(2 * contacts + 1, sizeof *val);
+    for (size_t c = 0; c < contacts; c++) {
+        col[count] = at[c];
+        val[count++] = 1.0;
+        if (to && to[c] < s->ndof) {
+            col[count] = to[c];
+            val[count++] = -1.0;
+        }
+        first[c + 1] = count;
+    }
+    need(tribo_model_create(&model, s->ndof, contacts), NULL);
+    need(tribo_model_set_mass_csr(model, s->mass.first, s->mass.col, s->mass.val), tribo_model_message(model));
+    need(tribo_model_set_stiffness_csr(model, s->stiffness.first, s->stiffness.col, s->stiffness.val),
+         tribo_model_message(model));
+    need(tribo_model_set_direction_csr(model, first, col, val), tribo_model_message(model));
+    free(first);
+    free(col);
+    free(val);
+    return model;
 }
 
 size_t read_frequencies(const char *path, double *hz, size_t room)

@@ -3,15 +3,15 @@
 
 #include <stddef.h>
 
-#include <gsl/gsl_spmatrix.h>
-
 #include "contact.h"
 #include "degrees.h"
+#include "entries.h"
+#include "tribo/tribo_dynamics.h"
 
 /* A structure as finite-element programs hand it over. */
 struct structure {
     size_t ndof;
-    gsl_spmatrix *mass, *stiffness;
+    struct sparse mass, stiffness;
     struct degree *dof; /* [ndof] in the order of the rows */
 };
 
@@ -24,6 +24,10 @@ void tell_of_loose_rows(const struct structure *s, const char *stiffness);
 
 /* The row of a place; ends the program if the structure has none there. */
 size_t find_degree(const struct structure *s, const struct place *p);
+
+/* A model of the structure: contact i is at row at[i], and slides against row to[i], or the ground where that is ndof or `to` is
+ * NULL. */
+tribo_model *model_of(const struct structure *s, size_t contacts, const size_t *at, const size_t *to);
 
 /* Frequencies in Hz from a file, at most room of them, into hz; returns their number. */
 size_t read_frequencies(const char *path, double *hz, size_t room);

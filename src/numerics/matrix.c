@@ -291,37 +291,6 @@ int tribo_matrix_transpose(struct matrix *a, const struct matrix *from)
     return matrix_finish(a);
 }
 
-int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m)
-{
-    const size_t n = m->nz;
-    size_t *i = malloc((n + 1) * sizeof *i), *j = malloc((n + 1) * sizeof *j);
-    int done = i && j;
-    if (done && GSL_SPMATRIX_ISCOO(m)) {
-        for (size_t k = 0; k < n; k++) {
-            i[k] = (size_t)m->i[k];
-            j[k] = (size_t)m->p[k];
-        }
-    } else if (done) {
-        /* compressed: p bounds the entries of each column (CSC) or row (CSR), i has the other index */
-        const int by_columns = GSL_SPMATRIX_ISCSC(m);
-        size_t *outer = by_columns ? j : i, *inner = by_columns ? i : j, at = 0;
-        for (size_t k = 0; k < n; k++) {
-            while ((size_t)m->p[at + 1] <= k) {
-                at++;
-            }
-            outer[k] = at;
-            inner[k] = (size_t)m->i[k];
-        }
-    }
-    done = done && tribo_matrix_from_triplets(a, m->size1, m->size2, n, i, j, m->data);
-    if (!done) {
-        memset(a, 0, sizeof *a);
-    }
-    free(i);
-    free(j);
-    return done;
-}
-
 void tribo_matrix_spread(const struct matrix *a, double *dense)
 {
     memset(dense, 0, a->rows * a->cols * sizeof *dense);

@@ -6,8 +6,6 @@
 #include <math.h>
 #include <stddef.h>
 
-#include <gsl/gsl_spmatrix.h>
-
 /* Products with matrices, and what goes with them, are done in blocks of so many rows, which stay in the first-level cache. */
 enum { MATRIX_BLOCK = 128 };
 
@@ -29,7 +27,6 @@ struct matrix {
 int tribo_matrix_from_dense(struct matrix *a, size_t rows, size_t cols, const double *entries);
 int tribo_matrix_from_triplets(struct matrix *a, size_t rows, size_t cols, size_t n, const size_t *i, const size_t *j,
                                const double *v);
-int tribo_matrix_from_sparse(struct matrix *a, const gsl_spmatrix *m);
 int tribo_matrix_diagonal(struct matrix *a, size_t n, const double *entries); /* NULL: ones */
 int tribo_matrix_copy(struct matrix *a, const struct matrix *from);
 int tribo_matrix_transpose(struct matrix *a, const struct matrix *from);

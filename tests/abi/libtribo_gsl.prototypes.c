@@ -1,16 +1,29 @@
 /* Written by abi.sh: the prototypes once more. With another one in the header this does not compile. */
 #include "tribo/tribo_gsl.h"
 
+TRIBO_API int tribo_model_create(tribo_model **model, size_t ndof, size_t ncontact);
+TRIBO_API void tribo_model_destroy(tribo_model *model);
+TRIBO_API const char *tribo_model_message(const tribo_model *model);
+TRIBO_API int tribo_model_set_mass(tribo_model *model, const double *m);
+TRIBO_API int tribo_model_set_mass_diagonal(tribo_model *model, const double *m);
+TRIBO_API int tribo_model_set_mass_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_model_set_damping(tribo_model *model, const double *c);
+TRIBO_API int tribo_model_set_damping_diagonal(tribo_model *model, const double *c);
+TRIBO_API int tribo_model_set_damping_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_model_set_stiffness(tribo_model *model, const double *k);
+TRIBO_API int tribo_model_set_stiffness_diagonal(tribo_model *model, const double *k);
+TRIBO_API int tribo_model_set_stiffness_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_model_set_direction(tribo_model *model, const double *j);
+TRIBO_API int tribo_model_set_direction_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_model_set_compliance(tribo_model *model, const double *c);
+TRIBO_API size_t tribo_model_ndof(const tribo_model *model);
+TRIBO_API size_t tribo_model_ncontact(const tribo_model *model);
+TRIBO_API int tribo_model_refuse(tribo_model *model, int status, const char *message);
+TRIBO_API int tribo_system_create(tribo_system **sys, tribo_model *model);
+TRIBO_API int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, int static_contacts);
 TRIBO_API int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega);
 TRIBO_API int tribo_system_chain(tribo_system **sys, size_t n, double limit, double alpha, double omega);
 TRIBO_API int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double limit2, double speed, double omega);
-TRIBO_API int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
-                                  const double *stiffness, const double *direction, size_t nmode, char *message, size_t size);
-TRIBO_API int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
-                                         const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode,
-                                         char *message, size_t size);
-TRIBO_API int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
-                                   const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size);
 TRIBO_API void tribo_system_destroy(tribo_system *sys);
 TRIBO_API int tribo_system_clone(const tribo_system *sys, tribo_system **copy);
 TRIBO_API int tribo_system_add_load(tribo_system *sys, double omega, const double *cosine, const double *sine);
@@ -28,27 +41,32 @@ TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
 TRIBO_API size_t tribo_system_ncontact(const tribo_system *sys);
 TRIBO_API size_t tribo_system_dimension(const tribo_system *sys);
 TRIBO_API tribo_context *tribo_system_context(tribo_system *sys);
-TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
 TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
-TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method, double dt, double abstol,
-                                  double reltol);
+TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method);
 TRIBO_API const char *tribo_driver_method(const tribo_driver *drv);
 TRIBO_API int tribo_method_count(void);
 TRIBO_API const char *tribo_method_name(int method);
+TRIBO_API int tribo_driver_set_step(tribo_driver *drv, double dt);
+TRIBO_API int tribo_driver_set_tolerance(tribo_driver *drv, double abstol, double reltol);
+TRIBO_API int tribo_driver_set_output(tribo_driver *drv, double dt);
+TRIBO_API int tribo_driver_set_max_step(tribo_driver *drv, double h);
 TRIBO_API int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y);
+TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(const tribo_moment *moment, void *data), void *data);
 TRIBO_API int tribo_driver_find_periodic(tribo_driver *drv, double t, double period, double *y);
 TRIBO_API int tribo_driver_get_multipliers(const tribo_driver *drv, double *re, double *im);
-TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most);
-TRIBO_API int tribo_driver_period_extremes_at(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
-                                              double *at_most);
+TRIBO_API int tribo_driver_get_freedom(const tribo_driver *drv, size_t *freedom);
+TRIBO_API int tribo_driver_period_extremes(tribo_driver *drv, const double *c, double *least, double *most, double *at_least,
+                                           double *at_most);
 TRIBO_API int tribo_driver_period_harmonic(tribo_driver *drv, const double *c, size_t k, double *cosine, double *sine);
 TRIBO_API int tribo_driver_period_dissipation(tribo_driver *drv, double *energy);
 TRIBO_API int tribo_driver_period_stick(tribo_driver *drv, double *share);
 TRIBO_API int tribo_driver_count(const tribo_driver *drv, int which, size_t *value);
 TRIBO_API int tribo_driver_real(const tribo_driver *drv, int which, double *value);
-TRIBO_API int tribo_driver_set_observer(tribo_driver *drv, int (*seen)(double t, const double *y, int event, void *data),
-                                        void *data);
-TRIBO_API int tribo_driver_set_max_step(tribo_driver *drv, double h);
 TRIBO_API const char *tribo_driver_message(const tribo_driver *drv);
 TRIBO_API void tribo_driver_destroy(tribo_driver *drv);
+TRIBO_API int tribo_gsl_model_set_mass(tribo_model *model, const gsl_spmatrix *m);
+TRIBO_API int tribo_gsl_model_set_damping(tribo_model *model, const gsl_spmatrix *c);
+TRIBO_API int tribo_gsl_model_set_stiffness(tribo_model *model, const gsl_spmatrix *k);
+TRIBO_API int tribo_gsl_model_set_direction(tribo_model *model, const gsl_spmatrix *j);
+TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);

@@ -35,14 +35,10 @@ static void read_shapes(struct modal *b, const tribo_system *sys, size_t ndof, s
 static tribo_system *reduce(const struct structure *s, const size_t *row, size_t load, struct model *m)
 {
     struct modal *b = &m->beam;
-    gsl_spmatrix *direction = gsl_spmatrix_alloc(CONTACTS, s->ndof);
-    for (size_t c = 0; c < CONTACTS; c++) {
-        gsl_spmatrix_set(direction, c, row[c], 1.0);
-    }
+    tribo_model *model = model_of(s, CONTACTS, row, NULL);
     tribo_system *sys;
-    char message[200] = "";
-    need(tribo_system_linear_sparse(&sys, s->mass, NULL, s->stiffness, direction, MODES, message, sizeof message), message);
-    gsl_spmatrix_free(direction);
+    need(tribo_system_reduce(&sys, model, MODES, TRIBO_STATICS_NONE), tribo_model_message(model));
+    tribo_model_destroy(model);
 
     double frequency[MODES], *sine = need_memory(s->ndof, sizeof *sine);
     need(tribo_system_get_frequencies(sys, frequency), NULL);

@@ -21,13 +21,9 @@ enum { MOST = 1000 };
 static tribo_system *find_modes(const struct structure *s, size_t modes)
 {
     tribo_system *sys;
-    char message[200] = "";
-    gsl_spmatrix *contact = gsl_spmatrix_alloc(1, s->ndof); /* one that touches nothing */
-    if (!contact) {
-        die("out of memory");
-    }
-    need(tribo_system_linear_sparse(&sys, s->mass, NULL, s->stiffness, contact, modes, message, sizeof message), message);
-    gsl_spmatrix_free(contact);
+    tribo_model *model = model_of(s, 0, NULL, NULL);
+    need(tribo_system_reduce(&sys, model, modes, TRIBO_STATICS_NONE), tribo_model_message(model));
+    tribo_model_destroy(model);
     return sys;
 }
 

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "../../src/damper/output.h"
 #include "beam.h"
 #include "harmonic_balance.h"
@@ -234,7 +235,7 @@ static void create_study(struct study *s)
         stiffness[k * MODES + k] = s->model.beam.stiffness[k];
         damping[k * MODES + k] = s->model.beam.damping[k];
     }
-    need(tribo_system_linear(&s->sys, MODES, CONTACTS, unit, damping, stiffness, s->model.beam.j[0], 0, message, sizeof message),
+    need(dense_system(&s->sys, MODES, CONTACTS, unit, damping, stiffness, s->model.beam.j[0], 0, message, sizeof message),
          message);
 }
 

@@ -25,8 +25,7 @@ enum { FREQUENCIES = 4, LIMITS = 5, POINTS = FREQUENCIES * LIMITS };
 
 struct scene {
     struct structure s;
-    gsl_spmatrix *direction;
-    size_t contacts, load;
+    size_t contacts, load, *at; /* [contacts] rows of the contacts */
     double force, omega, limit; /* of the first point */
 };
 
@@ -43,9 +42,9 @@ static void place_beam(struct scene *x)
                                          {{400.0, 20.0, 5.0}, 3, "load"}};
     x->s = read_structure(BEAM_FILES "/M.mtx", BEAM_FILES "/K.mtx", BEAM_FILES "/dofs.txt");
     x->contacts = 3;
-    x->direction = gsl_spmatrix_alloc(x->contacts, x->s.ndof);
+    x->at = need_memory(x->contacts, sizeof *x->at);
     for (size_t i = 0; i < x->contacts; i++) {
-        gsl_spmatrix_set(x->direction, i, find_degree(&x->s, &place[i]), 1.0);
+        x->at[i] = find_degree(&x->s, &place[i]);
     }
     x->load = find_degree(&x->s, &place[3]);
     x->force = 0.1;
@@ -62,12 +61,12 @@ static void spread_contacts(struct scene *x)
     if (x->contacts == 0 || x->contacts >= vertical) {
         die("%zu contacts among %zu degrees of freedom in direction z", x->contacts, vertical);
     }
-    x->direction = gsl_spmatrix_alloc(x->contacts, x->s.ndof);
+    x->at = need_memory(x->contacts, sizeof *x->at);
     for (size_t i = 0; i < x->s.ndof; i++) {
         if (x->s.dof[i].direction == 3) {
             x->load = i;
             if (placed < x->contacts && at++ * x->contacts >= placed * vertical) {
-                gsl_spmatrix_set(x->direction, placed++, i, 1.0);
+                x->at[placed++] = i;
             }
         }
     }
@@ -79,8 +78,9 @@ static void spread_contacts(struct scene *x)
 static tribo_system *create(const struct scene *x, size_t modes, int statics, double *first)
 {
     tribo_system *sys;
-    char message[200] = "";
-    need(tribo_system_reduced(&sys, x->s.mass, x->s.stiffness, x->direction, modes, statics, message, sizeof message), message);
+    tribo_model *model = model_of(&x->s, x->contacts, x->at, NULL);
+    need(tribo_system_reduce(&sys, model, modes, statics), tribo_model_message(model));
+    tribo_model_destroy(model);
     double *frequency = need_memory(tribo_system_dimension(sys), sizeof *frequency);
     need(tribo_system_get_frequencies(sys, frequency), NULL);
     need(tribo_system_set_damping_ratio(sys, DAMPING), NULL);
@@ -173,7 +173,7 @@ int main(int argc, char **argv)
         spread_contacts(&x);
         measure(&x, strtoul(argv[5], NULL, 10), argc == 7 ? !strcmp(argv[6], kind[1]) + 2 * !strcmp(argv[6], kind[2]) : 0, 0.0);
     }
-    gsl_spmatrix_free(x.direction);
+    free(x.at);
     free_structure(&x.s);
     return EXIT_SUCCESS;
 }

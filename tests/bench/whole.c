@@ -23,7 +23,7 @@ enum { STEPS = 200, PER_PERIOD = 100 };
 struct scene {
     struct structure s;
     size_t contacts, load;
-    gsl_spmatrix *direction; /* the last row is the load, a contact that stays open */
+    size_t *at; /* [contacts + 1] rows of the contacts; the last one is the load, a contact that stays open */
     double hz, limit;
 };
 
@@ -43,27 +43,26 @@ static void spread_contacts(struct scene *x)
     if (x->contacts == 0 || x->contacts >= vertical) {
         die("%zu contacts among %zu degrees of freedom in direction z", x->contacts, vertical);
     }
-    x->direction = gsl_spmatrix_alloc(x->contacts + 1, x->s.ndof);
+    x->at = need_memory(x->contacts + 1, sizeof *x->at);
     for (size_t i = 0; i < x->s.ndof; i++) {
         if (x->s.dof[i].direction == 3) {
             x->load = i;
             if (placed < x->contacts && at++ * x->contacts >= placed * vertical) {
-                gsl_spmatrix_set(x->direction, placed++, i, 1.0);
+                x->at[placed++] = i;
             }
         }
     }
-    gsl_spmatrix_set(x->direction, x->contacts, x->load, 1.0);
+    x->at[x->contacts] = x->load;
 }
 
 static tribo_system *create(const struct scene *x, size_t modes)
 {
     tribo_system *sys;
-    char message[200] = "";
+    tribo_model *model = model_of(&x->s, x->contacts + 1, x->at, NULL);
     double *limit = need_memory(x->contacts + 1, sizeof *limit), *force = need_memory(x->s.ndof, sizeof *force);
-    const int status =
-        modes ? tribo_system_reduced(&sys, x->s.mass, x->s.stiffness, x->direction, modes, 1, message, sizeof message)
-              : tribo_system_linear_sparse(&sys, x->s.mass, NULL, x->s.stiffness, x->direction, 0, message, sizeof message);
-    need(status, message);
+    need(modes ? tribo_system_reduce(&sys, model, modes, TRIBO_STATICS_MASS) : tribo_system_create(&sys, model),
+         tribo_model_message(model));
+    tribo_model_destroy(model);
     for (size_t i = 0; i < x->contacts; i++) {
         limit[i] = x->limit / (double)x->contacts;
     }
@@ -148,7 +147,7 @@ int main(int argc, char **argv)
         run(&x, modes, reduced);
         printf("difference %.1e\n", difference(whole, reduced));
     }
-    gsl_spmatrix_free(x.direction);
+    free(x.at);
     free_structure(&x.s);
     return modes && !(difference(whole, reduced) <= SAME);
 }

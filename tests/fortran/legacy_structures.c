@@ -1,4 +1,5 @@
 /* What legacy_structures.f does, by the functions of C. */
+#include "../make.h"
 #include "tape.h"
 #include "tribo/tribo_gsl.h"
 #include "../set_up_driver.h"
@@ -49,9 +50,9 @@ static tribo_system *make(int damped, size_t nmode, int static_contacts)
     gsl_spmatrix *m = mass_of_row(), *c = springs(0.1), *k = springs(1.0), *j = contacts();
     tribo_system *sys = NULL;
     if (nmode) {
-        tribo_system_reduced(&sys, m, k, j, nmode, static_contacts, NULL, 0);
+        reduced_system(&sys, m, k, j, nmode, static_contacts, NULL, 0);
     } else {
-        tribo_system_linear_sparse(&sys, m, damped ? c : NULL, k, j, 0, NULL, 0);
+        sparse_system(&sys, m, damped ? c : NULL, k, j, 0, NULL, 0);
     }
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(c);

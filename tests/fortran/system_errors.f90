@@ -153,7 +153,8 @@ contains
     call s%linear(one, one, one, one, 1, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, 'damping of a reduced system is set by tribo_system_set_damping_ratio')
     call s%linear(one(:0, :0), one(:0, :0), one(:0, :0), stat=stat, errmsg=msg)
-    call expect_error(stat, msg, TRIBO_ERR_SIZE, '0 degrees of freedom and 0 contacts')
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, &
+      '0 degrees of freedom and 0 contacts: sizes do not fit each other, or are too large')
     m = one
     m(1, 2) = nan
     call s%linear(one, m, one, stat=stat, errmsg=msg)

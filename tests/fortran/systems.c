@@ -1,4 +1,5 @@
 /* What systems.f90 does from Fortran, through the C interface: see tape.h. */
+#include "../make.h"
 #include "tape.h"
 #include "tribo/tribo_gsl.h"
 
@@ -227,23 +228,23 @@ void systems_play(void)
     reference(sys);
     put_one(tribo_system_belt(&sys, 1.5, 0.3, 0.2, 1.0, 0.8));
     reference(sys);
-    put_one(tribo_system_linear(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 0, NULL, 0));
+    put_one(dense_system(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 0, NULL, 0));
     linear(sys, 0);
-    put_one(tribo_system_linear(&sys, DOF, CONTACTS, mass[0], damping[0], stiffness[0], direction[0], 0, NULL, 0));
+    put_one(dense_system(&sys, DOF, CONTACTS, mass[0], damping[0], stiffness[0], direction[0], 0, NULL, 0));
     linear(sys, 0);
-    put_one(tribo_system_linear(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 2, NULL, 0));
+    put_one(dense_system(&sys, DOF, CONTACTS, mass[0], NULL, stiffness[0], direction[0], 2, NULL, 0));
     linear(sys, 1);
     gsl_spmatrix *m = sparse(mass[0], DOF), *c = sparse(damping[0], DOF), *k = sparse(stiffness[0], DOF),
                  *j = sparse(direction[0], CONTACTS);
-    put_one(tribo_system_linear_sparse(&sys, m, NULL, k, j, 0, NULL, 0));
+    put_one(sparse_system(&sys, m, NULL, k, j, 0, NULL, 0));
     linear(sys, 0);
-    put_one(tribo_system_linear_sparse(&sys, m, c, k, j, 0, NULL, 0));
+    put_one(sparse_system(&sys, m, c, k, j, 0, NULL, 0));
     linear(sys, 0);
-    put_one(tribo_system_linear_sparse(&sys, m, NULL, k, j, 2, NULL, 0));
+    put_one(sparse_system(&sys, m, NULL, k, j, 2, NULL, 0));
     linear(sys, 1);
-    put_one(tribo_system_reduced(&sys, m, k, j, 2, 0, NULL, 0));
+    put_one(reduced_system(&sys, m, k, j, 2, 0, NULL, 0));
     linear(sys, 1);
-    put_one(tribo_system_reduced(&sys, m, k, j, 1, 1, NULL, 0));
+    put_one(reduced_system(&sys, m, k, j, 1, 1, NULL, 0));
     truncation(sys);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(c);

@@ -17,6 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "tribo/tribo_gsl.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
@@ -166,7 +167,7 @@ static int create_linear(struct bytes *b, struct scene *s)
     s->given = n;
     s->wild = wild(mass, n * n) || wild(stiffness, n * n) || wild(damping, n * n) || wild(direction, c * n);
     const int status =
-        tribo_system_linear(&s->sys, n, c, mass, damped == 1 ? damping : NULL, stiffness, direction, nmode, text, sizeof text);
+        dense_system(&s->sys, n, c, mass, damped == 1 ? damping : NULL, stiffness, direction, nmode, text, sizeof text);
     demand(status == TRIBO_OK || text[0] != '\0', "status %d without a message", status);
     return status;
 }

@@ -1,3 +1,4 @@
+#include "make.h"
 #include "structure.h"
 
 #include <stdio.h>
@@ -238,8 +239,8 @@ tribo_system *structure_system(const struct structure *s)
 {
     char text[200] = "";
     tribo_system *sys = NULL;
-    const int status = tribo_system_linear(&sys, s->ndof, s->ncontact, s->mass, s->damped ? s->damping : NULL, s->stiffness,
-                                           s->direction, 0, text, sizeof text);
+    const int status = dense_system(&sys, s->ndof, s->ncontact, s->mass, s->damped ? s->damping : NULL, s->stiffness,
+                                    s->direction, 0, text, sizeof text);
     require(status == TRIBO_OK, "%s: %d: %s", s->name, status, text);
     for (size_t k = 0; k < 2; k++) {
         assert_ok(tribo_system_add_load(sys, s->load[k].omega, s->load[k].cosine, s->load[k].sine));

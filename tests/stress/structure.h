@@ -1,7 +1,8 @@
-/* Random linear structures with friction, of every kind that tribo_system_linear takes. */
+/* Random linear structures with friction, of every kind that dense_system takes. */
 #ifndef TRIBO_TESTS_STRUCTURE_H
 #define TRIBO_TESTS_STRUCTURE_H
 
+#include "make.h"
 #include "../validation/run.h"
 
 #define MOST_DOFS 12

@@ -1,3 +1,4 @@
+#include "make.h"
 #include "beam.h"
 
 #include "support.h"
@@ -30,7 +31,7 @@ tribo_system *beam_with_contacts(double limit)
     for (size_t i = 0; i < 3; i++) {
         gsl_spmatrix_set(direction, i, rows[i] - 1, 1.0);
     }
-    assert_ok(tribo_system_linear_sparse(&sys, mass, NULL, stiffness, direction, BEAM_MODES, NULL, 0));
+    assert_ok(sparse_system(&sys, mass, NULL, stiffness, direction, BEAM_MODES, NULL, 0));
     gsl_spmatrix_free(mass);
     gsl_spmatrix_free(stiffness);
     gsl_spmatrix_free(direction);

@@ -1,3 +1,4 @@
+#include "make.h"
 #include "coulomb.h"
 
 #include <string.h>
@@ -88,7 +89,7 @@ tribo_system *block(double mass, double stiffness, double limit)
 {
     const double one = 1.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &mass, NULL, &stiffness, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &mass, NULL, &stiffness, &one, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
     return sys;
 }

@@ -3,6 +3,7 @@
 #include <stdint.h>
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 #include "../set_up_driver.h"
 
@@ -196,13 +197,14 @@ TEST(settings)
         const char *method;
         int takes[SETTERS];
     } all[] = {
-        {"exact", {0, 0, 1, 0}},        {"event", {0, 1, 1, 0}},        {"auto", {0, 1, 1, 0}},  {"rk4/fixed", {1, 0, 0, 0}},
+        {"exact", {0, 0, 1, 0}},         {"event", {0, 1, 1, 0}},        {"auto", {0, 1, 1, 0}},  {"rk4/fixed", {1, 0, 0, 0}},
         {"central/fixed", {1, 0, 0, 0}}, {"moreau/fixed", {1, 0, 0, 0}}, {"rkf45", {1, 1, 0, 1}}, {"msbdf", {1, 1, 0, 1}},
     };
     const char *const name[] = {"dt", "abstol", "dt", "h"};
     const char *const answers[] = {"takes no step; rk4/fixed, central/fixed, moreau/fixed and GSL's adaptive methods do",
-                                "takes no tolerance; event, auto and GSL's adaptive methods do",
-                                "takes no output; exact, event and auto do", "takes no largest step; GSL's adaptive methods do"};
+                                   "takes no tolerance; event, auto and GSL's adaptive methods do",
+                                   "takes no output; exact, event and auto do",
+                                   "takes no largest step; GSL's adaptive methods do"};
     tribo_system *sys = chain(TRIBO_QUINN);
     tribo_driver *drv;
     char text[200];
@@ -365,7 +367,7 @@ static tribo_system *torn(void)
 {
     const double mass[] = {1.0}, stiffness[] = {1.0}, direction[] = {1.0, 1.0}, sine[] = {0.0, 1.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
     tribo_context *c = tribo_system_context(sys);
     assert_ok(tribo_system_add_base_motion(sys, 1.0, NULL, sine));
     assert_ok(tribo_set_coupling(c, TRIBO_PARTITION));
@@ -470,7 +472,7 @@ TEST(growth)
         struct seen seen = {0, 0, 0.0, {0}};
         tribo_system *sys;
         tribo_driver *drv;
-        assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
         assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.1));
         assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 0.1));
         assert_ok(set_up_driver(&drv, sys, method, 0.1, 1e-4, 1e-4));
@@ -498,7 +500,7 @@ TEST(no_contacts)
     const double one = 1.0, amplitude = 1.5, end = 8.0;
     double t = 0.0, y[3] = {1.0, 0.0, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 0, &one, NULL, &one, NULL, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 0, &one, NULL, &one, NULL, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.5, NULL, &amplitude));
     assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, NULL));
     tribo_driver *drv = driver_create(sys, method, 1e-3, 1e-8);
@@ -557,9 +559,12 @@ TEST(reals)
 TEST(rounding_modes)
 {
     const char *const methods[] = {"exact", "event", "central/fixed", "moreau/fixed", "rk4/fixed"};
-    const int modes[] = {FE_TONEAREST,
+    const int modes[] = {
+        FE_TONEAREST,
 #if defined(FE_UPWARD) && defined(FE_DOWNWARD) && defined(FE_TOWARDZERO)
-                         FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO
+        FE_UPWARD,
+        FE_DOWNWARD,
+        FE_TOWARDZERO
 #endif
     };
     double first[3];

@@ -1,6 +1,7 @@
 /* Energy: what is dissipated is what loads and moving bases put in, less what the structure keeps. */
 #include <string.h>
 
+#include "make.h"
 #include "model.h"
 
 /* Power into a structure, summed over the steps by the trapezoidal rule; forces come from a twin of the system, since an observer
@@ -97,7 +98,7 @@ TEST(open_contacts)
     double y[DIMENSION] = {1.0, 0.0, -1.0};
     const double before = mechanical(&m, y);
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, DOFS, CONTACTS, m.mass, NULL, m.stiffness, m.direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, DOFS, CONTACTS, m.mass, NULL, m.stiffness, m.direction, 0, NULL, 0));
     run(sys, "rk4/fixed", 1e-3, 0.0, 10.0, y);
     assert_exact(y[2 * DOFS], 0.0);
     assert_close(mechanical(&m, y) / before, 1.0, 1e-11);
@@ -117,7 +118,7 @@ TEST(far_limits)
         const double half = 0.5 * limit, wave = kind == 3 ? half : 0.0, tolerance = kind ? 1e-14 + 1e-15 * limit : 1e-14;
         double y[5] = {0.3, -0.2, 1.0, 0.5, 0.0};
         tribo_system *sys;
-        assert_ok(tribo_system_linear(&sys, 2, 1, mass, damping[kind], stiffness, direction, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 2, 1, mass, damping[kind], stiffness, direction, 0, NULL, 0));
         assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
         assert_ok(tribo_system_add_limit(sys, 2.0, NULL, &wave));
         run(sys, method, 0.1, 1e-15, 1e-1, y);

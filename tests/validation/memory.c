@@ -7,6 +7,7 @@
 #include <SuiteSparse_config.h>
 #endif
 
+#include "make.h"
 #include "memory.h"
 #include "model.h"
 #include "../set_up_driver.h"
@@ -66,8 +67,7 @@ static int make_oscillator(tribo_system **sys, tribo_driver **drv)
 
 static int make_linear(tribo_system **sys, const struct model *m, int damped, size_t nmode)
 {
-    return tribo_system_linear(sys, DOFS, CONTACTS, m->mass, damped ? m->damping : NULL, m->stiffness, m->direction, nmode, NULL,
-                               0);
+    return dense_system(sys, DOFS, CONTACTS, m->mass, damped ? m->damping : NULL, m->stiffness, m->direction, nmode, NULL, 0);
 }
 
 static int make_full(tribo_system **sys, tribo_driver **drv)
@@ -109,7 +109,7 @@ static int make_long(tribo_system **sys, int statics)
     }
     gsl_spmatrix_set(j, 0, 50, 1.0);
     gsl_spmatrix_set(j, 1, 120, 1.0);
-    const int status = tribo_system_reduced(sys, m, k, j, 3, statics, NULL, 0);
+    const int status = reduced_system(sys, m, k, j, 3, statics, NULL, 0);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(k);
     gsl_spmatrix_free(j);
@@ -222,7 +222,7 @@ static int advance_massless(tribo_system **sys, tribo_driver **drv, double coupl
     direction[2 * N + N - 1] = 0.0;
     direction[2 * N + 1] = 1.0;
     y[2] = 3.0;
-    int status = tribo_system_linear(&from, N, 3, mass, NULL, stiffness, direction, 0, NULL, 0);
+    int status = dense_system(&from, N, 3, mass, NULL, stiffness, direction, 0, NULL, 0);
     status = status ? status : tribo_system_clone(from, sys);
     tribo_system_destroy(from);
     status = status ? status : tribo_set_limit(tribo_system_context(*sys), limit);
@@ -259,7 +259,7 @@ static int make_graded(tribo_system **sys, tribo_driver **drv)
     const double k = 1e8, stiffness[] = {k, -k, 0.0, -k, k + 1.0, -1.0, 0.0, -1.0, 1.0}, direction[] = {1.0, 0.0, 0.0};
     const double mass[] = {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     (void)drv;
-    return tribo_system_linear(sys, 3, 1, mass, NULL, stiffness, direction, 2, NULL, 0);
+    return dense_system(sys, 3, 1, mass, NULL, stiffness, direction, 2, NULL, 0);
 }
 
 /* A periodic motion, one of a family since a contact never slips, and what its period holds. */

@@ -1,3 +1,4 @@
+#include "make.h"
 #include "model.h"
 
 /* A = shift I + G'G/DOFS, exactly symmetric. */
@@ -43,8 +44,8 @@ tribo_system *model_system(const struct model *m, int damped, size_t nmode, doub
 {
     char text[200] = "";
     tribo_system *sys = NULL;
-    const int status = tribo_system_linear(&sys, DOFS, CONTACTS, m->mass, damped ? m->damping : NULL, m->stiffness, m->direction,
-                                           nmode, text, sizeof text);
+    const int status = dense_system(&sys, DOFS, CONTACTS, m->mass, damped ? m->damping : NULL, m->stiffness, m->direction, nmode,
+                                    text, sizeof text);
     require(status == TRIBO_OK, "%d: %s", status, text);
     model_finish(m, sys, epsilon);
     return sys;

@@ -1,3 +1,4 @@
+#include "make.h"
 #include "pile.h"
 
 #include <math.h>
@@ -19,7 +20,7 @@ int pile_create(tribo_system **sys, double ratio, int even)
         }
         limit[i] = even ? 0.5 * (1.0 - height) : 0.5 * (1.0 - 0.5 * height - 0.3 * (double)(37 * i * i % 61) / 61.0);
     }
-    int status = tribo_system_linear(sys, N, N, mass, NULL, stiffness, direction, 0, NULL, 0);
+    int status = dense_system(sys, N, N, mass, NULL, stiffness, direction, 0, NULL, 0);
     if (!status) {
         status = tribo_set_limit(tribo_system_context(*sys), limit);
         status = status ? status : tribo_system_add_base_motion(*sys, 0.5, NULL, belt);

@@ -1,10 +1,11 @@
+#include "make.h"
 #include "search.h"
 
 struct search search_create(const char *method, size_t ndof, size_t contacts, const double *mass, const double *damping,
                             const double *stiffness, const double *direction, double omega, const double *cosine)
 {
     struct search s = {.ndof = ndof, .omega = omega, .period = 2.0 * PI / omega};
-    assert_ok(tribo_system_linear(&s.sys, ndof, contacts, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&s.sys, ndof, contacts, mass, damping, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(s.sys, omega, cosine, NULL));
     s.drv = driver_create(s.sys, method, 0.1, 1e-14);
     return s;

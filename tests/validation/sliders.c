@@ -1,3 +1,4 @@
+#include "make.h"
 #include "sliders.h"
 
 tribo_system *linear(size_t n, size_t c, const double *mass, const double *damping, const double *stiffness,
@@ -5,7 +6,7 @@ tribo_system *linear(size_t n, size_t c, const double *mass, const double *dampi
 {
     tribo_system *s = NULL;
     char text[200] = "";
-    const int status = tribo_system_linear(&s, n, c, mass, damping, stiffness, direction, 0, text, sizeof text);
+    const int status = dense_system(&s, n, c, mass, damping, stiffness, direction, 0, text, sizeof text);
     require(!status, "%s", text);
     return s;
 }

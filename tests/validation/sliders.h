@@ -2,9 +2,10 @@
 #ifndef TRIBO_TESTS_SLIDERS_H
 #define TRIBO_TESTS_SLIDERS_H
 
+#include "make.h"
 #include "run.h"
 
-/* tribo_system_linear, whose failure ends the test. */
+/* dense_system, whose failure ends the test. */
 tribo_system *linear(size_t n, size_t c, const double *mass, const double *damping, const double *stiffness,
                      const double *direction);
 

@@ -2,6 +2,7 @@
  * and they are trapped. */
 #include <string.h>
 
+#include "make.h"
 #include "tribo/tribo_gsl.h"
 
 #include "traps.h"
@@ -19,7 +20,7 @@ static tribo_system *immovable(void)
     const double direction[6] = {1.0, 0.0, 0.0, 0.0, 0.0, 1.0}, limit[3] = {0.2, 0.3, 0.1};
     const double load[2] = {1.0, 0.5}, driven[3] = {0.0, 0.7, 0.0};
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 2, 3, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&s, 2, 3, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(s), limit));
     assert_ok(tribo_system_add_load(s, 1.3, NULL, load));
     assert_ok(tribo_system_add_base_motion(s, 0.7, NULL, driven));
@@ -109,7 +110,7 @@ TEST(thrown)
     double y[5] = {0.0, 0.0, 1.0, -0.5, 0.0}, t = 0.0;
     tribo_system *s;
     tribo_driver *d;
-    assert_ok(tribo_system_linear(&s, 2, 2, mass, NULL, nothing, direction, 0, NULL, 0));
+    assert_ok(dense_system(&s, 2, 2, mass, NULL, nothing, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(s), limit));
     assert_quiet(set_up_driver(&d, s, "exact", 0.01, 0.0, 0.0));
     if (_i == 0 || set_traps()) {

@@ -99,7 +99,8 @@ struct compliant {
     double *pull;                        /* [soft][modes] B P */
 };
 
-static void find_soft(struct compliant *e, const struct reduced *r)
+/* Contacts with springs before their sliders (compliance, or NULL) are soft, and others that are not rigid. */
+static void find_soft(struct compliant *e, const struct reduced *r, const double *compliance)
 {
     for (size_t i = 0; i < e->contacts; i++) {
         const double *shape = e->shapes + i * e->modes, own = r->flexibility[i * e->contacts + i];
@@ -107,7 +108,7 @@ static void find_soft(struct compliant *e, const struct reduced *r)
         for (size_t k = 0; k < e->modes; k++) {
             whole += r->omega2[k] > 0.0 ? shape[k] * shape[k] / r->omega2[k] : 0.0;
         }
-        if (own > RIGID * whole) {
+        if ((compliance && compliance[i] > 0.0) || own > RIGID * whole) {
             e->contact[e->soft++] = i;
         }
     }
@@ -218,7 +219,7 @@ static int build_compliant(const struct model *m, const struct reduced *r, tribo
         e.pull = e.shapes + c * r->count;
         e.spring = e.pull + c * r->count;
         find_shapes(m, r, e.shapes);
-        find_soft(&e, r);
+        find_soft(&e, r, m->compliance);
         status = find_springs(m, &e, r);
     }
     struct model reduced = {.ndof = r->count + e.soft, .ncontact = c, .message = m->message, .size = m->size};
@@ -247,10 +248,28 @@ static int build_with_mass(const struct model *m, const struct reduced *r, tribo
     return status;
 }
 
+/* The flexibility of contacts grows by that of the springs before their sliders. 0 if out of memory. */
+static int add_compliance(const struct model *m, struct reduced *r)
+{
+    const size_t c = m->ncontact;
+    const int any = m->compliance && tribo_largest(m->compliance, c) > 0.0;
+    if (any && !r->residual) {
+        r->residual = calloc(c * (m->ndof + c), sizeof *r->residual);
+        r->flexibility = r->residual ? r->residual + c * m->ndof : NULL;
+    }
+    for (size_t i = 0; any && r->residual && i < c; i++) {
+        r->flexibility[i * c + i] += m->compliance[i];
+    }
+    return !any || r->residual;
+}
+
 int tribo_model_reduce(struct model *m, tribo_system **sys)
 {
     struct reduced r;
     int status = tribo_model_find_modes(m, &r);
+    if (!status && !add_compliance(m, &r)) {
+        status = tribo_model_no_memory(m);
+    }
     if (!status) {
         status = (r.residual ? build_compliant : build_with_mass)(m, &r, sys);
     }

@@ -350,7 +350,7 @@ static int loads_check_massless(const tribo_system *sys, enum drives drives, con
 {
     const struct massless *w = &sys->massless;
     const int of_load = drives == DRIVES_LOAD;
-    const size_t n = !x || !w->count || (of_load && sys->modes) ? 0 : of_load ? sys->ndof : sys->ncontact;
+    const size_t n = !x || !w->count || (of_load && sys->modes) ? 0 : of_load ? sys->given : sys->ncontact;
     for (size_t i = 0; i < n; i++) {
         if (x[i] != 0.0 && of_load && w->is[i]) {
             return tribo_system_fail(sys, TRIBO_ERR_UNSUPPORTED,

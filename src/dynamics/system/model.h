@@ -9,6 +9,8 @@ struct model {
     size_t ndof, ncontact, nmode;
     int statics; /* beside the modes, what steady forces at the contacts do: TRIBO_STATICS_... */
     struct matrix mass, damping, stiffness, direction;
+    const double *compliance; /* [ncontact] of the springs before sliders, 0: a rigid contact; NULL: all are rigid */
+    size_t sliders;           /* degrees of freedom without mass that stand for them, the last ones of ndof */
     char *message;
     size_t size;
 };
@@ -31,6 +33,10 @@ int tribo_model_factorize(const struct model *m, struct cholesky *c);
 
 /* structure.c: the system of all degrees of freedom, of matrices that need no check. */
 int tribo_model_build_whole(struct model *m, tribo_system **sys);
+
+/* sliders.c: adds a degree of freedom w without mass for each contact with compliance, a spring 1/compliance between w and the
+ * displacement of the contact, and lets the contact act on w. */
+int tribo_model_add_sliders(struct model *m);
 
 /* massless.c: a system by build_massive, which knows only degrees of freedom with mass, and those without mass beside it. */
 int tribo_model_build_massless(struct model *m, int (*build_massive)(struct model *, tribo_system **), tribo_system **sys);

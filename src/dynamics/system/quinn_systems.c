@@ -16,6 +16,19 @@ static int quinn_finish(tribo_system **sys, tribo_system *made, int status)
     return status;
 }
 
+/* n bodies of diagonal mass, as many contacts; stiffness and direction [n][n]. */
+static int build_dense(tribo_system **sys, size_t n, const double *mass, const double *stiffness, const double *direction)
+{
+    tribo_model *model = NULL;
+    int status = tribo_model_create(&model, n, n);
+    status = status ? status : tribo_model_set_mass_diagonal(model, mass);
+    status = status ? status : tribo_model_set_stiffness(model, stiffness);
+    status = status ? status : tribo_model_set_direction(model, direction);
+    status = status ? status : tribo_system_create(sys, model);
+    tribo_model_destroy(model);
+    return status;
+}
+
 int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, double omega)
 {
     if (!sys) {
@@ -23,7 +36,7 @@ int tribo_system_oscillator(tribo_system **sys, double limit, double alpha, doub
     }
     const double one = 1.0;
     tribo_system *s = NULL;
-    int status = tribo_system_linear(&s, 1, 1, &one, NULL, &one, &one, 0, NULL, 0);
+    int status = build_dense(&s, 1, &one, &one, &one);
     status = status ? status : tribo_set_limit(s->contacts, &limit);
     status = status ? status : tribo_system_add_load(s, omega, NULL, &alpha);
     return quinn_finish(sys, s, status);
@@ -34,10 +47,10 @@ int tribo_system_belt(tribo_system **sys, double kappa, double limit1, double li
     if (!sys) {
         return TRIBO_ERR_NULL;
     }
-    const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1.0, 0.0, 0.0, kappa}, direction[] = {1.0, 0.0, -1.0, 1.0};
+    const double mass[] = {1.0, 1.0}, stiffness[] = {1.0, 0.0, 0.0, kappa}, direction[] = {1.0, 0.0, -1.0, 1.0};
     const double limit[] = {limit1, limit2}, motion[] = {speed, 0.0};
     tribo_system *s = NULL;
-    int status = tribo_system_linear(&s, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0);
+    int status = build_dense(&s, 2, mass, stiffness, direction);
     status = status ? status : tribo_set_limit(s->contacts, limit);
     status = status ? status : tribo_system_add_base_motion(s, omega, NULL, motion);
     return quinn_finish(sys, s, status);

@@ -204,6 +204,7 @@ int tribo_model_build(struct model *m, tribo_system **sys)
 {
     tribo_system *s = NULL;
     int status = structure_check(m);
+    status = status || m->nmode ? status : tribo_model_add_sliders(m);
     if (!status) {
         status = m->nmode ? tribo_model_reduce(m, &s) : tribo_model_build_whole(m, &s);
     }
@@ -212,104 +213,7 @@ int tribo_model_build(struct model *m, tribo_system **sys)
         tribo_system_destroy(s);
         return status;
     }
+    s->given -= m->sliders;
     *sys = s;
     return TRIBO_OK;
-}
-
-static int check_sizes(const struct model *m, int damped)
-{
-    if (m->ndof == 0 || m->ndof > (size_t)1 << 24 || m->ncontact > (size_t)1 << 24) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%zu degree%s of freedom and %zu contact%s", m->ndof, plural(m->ndof),
-                                m->ncontact, plural(m->ncontact));
-    }
-    if (m->nmode > m->ndof) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", m->nmode, m->ndof,
-                                plural(m->ndof));
-    }
-    if (m->nmode && damped) {
-        return tribo_model_fail(m, TRIBO_ERR_UNSUPPORTED, "damping of a reduced system is set by tribo_system_set_damping_ratio");
-    }
-    return TRIBO_OK;
-}
-
-int tribo_system_linear(tribo_system **sys, size_t ndof, size_t ncontact, const double *mass, const double *damping,
-                        const double *stiffness, const double *direction, size_t nmode, char *message, size_t size)
-{
-    struct model m = {ndof, ncontact, nmode, .message = message, .size = size};
-    if (!sys || !mass || !stiffness || (!direction && ncontact)) {
-        return tribo_model_fail(&m, TRIBO_ERR_NULL, "%s is NULL",
-                                !sys         ? "sys"
-                                : !mass      ? "mass"
-                                : !stiffness ? "stiffness"
-                                             : "direction");
-    }
-    const int status = check_sizes(&m, damping != NULL);
-    if (status) {
-        return status;
-    }
-    if (!tribo_matrix_from_dense(&m.mass, ndof, ndof, mass) || !tribo_matrix_from_dense(&m.stiffness, ndof, ndof, stiffness) ||
-        !tribo_matrix_from_dense(&m.direction, ncontact, ndof, direction) ||
-        (damping && !tribo_matrix_from_dense(&m.damping, ndof, ndof, damping))) {
-        tribo_model_free(&m);
-        return tribo_model_no_memory(&m);
-    }
-    return tribo_model_build(&m, sys);
-}
-
-static int check_square(const struct model *m, const char *name, const gsl_spmatrix *a, size_t rows)
-{
-    if (a && (a->size1 != rows || a->size2 != m->ndof)) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s is %zu x %zu, not %zu x %zu", name, a->size1, a->size2, rows, m->ndof);
-    }
-    return TRIBO_OK;
-}
-
-/* What both calls below do. */
-static int create_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping, const gsl_spmatrix *stiffness,
-                         const gsl_spmatrix *direction, struct model *m)
-{
-    if (!sys || !mass || !stiffness || !direction) {
-        return tribo_model_fail(m, TRIBO_ERR_NULL, "%s is NULL",
-                                !sys         ? "sys"
-                                : !mass      ? "mass"
-                                : !stiffness ? "stiffness"
-                                             : "direction");
-    }
-    m->ndof = mass->size1;
-    m->ncontact = direction->size1;
-    int status = check_sizes(m, damping != NULL);
-    status = status ? status : check_square(m, "mass", mass, m->ndof);
-    status = status ? status : check_square(m, "damping", damping, m->ndof);
-    status = status ? status : check_square(m, "stiffness", stiffness, m->ndof);
-    status = status ? status : check_square(m, "direction", direction, m->ncontact);
-    if (status) {
-        return status;
-    }
-    if (!tribo_matrix_from_sparse(&m->mass, mass) || !tribo_matrix_from_sparse(&m->stiffness, stiffness) ||
-        !tribo_matrix_from_sparse(&m->direction, direction) || (damping && !tribo_matrix_from_sparse(&m->damping, damping))) {
-        tribo_model_free(m);
-        return tribo_model_no_memory(m);
-    }
-    return tribo_model_build(m, sys);
-}
-
-int tribo_system_linear_sparse(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *damping,
-                               const gsl_spmatrix *stiffness, const gsl_spmatrix *direction, size_t nmode, char *message,
-                               size_t size)
-{
-    struct model m = {.nmode = nmode, .message = message, .size = size};
-    return create_sparse(sys, mass, damping, stiffness, direction, &m);
-}
-
-int tribo_system_reduced(tribo_system **sys, const gsl_spmatrix *mass, const gsl_spmatrix *stiffness,
-                         const gsl_spmatrix *direction, size_t nmode, int static_contacts, char *message, size_t size)
-{
-    struct model m = {.nmode = nmode, .statics = static_contacts, .message = message, .size = size};
-    if (nmode == 0) {
-        return tribo_model_fail(&m, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
-    }
-    if (static_contacts < TRIBO_STATICS_NONE || static_contacts > TRIBO_STATICS_COMPLIANCE) {
-        return tribo_model_fail(&m, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", static_contacts);
-    }
-    return create_sparse(sys, mass, NULL, stiffness, direction, &m);
 }

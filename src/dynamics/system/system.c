@@ -34,7 +34,7 @@ int tribo_system_check_solved(const tribo_system *sys, const char *what)
     return sys->unsolved ? tribo_system_fail(
                                sys, TRIBO_ERR_UNSUPPORTED,
                                "%s needs accelerations: %zu degree%s of freedom are more than the %d that are solved for with a "
-                               "mass matrix that is not diagonal; take moreau/fixed, or tribo_system_reduced",
+                               "mass matrix that is not diagonal; take moreau/fixed, or tribo_system_reduce",
                                what, sys->ndof, plural(sys->ndof), DENSE_MOST)
                          : TRIBO_OK;
 }
@@ -128,7 +128,8 @@ void tribo_system_accelerate(const tribo_system *sys, const double *force, doubl
         }
         return;
     }
-    memcpy(to, force, sys->ndof * sizeof *to);
+    memcpy(to, force, sys->given * sizeof *to);
+    memset(to + sys->given, 0, (sys->ndof - sys->given) * sizeof *to); /* sliders carry no load */
     if (sys->unsolved) {
         return;
     }

@@ -76,7 +76,8 @@ static void read_any(const char *path)
     if (is_list(path)) {
         free(read_degrees(path, &count));
     } else {
-        gsl_spmatrix_free(read_matrix(path, &rows));
+        struct sparse m = read_matrix(path, &rows);
+        free_sparse(&m);
     }
 }
 
@@ -110,14 +111,15 @@ static void assert_refused(const char *path, const char *text, const char *messa
 
 static void assert_is_chain(const char *path)
 {
-    gsl_spmatrix *m = read_matrix(path, &rows);
-    require(m->nz == 10, "%s: %zu entries", path, m->nz);
+    struct sparse m = read_matrix(path, &rows);
+    require(m.first[ROWS] == 10, "%s: %zu entries", path, m.first[ROWS]);
     for (size_t i = 0; i < ROWS; i++) {
-        for (size_t j = 0; j < ROWS; j++) {
-            assert_exact(gsl_spmatrix_get(m, i, j), chain[i][j]);
+        for (size_t k = m.first[i]; k < m.first[i + 1]; k++) {
+            assert_exact(m.val[k], chain[i][m.col[k]]);
+            require(k == m.first[i] || m.col[k] > m.col[k - 1], "%s: columns of row %zu", path, i);
         }
     }
-    gsl_spmatrix_free(m);
+    free_sparse(&m);
 }
 
 static void assert_chain(const char *path, const char *text)
@@ -174,17 +176,16 @@ TEST(order)
         }
     }
     fclose(file);
-    gsl_spmatrix *m = read_matrix("many.mas", &(struct rows){MANY, "many.dof"});
+    struct sparse m = read_matrix("many.mas", &(struct rows){MANY, "many.dof"});
     remove("many.mas");
-    require(m->nz == 3 * MANY - 2, "%zu entries", m->nz);
+    require(m.first[MANY] == 3 * MANY - 2, "%zu entries", m.first[MANY]);
     for (size_t i = 0; i < MANY; i++) {
-        const size_t first = (size_t)m->p[i] + (i > 0);
-        require((size_t)m->i[first] == i && m->data[first] == (double)(i + 1), "diagonal of row %zu", i);
-        require(i == 0 || ((size_t)m->i[first - 1] == i - 1 && m->data[first - 1] == -0.5 * (double)i), "row %zu", i);
-        require(i + 1 == MANY || ((size_t)m->i[first + 1] == i + 1 && m->data[first + 1] == -0.5 * (double)(i + 1)), "row %zu",
-                i);
+        const size_t first = m.first[i] + (i > 0);
+        require(m.col[first] == i && m.val[first] == (double)(i + 1), "diagonal of row %zu", i);
+        require(i == 0 || (m.col[first - 1] == i - 1 && m.val[first - 1] == -0.5 * (double)i), "row %zu", i);
+        require(i + 1 == MANY || (m.col[first + 1] == i + 1 && m.val[first + 1] == -0.5 * (double)(i + 1)), "row %zu", i);
     }
-    gsl_spmatrix_free(m);
+    free_sparse(&m);
 }
 END_TEST
 
@@ -326,8 +327,9 @@ END_TEST
 /* Exponents as Nastran and old Fortran write them; hexadecimal digits d are digits. */
 TEST(fortran_exponents)
 {
-    static const char written[] = "1 1  4.0000000000000D+02\n1 2 -2.0000000000000d+02\n2 2  4.0D2\n1 3  0.D0\n2 3 -.2D+3\n3 3  400D0\n"
-                                  "1 4  0.0000000000000D+00\n3 4 -2.0000000000000D+02\n4 4  2.0000000000000D+02\n";
+    static const char written[] =
+        "1 1  4.0000000000000D+02\n1 2 -2.0000000000000d+02\n2 2  4.0D2\n1 3  0.D0\n2 3 -.2D+3\n3 3  400D0\n"
+        "1 4  0.0000000000000D+00\n3 4 -2.0000000000000D+02\n4 4  2.0000000000000D+02\n";
     assert_chain("p.sti", written);
     assert_refused("p.sti", "1 1 4.0D\n", "\"4.0D\" is no finite number");
     assert_refused("p.sti", "1 1 4.0D+\n", "\"4.0D+\" is no finite number");
@@ -336,4 +338,5 @@ TEST(fortran_exponents)
 }
 END_TEST
 
-TEST_MAIN("reader", {members, 1}, {fortran_exponents, 1}, {matrices, 1}, {places, 1}, {order, 1}, {refusals, 1}, {inputs, 1}, {cut_off, 1}, {damaged, 1})
+TEST_MAIN("reader", {members, 1}, {fortran_exponents, 1}, {matrices, 1}, {places, 1}, {order, 1}, {refusals, 1}, {inputs, 1},
+          {cut_off, 1}, {damaged, 1})

@@ -2,6 +2,7 @@
  * integration of its own. */
 #include <string.h>
 
+#include "make.h"
 #include "model.h"
 #include "../../set_up_driver.h"
 
@@ -50,7 +51,7 @@ static tribo_system *block(size_t contacts, double limit, double belt)
         part[i] = limit / (double)contacts;
     }
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, contacts, &one, NULL, &one, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, contacts, &one, NULL, &one, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, speed, NULL));
     assert_ok(tribo_set_limit(tribo_system_context(sys), part));
     return sys;
@@ -104,7 +105,7 @@ TEST(code_aster_sdnd106)
     const double mass[] = {5.0, 0.0, 0.0, 5.0}, k = 1e4, stiffness[] = {k, -k, -k, k}, direction[] = {1.0, 0.0};
     const double load[] = {0.0, 3000.0}, limit = 2000.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
     assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
     set_static(sys, 1.5, 0.0);
@@ -135,8 +136,8 @@ TEST(equal_blocks)
     const double stiffness[] = {1.0 + none, -none, -none, 1.0 + none}, direction[] = {1.0, 0.0, 0.0, 1.0};
     const double pull[] = {2.0, -2.0}, one = 1.0, limit[] = {1.0, 1.0};
     tribo_system *sys, *single;
-    assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
-    assert_ok(tribo_system_linear(&single, 1, 1, &one, NULL, &alone, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&single, 1, 1, &one, NULL, &alone, &one, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.3, NULL, pull));
     assert_ok(tribo_system_add_load(single, 0.3, NULL, pull));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
@@ -234,7 +235,7 @@ TEST(held_after_all)
     static const char *const methods[] = {"exact", "event", "moreau/fixed", "central/fixed"};
     double y[5] = {0.0}, t = 0.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 2, one, NULL, one, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, one, NULL, one, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
@@ -340,7 +341,7 @@ TEST(relieved_by_speed)
     const double pull[] = {5.0, 0.0}, more[] = {0.0, 0.1}, v[] = {0.3, 0.0}, none[] = {0.0, 0.0};
     double limit[] = {1.0, 9.0}, f[2], y[5] = {0.0, 0.0, 0.3, 0.0, 0.0}, t = 0.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 2, one, NULL, one, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, one, NULL, one, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.0, pull, NULL));
     assert_ok(tribo_system_add_load(sys, 1.0, NULL, more));
     tribo_context *c = tribo_system_context(sys);

@@ -2,6 +2,7 @@
  * Who breaks away then, and what comes of it, all methods agree about. */
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 #include "../../set_up_driver.h"
 
@@ -49,7 +50,7 @@ static struct scene random_scene(struct random *g)
 static tribo_system *system_of(const struct scene *s)
 {
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, s->bodies, s->contacts, s->mass, NULL, s->stiffness, s->direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, s->bodies, s->contacts, s->mass, NULL, s->stiffness, s->direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), s->limit));
     assert_ok(tribo_set_static(tribo_system_context(sys), s->ratio, NULL));
     assert_ok(tribo_system_add_load(sys, s->omega, NULL, s->pull));
@@ -174,7 +175,7 @@ static void between_ground_and_base(const char *method, double begin, size_t swi
     tribo_system *sys;
     tribo_driver *drv;
     cosine[swings] = -0.5;
-    assert_ok(tribo_system_linear(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
     assert_ok(tribo_system_add_base_motion(sys, 0.5, cosine, NULL));
@@ -215,7 +216,7 @@ TEST(many_hold)
     for (size_t k = 0; k < MANY * MODES; k++) {
         direction[k] = uniform(&g, -1.0, 1.0);
     }
-    assert_ok(tribo_system_linear(&sys, MODES, MANY, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, MODES, MANY, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 1e3));
     assert_ok(tribo_system_add_load(sys, 0.7, NULL, load));
     run(sys, "exact", 1.0, 0.0, 3.0, y);

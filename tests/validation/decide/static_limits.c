@@ -2,6 +2,7 @@
  * own, and methods against each other. */
 #include <string.h>
 
+#include "make.h"
 #include "coulomb.h"
 #include "model.h"
 
@@ -145,7 +146,7 @@ TEST(doubled)
         double y[3] = {0.0}, z[3] = {0.0};
         const double *part = k ? uneven : even;
         tribo_system *sys, *single = block(1.0, 1.0, 0.4);
-        assert_ok(tribo_system_linear(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
         assert_ok(tribo_set_limit(tribo_system_context(sys), part));
         assert_ok(tribo_system_add_limit(sys, 0.8, part, NULL));
         add_limit(single, 0.8, 0.4, 0.0);
@@ -265,7 +266,7 @@ TEST(turning_belt)
                  belt[] = {0.4, 0.0};
     double y[3] = {0.0}, t = 0.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 2, &mass, NULL, &stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 2, &mass, NULL, &stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
     assert_ok(tribo_system_add_load(sys, 0.0, &load, NULL));

@@ -2,6 +2,7 @@
  * loads that just exceed a limit; and what cannot be followed ends soon and says so. */
 #include <string.h>
 
+#include "make.h"
 #include "coulomb.h"
 #include "run.h"
 
@@ -25,7 +26,7 @@ static tribo_system *pack(size_t n, double limit)
         }
     }
     load[n - 1] = 1.0;
-    assert_ok(tribo_system_linear(&sys, n, n, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, n, n, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
     assert_ok(tribo_system_add_load(sys, 0.5, NULL, load));
     return sys;
@@ -95,7 +96,7 @@ TEST(fast_decay)
 {
     const double mass = 1.0, damping = 1e9, stiffness = 1.0, direction = 1.0, load = 2.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &mass, &damping, &stiffness, &direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &mass, &damping, &stiffness, &direction, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     assert_ok(tribo_system_add_load(sys, 1.0, NULL, &load));
     tribo_driver *drv = driver_create(sys, "exact", 1.0, 0.0);
@@ -123,7 +124,7 @@ TEST(what_cannot_be_followed)
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 
-    assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &minus, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &one, NULL, &minus, &one, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     assert_ok(tribo_system_add_load(sys, 1.0, NULL, &two));
     drv = driver_create(sys, method, 1.0, 1e-10);
@@ -166,7 +167,7 @@ static tribo_system *clutch(struct random *g)
     const double swing = big * uniform(g, 1.02, 1.4), phase = uniform(g, -0.3, 0.3), cosine[] = {0.0, 0.0, swing * cos(phase)};
     const double sine[] = {uniform(g, 0.0, 0.1) * limit[0], uniform(g, 0.0, 0.1) * limit[1], swing * sin(phase)};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 3, 3, mass, damping, mass, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 3, 3, mass, damping, mass, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     assert_ok(tribo_system_add_load(sys, 1.0, load, NULL));
     assert_ok(tribo_system_add_limit(sys, 2.0, cosine, sine));

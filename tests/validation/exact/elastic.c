@@ -1,4 +1,5 @@
 /* Elastic contacts: sliders without mass on springs, in method "exact"; and what else has no mass. */
+#include "make.h"
 #include "sliders.h"
 
 #include <string.h>
@@ -281,12 +282,12 @@ static gsl_spmatrix *sparse_of(const double *a, size_t rows)
     return m;
 }
 
-static tribo_system *sparse_system(const struct scene *s)
+static tribo_system *scene_system(const struct scene *s)
 {
     gsl_spmatrix *m = sparse_of(s->mass, ALL), *k = sparse_of(s->stiffness, ALL), *j = sparse_of(s->direction, SLIDERS + RIGID);
     tribo_system *sys = NULL;
     char text[200] = "";
-    const int status = tribo_system_linear_sparse(&sys, m, NULL, k, j, 0, text, sizeof text);
+    const int status = sparse_system(&sys, m, NULL, k, j, 0, text, sizeof text);
     require(!status, "%s", text);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(k);
@@ -331,7 +332,7 @@ static void conserves(const char *method, int seed, double tolerance)
 {
     struct random r = random_of(seed);
     const struct scene s = scene_of(&r, seed % 2, seed % 5 > 2);
-    tribo_system *sys = seed % 3 ? linear(ALL, SLIDERS + RIGID, s.mass, NULL, s.stiffness, s.direction) : sparse_system(&s);
+    tribo_system *sys = seed % 3 ? linear(ALL, SLIDERS + RIGID, s.mass, NULL, s.stiffness, s.direction) : scene_system(&s);
     tribo_driver *d = driver_create(sys, method, 1e-3, 1e-13);
     double t = 0.0, y[2 * ALL + 1] = {0.0}, most;
     assert_ok(tribo_set_limit(tribo_system_context(sys), s.limit));
@@ -400,7 +401,7 @@ TEST(energy_of_return)
 static int create(const double *mass, const double *damping, const double *stiffness, const double *direction, char *text)
 {
     tribo_system *s = NULL;
-    const int status = tribo_system_linear(&s, 3, 2, mass, damping, stiffness, direction, 0, text, 200);
+    const int status = dense_system(&s, 3, 2, mass, damping, stiffness, direction, 0, text, 200);
     tribo_system_destroy(s);
     return status;
 }

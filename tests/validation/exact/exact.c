@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "beam.h"
 #include "coulomb.h"
 #include "model.h"
@@ -31,7 +32,7 @@ TEST(growth_that_stops)
     const double one = 1.0, spring = -1.0, limit = 5.0;
     double t = 0.0, y[3] = {1.0, 1.0, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &spring, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &one, NULL, &spring, &one, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
     tribo_driver *drv = driver_create(sys, "exact", 1.0, 0.0);
     driver_advance(drv, &t, 2000.0, y);
@@ -146,7 +147,7 @@ TEST(resonance_elsewhere)
 {
     const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1.0, 0.0, 0.0, 4.0}, direction[] = {1.0, 0.0}, load[] = {3.0, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 2.0, load, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
     double y[5] = {0.0, 1.0, 0.0, 0.0, 0.0}, want[5] = {0.0, 1.0, 0.0, 0.0, 0.0};
@@ -169,7 +170,7 @@ TEST(resonance_beside_damping)
     double t = 0.0, y[7] = {0};
     tribo_system *sys;
     tribo_driver *exact;
-    assert_ok(tribo_system_linear(&sys, 3, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 3, 1, mass, damping, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 2.0, load, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
     y[0] = 1.0;
@@ -195,7 +196,7 @@ TEST(held_together)
     const double direction[] = {-1.0, 1.0, 1.0, 0.0}, limit[] = {50.0, 0.05}, load[] = {0.3028, 0.0};
     double y[5] = {0}, want[5] = {0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 2, mass, _i ? damping : NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, mass, _i ? damping : NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.447, NULL, load));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     run(sys, "exact", 1.0, 0.0, 20.0, y);
@@ -435,7 +436,7 @@ TEST(unsupported)
     const double one = 1.0, two = 2.0;
     double t = 0.5, y[3] = {0.25, 2.0, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &one, &two, &one, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &one, &two, &one, &one, 0, NULL, 0));
     tribo_driver *drv = driver_create(sys, "exact", 1.0, 0.0);
     assert_status(tribo_driver_advance(drv, &t, 3.0, y), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_driver_message(drv), "critically damped");
@@ -492,7 +493,7 @@ TEST(limits_through_zero)
         char text[200];
         tribo_system *sys;
         double t = 0.0, y[3] = {0.0}, before = 0.0;
-        assert_ok(tribo_system_linear(&sys, 1, 1, &one, &damping, &one, &one, 0, text, sizeof text));
+        assert_ok(dense_system(&sys, 1, 1, &one, &damping, &one, &one, 0, text, sizeof text));
         assert_ok(tribo_set_limit(tribo_system_context(sys), &rest));
         assert_ok(tribo_system_add_limit(sys, 0.0, &constant, NULL));
         assert_ok(tribo_system_add_load(sys, 1.6, &one, NULL));
@@ -515,7 +516,7 @@ TEST(limits_through_zero)
     assert_close(over[0], over[1], fmax(1e-7 * over[1], 1e-19 * big));
 }
 
-TEST_MAIN("exact", {limits_through_zero, 8}, {reference_values, REFERENCES}, {events_of_the_chain, 1}, {growth_that_stops, 1}, {chains, 6},
-          {beam_against_event, 3}, {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1}, {resonance_beside_damping, 1},
-          {held_together, 2}, {balance_of_energy, 8}, {observer_sees_the_motion, 1}, {observer_stops, 1}, {in_pieces, 1},
-          {automatic, 1}, {automatic_runs, 1}, {unsupported, 1}, {tables, 2}, {creation, 1})
+TEST_MAIN("exact", {limits_through_zero, 8}, {reference_values, REFERENCES}, {events_of_the_chain, 1}, {growth_that_stops, 1},
+          {chains, 6}, {beam_against_event, 3}, {stuck_for_good, 2}, {resonance, 1}, {resonance_elsewhere, 1},
+          {resonance_beside_damping, 1}, {held_together, 2}, {balance_of_energy, 8}, {observer_sees_the_motion, 1},
+          {observer_stops, 1}, {in_pieces, 1}, {automatic, 1}, {automatic_runs, 1}, {unsupported, 1}, {tables, 2}, {creation, 1})

@@ -1,4 +1,5 @@
 /* What is known of a structure with contacts held: modes, forces of those that hold, and what cannot be. */
+#include "make.h"
 #include "dynamics/exact/divided.h"
 #include "dynamics/exact/modal.h"
 #include "support.h"
@@ -19,7 +20,7 @@ static tribo_system *sandwich(double light)
     const double mass[] = {light, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.25}, direction[] = {1.0, 0.0, 0.0, -1.0, 1.0, 0.0};
     const double stiffness[] = {0.0, 0.0, 0.0, 0.0, 4.0, -4.0, 0.0, -4.0, 4.0}, load[] = {0.5, 3.0, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 3, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 3, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 1.0, load, NULL));
     return sys;
 }
@@ -86,7 +87,7 @@ TEST(lever)
     const unsigned char holds[] = {1};
     tribo_system *sys;
     struct modal *h;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(decompose(&h, sys, mode, holds));
     ck_assert_uint_eq(h->modes, 1);
     assert_close(h->omega2[0], omega2, 1e-15);
@@ -104,7 +105,7 @@ TEST(too_many_hold)
     tribo_system *sys;
     struct modal *h;
     stain(&h, sizeof h);
-    assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_status(decompose(&h, sys, mode, holds), TRIBO_ERR_INDEFINITE);
     assert_says(tribo_message(tribo_system_context(sys)), "contact 1 cannot hold");
     ck_assert(stained(&h, sizeof h));
@@ -138,8 +139,7 @@ static tribo_system *row_of_bodies(struct random *r, double damping)
     direction[BODIES * BODIES + 1] = 1.0;
     direction[BODIES * BODIES + 5] = -1.0;
     tribo_system *sys;
-    assert_ok(
-        tribo_system_linear(&sys, BODIES, CONTACTS, mass, damping > 0.0 ? viscous : NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, BODIES, CONTACTS, mass, damping > 0.0 ? viscous : NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.3, load, NULL));
     return sys;
 }
@@ -258,7 +258,7 @@ TEST(one_sided)
     const unsigned char holds[] = {1};
     tribo_system *sys;
     struct modal *h;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
     assert_ok(decompose(&h, sys, slip, holds));
     ck_assert_uint_eq(h->modes, 1);
     ck_assert_uint_eq(h->outputs, 1);
@@ -284,7 +284,7 @@ TEST(free_motions)
             }
         }
         tribo_system *sys;
-        assert_ok(tribo_system_linear(&sys, 4, 1, mass, NULL, stiffness, direction, 4, NULL, 0));
+        assert_ok(dense_system(&sys, 4, 1, mass, NULL, stiffness, direction, 4, NULL, 0));
         assert_ok(tribo_system_get_frequencies(sys, omega));
         assert_all_exact(omega, ((const double[2]){0.0}), 2);
         for (size_t m = 0; m < 4; m++) {
@@ -317,7 +317,7 @@ TEST(moved_alike)
     for (int alone = 0; alone < 2; alone++) {
         tribo_system *sys;
         tribo_driver *drv;
-        assert_ok(tribo_system_linear(&sys, 4, alone ? 1 : 2, mass, NULL, stiffness, direction[alone], 1, NULL, 0));
+        assert_ok(dense_system(&sys, 4, alone ? 1 : 2, mass, NULL, stiffness, direction[alone], 1, NULL, 0));
         assert_ok(tribo_set_limit(tribo_system_context(sys), limit + alone));
         assert_ok(tribo_system_add_load(sys, 0.8, load, NULL));
         assert_ok(tribo_system_contacts(sys, 0.0, y[alone], v, NULL, NULL));

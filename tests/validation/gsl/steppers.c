@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "coulomb.h"
 #include "../../set_up_driver.h"
 
@@ -290,7 +291,7 @@ TEST(singular_matrices)
         for (double dt = 0.5; dt < 9.0; dt *= 2.0) {
             double t = 0.0, y[3] = {1.0, 0.0, 0.0};
             tribo_system *sys;
-            assert_ok(tribo_system_linear(&sys, 1, 0, &one, k ? &drive[k] : NULL, &stiffness, NULL, 0, NULL, 0));
+            assert_ok(dense_system(&sys, 1, 0, &one, k ? &drive[k] : NULL, &stiffness, NULL, 0, NULL, 0));
             tribo_driver *drv = NULL;
             assert_ok(set_up_driver(&drv, sys, steppers[_i].name, dt, 1e-7, 1e-7));
             driver_advance(drv, &t, 4.0, y);

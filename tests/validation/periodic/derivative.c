@@ -1,4 +1,5 @@
 /* Periodic motions of structures with many modes: no step makes a matrix, and what steps apply is what the matrix is. */
+#include "make.h"
 #include "dynamics/driver.h"
 #include "dynamics/periodic/shooting.h"
 #include "support.h"
@@ -39,7 +40,7 @@ static tribo_system *row(struct random *r, int coupled)
             direction[i][k] = k == 9 * i + 2 ? 1.0 : k == 9 * i + 5 && i % 2 ? -1.0 : 0.0;
         }
     }
-    assert_ok(tribo_system_linear(&sys, DOFS, CONTACTS, mass[0], damping[0], stiffness[0], direction[0], 0, NULL, 0));
+    assert_ok(dense_system(&sys, DOFS, CONTACTS, mass[0], damping[0], stiffness[0], direction[0], 0, NULL, 0));
     return sys;
 }
 

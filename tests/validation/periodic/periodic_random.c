@@ -1,5 +1,6 @@
 /* Periodic motions of random damped structures, 1 to 20 degrees of freedom and 1 to 8 contacts, from zeros: all are found, come
  * back, are where marching leads to; and multipliers are those of the map that tribo_driver_advance is. */
+#include "make.h"
 #include "run.h"
 
 #include <string.h>
@@ -85,7 +86,7 @@ static void structure_create(struct structure *s, int seed)
     s->ncontact = 1 + below(&r, CONTACTS);
     make_structure(&r, s);
     make_contacts(&r, s);
-    assert_ok(tribo_system_linear(&s->sys, s->ndof, s->ncontact, s->mass, s->damping, s->stiffness, s->direction, 0, NULL, 0));
+    assert_ok(dense_system(&s->sys, s->ndof, s->ncontact, s->mass, s->damping, s->stiffness, s->direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(s->sys), s->limit));
     add_loads(&r, s);
 }

@@ -1,5 +1,6 @@
 /* What may be asked of searches for periodic motions, and of what they found: errors, other methods, static limits, and hard
  * cases. */
+#include "make.h"
 #include "search.h"
 
 #include <string.h>
@@ -261,7 +262,7 @@ TEST(not_odd)
         m[i * N + i] = 1.0;
         c[i * N + i] = 4.0752852251347654e-4 * (double)(i + 1);
     }
-    assert_ok(tribo_system_linear(&sys, N, 1, m, c, k, j, 0, NULL, 0));
+    assert_ok(dense_system(&sys, N, 1, m, c, k, j, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
     assert_ok(tribo_set_static(tribo_system_context(sys), &ratio, NULL));
     assert_ok(tribo_system_add_load(sys, omega, load, NULL));

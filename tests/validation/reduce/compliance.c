@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "beam.h"
 #include "run.h"
 
@@ -20,7 +21,7 @@ static tribo_system *beam(size_t nmode, int statics, double limit)
     for (size_t i = 0; i < HELD; i++) {
         gsl_spmatrix_set(direction, i, rows[i], 1.0);
     }
-    const int status = tribo_system_reduced(&sys, mass, stiffness, direction, nmode, statics, text, sizeof text);
+    const int status = reduced_system(&sys, mass, stiffness, direction, nmode, statics, text, sizeof text);
     require(!status, "%s", text);
     gsl_spmatrix_free(mass);
     gsl_spmatrix_free(stiffness);
@@ -168,12 +169,12 @@ TEST(free_bodies)
         gsl_spmatrix_set(both, i, i, 1.0);
     }
     gsl_spmatrix_set(one, 0, 0, 1.0);
-    assert_status(tribo_system_reduced(&sys, mass, stiffness, both, 1, TRIBO_STATICS_COMPLIANCE, text, sizeof text),
+    assert_status(reduced_system(&sys, mass, stiffness, both, 1, TRIBO_STATICS_COMPLIANCE, text, sizeof text),
                   TRIBO_ERR_UNSUPPORTED);
     assert_says(text, "the flexibility that 1 mode leaves to contact 1 is that of other contacts");
-    assert_status(tribo_system_reduced(&sys, mass, stiffness, one, 1, 3, text, sizeof text), TRIBO_ERR_RANGE);
+    assert_status(reduced_system(&sys, mass, stiffness, one, 1, 3, text, sizeof text), TRIBO_ERR_RANGE);
     assert_says(text, "static_contacts = 3");
-    assert_ok(tribo_system_reduced(&sys, mass, stiffness, one, 1, TRIBO_STATICS_COMPLIANCE, text, sizeof text));
+    assert_ok(reduced_system(&sys, mass, stiffness, one, 1, TRIBO_STATICS_COMPLIANCE, text, sizeof text));
     assert_ok(tribo_system_get_frequencies(sys, omega));
     assert_exact(omega[0], 0.0);
     ck_assert(isinf(omega[1]));

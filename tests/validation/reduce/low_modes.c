@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 
 /* -------------------------------------------------------------------------------------------------------- steel beams */
@@ -54,7 +55,7 @@ static int bar_system(tribo_system **sys, const struct bar *bar, size_t nmode, c
     k[0] += v.spring;
     k[(n - 2) * n + n - 2] += v.spring;
     j[bar->elements / 2 * 2] = 1.0;
-    const int status = tribo_system_linear(sys, n, 1, m, NULL, k, j, nmode, text, size);
+    const int status = dense_system(sys, n, 1, m, NULL, k, j, nmode, text, size);
     free(k);
     free(m);
     free(j);
@@ -168,7 +169,7 @@ TEST(beside_a_stiff_one)
     const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {pow(10.0, 2.0 * _i), 0.0, 0.0, 1.0}, direction[] = {1.0, 0.0};
     double y[5] = {0.0, 1.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
     run(sys, "exact", 1.0, 0.0, 10.0, y);
     assert_close(y[1], cos(10.0), 1e-13);
     assert_close(y[3], -sin(10.0), 1e-13);
@@ -184,7 +185,7 @@ TEST(damping_beside_a_stiff_one)
     const double direction[] = {1.0, 0.0};
     double y[5] = {0.0, 1.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
     run(sys, "exact", 1.0, 0.0, 10.0, y);
     assert_close(y[1], exp(-10.0 * zeta) * (cos(10.0 * slow) + zeta / slow * sin(10.0 * slow)), 1e-13);
     tribo_system_destroy(sys);
@@ -199,7 +200,7 @@ TEST(coupling_to_a_stiff_one)
     const double damping[] = {0.02 * sqrt(r), 1e-3, 1e-3, 2.0 * zeta}, direction[] = {1.0, 0.0};
     double y[5] = {0.0, 1.0}, t = 0.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, damping, stiffness, direction, 0, NULL, 0));
     tribo_driver *drv = driver_create(sys, "exact", 1.0, 0.0);
     const int status = tribo_driver_advance(drv, &t, 10.0, y);
     if (status) {
@@ -225,9 +226,9 @@ TEST(from_a_spring_to_rounding)
     double omega[2], y[5] = {0.0, 0.0, 1.0, 1.0 - low / r}, t = 0.0;
     char text[200] = "";
     tribo_system *sys = NULL, *whole;
-    assert_ok(tribo_system_linear(&whole, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&whole, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
     tribo_driver *drv = driver_create(whole, "exact", 1.0, 0.0);
-    const int status = tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 2, text, sizeof text);
+    const int status = dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 2, text, sizeof text);
     ck_assert_int_eq(tribo_driver_advance(drv, &t, 10.0, y), status);
     if (status) {
         assert_status(status, TRIBO_ERR_UNSUPPORTED);
@@ -264,7 +265,7 @@ TEST(chains)
     for (int grounded = 0; grounded < 2; grounded++) {
         tribo_system *sys;
         stiffness[MASSES * MASSES - 1] += grounded ? 1.0 : 0.0;
-        assert_ok(tribo_system_linear(&sys, MASSES, 1, mass, NULL, stiffness, direction, MASSES, NULL, 0));
+        assert_ok(dense_system(&sys, MASSES, 1, mass, NULL, stiffness, direction, MASSES, NULL, 0));
         assert_ok(tribo_system_get_frequencies(sys, omega));
         require(omega[1] > 0.0, "two rigid bodies");
         if (grounded) {

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 
 /* Springs and masses on a grid, each mass with those beside it; one contact, on the first mass. */
@@ -70,7 +71,7 @@ static int create(tribo_system **sys, const struct grid *g, size_t nmode, char *
     const size_t n = size_of(g);
     gsl_spmatrix *k = stiffness_of(g), *m = mass_of(g, k), *j = gsl_spmatrix_alloc(1, n);
     gsl_spmatrix_set(j, 0, 0, 1.0);
-    const int status = tribo_system_reduced(sys, m, k, j, nmode, 1, text, size);
+    const int status = reduced_system(sys, m, k, j, nmode, 1, text, size);
     gsl_spmatrix_free(k);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(j);
@@ -144,8 +145,8 @@ TEST(more_than_room)
     const struct {
         size_t cols, copies, nmode;
         double defect;
-    } cases[] = {{1, 400, 20, 0.0},   {1, 400, 1, 0.0},  {1, 400, 50, 0.0},    {2, 600, 20, 0.0},
-                 {3, 1200, 7, 0.0},   {1, 4000, 30, 0.0}, {1, 600, 20, -0.5},   {1, 600, 1, -0.5},
+    } cases[] = {{1, 400, 20, 0.0},   {1, 400, 1, 0.0},    {1, 400, 50, 0.0},  {2, 600, 20, 0.0},
+                 {3, 1200, 7, 0.0},   {1, 4000, 30, 0.0},  {1, 600, 20, -0.5}, {1, 600, 1, -0.5},
                  {1, 600, 20, -1e-3}, {1, 600, 20, -1e-4}, {1, 600, 20, 0.5}};
     const struct grid g = {
         1, cases[_i / 4].cols, cases[_i / 4].copies, .free = _i % 2, .consistent = _i / 2 % 2, .defect = cases[_i / 4].defect};
@@ -211,14 +212,14 @@ TEST(refused)
     gsl_spmatrix_set(m, n - 1, n - 1, cases[_i].mass);
     gsl_spmatrix_set(j, 0, 0, 1.0);
     stain(&sys, sizeof sys);
-    const int status = tribo_system_linear_sparse(&sys, m, NULL, k, j, 4, text, sizeof text);
+    const int status = sparse_system(&sys, m, NULL, k, j, 4, text, sizeof text);
     if (status == TRIBO_ERR_UNSUPPORTED && n > 3000) {
         assert_says(text, "TRIBO_SPARSE=ON");
     } else {
         assert_status(status, TRIBO_ERR_INDEFINITE);
         assert_says(text, cases[_i].text);
     }
-    assert_status(tribo_system_reduced(&sys, m, k, j, 0, 1, text, sizeof text), TRIBO_ERR_SIZE);
+    assert_status(reduced_system(&sys, m, k, j, 0, 1, text, sizeof text), TRIBO_ERR_SIZE);
     assert_says(text, "nmode = 0");
     ck_assert(stained(&sys, sizeof sys));
     gsl_spmatrix_free(k);
@@ -235,7 +236,7 @@ TEST(needless_contacts)
     tribo_system *sys;
     gsl_spmatrix_set(j, 0, 27, 1.0);
     gsl_spmatrix_set(j, 1, 27, -2.0);
-    assert_ok(tribo_system_reduced(&sys, m, k, j, 4, 1, NULL, 0));
+    assert_ok(reduced_system(&sys, m, k, j, 4, 1, NULL, 0));
     ck_assert_uint_eq(tribo_system_ndof(sys), 5);
     assert_ok(tribo_system_get_truncation(sys, 0.0, &error));
     require(error < 1e-12, "%g", error);

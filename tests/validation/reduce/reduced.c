@@ -5,6 +5,7 @@
 
 #include <gsl/gsl_complex_math.h>
 
+#include "make.h"
 #include "beam.h"
 #include "run.h"
 
@@ -47,7 +48,7 @@ static tribo_system *beam_reduced(size_t nmode, size_t rows, int statics)
     gsl_spmatrix *mass = beam_matrix("M.mtx"), *stiffness = beam_matrix("K.mtx"), *direction = beam_directions(rows);
     char text[200] = "";
     tribo_system *sys = NULL;
-    const int status = tribo_system_reduced(&sys, mass, stiffness, direction, nmode, statics, text, sizeof text);
+    const int status = reduced_system(&sys, mass, stiffness, direction, nmode, statics, text, sizeof text);
     require(status == TRIBO_OK, "%s", text);
     gsl_spmatrix_free(mass);
     gsl_spmatrix_free(stiffness);
@@ -240,7 +241,7 @@ TEST(all_of_a_small_structure)
         gsl_spmatrix_set(stiffness, i, i, 100.0);
         gsl_spmatrix_set(direction, i, i, i == 2 ? 1e6 : 1.0);
     }
-    require(!tribo_system_reduced(&sys, mass, stiffness, direction, nmode, 1, text, sizeof text), "%zu modes: %s", nmode, text);
+    require(!reduced_system(&sys, mass, stiffness, direction, nmode, 1, text, sizeof text), "%zu modes: %s", nmode, text);
     ck_assert_uint_eq(tribo_system_ndof(sys), N);
     assert_ok(tribo_system_get_frequencies(sys, omega));
     for (size_t k = 0; k < N; k++) {
@@ -270,7 +271,7 @@ TEST(free_bodies)
         gsl_spmatrix_set(stiffness, i, 1 - i, -1.0);
         gsl_spmatrix_set(direction, i, i, i ? -1.0 : 1.0);
     }
-    require(!tribo_system_reduced(&sys, mass, stiffness, direction, 2, 1, text, sizeof text), "%s", text);
+    require(!reduced_system(&sys, mass, stiffness, direction, 2, 1, text, sizeof text), "%s", text);
     ck_assert_uint_eq(tribo_system_ndof(sys), 3);
     assert_ok(tribo_system_get_frequencies(sys, omega));
     assert_exact(omega[0], 0.0);
@@ -306,13 +307,13 @@ TEST(drifts_left_out)
     }
     gsl_spmatrix_set(direction, 0, below(&g, cut), 1.0);
     gsl_spmatrix_set(direction, 0, cut + below(&g, n - cut), 0.5);
-    require(!tribo_system_reduced(&sys, mass, stiffness, direction, 1, TRIBO_STATICS_MASS, text, sizeof text), "%s", text);
+    require(!reduced_system(&sys, mass, stiffness, direction, 1, TRIBO_STATICS_MASS, text, sizeof text), "%s", text);
     ck_assert_uint_eq(tribo_system_ndof(sys), 2);
     assert_ok(tribo_system_get_frequencies(sys, omega));
     assert_exact(omega[0], 0.0);
     assert_exact(omega[1], 0.0);
     tribo_system_destroy(sys);
-    assert_status(tribo_system_reduced(&sys, mass, stiffness, direction, 1, TRIBO_STATICS_COMPLIANCE, text, sizeof text),
+    assert_status(reduced_system(&sys, mass, stiffness, direction, 1, TRIBO_STATICS_COMPLIANCE, text, sizeof text),
                   TRIBO_ERR_UNSUPPORTED);
     assert_says(text, "nmode = 1 leaves out a motion that contact 0 moves");
     gsl_spmatrix_free(mass);
@@ -330,7 +331,7 @@ TEST(drift_beside_a_contact)
     char text[200] = "";
     double omega[2], v;
     tribo_system *sys;
-    require(!tribo_system_linear(&sys, 3, 1, mass, NULL, stiffness, direction, 2, text, sizeof text), "%s", text);
+    require(!dense_system(&sys, 3, 1, mass, NULL, stiffness, direction, 2, text, sizeof text), "%s", text);
     assert_ok(tribo_system_get_frequencies(sys, omega));
     assert_exact(omega[0], 0.0);
     assert_ok(tribo_system_contacts(sys, 0.0, y, &v, NULL, NULL));

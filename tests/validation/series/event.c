@@ -1,6 +1,7 @@
 /* Method "event": errors follow the tolerance, nothing is missed, what rests is at rest. Closed forms beside each case. */
 #include <string.h>
 
+#include "make.h"
 #include "coulomb.h"
 #include "../../set_up_driver.h"
 
@@ -69,7 +70,7 @@ TEST(fast_and_small)
     const double mass[] = {1.0, 0.0, 0.0, 1.0}, stiffness[] = {1e4, 0.0, 0.0, 1.0}, direction[] = {1.0, 0.0};
     double y[5] = {1.03e-3, 1.0, 0.0, 0.0, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.5));
     tribo_driver *drv = driver_relative(sys, "event", 10.0, 1e-6, 1e-6);
     double t = 0.0;
@@ -305,7 +306,7 @@ TEST(twins)
     const double load[] = {1.5, 1.5};
     double y[5] = {0}, want[3] = {0};
     tribo_system *sys, *one = oscillator(TRIBO_QUINN, 1.5, 0.5);
-    assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.5, NULL, load));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 1.0));
     const size_t events = go(sys, methods[_i], 1e-13, 60.0, y);
@@ -328,7 +329,7 @@ TEST(redundant_contacts)
     const double omega = _i < 2 ? 0.5 : 2.0;
     double y[3] = {0}, want[3] = {0};
     tribo_system *sys, *single = oscillator(TRIBO_QUINN, load, omega);
-    assert_ok(tribo_system_linear(&sys, 1, 3, &one, NULL, &one, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 3, &one, NULL, &one, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, omega, NULL, &load));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     go(sys, methods[_i % 2], 1e-13, 60.0, y);
@@ -345,7 +346,7 @@ TEST(driven_from_both_sides)
     const double one = 1.0, direction[] = {0.0, 1.0}, limit[] = {2.0, 1.0}, shake[] = {1.0, 0.0}, shift[] = {-1.0, 0.0};
     double y[3] = {0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_base_motion(sys, 1.0, shake, NULL));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, shift, NULL));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
@@ -365,7 +366,7 @@ TEST(beside_one_at_its_limit)
     const double limit[] = {4, 0, 2, 2, 1}, cosine[] = {-1, 2, 0, 0}, sine[] = {2, 2, 0, 0};
     double y[2][9] = {{0, -1, 1, -1, -1, 1, -1, 0, 0}, {0, -1, 1, -1, -1, 1, -1, 0, 0}};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 4, 5, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 4, 5, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 1.0, cosine, sine));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     for (size_t k = 0; k < 2; k++) {
@@ -505,7 +506,7 @@ static void move_in_units(double mass, double length, double time, double *y)
     double t = 0.0;
     tribo_system *sys;
     tribo_driver *drv;
-    assert_ok(tribo_system_linear(&sys, 2, 2, m, NULL, k, j, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, m, NULL, k, j, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     assert_ok(tribo_system_add_load(sys, 2.3 / time, load, NULL));
     assert_ok(set_up_driver(&drv, sys, "event", time, 1e-10 * length, 1e-10));
@@ -535,7 +536,7 @@ TEST(long_slide)
     const double one = 1.0, none = 0.0, limit = _i ? 1.0 : 1e-14, t1 = _i ? 1e-60 : 1e16;
     double t = 0.0, y[3] = {0.0, 1.0, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &none, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &one, NULL, &none, &one, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
     tribo_driver *drv = driver_create(sys, "event", 1.0, 1e-9);
     driver_advance(drv, &t, t1, y);

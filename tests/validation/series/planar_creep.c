@@ -1,4 +1,5 @@
 /* Planar contacts that creep in driver "event": motions of closed form, which take no more steps the slower they are. */
+#include "make.h"
 #include "run.h"
 
 #include <stdlib.h>
@@ -13,7 +14,7 @@ static const double unit[4] = {1.0, 0.0, 0.0, 1.0}, none[4] = {0.0};
 static tribo_system *block(double limit1, double limit2)
 {
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 2, 2, unit, NULL, none, unit, 0, NULL, 0));
+    assert_ok(dense_system(&s, 2, 2, unit, NULL, none, unit, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(s), 1, (const size_t[]){0}));
     assert_ok(tribo_set_limit(tribo_system_context(s), (const double[]){limit1, limit2}));
     return s;
@@ -163,7 +164,7 @@ TEST(coupled)
     load_at(0.0, cosine);
     load_at(0.5 * PI, sine);
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, SIZE, SIZE, mass, NULL, stiff, contact, 0, NULL, 0));
+    assert_ok(dense_system(&s, SIZE, SIZE, mass, NULL, stiff, contact, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(s), BODIES, (const size_t[]){0, 2, 4}));
     assert_ok(tribo_set_limit(tribo_system_context(s), limit));
     assert_ok(tribo_system_add_load(s, 1.0, cosine, sine));
@@ -201,7 +202,7 @@ static size_t run_blocks(size_t count, const struct block *b, double tolerance, 
         y[i] = b[i / 2].place[i % 2];
         y[n + i] = b[i / 2].speed[i % 2];
     }
-    assert_ok(tribo_system_linear(&s, n, n, mass, NULL, springs, mass, 0, NULL, 0));
+    assert_ok(dense_system(&s, n, n, mass, NULL, springs, mass, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(s), count, (const size_t[]){0, 2}));
     assert_ok(tribo_set_limit(tribo_system_context(s), limit));
     assert_ok(tribo_system_add_load(s, 1.0, cosine, sine));
@@ -280,7 +281,7 @@ static tribo_system *many_turning(size_t many, double v0, double *y)
     }
     y[4 * many] = 0.0;
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 2 * many, 2 * many, mass, NULL, springs, mass, 0, NULL, 0));
+    assert_ok(dense_system(&s, 2 * many, 2 * many, mass, NULL, springs, mass, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(s), many, first));
     assert_ok(tribo_set_limit_all(tribo_system_context(s), 1.0));
     assert_ok(tribo_system_add_load(s, 1.0, cosine, sine));

@@ -1,4 +1,5 @@
 /* Planar contacts in driver "event": closed forms, values of another code, and other methods as their steps become short. */
+#include "make.h"
 #include "run.h"
 
 #include <string.h>
@@ -10,7 +11,7 @@ static tribo_system *planar_mass(const double *springs, double limit1, double li
 {
     const double limit[2] = {limit1, limit2};
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 2, 2, identity, NULL, springs, identity, 0, NULL, 0));
+    assert_ok(dense_system(&s, 2, 2, identity, NULL, springs, identity, 0, NULL, 0));
     tribo_context *c = tribo_system_context(s);
     assert_ok(tribo_set_planar(c, 1, (const size_t[]){0}));
     assert_ok(tribo_set_limit(c, limit));
@@ -175,7 +176,7 @@ static tribo_system *coupled(uint64_t seed, double scale, size_t *ndof)
         limit[i] = i < 2 * planar && i % 2 && seed % 2 ? limit[i - 1] : limit[i];
     }
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, n, n, mass, damping, stiff, j, 0, NULL, 0));
+    assert_ok(dense_system(&sys, n, n, mass, damping, stiff, j, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(sys), planar, (const size_t[]){0, 2, 4}));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     for (int h = 0; h < 2; h++) {
@@ -245,7 +246,7 @@ TEST(equal)
         unit[5 * i] = 1.0;
     }
     const double cosine[4] = {0.3, 0.8, 0.3, 0.8}, sine[4] = {1.3, -0.4, 1.3, -0.4}, springs[4] = {1.0, 0.0, 0.0, 1.5};
-    assert_ok(tribo_system_linear(&s, 4, 4, unit, NULL, stiff, unit, 0, NULL, 0));
+    assert_ok(dense_system(&s, 4, 4, unit, NULL, stiff, unit, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(s), 2, (const size_t[]){0, 2}));
     assert_ok(tribo_set_limit(tribo_system_context(s), limits[_i]));
     assert_ok(tribo_system_add_load(s, 0.5, cosine, sine));
@@ -326,7 +327,7 @@ TEST(refused_static)
     const double start[7] = {0.0, 0.0, 0.0, 0.6, -0.8, 1.0, 0.0};
     double y[7], t = 0.0;
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 3, 3, diagonal, NULL, nothing, diagonal, 0, NULL, 0));
+    assert_ok(dense_system(&s, 3, 3, diagonal, NULL, nothing, diagonal, 0, NULL, 0));
     tribo_context *c = tribo_system_context(s);
     assert_ok(tribo_set_planar(c, 1, (const size_t[]){0}));
     assert_ok(tribo_set_limit_all(c, 0.6));
@@ -350,7 +351,7 @@ TEST(redundant)
     const double twice[8] = {1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 1.0};
     double y[5] = {0.0, 0.0, 2.0, 1.0, 0.0}, t = 0.0;
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 2, 4, identity, NULL, none, twice, 0, NULL, 0));
+    assert_ok(dense_system(&s, 2, 4, identity, NULL, none, twice, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(s), 2, (const size_t[]){0, 2}));
     assert_ok(tribo_set_limit_all(tribo_system_context(s), 0.5));
     tribo_driver *d = driver_create(s, "event", 0.1, 1e-10);
@@ -371,7 +372,7 @@ TEST(fewer_and_more_terms)
     for (int with = 0; with < 2; with++) {
         double t = 0.0, z[5] = {0.9, 0.3, 0.0, 0.5, 0.0};
         tribo_system *sys;
-        assert_ok(tribo_system_linear(&sys, 2, 2, m, NULL, k, m, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 2, 2, m, NULL, k, m, 0, NULL, 0));
         assert_ok(tribo_set_planar(tribo_system_context(sys), 1, &first));
         assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
         assert_ok(tribo_system_add_load(sys, 0.6, slow, NULL));
@@ -401,7 +402,7 @@ TEST(spinning_edge)
     double y[2][5] = {{0.0}, {0.0}};
     for (int which = 0; which < 2; which++) {
         tribo_system *s;
-        assert_ok(tribo_system_linear(&s, 2, 2, m, NULL, k, identity, 0, NULL, 0));
+        assert_ok(dense_system(&s, 2, 2, m, NULL, k, identity, 0, NULL, 0));
         assert_ok(tribo_set_planar(tribo_system_context(s), 1, (const size_t[]){0}));
         assert_ok(tribo_set_limit(tribo_system_context(s), limit));
         assert_ok(tribo_system_add_load(s, 1.1, (const double[]){1.0 + d, 0.0}, (const double[]){0.0, axis * (1.0 + d)}));

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 
 enum { BODIES = 16, STATES = 2 * BODIES + 1, MOST_CONTACTS = BODIES };
@@ -67,7 +68,7 @@ static tribo_system *scene_system(const struct scene *s, const size_t *place)
     for (size_t c = 0; c < s->contacts; c++) {
         direction[c * BODIES + place[s->body[c]]] = s->lever[c];
     }
-    assert_ok(tribo_system_linear(&sys, BODIES, s->contacts, mass, damping, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, BODIES, s->contacts, mass, damping, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), s->limit));
     assert_ok(tribo_system_add_load(sys, 0.7, load, NULL));
     assert_ok(tribo_system_add_base_motion(sys, 1.3, s->motion, NULL));

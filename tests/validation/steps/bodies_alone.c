@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 
 /* Masses of 1 in a row between springs of 1, each on a contact but every `bare`-th; the ends are tied to the ground. */
@@ -67,7 +68,7 @@ static tribo_system *row_create(const struct row *r)
     }
     tribo_system *sys;
     char message[200];
-    const int status = tribo_system_linear_sparse(&sys, m, r->damped ? d : NULL, k, j, 0, message, sizeof message);
+    const int status = sparse_system(&sys, m, r->damped ? d : NULL, k, j, 0, message, sizeof message);
     require(!status, "%s", message);
     gsl_spmatrix_free(m);
     gsl_spmatrix_free(k);
@@ -374,7 +375,7 @@ TEST(ends_beyond_numbers)
     for (size_t i = 0; i < N; i++) {
         mass[i * N + i] = 1.0;
     }
-    assert_ok(tribo_system_linear(&sys, N, N, mass, NULL, stiffness, mass, 0, NULL, 0));
+    assert_ok(dense_system(&sys, N, N, mass, NULL, stiffness, mass, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.01));
     y[N] = 1e308;
     tribo_driver *drv = driver_create(sys, "rk4/fixed", 1.0, 0.0);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 
 enum { MOST = 4, ROOM = MOST + 1, WATCHED = 1, SEVERAL = 20, ADVANCES = 3 };
@@ -59,8 +60,8 @@ static tribo_system *create(const struct scene *s, int setting, size_t c)
     double x[4 * ROOM] = {0.0};
     tribo_system *sys;
     char message[200];
-    const int status = tribo_system_linear(&sys, s->n, c, s->mass, setting == DAMPED ? s->damping : NULL, s->stiffness, s->j, 0,
-                                           message, sizeof message);
+    const int status = dense_system(&sys, s->n, c, s->mass, setting == DAMPED ? s->damping : NULL, s->stiffness, s->j, 0, message,
+                                    sizeof message);
     require(!status, "%s", message);
     assert_ok(tribo_set_limit(tribo_system_context(sys), s->limit));
     assert_ok(tribo_system_add_load(sys, 0.9, s->load, NULL));
@@ -187,7 +188,7 @@ static tribo_system *held(double speed)
     const double limit[] = {30.0, 10.0}, swing[] = {speed, 0.0}, load[] = {3.0, -1.0};
     tribo_system *sys;
     char message[200];
-    require(!tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, j, 0, message, sizeof message), "%s", message);
+    require(!dense_system(&sys, 2, 2, mass, NULL, stiffness, j, 0, message, sizeof message), "%s", message);
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     assert_ok(tribo_system_add_base_motion(sys, 0.5, NULL, swing));
     assert_ok(tribo_system_add_load(sys, 1.7, load, NULL));
@@ -219,7 +220,7 @@ TEST(grows)
     double y[3] = {0.0}, t = 0.0;
     tribo_system *sys;
     char message[200];
-    require(!tribo_system_linear(&sys, 1, 1, &mass, &damping, &stiffness, &j, 0, message, sizeof message), "%s", message);
+    require(!dense_system(&sys, 1, 1, &mass, &damping, &stiffness, &j, 0, message, sizeof message), "%s", message);
     assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
     assert_ok(tribo_system_add_load(sys, 1.0, &force, NULL));
     tribo_driver *drv = driver_create(sys, "central/fixed", 0.01, 0.0);

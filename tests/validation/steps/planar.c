@@ -1,4 +1,5 @@
 /* Planar contacts in the drivers with steps: these ask for forces only, and take them as they come. Exact refuses them. */
+#include "make.h"
 #include "run.h"
 #include "../../set_up_driver.h"
 
@@ -8,7 +9,7 @@ static const double identity[4] = {1.0, 0.0, 0.0, 1.0}, stiffness[4] = {1.0, 0.0
 static tribo_system *planar_mass(const double *springs, double epsilon)
 {
     tribo_system *s;
-    assert_ok(tribo_system_linear(&s, 2, 2, identity, NULL, springs, identity, 0, NULL, 0));
+    assert_ok(dense_system(&s, 2, 2, identity, NULL, springs, identity, 0, NULL, 0));
     tribo_context *c = tribo_system_context(s);
     assert_ok(tribo_set_planar(c, 1, (const size_t[]){0}));
     assert_ok(tribo_set_limit_all(c, 1.0));
@@ -140,7 +141,7 @@ TEST(open_direction)
     const size_t first = 0;
     double y[5] = {0.0, 0.0, 0.0, 1.0, 0.0}, t = 0.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, spring, mass, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, mass, NULL, spring, mass, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
     assert_ok(tribo_set_planar(tribo_system_context(sys), 1, &first));
     tribo_driver *drv = driver_create(sys, methods[_i], 0.01, 1e-10);
@@ -164,7 +165,7 @@ TEST(never_slips)
     const size_t first[] = {0, 2};
     double want[5] = {0.0}, t = 0.0;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 2, alone_mass, NULL, alone_spring, identity, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, alone_mass, NULL, alone_spring, identity, 0, NULL, 0));
     assert_ok(tribo_set_planar(tribo_system_context(sys), 1, first));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
     assert_ok(tribo_system_add_load(sys, 0.7, cosine + 2, sine + 2));
@@ -176,7 +177,7 @@ TEST(never_slips)
     for (size_t k = 0; k < COUNT(limits); k++) {
         const double limit[] = {limits[k], limits[k], 0.3, 0.3};
         double y[9] = {0.0};
-        assert_ok(tribo_system_linear(&sys, 4, 4, mass, NULL, spring, direction, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 4, 4, mass, NULL, spring, direction, 0, NULL, 0));
         assert_ok(tribo_set_planar(tribo_system_context(sys), 2, first));
         assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
         assert_ok(tribo_system_add_load(sys, 0.7, cosine, sine));
@@ -191,5 +192,4 @@ TEST(never_slips)
     }
 }
 
-TEST_MAIN("planar", {orders, 6}, {adaptive, 2}, {released, 3}, {copies, 4}, {refused, 1}, {open_direction, 4},
-          {never_slips, 3})
+TEST_MAIN("planar", {orders, 6}, {adaptive, 2}, {released, 3}, {copies, 4}, {refused, 1}, {open_direction, 4}, {never_slips, 3})

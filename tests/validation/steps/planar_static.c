@@ -1,4 +1,5 @@
 /* Planar contacts with static friction above kinetic in the drivers: closed forms of the line, along turned axes. */
+#include "make.h"
 #include "run.h"
 
 static const char *const methods[] = {"rk4/fixed", "central/fixed", "moreau/fixed"};
@@ -17,7 +18,7 @@ static tribo_system *block(const double *e, double velocity)
 {
     const double one[4] = {1.0, 0.0, 0.0, 1.0}, belt[2] = {0.2 * e[0], 0.2 * e[1]};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 2, one, NULL, one, one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, one, NULL, one, one, 0, NULL, 0));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, belt, NULL));
     set_static(sys, 0.6, 1.0 / 0.6, velocity);
     return sys;
@@ -73,7 +74,7 @@ TEST(falling)
     const double e[2] = {0.6, -0.8}, one = 1.0, speed = 0.2, ratio = 1.0 / 0.6, velocity = 0.3, dt = 1e-3;
     double y[5], line[3] = {0.2, 0.2, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &one, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &one, NULL, &one, &one, 0, NULL, 0));
     assert_ok(tribo_system_add_base_motion(sys, 0.0, &speed, NULL));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.6));
     assert_ok(tribo_set_static(tribo_system_context(sys), &ratio, &velocity));
@@ -99,7 +100,7 @@ TEST(code_aster_sdnd106)
         stiffness[i * N + (i + 2) % N] = -k;
     }
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, N, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, N, 2, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.0, load, NULL));
     set_static(sys, 2000.0, 1.5, 0.0);
     assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), dt, 1.0));

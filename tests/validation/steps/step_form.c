@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "coulomb.h"
 #include "model.h"
 
@@ -251,7 +252,7 @@ TEST(limit_of_stability)
     for (size_t k = 0; k < COUNT(cases); k++) {
         double t = 0.0, y[5] = {1.0, -1.0, 0.0, 0.0, 0.0};
         tribo_system *sys;
-        assert_ok(tribo_system_linear(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 2, 1, mass, NULL, stiffness, direction, 0, NULL, 0));
         assert_ok(tribo_set_limit_all(tribo_system_context(sys), cases[k].limit));
         tribo_driver *drv = driver_create(sys, methods[cases[k].method], cases[k].dt, 0.0);
         const int status = tribo_driver_advance(drv, &t, 20000.0 * cases[k].dt, y);
@@ -338,7 +339,7 @@ TEST(long_chains)
             gsl_spmatrix_set(stiffness, i - 1, i, -1.0);
         }
     }
-    assert_ok(tribo_system_linear_sparse(&sys, mass, NULL, stiffness, none, 0, NULL, 0));
+    assert_ok(sparse_system(&sys, mass, NULL, stiffness, none, 0, NULL, 0));
     ck_assert(taken(sys, 0.98));
     ck_assert(!taken(sys, 1.01));
     tribo_system_destroy(sys);
@@ -371,7 +372,7 @@ TEST(damping)
     }
     double t = 0.0, y[5] = {1.0, 0.0, 0.0, 0.5, 0.0};
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 2, 2, mass, gyroscopic, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 2, 2, mass, gyroscopic, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
     tribo_driver *drv = driver_create(sys, "moreau/fixed", 0.1, 0.0);
     for (int k = 0; k < 3; k++) {
@@ -448,7 +449,7 @@ TEST(static_limits_by_an_observer)
     for (int watched = 0; watched < 2; watched++) {
         double t = 0.0;
         tribo_system *sys;
-        assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &(double){0.0}, &one, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 1, 1, &one, NULL, &(double){0.0}, &one, 0, NULL, 0));
         tribo_context *contacts = tribo_system_context(sys);
         assert_ok(tribo_set_limit(contacts, &limit));
         tribo_driver *drv = driver_create(sys, methods[_i], 0.0625, 0.0);

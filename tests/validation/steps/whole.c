@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "make.h"
 #include "run.h"
 #include "../../set_up_driver.h"
 
@@ -73,7 +74,7 @@ static tribo_system *create(struct matrices *x)
 {
     char text[200] = "";
     tribo_system *sys = NULL;
-    const int status = tribo_system_linear_sparse(&sys, x->mass, x->damping, x->stiffness, x->direction, 0, text, sizeof text);
+    const int status = sparse_system(&sys, x->mass, x->damping, x->stiffness, x->direction, 0, text, sizeof text);
     free_matrices(x);
     if (status == TRIBO_ERR_UNSUPPORTED) {
         assert_says(text, "build tribo with TRIBO_SPARSE=ON");
@@ -269,8 +270,8 @@ static int follow_contact(size_t modes, size_t steps, double *place, double *ene
     gsl_spmatrix_set(x.direction, 1, load, 1.0);
     force[load] = 1.0;
     tribo_system *sys = NULL;
-    const int status = modes ? tribo_system_reduced(&sys, x.mass, x.stiffness, x.direction, modes, 1, text, sizeof text)
-                             : tribo_system_linear_sparse(&sys, x.mass, NULL, x.stiffness, x.direction, 0, text, sizeof text);
+    const int status = modes ? reduced_system(&sys, x.mass, x.stiffness, x.direction, modes, 1, text, sizeof text)
+                             : sparse_system(&sys, x.mass, NULL, x.stiffness, x.direction, 0, text, sizeof text);
     free_matrices(&x);
     require(status == TRIBO_OK || status == TRIBO_ERR_UNSUPPORTED, "%s", text);
     if (!status) {
@@ -337,7 +338,7 @@ static double numbered(const char *method, size_t stride, double lopsided, doubl
     force[stride] = 1.0;
     tribo_system *sys;
     char text[200] = "";
-    assert_ok(tribo_system_linear_sparse(&sys, m, c, k, x.direction, 0, text, sizeof text));
+    assert_ok(sparse_system(&sys, m, c, k, x.direction, 0, text, sizeof text));
     const double limit = 0.2;
     assert_ok(tribo_set_limit(tribo_system_context(sys), &limit));
     assert_ok(tribo_system_add_load(sys, 0.5, NULL, force));
@@ -386,7 +387,7 @@ END_TEST
 /* What takes accelerations is refused by name, and the state stays. */
 TEST(refused)
 {
-    static const char *const part = "moreau/fixed, or tribo_system_reduced";
+    static const char *const part = "moreau/fixed, or tribo_system_reduce";
     const struct grid g = {1, 3001, 1};
     struct matrices x = matrices_of(&g, 1);
     gsl_spmatrix_set(x.direction, 0, 0, 1.0);
@@ -429,19 +430,18 @@ TEST(matrices)
     double *y = calloc(2 * x.n + 1, sizeof *y), t = 0.0;
     gsl_spmatrix_set(x.direction, 0, 0, 1.0);
     gsl_spmatrix_set(x.damping, 7, 8, 0.5);
-    const int status = tribo_system_linear_sparse(&sys, x.mass, x.damping, x.stiffness, x.direction, 0, text, sizeof text);
+    const int status = sparse_system(&sys, x.mass, x.damping, x.stiffness, x.direction, 0, text, sizeof text);
     if (status == TRIBO_ERR_UNSUPPORTED) {
         assert_says(text, "TRIBO_SPARSE=ON");
     } else {
         assert_status(status, TRIBO_ERR_NOT_SYMMETRIC);
         assert_says(text, "damping[7][8] = 0.5");
         gsl_spmatrix_set(x.mass, 9, 9, -1.0);
-        assert_status(tribo_system_linear_sparse(&sys, x.mass, NULL, x.stiffness, x.direction, 0, text, sizeof text),
-                      TRIBO_ERR_INDEFINITE);
+        assert_status(sparse_system(&sys, x.mass, NULL, x.stiffness, x.direction, 0, text, sizeof text), TRIBO_ERR_INDEFINITE);
         assert_says(text, "mass is not positive definite");
         gsl_spmatrix_set(x.mass, 9, 9, 1.0);
         gsl_spmatrix_set(x.stiffness, 11, 11, -100.0);
-        assert_ok(tribo_system_linear_sparse(&sys, x.mass, NULL, x.stiffness, x.direction, 0, text, sizeof text));
+        assert_ok(sparse_system(&sys, x.mass, NULL, x.stiffness, x.direction, 0, text, sizeof text));
         tribo_driver *drv = driver_create(sys, "moreau/fixed", 1.0, 0.0);
         assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_INDEFINITE);
         assert_says(tribo_driver_message(drv), "the matrix of a step of length 1 is not positive definite");

@@ -2,6 +2,7 @@
  * fail. A driver must then go on as a new one would. */
 #include <string.h>
 
+#include "make.h"
 #include "coulomb.h"
 #include "model.h"
 
@@ -323,7 +324,7 @@ TEST(rest_is_seen_anew)
     for (size_t k = 0; k < 4; k++) {
         double t = 0.0, y[5] = {0.1, -0.1, 0.0, 0.0, 0.0}, rest[5];
         tribo_system *sys;
-        assert_ok(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction[k], 0, NULL, 0));
+        assert_ok(dense_system(&sys, 2, 2, mass, NULL, stiffness, direction[k], 0, NULL, 0));
         assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
         assert_ok(tribo_set_static(tribo_system_context(sys), ratio, NULL));
         assert_ok(tribo_system_add_load(sys, 1.7, push, push));
@@ -397,8 +398,8 @@ TEST(choices)
     const double one = 1.0, two = 2.0, stiff[] = {1.0, 0.0, 0.0, 0.0}, mass[] = {1.0, 0.0, 0.0, 1.0}, limit[] = {1.0, 1.0, 1.0},
                  damping[] = {0.1, 0.05, 0.05, 0.1}, direction[] = {1.0, 0.0}, load[] = {0.0, 0.1};
     tribo_system *critical, *coupled, *changing = block(1.0, 1.0, 1.0);
-    assert_ok(tribo_system_linear(&critical, 1, 1, &one, &two, &one, &one, 0, NULL, 0));
-    assert_ok(tribo_system_linear(&coupled, 2, 1, mass, damping, stiff, direction, 0, NULL, 0));
+    assert_ok(dense_system(&critical, 1, 1, &one, &two, &one, &one, 0, NULL, 0));
+    assert_ok(dense_system(&coupled, 2, 1, mass, damping, stiff, direction, 0, NULL, 0));
     assert_ok(tribo_system_add_load(coupled, 0.0, load, NULL));
     tribo_system *const sys[] = {critical, coupled};
     for (size_t k = 0; k < 2; k++) {
@@ -439,7 +440,7 @@ TEST(choice_by_default)
     double t = 0.0, y[2][3] = {{0.25, 2.0, 0.0}, {0.25, 2.0, 0.0}};
     tribo_system *sys;
     tribo_driver *drv;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &one, &two, &one, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &one, &two, &one, &one, 0, NULL, 0));
     assert_ok(tribo_driver_create(&drv, sys, "auto"));
     driver_advance(drv, &t, 1.0, y[0]);
     ck_assert_str_eq(tribo_driver_method(drv), "event");

@@ -1,5 +1,6 @@
 /* A light body between the ground and a heavy one: the heavy one moves as if it stood on the ground itself, with the smaller one
  * of both limits, whatever the light one weighs. */
+#include "make.h"
 #include "run.h"
 
 #include <string.h>
@@ -23,7 +24,7 @@ static tribo_system *stand(double ratio, const double *limit, double off, double
     const double stiffness[] = {join, -join, -join, 1.0 + join}, direction[] = {1.0, 0.0, -1.0, 1.0}, load[] = {0.0, 0.7};
     tribo_system *sys = NULL;
     char text[200];
-    assert_status(tribo_system_linear(&sys, 2, 2, mass, NULL, stiffness, direction, 0, text, sizeof text), expected);
+    assert_status(dense_system(&sys, 2, 2, mass, NULL, stiffness, direction, 0, text, sizeof text), expected);
     if (sys) {
         assert_ok(tribo_set_law(tribo_system_context(sys), TRIBO_COULOMB));
         assert_ok(tribo_set_limit(tribo_system_context(sys), limit));
@@ -38,7 +39,7 @@ static tribo_system *alone(double limit)
 {
     const double one = 1.0, load = 0.7;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 1, &one, NULL, &one, &one, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 1, &one, NULL, &one, &one, 0, NULL, 0));
     assert_ok(tribo_set_law(tribo_system_context(sys), TRIBO_COULOMB));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), limit));
     assert_ok(tribo_system_add_load(sys, 0.5, NULL, &load));
@@ -98,7 +99,7 @@ static void move_in_plane(const char *method, double light, const double *limit,
         direction[3 * n + 2] = 1.0;
     }
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, n, contacts, mass, NULL, stiffness, direction, 0, NULL, 0));
+    assert_ok(dense_system(&sys, n, contacts, mass, NULL, stiffness, direction, 0, NULL, 0));
     assert_ok(tribo_set_limit(tribo_system_context(sys), limits_of));
     assert_ok(tribo_set_planar(tribo_system_context(sys), 1, (const size_t[]){0}));
     assert_ok(tribo_set_epsilon_step(tribo_system_context(sys), dt, 1.0));

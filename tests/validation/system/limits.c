@@ -1,6 +1,7 @@
 /* Limits that follow harmonics, with lift-off: closed forms beside each case, and all methods against each other. */
 #include <string.h>
 
+#include "make.h"
 #include "coulomb.h"
 #include "model.h"
 #include "../../set_up_driver.h"
@@ -251,7 +252,7 @@ TEST(together)
         cosine[i] = 0.6;
     }
     tribo_system *sys, *single = block(1.0, 1.0, 0.3);
-    assert_ok(tribo_system_linear(&sys, N, N, mass, NULL, stiffness, mass, 0, NULL, 0));
+    assert_ok(dense_system(&sys, N, N, mass, NULL, stiffness, mass, 0, NULL, 0));
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 0.3));
     assert_ok(tribo_system_add_load(sys, 0.5, NULL, sine));
     assert_ok(tribo_system_add_limit(sys, 1.25, cosine, NULL));
@@ -275,7 +276,7 @@ TEST(doubled)
     for (int k = 0; k < 2; k++) {
         double y[3] = {0.0}, z[3] = {0.0};
         tribo_system *sys, *single = block(1.0, 1.0, k ? 0.6 : 0.5);
-        assert_ok(tribo_system_linear(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
+        assert_ok(dense_system(&sys, 1, 2, &one, NULL, &one, direction, 0, NULL, 0));
         if (k) {
             assert_ok(tribo_set_limit(tribo_system_context(sys), given));
         } else {

@@ -1,4 +1,5 @@
 /* A structure without contacts is one like others: every method moves it, and answers for friction that there is none. */
+#include "make.h"
 #include "run.h"
 
 #include <string.h>
@@ -12,7 +13,7 @@ TEST(moves_freely)
     double y[3] = {1.0, 0.0, 0.0}, none = 7.0;
     size_t stuck = 7;
     tribo_system *sys;
-    assert_ok(tribo_system_linear(&sys, 1, 0, &one, NULL, &one, NULL, 0, NULL, 0));
+    assert_ok(dense_system(&sys, 1, 0, &one, NULL, &one, NULL, 0, NULL, 0));
     assert_ok(tribo_system_add_load(sys, 0.7, &load, NULL));
     ck_assert_uint_eq(tribo_system_ncontact(sys), 0);
     run(sys, method, 1e-3, 1e-9, t1, y);

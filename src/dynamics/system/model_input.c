@@ -1,0 +1,340 @@
+/* tribo_model: what the caller gives of a structure, and the systems that are made of it. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model.h"
+
+/* Copies of the caller's matrices; the message of the last call that failed. */
+struct tribo_model {
+    struct model given;
+    double *compliance; /* [ncontact] or NULL: all contacts are rigid */
+    char text[240];
+};
+
+/* ---------------------------------------------------------------------------------------------------------------------- life */
+
+int tribo_model_create(tribo_model **model, size_t ndof, size_t ncontact)
+{
+    if (!model) {
+        return TRIBO_ERR_NULL;
+    }
+    if (ndof == 0 || ndof > (size_t)1 << 24 || ncontact > (size_t)1 << 24) {
+        return TRIBO_ERR_SIZE;
+    }
+    tribo_model *m = calloc(1, sizeof *m);
+    if (!m) {
+        return TRIBO_ERR_MEMORY;
+    }
+    m->given = (struct model){ndof, ncontact, .message = m->text, .size = sizeof m->text};
+    *model = m;
+    return TRIBO_OK;
+}
+
+void tribo_model_destroy(tribo_model *model)
+{
+    if (model) {
+        tribo_model_free(&model->given);
+        free(model->compliance);
+        free(model);
+    }
+}
+
+const char *tribo_model_message(const tribo_model *model)
+{
+    return model ? model->text : "model is NULL";
+}
+
+int tribo_model_refuse(tribo_model *model, int status, const char *message)
+{
+    return model ? tribo_model_fail(&model->given, status, "%s", message ? message : "") : status;
+}
+
+size_t tribo_model_ndof(const tribo_model *model)
+{
+    return model ? model->given.ndof : 0;
+}
+
+size_t tribo_model_ncontact(const tribo_model *model)
+{
+    return model ? model->given.ncontact : 0;
+}
+
+/* ------------------------------------------------------------------------------------------------------------------- matrices */
+
+/* A matrix of the model, and its name. */
+struct input {
+    tribo_model *model;
+    struct matrix *to;
+    const char *name;
+    size_t rows;
+};
+
+static struct input mass_of(tribo_model *m)
+{
+    return (struct input){m, m ? &m->given.mass : NULL, "mass", m ? m->given.ndof : 0};
+}
+
+static struct input damping_of(tribo_model *m)
+{
+    return (struct input){m, m ? &m->given.damping : NULL, "damping", m ? m->given.ndof : 0};
+}
+
+static struct input stiffness_of(tribo_model *m)
+{
+    return (struct input){m, m ? &m->given.stiffness : NULL, "stiffness", m ? m->given.ndof : 0};
+}
+
+static struct input direction_of(tribo_model *m)
+{
+    return (struct input){m, m ? &m->given.direction : NULL, "direction", m ? m->given.ncontact : 0};
+}
+
+/* Takes a as the matrix of the model if its entries are finite; done: 0 if there was no memory for a. */
+static int take(const struct input *in, struct matrix *a, int done)
+{
+    size_t i, j;
+    double x, y;
+    if (!done) {
+        return tribo_model_no_memory(&in->model->given);
+    }
+    if (tribo_matrix_flaw(a, 0, &i, &j, &x, &y)) {
+        tribo_matrix_free(a);
+        return tribo_model_fail(&in->model->given, TRIBO_ERR_NOT_FINITE, "%s[%zu][%zu] = %g is not finite", in->name, i, j, x);
+    }
+    tribo_matrix_free(in->to);
+    *in->to = *a;
+    return TRIBO_OK;
+}
+
+/* NULL in the place of numbers is right only where there are none. part: which of several arrays, or "". */
+static int check_input(const struct input *in, const void *numbers, const char *part, size_t count)
+{
+    if (!in->model) {
+        return TRIBO_ERR_NULL;
+    }
+    return numbers || !count ? TRIBO_OK : tribo_model_fail(&in->model->given, TRIBO_ERR_NULL, "%s%s is NULL", in->name, part);
+}
+
+static int set_dense(struct input in, const double *entries)
+{
+    struct matrix a = {0};
+    const int status = check_input(&in, entries, "", in.rows);
+    return status ? status : take(&in, &a, tribo_matrix_from_dense(&a, in.rows, in.model->given.ndof, entries));
+}
+
+static int set_diagonal(struct input in, const double *entries)
+{
+    struct matrix a = {0};
+    const int status = check_input(&in, entries, "", in.rows);
+    return status ? status : take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
+}
+
+/* Compressed rows that begin at 0 and ascend, with columns that there are. */
+static int check_rows(const struct input *in, const size_t *rowptr, const size_t *col)
+{
+    const struct model *m = &in->model->given;
+    for (size_t i = 0; i <= in->rows; i++) {
+        const size_t least = i ? rowptr[i - 1] : 0;
+        if (rowptr[i] < least || rowptr[0] != 0) {
+            return i ? tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] is below %zu, the one before", in->name, i, least)
+                     : tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[0] is not 0", in->name);
+        }
+        for (size_t k = least; k < rowptr[i]; k++) {
+            if (col[k] >= m->ndof) {
+                return tribo_model_fail(m, TRIBO_ERR_RANGE, "%s: col[%zu] is not below %zu, the number of columns", in->name, k,
+                                        m->ndof);
+            }
+        }
+    }
+    return TRIBO_OK;
+}
+
+static int set_csr(struct input in, const size_t *rowptr, const size_t *col, const double *val)
+{
+    struct matrix a = {0};
+    int status = check_input(&in, rowptr, ": rowptr", 1);
+    const size_t entries = !status && rowptr[0] == 0 ? rowptr[in.rows] : 0;
+    status = status ? status : check_input(&in, col, ": col", entries);
+    status = status ? status : check_input(&in, val, ": val", entries);
+    status = status ? status : check_rows(&in, rowptr, col);
+    if (status) {
+        return status;
+    }
+    size_t *row = malloc((entries + 1) * sizeof *row);
+    for (size_t i = 0; row && i < in.rows; i++) {
+        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
+            row[k] = i;
+        }
+    }
+    const int done = row && tribo_matrix_from_triplets(&a, in.rows, in.model->given.ndof, entries, row, col, val);
+    free(row);
+    for (size_t i = 0; done && i < in.rows; i++) {
+        for (size_t k = a.first[i] + 1; k < a.first[i + 1]; k++) {
+            if (a.col[k] == a.col[k - 1]) {
+                status =
+                    tribo_model_fail(&in.model->given, TRIBO_ERR_DUPLICATE, "%s[%zu][%zu] is given twice", in.name, i, a.col[k]);
+            }
+        }
+    }
+    if (status) {
+        tribo_matrix_free(&a);
+    }
+    return status ? status : take(&in, &a, done);
+}
+
+int tribo_model_set_mass(tribo_model *model, const double *m)
+{
+    return set_dense(mass_of(model), m);
+}
+
+int tribo_model_set_mass_diagonal(tribo_model *model, const double *m)
+{
+    return set_diagonal(mass_of(model), m);
+}
+
+int tribo_model_set_mass_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
+{
+    return set_csr(mass_of(model), rowptr, col, val);
+}
+
+int tribo_model_set_damping(tribo_model *model, const double *c)
+{
+    return set_dense(damping_of(model), c);
+}
+
+int tribo_model_set_damping_diagonal(tribo_model *model, const double *c)
+{
+    return set_diagonal(damping_of(model), c);
+}
+
+int tribo_model_set_damping_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
+{
+    return set_csr(damping_of(model), rowptr, col, val);
+}
+
+int tribo_model_set_stiffness(tribo_model *model, const double *k)
+{
+    return set_dense(stiffness_of(model), k);
+}
+
+int tribo_model_set_stiffness_diagonal(tribo_model *model, const double *k)
+{
+    return set_diagonal(stiffness_of(model), k);
+}
+
+int tribo_model_set_stiffness_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
+{
+    return set_csr(stiffness_of(model), rowptr, col, val);
+}
+
+int tribo_model_set_direction(tribo_model *model, const double *j)
+{
+    return set_dense(direction_of(model), j);
+}
+
+int tribo_model_set_direction_csr(tribo_model *model, const size_t *rowptr, const size_t *col, const double *val)
+{
+    return set_csr(direction_of(model), rowptr, col, val);
+}
+
+int tribo_model_set_compliance(tribo_model *model, const double *c)
+{
+    const struct input in = {.model = model, .name = "compliance"};
+    const size_t n = model ? model->given.ncontact : 0;
+    const int status = check_input(&in, c, "", n);
+    for (size_t i = 0; !status && i < n; i++) {
+        if (!isfinite(c[i])) {
+            return tribo_model_fail(&model->given, TRIBO_ERR_NOT_FINITE, "compliance[%zu] = %g is not finite", i, c[i]);
+        }
+        if (c[i] < 0.0) {
+            return tribo_model_fail(&model->given, TRIBO_ERR_NEGATIVE, "compliance[%zu] = %g is negative", i, c[i]);
+        }
+        if (c[i] > 0.0 && !(c[i] > 1.0 / DBL_MAX)) {
+            return tribo_model_fail(&model->given, TRIBO_ERR_RANGE,
+                                    "compliance[%zu] = %g is of a stiffness that overflows: 0 is a rigid contact", i, c[i]);
+        }
+    }
+    double *copy = status ? NULL : malloc((n + 1) * sizeof *copy);
+    if (!copy) {
+        return status ? status : tribo_model_no_memory(&model->given);
+    }
+    if (n) {
+        memcpy(copy, c, n * sizeof *copy);
+    }
+    free(model->compliance);
+    model->compliance = copy;
+    return TRIBO_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------------------- systems */
+
+/* A matrix that must be set has been. */
+static int check_set(const tribo_model *m)
+{
+    const struct model *g = &m->given;
+    const char *missing = !g->mass.first                       ? "mass"
+                          : !g->stiffness.first                ? "stiffness"
+                          : !g->direction.first && g->ncontact ? "direction"
+                                                               : NULL;
+    return missing ? tribo_model_fail(g, TRIBO_ERR_STATE, "%s has not been set: call tribo_model_set_%s", missing, missing)
+                   : TRIBO_OK;
+}
+
+/* The system of a copy of the model's matrices. */
+static int build_system(tribo_system **sys, tribo_model *model, size_t nmode, int statics)
+{
+    const struct model *g = &model->given;
+    struct model whole = {.ndof = g->ndof,
+                          .ncontact = g->ncontact,
+                          .nmode = nmode,
+                          .statics = statics,
+                          .compliance = model->compliance,
+                          .message = model->text,
+                          .size = sizeof model->text};
+    int done = tribo_matrix_copy(&whole.mass, &g->mass) && tribo_matrix_copy(&whole.damping, &g->damping) &&
+               tribo_matrix_copy(&whole.stiffness, &g->stiffness);
+    done = done && (g->direction.first ? tribo_matrix_copy(&whole.direction, &g->direction)
+                                       : tribo_matrix_from_dense(&whole.direction, 0, g->ndof, NULL));
+    if (!done) {
+        tribo_model_free(&whole);
+        return tribo_model_no_memory(g);
+    }
+    return tribo_model_build(&whole, sys);
+}
+
+int tribo_system_create(tribo_system **sys, tribo_model *model)
+{
+    if (!model) {
+        return TRIBO_ERR_NULL;
+    }
+    int status = sys ? TRIBO_OK : tribo_model_fail(&model->given, TRIBO_ERR_NULL, "sys is NULL");
+    status = status ? status : check_set(model);
+    return status ? status : build_system(sys, model, 0, TRIBO_STATICS_NONE);
+}
+
+int tribo_system_reduce(tribo_system **sys, tribo_model *model, size_t nmode, int static_contacts)
+{
+    if (!model) {
+        return TRIBO_ERR_NULL;
+    }
+    const struct model *g = &model->given;
+    int status = sys ? TRIBO_OK : tribo_model_fail(g, TRIBO_ERR_NULL, "sys is NULL");
+    status = status ? status : check_set(model);
+    if (!status && nmode == 0) {
+        status = tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = 0: a reduced system has a mode at least");
+    }
+    if (!status && nmode > g->ndof) {
+        status = tribo_model_fail(g, TRIBO_ERR_SIZE, "nmode = %zu is more than the %zu degree%s of freedom", nmode, g->ndof,
+                                  plural(g->ndof));
+    }
+    if (!status && (static_contacts < TRIBO_STATICS_NONE || static_contacts > TRIBO_STATICS_COMPLIANCE)) {
+        status = tribo_model_fail(g, TRIBO_ERR_RANGE, "static_contacts = %d is not TRIBO_STATICS_...", static_contacts);
+    }
+    if (!status && g->damping.first) {
+        status =
+            tribo_model_fail(g, TRIBO_ERR_UNSUPPORTED, "damping of a reduced system is set by tribo_system_set_damping_ratio");
+    }
+    return status ? status : build_system(sys, model, nmode, static_contacts);
+}
