@@ -94,6 +94,7 @@ static void run(const struct method *m, const struct scene *s, double setting, s
          tribo_message(contacts));
     if (o->deadline > 0.0 && m->sweep != NO_SETTING) {
         need(tribo_driver_set_observer(drv, in_time, &o->deadline), NULL);
+        tribo_driver_set_output(drv, 0.01 * cycle); /* other methods show each step */
     }
     if (s->begin > 0.0) {
         advance(drv, &t, s->begin, y, o);
