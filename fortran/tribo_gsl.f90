@@ -44,8 +44,35 @@ module tribo_systems
     procedure :: set_csr, set_coo
   end type tribo_sparse
 
+  !> A structure as given: matrices, directions and compliance of its contacts. Copies its arguments; makes systems.
+  !>
+  !>     call model%create(ndof, ncontact)
+  !>     call model%set_mass(m)            ! (ndof,ndof), (ndof) for a diagonal, or type(tribo_sparse); so damping and stiffness
+  !>     call model%set_stiffness(k)
+  !>     call model%set_direction(j)       ! (ncontact,ndof) or type(tribo_sparse)
+  !>     call model%set_compliance(c)      ! (ncontact) 1/stiffness of the springs before sliders; 0: rigid
+  !>     call system%create(model)         ! or system%reduce(model, nmode)
+  type, extends(tribo_object), public :: tribo_model
+  contains
+    procedure :: create => create_model
+    procedure, private :: mass_dense, mass_diagonal, mass_sparse
+    procedure, private :: damping_dense, damping_diagonal, damping_sparse
+    procedure, private :: stiffness_dense, stiffness_diagonal, stiffness_sparse
+    procedure, private :: direction_dense, direction_sparse
+    generic :: set_mass => mass_dense, mass_diagonal, mass_sparse
+    generic :: set_damping => damping_dense, damping_diagonal, damping_sparse
+    generic :: set_stiffness => stiffness_dense, stiffness_diagonal, stiffness_sparse
+    generic :: set_direction => direction_dense, direction_sparse
+    procedure :: set_compliance
+    procedure :: message => model_message
+    procedure, private :: assign_model
+    generic :: assignment(=) => assign_model
+  end type tribo_model
+
   type, extends(tribo_object), public :: tribo_system
   contains
+    procedure :: create => create_system
+    procedure :: reduce => reduce_system
     procedure :: oscillator, chain, belt
     procedure :: clone => clone_system
     procedure, private :: linear_dense, linear_sparse
@@ -224,6 +251,287 @@ contains
     this%col = int(col - 1, c_int)
     this%val = val
   end subroutine fill
+
+  ! --------------------------------------------------------------------------------------------------------------------- models
+
+  !> A model of ndof degrees of freedom and ncontact contacts, without matrices.
+  subroutine create_model(this, ndof, ncontact, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    integer, intent(in) :: ndof, ncontact
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: model
+
+    w%status = TRIBO_OK
+    call expect_count(w, 'ndof', ndof)
+    call expect_count(w, 'ncontact', ncontact)
+    if (w%status == TRIBO_OK) w%status = c_model_create(model, int(ndof, c_size_t), int(ncontact, c_size_t))
+    if (w%status == TRIBO_OK) then
+      w%status = adopt(this, model, c_funloc(release_model))
+      if (w%status /= TRIBO_OK) call c_model_destroy(model)
+    end if
+    call finish(w, stat, errmsg)
+  end subroutine create_model
+
+  !> Mass as a full matrix, as its diagonal, or sparse. A new one takes the place of the last one.
+  subroutine mass_dense(this, m, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: m(:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'mass', m, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_model_set_mass(w%object, transpose(m))
+    call finish_model(w, stat, errmsg)
+  end subroutine mass_dense
+
+  subroutine mass_diagonal(this, m, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: m(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'mass', m, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_model_set_mass_diagonal(w%object, m)
+    call finish_model(w, stat, errmsg)
+  end subroutine mass_diagonal
+
+  subroutine mass_sparse(this, m, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    type(tribo_sparse), intent(in) :: m
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_sparse(w, 'mass', m, w%dimension)
+    if (w%status == TRIBO_OK) w%status = &
+      c_model_set_mass_csr(w%object, int(m%first, c_size_t), int(m%col, c_size_t), m%val)
+    call finish_model(w, stat, errmsg)
+  end subroutine mass_sparse
+
+  !> Damping as a full matrix, as its diagonal, or sparse. A new one takes the place of the last one.
+  subroutine damping_dense(this, c, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: c(:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'damping', c, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_model_set_damping(w%object, transpose(c))
+    call finish_model(w, stat, errmsg)
+  end subroutine damping_dense
+
+  subroutine damping_diagonal(this, c, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: c(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'damping', c, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_model_set_damping_diagonal(w%object, c)
+    call finish_model(w, stat, errmsg)
+  end subroutine damping_diagonal
+
+  subroutine damping_sparse(this, c, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    type(tribo_sparse), intent(in) :: c
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_sparse(w, 'damping', c, w%dimension)
+    if (w%status == TRIBO_OK) w%status = &
+      c_model_set_damping_csr(w%object, int(c%first, c_size_t), int(c%col, c_size_t), c%val)
+    call finish_model(w, stat, errmsg)
+  end subroutine damping_sparse
+
+  !> Stiffness as a full matrix, as its diagonal, or sparse. A new one takes the place of the last one.
+  subroutine stiffness_dense(this, k, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: k(:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'stiffness', k, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_model_set_stiffness(w%object, transpose(k))
+    call finish_model(w, stat, errmsg)
+  end subroutine stiffness_dense
+
+  subroutine stiffness_diagonal(this, k, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: k(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'stiffness', k, w%dimension)
+    if (w%status == TRIBO_OK) w%status = c_model_set_stiffness_diagonal(w%object, k)
+    call finish_model(w, stat, errmsg)
+  end subroutine stiffness_diagonal
+
+  subroutine stiffness_sparse(this, k, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    type(tribo_sparse), intent(in) :: k
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_sparse(w, 'stiffness', k, w%dimension)
+    if (w%status == TRIBO_OK) w%status = &
+      c_model_set_stiffness_csr(w%object, int(k%first, c_size_t), int(k%col, c_size_t), k%val)
+    call finish_model(w, stat, errmsg)
+  end subroutine stiffness_sparse
+
+  !> J (ncontact,ndof): row i is how the velocities of the degrees of freedom make that of contact i; or sparse.
+  subroutine direction_dense(this, j, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: j(:,:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'direction', j, w%dimension, w%n)
+    if (w%status == TRIBO_OK) w%status = c_model_set_direction(w%object, transpose(j))
+    call finish_model(w, stat, errmsg)
+  end subroutine direction_dense
+
+  subroutine direction_sparse(this, j, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    type(tribo_sparse), intent(in) :: j
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_sparse(w, 'direction', j, w%n)
+    if (w%status == TRIBO_OK) w%status = &
+      c_model_set_direction_csr(w%object, int(j%first, c_size_t), int(j%col, c_size_t), j%val)
+    call finish_model(w, stat, errmsg)
+  end subroutine direction_sparse
+
+  !> Springs before the sliders of contacts, c(ncontact) = 1/stiffness >= 0; 0: a rigid contact.
+  subroutine set_compliance(this, c, stat, errmsg)
+    class(tribo_model), intent(inout) :: this
+    real(dp), intent(in) :: c(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_model(this, w)
+    call expect_size(w, 'compliance', c, w%n)
+    if (w%status == TRIBO_OK) w%status = c_model_set_compliance(w%object, c)
+    call finish_model(w, stat, errmsg)
+  end subroutine set_compliance
+
+  !> What the last call that failed on the model found, also one that made no system of it; empty before any.
+  function model_message(this) result(text)
+    class(tribo_model), intent(in) :: this
+    character(len=:), allocatable :: text
+    type(work) :: w
+
+    call find_model(this, w)
+    if (w%status == TRIBO_OK) call to_text(c_model_message(w%object), w%text)
+    call message_of(w, text)
+  end function model_message
+
+  !> The system of all degrees of freedom of the model. Its context starts with Quinn's law, limit 0 (all contacts open) and
+  !> R = J M**-1 J'. No load, no motion yet.
+  subroutine create_system(this, model, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    class(tribo_model), intent(in) :: model
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: sys
+
+    call find_model(model, w)
+    if (w%status == TRIBO_OK) w%status = c_system_create(sys, w%object)
+    call adopt_system(this, w, sys, w%dimension)
+    call finish_model(w, stat, errmsg)
+  end subroutine create_system
+
+  !> The system of the nmode lowest modes of the model, and of static responses of its contacts beside them: static_contacts,
+  !> TRIBO_STATICS_NONE, _MASS (where absent) or _COMPLIANCE. Without damping, see set_damping_ratio.
+  subroutine reduce_system(this, model, nmode, static_contacts, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    class(tribo_model), intent(in) :: model
+    integer, intent(in) :: nmode
+    integer, intent(in), optional :: static_contacts
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+    type(c_ptr) :: sys
+    integer(c_int) :: statics
+
+    statics = TRIBO_STATICS_MASS
+    if (present(static_contacts)) statics = int(static_contacts, c_int)
+    call find_model(model, w)
+    call expect_count(w, 'nmode', nmode)
+    if (w%status == TRIBO_OK) w%status = c_system_reduce(sys, w%object, int(nmode, c_size_t), statics)
+    call adopt_system(this, w, sys, w%dimension)
+    call finish_model(w, stat, errmsg)
+  end subroutine reduce_system
+
+  !> Begins a call on a model: w%dimension degrees of freedom, w%n contacts.
+  subroutine find_model(this, w)
+    class(tribo_model), intent(in) :: this
+    type(work), intent(out) :: w
+
+    w%kind = 'model'
+    w%object = object_of(this)
+    if (.not. c_associated(w%object)) return
+    w%dimension = int(c_model_ndof(w%object))
+    w%n = int(c_model_ncontact(w%object))
+    w%status = TRIBO_OK
+  end subroutine find_model
+
+  !> Ends it: the text of an error is the model's, or that of a check here.
+  subroutine finish_model(w, stat, errmsg)
+    type(work), intent(inout) :: w
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+
+    if (w%status /= TRIBO_OK .and. c_associated(w%object) .and. .not. allocated(w%text)) &
+      call to_text(c_model_message(w%object), w%text)
+    call finish(w, stat, errmsg)
+  end subroutine finish_model
+
+  subroutine expect_sparse(w, name, x, rows)
+    type(work), intent(inout) :: w
+    character(len=*), intent(in) :: name
+    type(tribo_sparse), intent(in) :: x
+    integer, intent(in) :: rows
+    call expect_given(w, name, x)
+    if (w%status == TRIBO_OK) call expect_shape(w, name, [x%rows, x%columns], [rows, w%dimension])
+  end subroutine expect_sparse
+
+  subroutine release_model(object) bind(c, name='')
+    type(c_ptr), value :: object
+    call c_model_destroy(object)
+  end subroutine release_model
+
+  impure elemental subroutine assign_model(to, from)
+    class(tribo_model), intent(inout) :: to
+    type(tribo_model), intent(in) :: from
+    if (c_associated(object_of(from))) call refuse('model')
+    call to%destroy()
+  end subroutine assign_model
 
   ! -------------------------------------------------------------------------------------------------------------------- systems
 

@@ -1,0 +1,153 @@
+!> Models: dense, diagonal and sparse matrices make the same system, errors name what is wrong, and a contact with compliance is a
+!> spring before a slider.
+program models
+  use tribo
+  use tribo_gsl
+  use check
+  implicit none
+  integer :: stat
+  character(len=240) :: msg
+  real(dp), parameter :: mass(3) = [1.0_dp, 2.0_dp, 0.5_dp]
+  real(dp), parameter :: k(3,3) = reshape([3.0_dp, -1.0_dp, 0.0_dp, -1.0_dp, 4.0_dp, -2.0_dp, 0.0_dp, -2.0_dp, 5.0_dp], [3, 3])
+  real(dp), parameter :: j(2,3) = reshape([1.0_dp, 0.0_dp, 0.0_dp, -1.0_dp, 0.0_dp, 1.0_dp], [2, 3])
+
+  call forms()
+  call errors()
+  call compliance()
+  call report()
+
+contains
+
+  subroutine forms()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    type(tribo_sparse) :: sm, sk, sj
+    real(dp) :: y(7, 3), full(3, 3), omega(3), low(2)
+    integer :: form, i
+
+    full = 0
+    do i = 1, 3
+      full(i, i) = mass(i)
+    end do
+    call sm%set_coo(3, 3, [1, 2, 3], [1, 2, 3], mass)
+    call sk%set_coo(3, 3, [1, 1, 2, 2, 2, 3, 3], [1, 2, 1, 2, 3, 2, 3], &
+      [3.0_dp, -1.0_dp, -1.0_dp, 4.0_dp, -2.0_dp, -2.0_dp, 5.0_dp])
+    call sj%set_coo(2, 3, [1, 2, 2], [1, 2, 3], [1.0_dp, -1.0_dp, 1.0_dp])
+    do form = 1, 3
+      call model%create(3, 2)
+      if (form == 1) call model%set_mass(full)
+      if (form == 2) call model%set_mass(mass)
+      if (form == 3) call model%set_mass(sm)
+      if (form == 1) call model%set_damping(0.1_dp*full)
+      if (form == 2) call model%set_damping(0.1_dp*mass)
+      if (form == 3) then
+        call sm%set_coo(3, 3, [1, 2, 3], [1, 2, 3], 0.1_dp*mass)
+        call model%set_damping(sm)
+      end if
+      if (form < 3) call model%set_stiffness(k)
+      if (form < 3) call model%set_direction(j)
+      if (form == 3) call model%set_stiffness(sk)
+      if (form == 3) call model%set_direction(sj)
+      call s%create(model)
+      call model%destroy()
+      call follow(s, y(:, form))
+    end do
+    call require(all(same_bits(y(:, 2), y(:, 1))) .and. all(same_bits(y(:, 3), y(:, 1))), 'forms: the same system')
+    call require(abs(y(1, 1)) > 1e-3_dp, 'forms: it moves')
+    call model%create(3, 2)
+    call model%set_mass(mass)
+    call model%set_stiffness(k)
+    call model%set_direction(j)
+    call s%reduce(model, 3, TRIBO_STATICS_NONE)
+    call s%get_frequencies(omega)
+    call s%reduce(model, 2, static_contacts=TRIBO_STATICS_NONE)
+    call s%get_frequencies(low)
+    call require(s%ndof() == 2 .and. all(abs(low - omega(:2)) < 1e-12_dp), 'forms: the lowest modes')
+    call s%reduce(model, 1)
+    call require(s%ndof() == 3, 'forms: a mode and two static responses')
+  end subroutine forms
+
+  subroutine follow(s, y)
+    type(tribo_system), intent(inout) :: s
+    real(dp), intent(out) :: y(7)
+    type(tribo_driver) :: d
+    type(tribo_context) :: c
+    real(dp) :: t
+
+    call s%context(c)
+    call c%set_limit([0.2_dp, 0.1_dp])
+    call s%add_load(1.3_dp, cosine=[1.0_dp, 0.0_dp, 0.5_dp])
+    call d%create(s, 'exact')
+    t = 0
+    y = 0
+    call d%advance(t, 20.0_dp, y)
+  end subroutine follow
+
+  subroutine errors()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    type(tribo_sparse) :: unset, wide
+    real(dp) :: x(3, 3)
+
+    call model%set_mass(mass, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, 'the model has not been created, or has been destroyed')
+    call model%create(-1, 2, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'ndof = -1 is negative')
+    call model%create(3, 2)
+    call s%create(model, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_STATE, 'mass has not been set: call tribo_model_set_mass')
+    call require(model%message() == 'mass has not been set: call tribo_model_set_mass', 'errors: the message stays')
+    call model%set_mass(mass(:2), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'mass has size 2, not 3')
+    call model%set_stiffness(k(:2, :), stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'stiffness has size 2 x 3, not 3 x 3')
+    call model%set_direction(k, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'direction has size 3 x 3, not 2 x 3')
+    call model%set_direction(unset, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NULL, 'direction has not been set')
+    call wide%set_coo(3, 4, [1], [4], [1.0_dp])
+    call model%set_mass(wide, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'mass has size 3 x 4, not 3 x 3')
+    x = k
+    x(1, 2) = 7
+    call model%set_mass(mass)
+    call model%set_stiffness(x)
+    call model%set_direction(j)
+    call s%create(model, stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NOT_SYMMETRIC, 'stiffness(1,2) = 7, but stiffness(2,1) = -1')
+    call model%set_compliance([0.0_dp, -1.0_dp], stat, msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'compliance(2) = -1 is negative')
+    call model%set_stiffness(k)
+    call s%reduce(model, 4, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_SIZE, 'nmode = 4 is more than the 3 degrees of freedom')
+    call s%reduce(model, -1, stat=stat, errmsg=msg)
+    call expect_error(stat, msg, TRIBO_ERR_NEGATIVE, 'nmode = -1 is negative')
+    call s%create(model, stat, msg)
+    call require(stat == TRIBO_OK .and. s%ndof() == 3 .and. s%ncontact() == 2, 'errors: the model is as it was')
+  end subroutine errors
+
+  !> x'' + 0.1 x' + x + f = cos 1.1 t, stiffness 1, limit 0.5: the exact steady amplitude is 3.38660810.
+  subroutine compliance()
+    type(tribo_model) :: model
+    type(tribo_system) :: s
+    type(tribo_driver) :: d
+    type(tribo_context) :: c
+    real(dp) :: y(5), least, most
+
+    call model%create(1, 1)
+    call model%set_mass([1.0_dp])
+    call model%set_damping([0.1_dp])
+    call model%set_stiffness([1.0_dp])
+    call model%set_direction(reshape([1.0_dp], [1, 1]))
+    call model%set_compliance([1.0_dp])
+    call s%create(model)
+    call s%context(c)
+    call c%set_limit(0.5_dp)
+    call s%add_load(1.1_dp, cosine=[1.0_dp])
+    call d%create(s, 'exact')
+    y = 0
+    call d%find_periodic(0.0_dp, 2*acos(-1.0_dp)/1.1_dp, y)
+    call d%period_extremes([1.0_dp, 0.0_dp, 0.0_dp, 0.0_dp], least, most)
+    call require(abs(most - 3.38660810_dp) < 1e-7_dp, 'compliance: the amplitude')
+  end subroutine compliance
+end program models
