@@ -8,6 +8,7 @@
  * has been in use as often as its numbers can tell is not used again. Finding takes no lock: an object belongs to one thread at a
  * time, and a number of the past finds nothing at any time, since a place counts its use before it takes the object. */
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 
 #include "handle.h"
@@ -22,7 +23,12 @@ struct place {
     void (*destroy)(void *); /* of the owner */
     int64_t uses;
     uint32_t next; /* free place after this one; 0: none */
+    char *message; /* [MESSAGE] of the object's last failure, or NULL */
 };
+
+/* Contexts keep the messages of the library's failures; of those that Fortran finds, and of calls on const contexts, which keep
+ * none, these do. Places are locked meanwhile, so that no message is a mixture of two threads' failures. */
+#define MESSAGE 300
 
 /* Place 0 is not used, so that 0 can be the end of the free places and never an object's number. */
 struct table {
@@ -123,10 +129,11 @@ static int64_t add(struct table *t, void *object, void *owner, void (*destroy)(v
 
 static struct place take(int64_t number)
 {
-    struct place *p = find(number), taken = {NULL, NULL, NULL, 0, 0};
+    struct place *p = find(number), taken = {NULL, NULL, NULL, 0, 0, NULL};
     if (p) {
         struct table *t = table_of(number);
         taken = *p;
+        p->message = NULL;
         STORE(p->object, NULL);
         t->alive--;
         if (p->uses < t->most_uses) {
@@ -169,6 +176,7 @@ void tribo_handle_drop(int64_t number)
     lock();
     const struct place taken = take(number);
     unlock();
+    free(taken.message);
     if (taken.object && taken.destroy) {
         taken.destroy(taken.owner);
     }
@@ -180,4 +188,41 @@ uint32_t tribo_handle_count(void)
     const uint32_t count = longs.alive + shorts.alive;
     unlock();
     return count;
+}
+
+/* The first place of an object, locked; NULL if it has none. */
+static struct place *place_with(const void *object)
+{
+    struct table *const tables[] = {&longs, &shorts};
+    for (size_t k = 0; k < 2; k++) {
+        for (uint32_t i = 1; i < tables[k]->used; i++) {
+            struct place *p = at(tables[k], i);
+            if (p->object == object) {
+                return p;
+            }
+        }
+    }
+    return NULL;
+}
+
+int tribo_handle_note(const void *object, int status, const char *text)
+{
+    lock();
+    struct place *p = object ? place_with(object) : NULL;
+    if (p && !p->message) {
+        p->message = malloc(MESSAGE);
+    }
+    if (p && p->message) {
+        snprintf(p->message, MESSAGE, "%s", text ? text : tribo_strerror(status));
+    }
+    unlock();
+    return status;
+}
+
+void tribo_handle_noted(const void *object, size_t size, char *text)
+{
+    lock();
+    const struct place *p = object ? place_with(object) : NULL;
+    snprintf(text, size, "%s", p && p->message ? p->message : "");
+    unlock();
 }

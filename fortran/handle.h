@@ -2,6 +2,7 @@
 #ifndef TRIBO_HANDLE_H
 #define TRIBO_HANDLE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "tribo/tribo.h"
@@ -27,6 +28,12 @@ TRIBO_API TRIBO_PURE void *tribo_handle_find(int64_t number);
 
 /* Destroys the object of a number, if it has one; from now on it has none. */
 TRIBO_API void tribo_handle_drop(int64_t number);
+
+/* Keeps text as the message of object, a context, if it has a number; text NULL: that of status. Returns status. */
+TRIBO_API int tribo_handle_note(const void *object, int status, const char *text);
+
+/* Copies the message of object to text [size], "" if there is none. */
+TRIBO_API void tribo_handle_noted(const void *object, size_t size, char *text);
 
 /* How many numbers have an object now. */
 TRIBO_API uint32_t tribo_handle_count(void);

@@ -27,6 +27,8 @@
 !>   TRBNEW(N, IH, IERR)                             N >= 0                            IH new: quinn, limit 0, epsilon 1E-6,
 !>                                                                                     no operator yet
 !>   TRBCPY(IH, IHNEW, IERR)                         IH                                IHNEW a copy that shares nothing
+!>   TRBCPS(IH, IFROM, IERR)                         IFROM another handle              gives IH the settings of IFROM
+!>   TRBFIX(IH, IERR)                                                                  the operator cannot be changed any more
 !>   TRBDEL(IH, IERR)                                IH
 !>   TRBNUM(IH, N, IERR)                             IH                                N number of contacts
 !>   TRBMSG(IH, TEXT, IERR)                          IH; IERR the one that one asks    TEXT what its last failing call found;
@@ -140,6 +142,26 @@ contains
     if (n /= found) call refuse(ctx, ierr, 'N', n, ', but the number of contacts is ', int(found))
   end subroutine find
 
+  !> Status of a call on ctx, whose message is noted if it failed; and of one on a const context, which keeps none.
+  integer function told(ctx, status)
+    type(c_ptr), intent(in) :: ctx
+    integer(c_int), intent(in) :: status
+    character(len=:), allocatable :: text
+
+    told = int(status)
+    if (status == TRIBO_OK) return
+    call to_text(c_message(ctx), text)
+    told = int(c_handle_note(ctx, status, text // c_null_char))
+  end function told
+
+  integer function told_const(ctx, status)
+    type(c_ptr), intent(in) :: ctx
+    integer(c_int), intent(in) :: status
+
+    told_const = int(status)
+    if (status /= TRIBO_OK) told_const = int(c_handle_note(ctx, status))
+  end function told_const
+
   !> The same as a tribo_context; and value, the argument called name, must be least at least.
   subroutine borrow(ih, c, ierr, n, name, value, least)
     integer, intent(in) :: ih
@@ -165,7 +187,7 @@ contains
     character(len=80) :: text
 
     write (text, '(2a,i0,a,i0)') name, ' = ', value, but, other
-    ierr = c_set_message(ctx, int(TRIBO_ERR_SIZE, c_int), trim(text) // c_null_char)
+    ierr = c_handle_note(ctx, int(TRIBO_ERR_SIZE, c_int), trim(text) // c_null_char)
   end subroutine refuse
 
   !> A handle for a context, if there is no error yet.
@@ -317,7 +339,7 @@ subroutine trbcpy(ih, ihnew, ierr)
   type(c_ptr) :: ctx, copy
 
   call find(ih, ctx, ierr)
-  if (ierr == TRIBO_OK) ierr = c_clone(ctx, copy)
+  if (ierr == TRIBO_OK) ierr = told_const(ctx, c_clone(ctx, copy))
   call give(copy, ihnew, ierr)
 end subroutine trbcpy
 
@@ -331,6 +353,29 @@ subroutine trbdel(ih, ierr)
   call find(ih, ctx, ierr)
   if (ierr == TRIBO_OK) call c_handle_drop(-int(ih, c_int64_t))
 end subroutine trbdel
+
+subroutine trbcps(ih, ifrom, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih, ifrom
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c, from
+
+  call borrow(ifrom, from, ierr)
+  if (ierr == TRIBO_OK) call borrow(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%copy_settings(from, ierr)
+end subroutine trbcps
+
+subroutine trbfix(ih, ierr)
+  use tribo_fixed
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(out) :: ierr
+  type(tribo_context) :: c
+
+  call borrow(ih, c, ierr)
+  if (ierr == TRIBO_OK) call c%fix_operator(ierr)
+end subroutine trbfix
 
 subroutine trbnum(ih, n, ierr)
   use tribo_fixed
@@ -357,6 +402,7 @@ subroutine trbmsg(ih, text, ierr)
 
   call find(ih, w%ctx, no_handle)
   if (no_handle == TRIBO_OK) then
+    w%found = c_message(w%ctx)
     call message_of(w, found)
     text = found
   else
@@ -412,7 +458,7 @@ subroutine trblim(ih, n, fmun, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_set_limit(ctx, fmun)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_set_limit(ctx, fmun))
 end subroutine trblim
 
 subroutine trbnld(ih, n, fmu, fn, ierr)
@@ -424,7 +470,7 @@ subroutine trbnld(ih, n, fmu, fn, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_set_normal_load(ctx, fmu, fn)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_set_normal_load(ctx, fmu, fn))
 end subroutine trbnld
 
 subroutine trbsta(ih, n, ratio, vstr, ierr)
@@ -441,9 +487,9 @@ subroutine trbsta(ih, n, ratio, vstr, ierr)
   drops = n < 1
   if (.not. drops) drops = abs(vstr(1)) <= 0
   if (drops) then
-    ierr = c_set_static(ctx, ratio)
+    ierr = told(ctx, c_set_static(ctx, ratio))
   else
-    ierr = c_set_static(ctx, ratio, vstr)
+    ierr = told(ctx, c_set_static(ctx, ratio, vstr))
   end if
 end subroutine trbsta
 
@@ -456,7 +502,7 @@ subroutine trbgst(ih, n, ratio, vstr, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_get_static(ctx, ratio, vstr)
+  if (ierr == TRIBO_OK) ierr = told_const(ctx, c_get_static(ctx, ratio, vstr))
 end subroutine trbgst
 subroutine trbpln(ih, npl, ifirst, ierr)
   use tribo_fixed
@@ -478,7 +524,7 @@ subroutine trblm1(ih, fmun, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr)
-  if (ierr == TRIBO_OK) ierr = c_set_limit_all(ctx, fmun)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_set_limit_all(ctx, fmun))
 end subroutine trblm1
 
 subroutine trbglm(ih, n, fmun, ierr)
@@ -490,7 +536,7 @@ subroutine trbglm(ih, n, fmun, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_get_limit(ctx, fmun)
+  if (ierr == TRIBO_OK) ierr = told_const(ctx, c_get_limit(ctx, fmun))
 end subroutine trbglm
 
 subroutine trbeps(ih, n, eps, ierr)
@@ -502,7 +548,7 @@ subroutine trbeps(ih, n, eps, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_set_epsilon(ctx, eps)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_set_epsilon(ctx, eps))
 end subroutine trbeps
 
 subroutine trbep1(ih, eps, ierr)
@@ -514,7 +560,7 @@ subroutine trbep1(ih, eps, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr)
-  if (ierr == TRIBO_OK) ierr = c_set_epsilon_all(ctx, eps)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_set_epsilon_all(ctx, eps))
 end subroutine trbep1
 
 subroutine trbstp(ih, dt, rldt, ierr)
@@ -526,7 +572,7 @@ subroutine trbstp(ih, dt, rldt, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr)
-  if (ierr == TRIBO_OK) ierr = c_set_epsilon_step(ctx, dt, rldt)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_set_epsilon_step(ctx, dt, rldt))
 end subroutine trbstp
 
 subroutine trbgep(ih, n, eps, ierr)
@@ -538,7 +584,7 @@ subroutine trbgep(ih, n, eps, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_get_epsilon(ctx, eps)
+  if (ierr == TRIBO_OK) ierr = told_const(ctx, c_get_epsilon(ctx, eps))
 end subroutine trbgep
 
 subroutine trbopd(ih, n, rdiag, ierr)
@@ -550,7 +596,7 @@ subroutine trbopd(ih, n, rdiag, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_set_operator_diagonal(ctx, rdiag)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_set_operator_diagonal(ctx, rdiag))
 end subroutine trbopd
 
 subroutine trbopf(ih, n, r, ldr, ierr)
@@ -668,7 +714,7 @@ subroutine trbfrc(ih, n, v, feq, f, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_force(ctx, v, feq, f)
+  if (ierr == TRIBO_OK) ierr = told_const(ctx, c_force(ctx, v, feq, f))
 end subroutine trbfrc
 
 subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
@@ -681,7 +727,7 @@ subroutine trbftn(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_force_tangent(ctx, v, feq, f, dfdv, dfdq, dfdn)
+  if (ierr == TRIBO_OK) ierr = told_const(ctx, c_force_tangent(ctx, v, feq, f, dfdv, dfdq, dfdn))
 end subroutine trbftn
 
 subroutine trbftp(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
@@ -694,7 +740,7 @@ subroutine trbftp(ih, n, v, feq, f, dfdv, dfdq, dfdn, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_force_tangent_planar(ctx, v, feq, f, dfdv, dfdq, dfdn)
+  if (ierr == TRIBO_OK) ierr = told_const(ctx, c_force_tangent_planar(ctx, v, feq, f, dfdv, dfdq, dfdn))
 end subroutine trbftp
 
 subroutine trbbal(ih, n, v, a, feq, f, ierr)
@@ -707,7 +753,7 @@ subroutine trbbal(ih, n, v, a, feq, f, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_balance(ctx, v, a, feq, f)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_balance(ctx, v, a, feq, f))
 end subroutine trbbal
 
 subroutine trbbtn(ih, n, v, a, feq, f, dfdv, dfda, ldj, ierr)
@@ -733,7 +779,7 @@ subroutine trbtpr(ih, n, dv, da, df, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_tangent_product(ctx, dv, da, df)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_tangent_product(ctx, dv, da, df))
 end subroutine trbtpr
 
 subroutine trblpr(ih, n, dlim, df, ierr)
@@ -746,7 +792,7 @@ subroutine trblpr(ih, n, dlim, df, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_limit_product(ctx, dlim, df)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_limit_product(ctx, dlim, df))
 end subroutine trblpr
 
 subroutine trbstf(ih, n, dt, vfree, f, ierr)
@@ -759,7 +805,7 @@ subroutine trbstf(ih, n, dt, vfree, f, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_step_force(ctx, dt, vfree, f)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_step_force(ctx, dt, vfree, f))
 end subroutine trbstf
 
 subroutine trbstm(ih, n, dt, v, vfree, f, ierr)
@@ -772,7 +818,7 @@ subroutine trbstm(ih, n, dt, v, vfree, f, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_step_force_mean(ctx, dt, v, vfree, f)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_step_force_mean(ctx, dt, v, vfree, f))
 end subroutine trbstm
 
 subroutine trbbox(ih, n, a, flo, fup, f, ierr)
@@ -785,7 +831,7 @@ subroutine trbbox(ih, n, a, flo, fup, f, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_solve_box(ctx, a, flo, fup, f)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_solve_box(ctx, a, flo, fup, f))
 end subroutine trbbox
 
 subroutine trbacc(ih, n, v, feq, ierr)
@@ -797,7 +843,7 @@ subroutine trbacc(ih, n, v, feq, ierr)
   type(c_ptr) :: ctx
 
   call find(ih, ctx, ierr, n)
-  if (ierr == TRIBO_OK) ierr = c_accept(ctx, v, feq)
+  if (ierr == TRIBO_OK) ierr = told(ctx, c_accept(ctx, v, feq))
 end subroutine trbacc
 
 ! ----------------------------------------------------------------------------------------------------------------------- queries

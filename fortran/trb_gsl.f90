@@ -32,8 +32,12 @@
 !>   TRBCLL(IH, IERR)                                takes all loads away
 !>   TRBBAS(IH, N, OMEGA, BC, BS, IERR)              adds BC(N)*COS(OMEGA*t) + BS(N)*SIN(OMEGA*t) to the velocities of the bases
 !>   TRBHLM(IH, N, OMEGA, FC, FS, IERR)              adds FC(N)*COS(OMEGA*t) + FS(N)*SIN(OMEGA*t) to the limits
-!>   TRBLMT(IH, N, KNOTS, TIME, FMUN, IERR)          limits linear between FMUN(N,KNOTS) at TIME(KNOTS); KNOTS 0: ends tables and
-!>                                                   harmonics of the limits
+!>   TRBBSC(IH, IERR)                                takes all base motions away
+!>   TRBLMC(IH, IERR)                                takes the table and all harmonics of the limits away
+!>   TRBSLM(IH, N, T, FMUN, IERR)                    limits at time T                  FMUN(N)
+!>   TRBSSL(IH, N, ISLIP, IERR)                      slips where forces were found last  ISLIP(N)
+!>   TRBSCN(IH, IWHICH, IVAL, IERR)                  IWHICH TRIBO_COUNT_... of contacts  IVAL
+!>   TRBLMT(IH, N, KNOTS, TIME, FMUN, IERR)          limits linear between FMUN(N,KNOTS) at TIME(KNOTS)
 !>   TRBCON(IH, NDOF, N, T, Y, V, FEQ, F, IERR)      T, Y                              V(N), FEQ(N), F(N) of the contacts there
 !> Reduced structures
 !>   TRBZET(IH, ZETA, IERR)                          ZETA >= 0: damping ratio of every mode
@@ -78,7 +82,7 @@
 
 !> What they share: the owner of a handle of TRBLIN is a structure with its driver, as module tribo_gsl has them.
 module tribo_fixed_gsl
-  use tribo_fixed, only: c_handle_add_part, c_handle_drop, c_handle_owner, c_set_message, find, hand_out, refuse_value => refuse
+  use tribo_fixed, only: c_handle_add_part, c_handle_drop, c_handle_owner, c_handle_note, find, hand_out, refuse_value => refuse
   use tribo_c
   use tribo
   use tribo_gsl
@@ -137,7 +141,7 @@ contains
     if (ierr /= TRIBO_OK) return
     owner = c_handle_owner(-int(ih, c_int64_t))
     if (.not. c_associated(owner)) then
-      ierr = c_set_message(ctx, int(TRIBO_ERR_STATE, c_int), 'IH has contacts only: TRBLIN makes a structure' // c_null_char)
+      ierr = c_handle_note(ctx, int(TRIBO_ERR_STATE, c_int), 'IH has contacts only: TRBLIN makes a structure' // c_null_char)
       return
     end if
     call c_f_pointer(owner, s)
@@ -162,7 +166,7 @@ contains
     if (ierr /= TRIBO_OK) return
     if (c_associated(object_of(s%driver))) return
     call find(ih, ctx, ierr)
-    ierr = c_set_message(ctx, int(TRIBO_ERR_STATE, c_int), 'IH has no integrator: call TRBDRV first' // c_null_char)
+    ierr = c_handle_note(ctx, int(TRIBO_ERR_STATE, c_int), 'IH has no integrator: call TRBDRV first' // c_null_char)
   end subroutine find_driven
 
   !> The same of which all contacts are asked for.
@@ -427,9 +431,68 @@ subroutine trblmt(ih, n, knots, time, fmun, ierr)
   type(structure), pointer :: s
 
   call find_contacts(ih, s, ierr, n)
-  call require_least(ih, 'KNOTS', knots, 0, ierr)
+  call require_least(ih, 'KNOTS', knots, 1, ierr)
   if (ierr == TRIBO_OK) call s%system%set_limit_table(time(:knots), fmun(:, :knots), ierr)
 end subroutine trblmt
+
+subroutine trblmc(ih, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%system%clear_limits(ierr)
+end subroutine trblmc
+
+subroutine trbbsc(ih, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%system%clear_base_motion(ierr)
+end subroutine trbbsc
+
+subroutine trbslm(ih, n, t, fmun, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, n
+  real(dp), intent(in) :: t
+  real(dp), intent(inout) :: fmun(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  if (ierr == TRIBO_OK) call s%system%get_limit(t, fmun(:n), ierr)
+end subroutine trbslm
+
+subroutine trbssl(ih, n, slip, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, n
+  integer, intent(inout) :: slip(*)
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_contacts(ih, s, ierr, n)
+  if (ierr == TRIBO_OK) call s%system%get_slip(slip(:n), ierr)
+end subroutine trbssl
+
+subroutine trbscn(ih, which, value, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ih, which
+  integer, intent(inout) :: value
+  integer, intent(out) :: ierr
+  type(structure), pointer :: s
+
+  call find_structure(ih, s, ierr)
+  if (ierr == TRIBO_OK) call s%system%get_count(which, value, ierr)
+end subroutine trbscn
 
 subroutine trbcon(ih, ndof, n, t, y, v, feq, f, ierr)
   use tribo_fixed_gsl

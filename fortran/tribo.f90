@@ -51,6 +51,8 @@ module tribo_contexts
   type, extends(tribo_object), public :: tribo_context
   contains
     procedure :: create, clone
+    procedure :: copy_settings
+    procedure :: fix_operator
     procedure :: message
     procedure :: get_ncontact
     procedure, private :: set_law_number, set_law_name
@@ -284,7 +286,7 @@ contains
     type(work) :: w
     type(c_ptr) :: ctx
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) w%status = c_clone(w%ctx, ctx)
     if (w%status == TRIBO_OK) then
       if (adopted(copy, ctx) /= TRIBO_OK) call fail(w, TRIBO_ERR_MEMORY, 'out of memory for a copy')
@@ -302,6 +304,31 @@ contains
       call to%destroy()
     end if
   end subroutine assign
+
+  !> Gives this context the settings of from, which has as many contacts; operator, forces, counts and memory stay.
+  subroutine copy_settings(this, from, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    class(tribo_context), intent(in) :: from
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_copy_settings(w%ctx, object_of(from))
+    call finish(w, stat, errmsg)
+  end subroutine copy_settings
+
+  !> Fixes the operator: from here on the set_operator procedures are refused. That of a clone can be changed.
+  subroutine fix_operator(this, stat, errmsg)
+    class(tribo_context), intent(inout) :: this
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call begin(this, w)
+    if (w%status == TRIBO_OK) w%status = c_fix_operator(w%ctx)
+    call finish(w, stat, errmsg)
+  end subroutine fix_operator
 
   !> What the last call that failed on this context found: argument, contact and value; empty before any.
   function message(this) result(text)
@@ -322,7 +349,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) ncontact = w%n
     call finish(w, stat, errmsg)
   end subroutine get_ncontact
@@ -369,7 +396,7 @@ contains
     type(work) :: w
     integer(c_int) :: number
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_law(w%ctx, number)
     if (w%status == TRIBO_OK) law = int(number)
     call finish(w, stat, errmsg)
@@ -429,7 +456,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (present(ratio)) call expect_size(w, 'ratio', ratio, w%n)
     if (present(velocity)) call expect_size(w, 'velocity', velocity, w%n)
     if (w%status == TRIBO_OK) w%status = c_get_static(w%ctx, ratio, velocity)
@@ -472,7 +499,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    call begin(this, w)
+    call begin_const(this, w)
     call expect_size(w, 'limit', limit, w%n)
     if (w%status == TRIBO_OK) w%status = c_get_limit(w%ctx, limit)
     call finish(w, stat, errmsg)
@@ -526,7 +553,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    call begin(this, w)
+    call begin_const(this, w)
     call expect_size(w, 'epsilon', epsilon, w%n)
     if (w%status == TRIBO_OK) w%status = c_get_epsilon(w%ctx, epsilon)
     call finish(w, stat, errmsg)
@@ -656,7 +683,7 @@ contains
     type(work) :: w
     integer(c_int) :: number
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_coupling(w%ctx, number)
     if (w%status == TRIBO_OK) coupling = int(number)
     call finish(w, stat, errmsg)
@@ -683,7 +710,7 @@ contains
     type(work) :: w
     integer(c_int) :: number
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_sharing(w%ctx, number)
     if (w%status == TRIBO_OK) sharing = int(number)
     call finish(w, stat, errmsg)
@@ -700,11 +727,13 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    call begin(this, w)
+    call begin_const(this, w)
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'feq', feq, w%n)
     call expect_size(w, 'f', f, w%n)
     if (w%status == TRIBO_OK) w%status = c_force(w%ctx, v, feq, f)
+    call blame(w, 'v', v)
+    call blame(w, 'feq', feq)
     call finish(w, stat, errmsg)
   end subroutine force
 
@@ -717,7 +746,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    call begin(this, w)
+    call begin_const(this, w)
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'feq', feq, w%n)
     if (present(f)) call expect_size(w, 'f', f, w%n)
@@ -725,6 +754,8 @@ contains
     if (present(df_dfeq)) call expect_size(w, 'df_dfeq', df_dfeq, w%n)
     if (present(df_dlimit)) call expect_size(w, 'df_dlimit', df_dlimit, w%n)
     if (w%status == TRIBO_OK) w%status = c_force_tangent(w%ctx, v, feq, f, df_dv, df_dfeq, df_dlimit)
+    call blame(w, 'v', v)
+    call blame(w, 'feq', feq)
     call finish(w, stat, errmsg)
   end subroutine force_tangent
 
@@ -738,7 +769,7 @@ contains
     character(len=*), intent(inout), optional :: errmsg
     type(work) :: w
 
-    call begin(this, w)
+    call begin_const(this, w)
     call expect_size(w, 'v', v, w%n)
     call expect_size(w, 'feq', feq, w%n)
     if (present(f)) call expect_size(w, 'f', f, w%n)
@@ -746,6 +777,8 @@ contains
     if (present(df_dfeq)) call expect_shape(w, 'df_dfeq', shape(df_dfeq), [2, w%n])
     if (present(df_dlimit)) call expect_shape(w, 'df_dlimit', shape(df_dlimit), [2, w%n])
     if (w%status == TRIBO_OK) w%status = c_force_tangent_planar(w%ctx, v, feq, f, df_dv, df_dfeq, df_dlimit)
+    call blame(w, 'v', v)
+    call blame(w, 'feq', feq)
     call finish(w, stat, errmsg)
   end subroutine force_tangent_planar
 
@@ -910,7 +943,7 @@ contains
     type(work) :: w
     integer(c_signed_char) :: small(size(slip))
 
-    call begin(this, w)
+    call begin_const(this, w)
     call expect_shape(w, 'slip', shape(slip), [w%n])
     if (w%status == TRIBO_OK) w%status = c_get_slip(w%ctx, small)
     if (w%status == TRIBO_OK) slip = int(small)
@@ -927,7 +960,7 @@ contains
     type(work) :: w
     integer(c_size_t) :: count
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, to_int(which), count)
     if (w%status == TRIBO_OK) then
       if (count > huge(value)) call fail(w, TRIBO_ERR_SIZE, 'the count is too large for the kind of value')
@@ -945,7 +978,7 @@ contains
     type(work) :: w
     integer(c_size_t) :: count
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_count(w%ctx, to_int(which), count)
     if (w%status == TRIBO_OK) value = int(count, int64)
     call finish(w, stat, errmsg)
@@ -961,7 +994,7 @@ contains
     type(work) :: w
     real(dp) :: found(1)
 
-    call begin(this, w)
+    call begin_const(this, w)
     if (w%status == TRIBO_OK) w%status = c_get_real(w%ctx, to_int(which), found)
     if (w%status == TRIBO_OK) value = found(1)
     call finish(w, stat, errmsg)

@@ -82,6 +82,8 @@ module tribo_constants
   integer, parameter, public :: TRIBO_COUNT_REUSED = 8
   !> planar contacts
   integer, parameter, public :: TRIBO_COUNT_PLANAR = 9
+  !> grows with each call that changes a setting or the operator
+  integer, parameter, public :: TRIBO_COUNT_SETTINGS = 10
 
   integer, parameter, public :: TRIBO_REAL_RESIDUAL = 0
   integer, parameter, public :: TRIBO_REAL_MAX_RATE = 1
@@ -198,26 +200,12 @@ module tribo_c
       type(c_ptr) :: answer
     end function c_message
 
-    function c_set_message(ctx, status, text) result(answer) bind(c,name='tribo_set_message')
+    function c_copy_settings(ctx, from) result(answer) bind(c,name='tribo_copy_settings')
       import
       type(c_ptr), value :: ctx
-      integer(c_int), value :: status
-      character(kind=c_char), intent(in), optional :: text(*)
+      type(c_ptr), value :: from
       integer(c_int) :: answer
-    end function c_set_message
-
-    function c_revision(ctx) result(answer) bind(c,name='tribo_revision')
-      import
-      type(c_ptr), value :: ctx
-      integer(c_size_t) :: answer
-    end function c_revision
-
-    function c_set_owner(ctx, owner) result(answer) bind(c,name='tribo_set_owner')
-      import
-      type(c_ptr), value :: ctx
-      character(kind=c_char), intent(in), optional :: owner(*)
-      integer(c_int) :: answer
-    end function c_set_owner
+    end function c_copy_settings
 
     function c_get_ncontact(ctx, ncontact) result(answer) bind(c,name='tribo_get_ncontact')
       import
@@ -369,6 +357,12 @@ module tribo_c
       real(c_double), intent(in), optional :: val(*)
       integer(c_int) :: answer
     end function c_set_operator_callback
+
+    function c_fix_operator(ctx) result(answer) bind(c,name='tribo_fix_operator')
+      import
+      type(c_ptr), value :: ctx
+      integer(c_int) :: answer
+    end function c_fix_operator
 
     function c_set_coupling(ctx, coupling) result(answer) bind(c,name='tribo_set_coupling')
       import
@@ -569,6 +563,21 @@ module tribo_c
       import
       integer(c_int64_t), value :: number
     end subroutine c_handle_drop
+
+    function c_handle_note(object, status, text) result(answer) bind(c,name='tribo_handle_note')
+      import
+      type(c_ptr), value :: object
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: text(*)
+      integer(c_int) :: answer
+    end function c_handle_note
+
+    subroutine c_handle_noted(object, size, text) bind(c,name='tribo_handle_noted')
+      import
+      type(c_ptr), value :: object
+      integer(c_size_t), value :: size
+      character(kind=c_char), intent(inout), optional :: text(*)
+    end subroutine c_handle_noted
 
     function c_handle_count() result(answer) bind(c,name='tribo_handle_count')
       import

@@ -24,7 +24,7 @@
 module tribo_systems
   use tribo_gsl_c
   use tribo_gsl_constants
-  use tribo_c, only: c_handle_add, c_handle_drop, c_set_message
+  use tribo_c, only: c_handle_add, c_handle_drop
   use tribo_constants
   use tribo, only: tribo_context
   use tribo_support
@@ -79,13 +79,14 @@ module tribo_systems
     generic :: linear => linear_dense, linear_sparse
     procedure :: reduced
     procedure :: add_load, add_base_motion, add_load_table, add_limit
-    procedure :: clear_loads
-    procedure :: set_limit_table, set_damping_ratio
+    procedure :: clear_loads, clear_base_motion, clear_limits
+    procedure :: set_limit_table, get_limit, set_damping_ratio
     procedure :: get_frequencies, expand, get_truncation
     procedure :: ndof, ncontact, dimension
     procedure :: context
     procedure :: derivative, jacobian
     procedure :: contacts, accept
+    procedure :: get_slip, get_count => get_system_count
     procedure :: message => system_message
     procedure, private :: assign_system
     generic :: assignment(=) => assign_system
@@ -784,6 +785,30 @@ contains
     call finish(w, stat, errmsg)
   end subroutine clear_loads
 
+  !> Takes all base motions away.
+  subroutine clear_base_motion(this, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_system(this, w)
+    if (w%status == TRIBO_OK) w%status = c_system_clear_base_motion(w%object)
+    call finish(w, stat, errmsg)
+  end subroutine clear_base_motion
+
+  !> Takes the table and all harmonics of the limits away: limits are those of context.
+  subroutine clear_limits(this, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_system(this, w)
+    if (w%status == TRIBO_OK) w%status = c_system_clear_limits(w%object)
+    call finish(w, stat, errmsg)
+  end subroutine clear_limits
+
   !> Adds a load that follows a table, p(t) = ... + pattern*value(t), with value linear between its knots at time, which ascends,
   !> and constant outside. pattern: as in add_load.
   subroutine add_load_table(this, time, value, pattern, stat, errmsg)
@@ -800,9 +825,23 @@ contains
     call finish(w, stat, errmsg)
   end subroutine add_load_table
 
-  !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside, instead of
-  !> what the context says; limits that are set there meanwhile have no effect. Without knots it ends, and harmonics of the limits
-  !> do: limits are again those that the context had before.
+  !> limit(ncontact): the limits at time t, with harmonics or table.
+  subroutine get_limit(this, t, limit, stat, errmsg)
+    class(tribo_system), intent(inout) :: this
+    real(dp), intent(in) :: t
+    real(dp), intent(inout) :: limit(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    type(work) :: w
+
+    call find_system(this, w)
+    call expect_size(w, 'limit', limit, w%n)
+    if (w%status == TRIBO_OK) w%status = c_system_get_limit(w%object, t, limit)
+    call finish(w, stat, errmsg)
+  end subroutine get_limit
+
+  !> Lets the limits follow a table, limit(ncontact,knots) >= 0, linear between its knots at time and constant outside, in the
+  !> place of those that are set in context.
   subroutine set_limit_table(this, time, limit, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     real(dp), intent(in) :: time(:), limit(:,:)
@@ -894,8 +933,8 @@ contains
     if (c_associated(object_of(this))) dimension = 2*this%ndof() + 1
   end function dimension
 
-  !> Makes c the context of the system's contacts, borrowed: set law, limits, epsilon and coupling there. Its operator is the
-  !> system's. When the system has gone, c is as if destroyed; c%destroy does nothing to the system.
+  !> Makes c the settings of the system's contacts, borrowed: set law, limits, epsilon and coupling there. The system reads c and
+  !> never writes into it. Its operator is the system's, and fixed. When the system has gone, c is as if destroyed; c%destroy does nothing to the system.
   subroutine context(this, c, stat, errmsg)
     class(tribo_system), intent(inout) :: this
     type(tribo_context), intent(inout) :: c
@@ -964,6 +1003,38 @@ contains
     call finish(w, stat, errmsg)
   end subroutine contacts
 
+  !> slip(ncontact), TRIBO_SLIP_...: what the contacts did where the system last found forces by the law, as contacts does.
+  subroutine get_slip(this, slip, stat, errmsg)
+    class(tribo_system), intent(in) :: this
+    integer, intent(inout) :: slip(:)
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_signed_char) :: small(size(slip))
+    type(work) :: w
+
+    call find_system(this, w)
+    call expect_shape(w, 'slip', shape(slip), [w%n])
+    if (w%status == TRIBO_OK) w%status = c_system_get_slip(w%object, small)
+    if (w%status == TRIBO_OK) slip = int(small)
+    call finish(w, stat, errmsg)
+  end subroutine get_slip
+
+  !> TRIBO_COUNT_... of a context, of the same calls.
+  subroutine get_system_count(this, which, value, stat, errmsg)
+    class(tribo_system), intent(in) :: this
+    integer, intent(in) :: which
+    integer, intent(inout) :: value
+    integer, intent(out), optional :: stat
+    character(len=*), intent(inout), optional :: errmsg
+    integer(c_size_t) :: count
+    type(work) :: w
+
+    call find_system(this, w)
+    if (w%status == TRIBO_OK) w%status = c_system_get_count(w%object, to_int(which), count)
+    if (w%status == TRIBO_OK) value = int(min(count, int(huge(value), c_size_t)))
+    call finish(w, stat, errmsg)
+  end subroutine get_system_count
+
   !> accept of the context for the state (t, y): to be called after each accepted step by integrators other than tribo_driver.
   subroutine accept(this, t, y, stat, errmsg)
     class(tribo_system), intent(inout) :: this
@@ -978,7 +1049,7 @@ contains
     call finish(w, stat, errmsg)
   end subroutine accept
 
-  !> What the last call that failed on the system, its context or a driver of it found; empty before any.
+  !> What the last call that failed on the system or a driver of it found; empty before any.
   function system_message(this) result(text)
     class(tribo_system), intent(in) :: this
     character(len=:), allocatable :: text
@@ -1036,7 +1107,6 @@ contains
     if (w%status == TRIBO_OK .and. present(max_step)) w%status = c_driver_set_max_step(drv, max_step)
     if (w%status == TRIBO_OK) return
     w%object = drv
-    call keep_message(w)
     call c_driver_destroy(drv)
   end subroutine set_all
 
@@ -1082,7 +1152,6 @@ contains
       time = t
       w%status = c_driver_advance(w%object, time, t1, y)
       t = time(1)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine advance
@@ -1126,7 +1195,6 @@ contains
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_count(w%object, to_int(which), count)
-      call keep_message(w)
     end if
     if (w%status /= TRIBO_OK) return
     if (count > most) then
@@ -1149,7 +1217,6 @@ contains
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_real(w%object, to_int(which), found)
-      call keep_message(w)
     end if
     if (w%status == TRIBO_OK) value = found(1)
     call finish(w, stat, errmsg)
@@ -1168,7 +1235,6 @@ contains
     call expect_size(w, 'y', y, w%dimension)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_find_periodic(w%object, t, period, y)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine find_periodic
@@ -1186,7 +1252,6 @@ contains
     call expect_size(w, 'im', im, w%dimension - 1)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_get_multipliers(w%object, re, im)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine get_multipliers
@@ -1203,7 +1268,6 @@ contains
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_get_freedom(w%object, found)
-      call keep_message(w)
     end if
     if (w%status == TRIBO_OK) freedom = int(found)
     call finish(w, stat, errmsg)
@@ -1224,7 +1288,6 @@ contains
     call expect_size(w, 'c', c, w%dimension - 1)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_extremes(w%object, c, low, high, at_low, at_high)
-      call keep_message(w)
     end if
     if (w%status == TRIBO_OK) then
       least = low(1)
@@ -1251,7 +1314,6 @@ contains
     call expect_count(w, 'k', k)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_harmonic(w%object, c, int(k, c_size_t), re, im)
-      call keep_message(w)
     end if
     if (w%status == TRIBO_OK) then
       cosine = re(1)
@@ -1272,7 +1334,6 @@ contains
     call expect_size(w, 'energy', energy, w%n)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_dissipation(w%object, energy)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine period_dissipation
@@ -1289,7 +1350,6 @@ contains
     call expect_size(w, 'share', share, w%n)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_period_stick(w%object, share)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine period_stick
@@ -1330,7 +1390,6 @@ contains
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_set_step(w%object, dt)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine set_step
@@ -1347,7 +1406,6 @@ contains
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_set_tolerance(w%object, abstol, reltol)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine set_tolerance
@@ -1363,7 +1421,6 @@ contains
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_set_output(w%object, dt)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine set_output
@@ -1380,7 +1437,6 @@ contains
     call find_driver(this, w)
     if (w%status == TRIBO_OK) then
       w%status = c_driver_set_max_step(w%object, h)
-      call keep_message(w)
     end if
     call finish(w, stat, errmsg)
   end subroutine set_max_step
@@ -1430,7 +1486,9 @@ contains
 
     w%kind = 'driver'
     held => driver_of(this)
-    if (associated(held)) call work_on(w, held%system, held%drv)
+    if (.not. associated(held)) return
+    call work_on(w, held%system, held%drv)
+    w%found = c_driver_message(held%drv)
   end subroutine find_driver
 
   subroutine work_on(w, held, object)
@@ -1440,21 +1498,12 @@ contains
 
     w%object = object
     w%ctx = c_system_context(held%sys)
+    w%found = c_system_message(held%sys)
     w%n = int(c_system_ncontact(held%sys))
     w%dimension = int(c_system_dimension(held%sys))
     w%given = int(held%given)
     w%status = TRIBO_OK
   end subroutine work_on
-
-  !> One place for messages, that of the context: that of a driver goes there.
-  subroutine keep_message(w)
-    type(work), intent(inout) :: w
-    character(len=:), allocatable :: text
-
-    if (w%status == TRIBO_OK) return
-    call to_text(c_driver_message(w%object), text)
-    w%status = c_set_message(w%ctx, w%status, text // c_null_char)
-  end subroutine keep_message
 
   !> Gives what a call has created, if it has, to this. given: degrees of freedom of the matrices, ndof where absent.
   subroutine adopt_system(this, w, sys, given)

@@ -276,6 +276,12 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_add_load_table
 
+    function c_system_clear_base_motion(sys) result(answer) bind(c,name='tribo_system_clear_base_motion')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int) :: answer
+    end function c_system_clear_base_motion
+
     function c_system_add_limit(sys, omega, cosine, sine) result(answer) bind(c,name='tribo_system_add_limit')
       import
       type(c_ptr), value :: sys
@@ -293,6 +299,20 @@ module tribo_gsl_c
       real(c_double), intent(in), optional :: limit(*)
       integer(c_int) :: answer
     end function c_system_set_limit_table
+
+    function c_system_clear_limits(sys) result(answer) bind(c,name='tribo_system_clear_limits')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int) :: answer
+    end function c_system_clear_limits
+
+    function c_system_get_limit(sys, t, limit) result(answer) bind(c,name='tribo_system_get_limit')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(inout), optional :: limit(*)
+      integer(c_int) :: answer
+    end function c_system_get_limit
 
     function c_system_set_damping_ratio(sys, zeta) result(answer) bind(c,name='tribo_system_set_damping_ratio')
       import
@@ -348,6 +368,12 @@ module tribo_gsl_c
       type(c_ptr) :: answer
     end function c_system_context
 
+    function c_system_message(sys) result(answer) bind(c,name='tribo_system_message')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr) :: answer
+    end function c_system_message
+
     function c_system_contacts(sys, t, y, v, feq, f) result(answer) bind(c,name='tribo_system_contacts')
       import
       type(c_ptr), value :: sys
@@ -358,6 +384,21 @@ module tribo_gsl_c
       real(c_double), intent(inout), optional :: f(*)
       integer(c_int) :: answer
     end function c_system_contacts
+
+    function c_system_get_slip(sys, slip) result(answer) bind(c,name='tribo_system_get_slip')
+      import
+      type(c_ptr), value :: sys
+      integer(c_signed_char), intent(inout), optional :: slip(*)
+      integer(c_int) :: answer
+    end function c_system_get_slip
+
+    function c_system_get_count(sys, which, value) result(answer) bind(c,name='tribo_system_get_count')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int), value :: which
+      integer(c_size_t), intent(inout) :: value
+      integer(c_int) :: answer
+    end function c_system_get_count
 
     function c_system_accept(sys, t, y) result(answer) bind(c,name='tribo_system_accept')
       import

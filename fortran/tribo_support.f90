@@ -11,7 +11,7 @@ module tribo_support
   integer, parameter, public :: dp = c_double
 
   public :: object_of, adopt, take, lend
-  public :: begin, finish, fail, expect_size, expect_shape, expect_count, expect_index, check_rows, blame
+  public :: begin, begin_const, finish, fail, expect_size, expect_shape, expect_count, expect_index, check_rows, blame
   public :: from_zero, to_int, transpose_in_place
   public :: to_text, message_of
 
@@ -25,11 +25,12 @@ module tribo_support
     final :: finalize
   end type tribo_object
 
-  !> What a call works on: the object of the library, the context that keeps its messages, the number of contacts; of a system and
-  !> its drivers the size of the state, and the degrees of freedom of the matrices given; how the call has gone so far, and the
-  !> text of an error found here, with indices from 0 as in the library's messages.
+  !> What a call works on: the object of the library, the context for which messages are kept, the library's text of a failure
+  !> (none: it keeps none, as calls on a const context), the number of contacts; of a system and its drivers the size of the
+  !> state, and the degrees of freedom of the matrices given; how the call has gone so far, and the text of an error found here,
+  !> with indices from 0 as in the library's messages.
   type, public :: work
-    type(c_ptr) :: object = c_null_ptr, ctx = c_null_ptr
+    type(c_ptr) :: object = c_null_ptr, ctx = c_null_ptr, found = c_null_ptr
     integer :: n = 0, dimension = 0, given = 0
     integer(c_int) :: status = TRIBO_ERR_NULL
     character(len=8) :: kind = 'context'
@@ -113,36 +114,48 @@ contains
   subroutine begin(this, w)
     class(tribo_object), intent(in) :: this
     type(work), intent(out) :: w
+
+    call begin_const(this, w)
+    w%found = c_message(w%ctx)
+  end subroutine begin
+
+  !> Begins a call on a const context, of whose failures the library keeps no message.
+  subroutine begin_const(this, w)
+    class(tribo_object), intent(in) :: this
+    type(work), intent(out) :: w
     integer(c_size_t) :: n
 
     w%ctx = object_of(this)
     w%status = c_get_ncontact(w%ctx, n)
     if (w%status == TRIBO_OK) w%n = int(n)
-  end subroutine begin
+  end subroutine begin_const
 
   !> Ends every call: hands over its status, and the text of an error; without a stat to take it, an error ends the program.
   subroutine finish(w, stat, errmsg)
     type(work), intent(in) :: w
     integer, intent(out), optional :: stat
     character(len=*), intent(inout), optional :: errmsg
-    character(len=:), allocatable :: found
+    character(len=:), allocatable :: zero, found
+    integer(c_int) :: status
 
     if (present(stat)) stat = int(w%status)
     if (w%status == TRIBO_OK) return
-    call message_of(w, found)
+    call failure_of(w, zero)
+    if (c_associated(w%ctx)) status = c_handle_note(w%ctx, w%status, zero // c_null_char)
+    call from_one(zero, found)
     if (present(errmsg)) errmsg = found
     if (present(stat)) return
     write (error_unit, '(2a)') 'tribo: ', found
     error stop 1
   end subroutine finish
 
-  !> The first error of a call: keeps its text on the context.
+  !> The first error of a call.
   subroutine fail(w, status, text)
     type(work), intent(inout) :: w
     integer, intent(in) :: status
     character(len=*), intent(in) :: text
     if (w%status /= TRIBO_OK) return
-    w%status = c_set_message(w%ctx, int(status, c_int), text // c_null_char)
+    w%status = int(status, c_int)
     w%text = text
   end subroutine fail
 
@@ -335,22 +348,43 @@ contains
     end if
   end subroutine to_text
 
-  !> What the last call that failed found.
-  subroutine message_of(w, text)
+  !> What a call that failed found, with indices from 0.
+  subroutine failure_of(w, text)
     type(work), intent(in) :: w
     character(len=:), allocatable, intent(out) :: text
-    character(len=:), allocatable :: zero
 
     if (allocated(w%text)) then
-      call from_one(w%text, text)
-    else if (c_associated(w%ctx)) then
-      call to_text(c_message(w%ctx), zero)
-      call from_one(zero, text)
-    else if (w%status /= TRIBO_ERR_NULL) then
+      text = w%text
+    else if (c_associated(w%ctx) .and. c_associated(w%found)) then
+      call to_text(w%found, text)
+    else if (c_associated(w%ctx) .or. w%status /= TRIBO_ERR_NULL) then
       call to_text(c_strerror(w%status), text)
     else
       text = 'the ' // trim(w%kind) // ' has not been created, or has been destroyed'
     end if
+  end subroutine failure_of
+
+  !> What the last call that failed found: what Fortran noted, or else the library.
+  subroutine message_of(w, text)
+    type(work), intent(in) :: w
+    character(len=:), allocatable, intent(out) :: text
+    character(len=:), allocatable :: zero
+    character(kind=c_char) :: noted(300)
+    integer :: i, length
+
+    call c_handle_noted(w%ctx, int(size(noted), c_size_t), noted)
+    if (.not. c_associated(w%ctx)) then
+      call failure_of(w, zero)
+    else if (noted(1) /= c_null_char) then
+      length = findloc(noted, c_null_char, 1) - 1
+      allocate (character(len=length) :: zero)
+      do i = 1, length
+        zero(i:i) = noted(i)
+      end do
+    else
+      call to_text(w%found, zero)
+    end if
+    call from_one(zero, text)
   end subroutine message_of
 
   !> A message for Fortran. The library counts from 0 and writes x[i][j]; here it counts from 1, and is x(i,j). In the library's

@@ -26,8 +26,8 @@ static tribo_system *create_system(void)
     tribo_model_destroy(model);
     tribo_context *contact = tribo_system_context(sys);
     need(tribo_set_limit(contact, &limit), tribo_message(contact));
-    need(tribo_system_add_load(sys, omega, &drive, NULL), tribo_message(contact));
-    need(tribo_system_add_limit(sys, omega, NULL, &swing), tribo_message(contact));
+    need(tribo_system_add_load(sys, omega, &drive, NULL), tribo_system_message(sys));
+    need(tribo_system_add_limit(sys, omega, NULL, &swing), tribo_system_message(sys));
     return sys;
 }
 
@@ -35,10 +35,9 @@ static tribo_system *create_system(void)
 static double dissipation(tribo_system *sys, const char *method, double dt, FILE *table)
 {
     const double period = 2.0 * acos(-1.0) / omega, begin = 200.0 * period;
-    tribo_context *contact = tribo_system_context(sys);
     tribo_driver *drv;
     double t = 0.0, y[3] = {0.0, 0.0, 0.0};
-    need(tribo_driver_create(&drv, sys, method), tribo_message(contact));
+    need(tribo_driver_create(&drv, sys, method), tribo_system_message(sys));
     if (dt > 0.0) {
         need(tribo_driver_set_step(drv, dt), tribo_driver_message(drv));
     }
@@ -47,8 +46,8 @@ static double dissipation(tribo_system *sys, const char *method, double dt, FILE
     for (int k = 1; k <= 800; k++) {
         double f, now;
         need(tribo_driver_advance(drv, &t, begin + period * k / 800.0, y), tribo_driver_message(drv));
-        need(tribo_system_contacts(sys, t, y, NULL, NULL, &f), tribo_message(contact));
-        need(tribo_get_limit(contact, &now), tribo_message(contact));
+        need(tribo_system_contacts(sys, t, y, NULL, NULL, &f), tribo_system_message(sys));
+        need(tribo_system_get_limit(sys, t, &now), tribo_system_message(sys));
         if (table) {
             fprintf(table, "%.10g,%.10g,%.10g,%.10g,%.10g\n", k / 800.0, y[0], y[1], f, now);
         }

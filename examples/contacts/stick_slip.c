@@ -42,7 +42,7 @@ static tribo_system *create_system(void)
     tribo_context *contact = tribo_system_context(sys);
     need(tribo_set_limit(contact, &kinetic), tribo_message(contact));
     need(tribo_set_static(contact, &ratio, NULL), tribo_message(contact));
-    need(tribo_system_add_base_motion(sys, 0.0, &belt, NULL), tribo_message(contact));
+    need(tribo_system_add_base_motion(sys, 0.0, &belt, NULL), tribo_system_message(sys));
     return sys;
 }
 
@@ -57,13 +57,13 @@ int main(int argc, char **argv)
     tribo_driver *drv;
     struct events e = {{0.0, 0.0}, {0.0, 0.0}};
     double t = 0.0, y[3] = {0.0, 0.0, 0.0}, least = 1.0, most = -1.0;
-    need(tribo_driver_create(&drv, sys, "exact"), tribo_message(tribo_system_context(sys)));
+    need(tribo_driver_create(&drv, sys, "exact"), tribo_system_message(sys));
     need(tribo_driver_set_observer(drv, note_event, &e), tribo_driver_message(drv));
     fprintf(table, "t,x,v,friction\n");
     for (int k = 0; k <= 3500; k++) {
         double f;
         need(tribo_driver_advance(drv, &t, 0.01 * k, y), tribo_driver_message(drv));
-        need(tribo_system_contacts(sys, t, y, NULL, NULL, &f), tribo_message(tribo_system_context(sys)));
+        need(tribo_system_contacts(sys, t, y, NULL, NULL, &f), tribo_system_message(sys));
         fprintf(table, "%.10g,%.10g,%.10g,%.10g\n", t, y[0], y[1], f);
         least = t > 20.0 ? fmin(least, y[0]) : least;
         most = t > 20.0 ? fmax(most, y[0]) : most;

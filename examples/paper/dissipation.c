@@ -74,7 +74,7 @@ static double dissipation(const struct test_case *c, int law, double period, dou
     need(tribo_set_law(contacts, law), tribo_message(contacts));
     need(tribo_set_epsilon_all(contacts, c->epsilon * h), tribo_message(contacts));
     tribo_driver *drv;
-    need(tribo_driver_create(&drv, sys, "rk4/fixed"), tribo_message(contacts));
+    need(tribo_driver_create(&drv, sys, "rk4/fixed"), tribo_system_message(sys));
     need(tribo_driver_set_step(drv, h), tribo_driver_message(drv));
 
     const size_t dimension = tribo_system_dimension(sys);

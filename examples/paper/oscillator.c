@@ -26,7 +26,7 @@ static struct run start(int law, double dt, double epsilon, double x, double v)
     tribo_context *contacts = tribo_system_context(r.sys);
     need(tribo_set_law(contacts, law), tribo_message(contacts));
     need(tribo_set_epsilon_all(contacts, epsilon), tribo_message(contacts));
-    need(tribo_driver_create(&r.drv, r.sys, "rk4/fixed"), tribo_message(contacts));
+    need(tribo_driver_create(&r.drv, r.sys, "rk4/fixed"), tribo_system_message(r.sys));
     need(tribo_driver_set_step(r.drv, dt), tribo_driver_message(r.drv));
     return r;
 }

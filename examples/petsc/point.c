@@ -50,7 +50,7 @@ static PetscErrorCode FindShape(Study *s, size_t row)
         for (size_t i = 0; i < modes; i++) {
             unit[i] = i == k ? 1.0 : 0.0;
         }
-        PetscCallTribo(tribo_system_expand(s->sys, unit, full), tribo_message(tribo_system_context(s->sys)),
+        PetscCallTribo(tribo_system_expand(s->sys, unit, full), tribo_system_message(s->sys),
                        "structure of %zu rows", s->rows);
         s->shape[k] = full[row];
     }
@@ -83,7 +83,7 @@ PetscErrorCode CreateStudy(Study *s, const Options *o)
     PetscCallTribo(tribo_system_reduce(&s->sys, model, modes, TRIBO_STATICS_NONE), tribo_model_message(model),
                    "structure of %zu rows", s->rows);
     tribo_model_destroy(model);
-    PetscCallTribo(tribo_system_set_damping_ratio(s->sys, o->damping), tribo_message(tribo_system_context(s->sys)),
+    PetscCallTribo(tribo_system_set_damping_ratio(s->sys, o->damping), tribo_system_message(s->sys),
                    "structure of %zu rows", s->rows);
     PetscCall(PetscCalloc3(s->rows, &s->load, 2 * modes, &s->shape, s->contacts.count, &s->limit));
     s->load[o->load_row - 1] = o->load;
@@ -125,8 +125,8 @@ PetscErrorCode ComputePoint(const Study *s, double omega, double scale, double *
         s->limit[i] = scale * s->contacts.limit[i];
     }
     PetscCallTribo(tribo_set_limit(contacts, s->limit), tribo_message(contacts), "structure of %zu rows", s->rows);
-    PetscCallTribo(tribo_system_add_load(sys, omega, NULL, s->load), tribo_message(contacts), "structure of %zu rows", s->rows);
-    PetscCallTribo(tribo_driver_create(&drv, sys, "exact"), tribo_message(contacts), "structure of %zu rows", s->rows);
+    PetscCallTribo(tribo_system_add_load(sys, omega, NULL, s->load), tribo_system_message(sys), "structure of %zu rows", s->rows);
+    PetscCallTribo(tribo_driver_create(&drv, sys, "exact"), tribo_system_message(sys), "structure of %zu rows", s->rows);
     PetscCall(PetscCalloc1(tribo_system_dimension(sys), &y));
     *amplitude = *energy = NAN;
     *status = tribo_driver_find_periodic(drv, 0.0, period, y);

@@ -23,7 +23,7 @@ static void chain(char **argument)
     need(tribo_system_chain(&sys, n, 1.0, atof(argument[4]), omega), NULL);
     tribo_context *contacts = tribo_system_context(sys);
     need(tribo_set_epsilon_step(contacts, dt, 0.4), tribo_message(contacts));
-    need(tribo_driver_create(&drv, sys, argument[0]), tribo_message(contacts));
+    need(tribo_driver_create(&drv, sys, argument[0]), tribo_system_message(sys));
     need(tribo_driver_set_step(drv, dt), tribo_driver_message(drv));
     double *y = need_memory(2 * n + 1, sizeof *y), t = 0.0;
     memset(y, 0, (2 * n + 1) * sizeof *y);
@@ -113,8 +113,8 @@ static void structure(char **argument)
     memset(pattern, 0, n * sizeof *pattern);
     memset(y, 0, (2 * n + 1) * sizeof *y);
     pattern[row] = load;
-    need(tribo_system_add_load(sys, omega, NULL, pattern), tribo_message(tribo_system_context(sys)));
-    need(tribo_driver_create(&drv, sys, "moreau/fixed"), tribo_message(tribo_system_context(sys)));
+    need(tribo_system_add_load(sys, omega, NULL, pattern), tribo_system_message(sys));
+    need(tribo_driver_create(&drv, sys, "moreau/fixed"), tribo_system_message(sys));
     need(tribo_driver_set_step(drv, h), tribo_driver_message(drv));
     for (long k = every; k <= steps; k += every) {
         need(tribo_driver_advance(drv, &t, (double)k * h, y), tribo_driver_message(drv));

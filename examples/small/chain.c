@@ -21,7 +21,7 @@ int main(void)
     status = status ? status : tribo_driver_create(&driver, chain, "rk4/fixed");
     status = status ? status : tribo_driver_set_step(driver, dt);
     if (status) {
-        fprintf(stderr, "%s: %s\n", tribo_strerror(status), tribo_message(contacts));
+        fprintf(stderr, "%s: %s\n", tribo_strerror(status), tribo_system_message(chain));
     }
 
     double y[DIMENSION] = {0.0}, t = 0.0, dissipated = 0.0;

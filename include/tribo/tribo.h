@@ -19,17 +19,16 @@
  * the handle that a context is created in, which comes first), must not overlap inputs, and are untouched on error (but for
  * TRIBO_ERR_INCONSISTENT); an output marked "or NULL" is then not computed.
  *
- * Status. Every call that can fail returns one of TRIBO_OK (0) and TRIBO_ERR_...; tribo_message tells what, which contact
- * and which value. Nothing prints, exits, aborts or keeps global state.
+ * Status. Every call that can fail returns one of TRIBO_OK (0) and TRIBO_ERR_...; tribo_message names the
+ * argument, the contact and the value. Nothing prints, exits, aborts or keeps global state.
  *
  * Numbers. Any finite ones. Forces beyond 1e300, and what makes accelerations beyond that, are cut to it. Short of that no call
  * raises the floating-point exceptions invalid, divide-by-zero or overflow, at which some programs stop.
  *
- * Threads. Functions of a const context may be called by several threads on one context (if two of them fail at the
- * same time, the message is that of one of them, or, from compilers other than GCC and Clang, a mixture; it is to be read when
- * none of them is at work). Everything else wants one context a thread: tribo_clone. From compilers other than GCC and Clang
- * copies of one context are made, given another operator, and destroyed by one thread at a time. Memory is allocated by
- * tribo_create, tribo_clone, tribo_set_planar and tribo_set_operator_... only.
+ * Threads. Several threads may call functions of a const context on one context. Everything else wants one context a thread:
+ * tribo_clone. From compilers other than GCC and Clang copies of one context are made, given another operator, and destroyed by
+ * one thread at a time. Memory is allocated by tribo_create, tribo_clone, tribo_copy_settings, tribo_set_planar and
+ * tribo_set_operator_... only.
  *
  * Source: D. D. Quinn, "A New Regularization of Coulomb Friction", J. Vib. Acoust. 126 (2004) 391-397,
  * doi:10.1115/1.1760564, "the paper" below. All functions: since 1.0, unless said otherwise.
@@ -167,21 +166,14 @@ TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 /* Releases a context; NULL is fine. */
 TRIBO_API void tribo_destroy(tribo_context *ctx);
 
-/* What the last call that failed on ctx found: argument, contact (counted from 0) and value; "" before any. Belongs to
- * the context. A NULL context gets a text too. */
+/* Text of the last failure of a call that may change ctx: argument, contact (counted from 0) and value; "" before any. Belongs to
+ * ctx. Calls on a const ctx leave no message, on any compiler: threads may share it. Their status says all. ctx may be NULL. */
 TRIBO_API const char *tribo_message(const tribo_context *ctx);
 
-/* For libraries on top of this one: makes text the message of ctx, and returns status. */
-TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
-
-/* For libraries on top of this one: another number after every call that sets something of ctx (law, limits, epsilon, operator,
- * coupling, sharing), so that they know whether what they have prepared still holds. 0 for NULL. */
-TRIBO_API size_t tribo_revision(const tribo_context *ctx);
-
-/* For libraries on top of this one: the operator is that of owner, a text that outlives ctx ("a tribo_system"), and cannot be
- * changed: tribo_set_operator_... return TRIBO_ERR_UNSUPPORTED. NULL: it is the caller's again, as it is in a clone.
- * Returns TRIBO_ERR_NULL (ctx). */
-TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
+/* Gives ctx the settings of another context with as many contacts: law, limits, epsilon, static limits, coupling, sharing and
+ * planar contacts. Operator, forces, counts and memory stay; another law clears the reversal memory.
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (numbers of contacts differ), and what tribo_set_planar returns. */
+TRIBO_API int tribo_copy_settings(tribo_context *ctx, const tribo_context *from);
 
 /* Number of contacts. Returns TRIBO_ERR_NULL. */
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
@@ -273,8 +265,8 @@ TRIBO_API int tribo_get_epsilon(const tribo_context *ctx, double *epsilon);
  * TRIBO_ERR_MEMORY; on error all stays as it was. */
 TRIBO_API int tribo_set_planar(tribo_context *ctx, size_t count, const size_t *first);
 
-/* The operator R of z'' = R f + a. On error the old one stays. That of the context of a tribo_system is the system's, and cannot
- * be changed: TRIBO_ERR_UNSUPPORTED. All return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_MEMORY, with planar contacts what
+/* The operator R of z'' = R f + a. On error the old one stays. TRIBO_ERR_UNSUPPORTED if it is fixed (tribo_fix_operator), as that
+ * of the context of a tribo_system is. All return TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_MEMORY, with planar contacts what
  * tribo_set_planar tells of them, and what stands below.
  * A contact with R_ii = 0 (driven from both sides: friction cannot move it) is taken as the limit R_ii -> +0: at rest
  * it carries -limit sgn(a_i), and nothing if a_i = 0; its f_eq is then reported as -sgn(a_i) times a huge number, and its
@@ -311,6 +303,10 @@ TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const dou
 TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                           int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
                                           void *data, const size_t *rowptr, const size_t *col, const double *val);
+
+/* Fixes the operator: from here on tribo_set_operator_... return TRIBO_ERR_UNSUPPORTED. That of a clone can be changed.
+ * Returns TRIBO_ERR_NULL. */
+TRIBO_API int tribo_fix_operator(tribo_context *ctx);
 
 /* How f_eq of contacts that share bodies is found.
  *   CONSISTENT  f_eq of each contact balances the forces that the others really carry. Continuous, has a solution for every
@@ -466,7 +462,8 @@ enum {
     TRIBO_COUNT_UPDATES = 6,        /* contacts that entered or left a stick set */
     TRIBO_COUNT_REVERSALS = 7,      /* reversal marks that tribo_accept has set or cleared */
     TRIBO_COUNT_REUSED = 8,         /* of the solves: those that ended with the stick set and the factor they began with */
-    TRIBO_COUNT_PLANAR = 9          /* planar contacts */
+    TRIBO_COUNT_PLANAR = 9,         /* planar contacts */
+    TRIBO_COUNT_SETTINGS = 10       /* grows with each call that changes a setting or the operator */
 };
 /* Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (which). */
 TRIBO_API int tribo_get_count(const tribo_context *ctx, int which, size_t *value);

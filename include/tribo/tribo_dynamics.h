@@ -1,7 +1,7 @@
 /* tribo's dynamics: mechanical systems with friction, and their motion in time.
  *
- * A system is M q'' + C q' + K q = p(t) + J' f,  v = J q' - b(t),  with p and b sums of harmonics; f are the friction forces of
- * its contacts, found by the tribo_context that it owns, and v their relative velocities. Its state is
+ * A system is M q'' + C q' + K q = p(t) + J' f,  v = J q' - b(t),  with p and b sums of harmonics and tables; f are the friction
+ * forces of its contacts, by the settings of tribo_system_context, and v their relative velocities. Its state is
  *     y = q [ndof], q' [ndof], energy dissipated by friction since t = 0        2 ndof + 1 values.
  *
  * Conventions, units and threads as in tribo.h; a system and its drivers belong to one thread.
@@ -134,23 +134,30 @@ TRIBO_API int tribo_system_add_base_motion(tribo_system *sys, double omega, cons
 TRIBO_API int tribo_system_add_load_table(tribo_system *sys, size_t knots, const double *time, const double *value,
                                           const double *pattern);
 
-/* Adds a harmonic to the limits, limit(t) = max(0, limit + cosine cos(omega t) + sine sin(omega t) + ...), e.g. of a normal load
- * that changes: mu times it. Where the sum is not above 0 the contact has lifted off: it has no force, and no memory; it touches
- * down sliding, or, without velocity, sticks if it can. tribo_system_set_limit_table with knots = 0 takes these harmonics away.
+/* Takes all base motions away. Returns TRIBO_ERR_NULL. */
+TRIBO_API int tribo_system_clear_base_motion(tribo_system *sys);
+
+/* Adds a harmonic to the limits, limit(t) = max(0, limit + cosine cos(omega t) + sine sin(omega t) + ...): mu times a normal load
+ * that changes. limit is that of tribo_system_context, or of the table. Where the sum is <= 0 the contact has lifted off: it
+ * carries no force, and forgets what it did; it touches down sliding, or sticks if its velocity is 0.
+ * omega         in   angular frequency, rad/time
  * cosine, sine  [ncontact] in, each or NULL; forces
- * The limit that they are added to is what is set in the context, before or after, or the table's. The context's limits follow
- * the time that was last looked at: tribo_get_limit answers limit(t) of then, and to set just that again changes nothing.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_RANGE (limits beyond 1e300), TRIBO_ERR_UNSUPPORTED (an elastic
  * contact), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine);
 
-/* Lets the limits follow a table, linear between its knots and constant outside, instead of what the context says.
- * time   [knots] in   ascending; knots = 0 ends it, and harmonics: limits are again those that the context had before
+/* Lets the limits follow a table in the place of tribo_system_context's, linear between its knots and constant outside.
+ * time   [knots] in   ascending
  * limit  [knots][ncontact] in   >= 0; 0: lifted off
- * Limits that are set in the context meanwhile have no effect.
- * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (time does not ascend),
- * TRIBO_ERR_UNSUPPORTED (an elastic contact), TRIBO_ERR_MEMORY. */
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_SIZE (no knots), TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (time does not
+ * ascend), TRIBO_ERR_UNSUPPORTED (an elastic contact), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *time, const double *limit);
+
+/* Takes the table and all harmonics of the limits away: limits are those of tribo_system_context. Returns TRIBO_ERR_NULL. */
+TRIBO_API int tribo_system_clear_limits(tribo_system *sys);
+
+/* limit [ncontact] out: the limits at time t, with harmonics or table. Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE. */
+TRIBO_API int tribo_system_get_limit(tribo_system *sys, double t, double *limit);
 
 /* Reduced systems: damping ratio of every mode, C = diag(2 zeta omega_k). zeta >= 0.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_UNSUPPORTED (not reduced), TRIBO_ERR_MEMORY. */
@@ -178,9 +185,15 @@ TRIBO_API size_t tribo_system_ndof(const tribo_system *sys);
 TRIBO_API size_t tribo_system_ncontact(const tribo_system *sys);
 TRIBO_API size_t tribo_system_dimension(const tribo_system *sys);
 
-/* The context of the system's contacts, borrowed: set law, limits, epsilon and coupling here. Its operator is the system's, and
- * stays (that of a copy, tribo_clone, may be changed). Calls on the system that fail leave their message on it. NULL for NULL. */
+/* The settings of the system's contacts, borrowed: set law, limits, epsilon, coupling, static limits, planar contacts here, at any
+ * time between calls. The system reads this context and never writes into it: tribo_get_limit answers what was set, also where
+ * limits vary; forces, slips and counts of the system are not in it (tribo_system_get_slip, tribo_system_get_count). Its
+ * operator is the system's, and fixed. NULL: sys is NULL, or out of memory in the first call. */
 TRIBO_API tribo_context *tribo_system_context(tribo_system *sys);
+
+/* Text of the last failure of a call on sys, or of a tribo_driver_create for it; "" before any. Belongs to sys, which may be
+ * NULL. Failures of a driver: tribo_driver_message. */
+TRIBO_API const char *tribo_system_message(const tribo_system *sys);
 
 /* What the contacts do in a state.
  * y    [dimension] in
@@ -188,6 +201,13 @@ TRIBO_API tribo_context *tribo_system_context(tribo_system *sys);
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no accelerations), and what tribo_balance
  * returns. */
 TRIBO_API int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *v, double *feq, double *f);
+
+/* slip [ncontact] out, TRIBO_SLIP_...: what the contacts did where the system last found forces by the law: tribo_system_contacts,
+ * and steps of central/fixed, rk4/fixed and adaptive methods. Returns TRIBO_ERR_NULL, TRIBO_ERR_STATE (none were found yet). */
+TRIBO_API int tribo_system_get_slip(const tribo_system *sys, signed char *slip);
+
+/* TRIBO_COUNT_... of tribo.h, of the same calls. Returns TRIBO_ERR_NULL, TRIBO_ERR_RANGE (which). */
+TRIBO_API int tribo_system_get_count(const tribo_system *sys, int which, size_t *value);
 
 /* tribo_accept for the state (t, y): to be called after each accepted step by integrators other than tribo_driver.
  * Returns what tribo_system_contacts does. */
@@ -204,7 +224,7 @@ typedef struct tribo_driver tribo_driver;
  *                   "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf" (adaptive steps)
  * Methods with fixed steps need tribo_driver_set_step; for all other settings there are defaults.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED (the method cannot do the system); the message
- * is on the system's context. */
+ * is that of sys. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method);
 
 /* Name of the method; for "auto" that of the method at work, which each advance chooses anew. NULL for NULL. */

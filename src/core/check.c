@@ -40,7 +40,7 @@ TRIBO_SIMD int tribo_two_within(const double *x, double most_x, const double *y,
     return (room_x >= 0 ? 1 : 0) | (room_y >= 0 ? 2 : 0);
 }
 
-int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
+int tribo_fail_not_finite(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     if (!x && n) {
         return tribo_fail(ctx, TRIBO_ERR_NULL, "%s is NULL", name);
@@ -68,7 +68,7 @@ TRIBO_SIMD static int check_all_positive(const double *x, size_t n)
 }
 
 /* -0 is not negative. */
-int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n)
+int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     if (x && check_all_positive(x, n)) {
         return TRIBO_OK;
@@ -82,7 +82,7 @@ int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const do
     return status;
 }
 
-int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n)
+int tribo_check_positive(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     const int status = x && tribo_all_within(x, n, DBL_MAX) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
     if (status) {
@@ -96,7 +96,7 @@ int tribo_check_positive(const tribo_context *ctx, const char *name, const doubl
     return TRIBO_OK;
 }
 
-int tribo_fail_without_operator(const tribo_context *ctx)
+int tribo_fail_without_operator(tribo_context *ctx)
 {
     return tribo_fail(ctx, TRIBO_ERR_STATE,
                       "no operator: call tribo_set_operator_diagonal or another tribo_set_operator_... first");

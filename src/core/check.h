@@ -29,25 +29,30 @@ static inline int tribo_motion_within(const double *v, const double *y, double m
     return n == 1 ? (isfinite(*v) ? 1 : 0) | (tribo_within(*y, most) ? 2 : 0) : tribo_two_within(v, DBL_MAX, y, most, n);
 }
 
-/* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
-static inline int tribo_check_finite(const tribo_context *ctx, const char *name, const double *x, size_t n)
+/* TRIBO_OK, or a failure that names the argument, the first offending contact and its value; ctx NULL: that keeps no message. */
+static inline int tribo_check_finite(tribo_context *ctx, const char *name, const double *x, size_t n)
 {
     return x && tribo_all_finite(x, n) ? TRIBO_OK : tribo_fail_not_finite(ctx, name, x, n);
 }
 
-/* TRIBO_OK, or a failure that tells which call is missing. */
-static inline int tribo_need_operator(const tribo_context *ctx)
+static inline int tribo_has_operator(const tribo_context *ctx)
 {
-    return ctx->op->diagonal || !ctx->n ? TRIBO_OK : tribo_fail_without_operator(ctx);
+    return ctx->op->diagonal || !ctx->n;
 }
 
-static inline int tribo_need_epsilon(const tribo_context *ctx)
+static inline int tribo_has_epsilon(const tribo_context *ctx)
 {
-    return ctx->set.step > 0.0 ? tribo_need_operator(ctx) : TRIBO_OK;
+    return ctx->set.step > 0.0 ? tribo_has_operator(ctx) : 1;
+}
+
+/* TRIBO_OK, or a failure that names the call that is missing. */
+static inline int tribo_need_operator(tribo_context *ctx)
+{
+    return tribo_has_operator(ctx) ? TRIBO_OK : tribo_fail_without_operator(ctx);
 }
 
 /* The arguments of a step. */
-static inline int tribo_check_step(const tribo_context *ctx, double dt, const double *vfree, const double *f)
+static inline int tribo_check_step(tribo_context *ctx, double dt, const double *vfree, const double *f)
 {
     if (!isfinite(dt)) {
         return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "dt = %g is not finite", dt);

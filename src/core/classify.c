@@ -170,7 +170,7 @@ const double *tribo_epsilons(const struct contacts *c, size_t i, size_t n, doubl
     return room;
 }
 
-static int check_motion(const tribo_context *ctx, const double *v, const double *a)
+static int check_motion(tribo_context *ctx, const double *v, const double *a)
 {
     const int status = tribo_check_finite(ctx, "v", v, ctx->n);
     return status ? status : tribo_check_finite(ctx, "a", a, ctx->n);

@@ -107,7 +107,7 @@ struct counters {
 
 struct tribo_context {
     size_t n;
-    const char *owner; /* of the operator; NULL: the caller */
+    int fixed; /* the operator cannot be changed */
     struct settings set;
     struct following follow;
     struct delassus *op;   /* constant; clones have it in common */
@@ -123,8 +123,8 @@ struct tribo_context {
     struct message *message;
 };
 
-/* message.c: keeps the text for tribo_message and returns status. */
-int tribo_fail(const tribo_context *ctx, int status, const char *format, ...)
+/* message.c: keeps the text for tribo_message and returns status. ctx NULL: keeps nothing, as calls on a const context. */
+int tribo_fail(tribo_context *ctx, int status, const char *format, ...)
 #if defined(TRIBO_GNU_C)
     __attribute__((format(printf, 3, 4)))
 #endif
@@ -171,13 +171,13 @@ int tribo_all_within(const double *x, size_t n, double most);
 int tribo_two_within(const double *x, double most_x, const double *y, double most_y, size_t n);
 
 /* TRIBO_OK, or a failure that names the argument, the first offending contact and its value. */
-int tribo_fail_not_finite(const tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_fail_not_finite(tribo_context *ctx, const char *name, const double *x, size_t n);
 
-int tribo_check_nonnegative(const tribo_context *ctx, const char *name, const double *x, size_t n);
-int tribo_check_positive(const tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_check_nonnegative(tribo_context *ctx, const char *name, const double *x, size_t n);
+int tribo_check_positive(tribo_context *ctx, const char *name, const double *x, size_t n);
 
 /* TRIBO_OK, or a failure that tells which call is missing: there is no operator, or none that epsilon could follow. */
-int tribo_fail_without_operator(const tribo_context *ctx);
+int tribo_fail_without_operator(tribo_context *ctx);
 
 /* settings.c: brings what follows from settings and operator up to date: after a change of limits; or of anything, then with
  * width and rate of an epsilon that follows the operator. */
@@ -245,14 +245,13 @@ static inline double tribo_force_of(const tribo_context *ctx, size_t i)
 void tribo_refresh_static(tribo_context *ctx);
 
 /* Whether a law can do without stick what breaking wants of it; a status. */
-int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
+int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking, const double *ratio);
 
 /* Both directions of a planar contact have one ratio, and one velocity if there are any; a status. */
-int tribo_check_one_ratio(const tribo_context *ctx, const double *ratio, const double *velocity, size_t count,
-                          const size_t *first);
+int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double *velocity, size_t count, const size_t *first);
 
 /* For what knows no static limits: fails if there are any. who: "... knows no". */
-int tribo_refuse_static(const tribo_context *ctx, const char *who);
+int tribo_refuse_static(tribo_context *ctx, const char *who);
 
 /* limit [n] = the limits of contacts i, i + 1, ... at v by these f_eq; NULL: those near stick hold. Where limits are static. */
 void tribo_find_limits(const tribo_context *ctx, size_t i, size_t n, const double *v, const double *feq, double *limit);
@@ -313,7 +312,7 @@ static inline int tribo_all_alone(const tribo_context *ctx)
 }
 
 /* planar.c: contacts and clusters for an operator that op is to become, and their taking the place of the old ones. */
-int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
+int tribo_planar_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
                          struct planar **planar, struct plane *plane);
 void tribo_planar_install(tribo_context *ctx, struct planar *planar, const struct plane *plane);
 
@@ -330,7 +329,7 @@ int tribo_planar_step(tribo_context *ctx, double dt, const double *vfree, const 
 void tribo_planar_feq(tribo_context *ctx, const double *a);
 
 /* Forces f of planar contacts whose f_eq is known, which where it matters must be finite; a status. */
-int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq);
+int tribo_planar_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq);
 int tribo_planar_force(const tribo_context *ctx, const double *v, const double *feq, double *f);
 
 /* What is given of planar contact k at v and f_eq, [2] each; and near stick the point of its lens that is nearest to

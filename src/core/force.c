@@ -53,7 +53,7 @@ static const double *legible_feq(const tribo_context *ctx, int plain, size_t i, 
     return room;
 }
 
-static int check_used(const tribo_context *ctx, const double *v, const double *feq)
+static int check_used(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
 {
     for (size_t i = 0; i < ctx->n; i += TRIBO_CHUNK) {
         double used[TRIBO_CHUNK];
@@ -61,28 +61,28 @@ static int check_used(const tribo_context *ctx, const double *v, const double *f
         used_feq(ctx, i, n, v, feq, used);
         for (size_t k = 0; !tribo_all_finite(used, n); k++) {
             if (!isfinite(used[k])) {
-                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i + k, used[k]);
+                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", i + k, used[k]);
             }
         }
     }
     return TRIBO_OK;
 }
 
-/* plain: f_eq is such that laws take it as it is, wherever that matters or not. */
-static int check_force(const tribo_context *ctx, const double *v, const double *feq, int *plain)
+/* plain: f_eq is such that laws take it as it is, wherever that matters or not. note: ctx, or NULL to keep no message. */
+static int check_force(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq, int *plain)
 {
     const int reads = ctx->set.law->uses_feq, within = v && feq && reads ? tribo_motion_within(v, feq, TRIBO_FAR, ctx->n) : 0;
-    int status = tribo_need_epsilon(ctx);
-    status = status || (within & 1) ? status : tribo_check_finite(ctx, "v", v, ctx->n);
+    int status = tribo_has_epsilon(ctx) ? TRIBO_OK : tribo_fail_without_operator(note);
+    status = status || (within & 1) ? status : tribo_check_finite(note, "v", v, ctx->n);
     *plain = !reads || (within & 2);
     if (status || !reads) {
         return status;
     }
     if (!feq && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "feq is NULL");
+        return tribo_fail(note, TRIBO_ERR_NULL, "feq is NULL");
     }
-    status = *plain ? TRIBO_OK : check_used(ctx, v, feq);
-    return status || !ctx->planar ? status : tribo_planar_check_feq(ctx, v, feq);
+    status = *plain ? TRIBO_OK : check_used(ctx, note, v, feq);
+    return status || !ctx->planar ? status : tribo_planar_check_feq(ctx, note, v, feq);
 }
 
 /* Forces and derivatives, each of which may be NULL. */
@@ -172,12 +172,12 @@ int tribo_force(const tribo_context *ctx, const double *v, const double *feq, do
         return TRIBO_ERR_NULL;
     }
     int plain;
-    const int status = check_force(ctx, v, feq, &plain);
+    const int status = check_force(ctx, NULL, v, feq, &plain);
     if (status) {
         return status;
     }
     if (!f && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "f is NULL");
+        return TRIBO_ERR_NULL;
     }
     if (ctx->n == 1 && plain && !ctx->set.breaking) {
         *f = ctx->set.law->force_of_one(&ctx->follow.contacts, *v, ctx->set.law->uses_feq ? *feq : 0.0);
@@ -194,14 +194,12 @@ int tribo_force_tangent(const tribo_context *ctx, const double *v, const double 
         return TRIBO_ERR_NULL;
     }
     int plain;
-    const int status = check_force(ctx, v, feq, &plain);
+    const int status = check_force(ctx, NULL, v, feq, &plain);
     if (status) {
         return status;
     }
     if (ctx->planar && (df_dv || df_dfeq || df_dlimit)) {
-        return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
-                          "derivatives of planar contact %zu are no diagonals: see tribo_force_tangent_planar",
-                          ctx->planar->first[0]);
+        return TRIBO_ERR_UNSUPPORTED;
     }
     force_evaluate(ctx, plain, v, feq, (double *const[OUTPUTS]){f, df_dv, df_dfeq, df_dlimit});
     return ctx->planar && f ? tribo_planar_force(ctx, v, feq, f) : TRIBO_OK;
@@ -224,7 +222,7 @@ int tribo_force_tangent_planar(const tribo_context *ctx, const double *v, const 
         return TRIBO_ERR_NULL;
     }
     int plain;
-    int status = check_force(ctx, v, feq, &plain);
+    int status = check_force(ctx, NULL, v, feq, &plain);
     if (status) {
         return status;
     }
@@ -254,7 +252,7 @@ int tribo_accept(tribo_context *ctx, const double *v, const double *feq)
         return tribo_check_finite(ctx, "v", v, ctx->n);
     }
     int ignored;
-    const int status = check_force(ctx, v, feq, &ignored);
+    const int status = check_force(ctx, ctx, v, feq, &ignored);
     if (status) {
         return status;
     }

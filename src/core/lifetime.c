@@ -88,20 +88,20 @@ int tribo_clone(const tribo_context *ctx, tribo_context **copy)
         return TRIBO_ERR_NULL;
     }
     if (!copy) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "copy is NULL");
+        return TRIBO_ERR_NULL;
     }
     const size_t n = ctx->n;
     tribo_context *c = context_allocate(n, ctx);
     if (!c) {
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
+        return TRIBO_ERR_MEMORY;
     }
-    c->owner = NULL;
+    c->fixed = 0;
     c->op = tribo_operator_share(ctx->op);
     c->memory = (struct memory){0};
     c->planar = tribo_planar_share(ctx->planar);
     if (!tribo_plane_create(&c->plane, c->planar, n) || !tribo_memory_copy(&c->memory, &ctx->memory, ctx->op)) {
         tribo_destroy(c);
-        return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for a copy of %zu contact%s", n, plural(n));
+        return TRIBO_ERR_MEMORY;
     }
     c->last.linearized = 0;
     tribo_copy(c->set.limit, ctx->set.limit, n);
@@ -136,18 +136,4 @@ void tribo_destroy(tribo_context *ctx)
     tribo_planar_release(ctx->planar);
     tribo_plane_free(&ctx->plane);
     free(ctx);
-}
-
-size_t tribo_revision(const tribo_context *ctx)
-{
-    return ctx ? ctx->revision : 0;
-}
-
-int tribo_set_owner(tribo_context *ctx, const char *owner)
-{
-    if (!ctx) {
-        return TRIBO_ERR_NULL;
-    }
-    ctx->owner = owner;
-    return TRIBO_OK;
 }

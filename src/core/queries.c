@@ -10,7 +10,7 @@ int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact)
         return TRIBO_ERR_NULL;
     }
     if (!ncontact) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "ncontact is NULL");
+        return TRIBO_ERR_NULL;
     }
     *ncontact = ctx->n;
     return TRIBO_OK;
@@ -56,11 +56,10 @@ int tribo_get_slip(const tribo_context *ctx, signed char *slip)
         return TRIBO_ERR_NULL;
     }
     if (!slip && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "slip is NULL");
+        return TRIBO_ERR_NULL;
     }
     if (ctx->last.slips == NO_SLIPS) {
-        return tribo_fail(ctx, TRIBO_ERR_STATE,
-                          "no tribo_balance or tribo_step_force since the last tribo_solve_box or operator");
+        return TRIBO_ERR_STATE;
     }
     if (ctx->n) {
         memcpy(slip, ctx->last.did.of, ctx->n);
@@ -127,6 +126,9 @@ static int find_count(const tribo_context *ctx, int which, size_t *value)
     case TRIBO_COUNT_PLANAR:
         *value = ctx->planar ? ctx->planar->count : 0;
         return 1;
+    case TRIBO_COUNT_SETTINGS:
+        *value = ctx->revision;
+        return 1;
     default:
         return 0;
     }
@@ -138,9 +140,9 @@ int tribo_get_count(const tribo_context *ctx, int which, size_t *value)
         return TRIBO_ERR_NULL;
     }
     if (!value) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
+        return TRIBO_ERR_NULL;
     }
-    return find_count(ctx, which, value) ? TRIBO_OK : tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no count", which);
+    return find_count(ctx, which, value) ? TRIBO_OK : TRIBO_ERR_RANGE;
 }
 
 /* In the consistent coupling a stuck contact relaxes at its own 2 N R_ii/epsilon; otherwise v' = -R diag(s) v with s =
@@ -172,19 +174,19 @@ int tribo_get_real(const tribo_context *ctx, int which, double *value)
         return TRIBO_ERR_NULL;
     }
     if (!value) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "value is NULL");
+        return TRIBO_ERR_NULL;
     }
     if (which == TRIBO_REAL_RESIDUAL) {
         *value = ctx->last.residual;
         return TRIBO_OK;
     }
     if (which != TRIBO_REAL_MAX_RATE && which != TRIBO_REAL_MAX_STEP) {
-        return tribo_fail(ctx, TRIBO_ERR_RANGE, "which = %d is no real quantity", which);
+        return TRIBO_ERR_RANGE;
     }
-    const int status = tribo_need_operator(ctx);
-    if (!status) {
-        const double rate = max_rate(ctx);
-        *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
+    if (!tribo_has_operator(ctx)) {
+        return TRIBO_ERR_STATE;
     }
-    return status;
+    const double rate = max_rate(ctx);
+    *value = which == TRIBO_REAL_MAX_RATE ? rate : rate > 0.0 ? quotient(2.785, rate) : HUGE_VAL;
+    return TRIBO_OK;
 }

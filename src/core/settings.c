@@ -172,7 +172,7 @@ int tribo_get_law(const tribo_context *ctx, int *law)
         return TRIBO_ERR_NULL;
     }
     if (!law) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "law is NULL");
+        return TRIBO_ERR_NULL;
     }
     *law = ctx->set.law->id;
     return TRIBO_OK;
@@ -247,7 +247,7 @@ int tribo_get_limit(const tribo_context *ctx, double *limit)
         return TRIBO_ERR_NULL;
     }
     if (!limit && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "limit is NULL");
+        return TRIBO_ERR_NULL;
     }
     tribo_copy(limit, ctx->set.limit, ctx->n);
     return TRIBO_OK;
@@ -258,12 +258,11 @@ int tribo_get_epsilon(const tribo_context *ctx, double *epsilon)
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    const int status = tribo_need_epsilon(ctx);
-    if (status) {
-        return status;
+    if (!tribo_has_epsilon(ctx)) {
+        return TRIBO_ERR_STATE;
     }
     if (!epsilon && ctx->n) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "epsilon is NULL");
+        return TRIBO_ERR_NULL;
     }
     for (size_t i = 0; i < ctx->n; i++) {
         epsilon[i] = tribo_epsilon_of(&ctx->follow.contacts, i);
@@ -289,7 +288,7 @@ int tribo_set_epsilon(tribo_context *ctx, const double *epsilon)
     return TRIBO_OK;
 }
 
-static int check_scalar(const tribo_context *ctx, const char *name, double x)
+static int check_scalar(tribo_context *ctx, const char *name, double x)
 {
     if (!isfinite(x)) {
         return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "%s = %g is not finite", name, x);
@@ -360,7 +359,7 @@ int tribo_get_coupling(const tribo_context *ctx, int *coupling)
         return TRIBO_ERR_NULL;
     }
     if (!coupling) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "coupling is NULL");
+        return TRIBO_ERR_NULL;
     }
     *coupling = ctx->set.coupling;
     return TRIBO_OK;
@@ -387,7 +386,7 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
         return TRIBO_ERR_NULL;
     }
     if (!sharing) {
-        return tribo_fail(ctx, TRIBO_ERR_NULL, "sharing is NULL");
+        return TRIBO_ERR_NULL;
     }
     *sharing = ctx->set.sharing;
     return TRIBO_OK;
@@ -396,7 +395,7 @@ int tribo_get_sharing(const tribo_context *ctx, int *sharing)
 /* ------------------------------------------------------------------------------------------------------ static limits */
 
 /* Where a ratio is above 1, or n; either of ratio and velocity may be NULL. */
-static int settings_check_static(const tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
+static int settings_check_static(tribo_context *ctx, const double *ratio, const double *velocity, size_t *above)
 {
     int status = ratio ? tribo_check_finite(ctx, "ratio", ratio, ctx->n) : TRIBO_OK;
     status = status || !velocity ? status : tribo_check_positive(ctx, "velocity", velocity, ctx->n);
@@ -449,5 +448,61 @@ int tribo_get_static(const tribo_context *ctx, double *ratio, double *velocity)
     for (size_t i = 0; velocity && i < ctx->n; i++) {
         velocity[i] = ctx->set.breaking == FALLS ? ctx->set.stribeck[i] : 0.0;
     }
+    return TRIBO_OK;
+}
+
+/* ------------------------------------------------------------------------------------------------------ all of them */
+
+/* The planar contacts of from, if ctx has others. */
+static int copy_planar(tribo_context *ctx, const tribo_context *from)
+{
+    const size_t count = from->planar ? from->planar->count : 0, *first = count ? from->planar->first : NULL;
+    const size_t now = ctx->planar ? ctx->planar->count : 0;
+    struct planar *planar;
+    struct plane plane;
+    if (count == now && (!count || memcmp(first, ctx->planar->first, count * sizeof *first) == 0)) {
+        return TRIBO_OK;
+    }
+    const int status = tribo_planar_prepare(ctx, count, first, ctx->op, &ctx->memory, &planar, &plane);
+    if (!status) {
+        tribo_planar_install(ctx, planar, &plane);
+    }
+    return status;
+}
+
+int tribo_copy_settings(tribo_context *ctx, const tribo_context *from)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!from) {
+        return tribo_fail(ctx, TRIBO_ERR_NULL, "from is NULL");
+    }
+    if (from->n != ctx->n) {
+        return tribo_fail(ctx, TRIBO_ERR_SIZE, "from has %zu contact%s, but ctx %zu contact%s", from->n, plural(from->n), ctx->n,
+                          plural(ctx->n));
+    }
+    tribo_write_slips(ctx);
+    const int status = copy_planar(ctx, from);
+    if (status) {
+        return status;
+    }
+    if (ctx->set.law != from->set.law) {
+        memset(ctx->moving, 0, ctx->n);
+    }
+    struct settings *to = &ctx->set;
+    const struct settings *s = &from->set;
+    tribo_copy(to->width, s->width, ctx->n);
+    tribo_copy(to->rate, s->rate, ctx->n);
+    if (s->breaking) {
+        tribo_copy(to->ratio, s->ratio, ctx->n);
+        tribo_copy(to->stribeck, s->stribeck, ctx->n);
+    }
+    for (size_t i = 0, k = 0; i < ctx->n; i += TRIBO_CHUNK, k++) {
+        tribo_take_limits(tribo_chunk_size(ctx, i), s->limit + i, to->limit + i, &ctx->follow.chunk[k]);
+    }
+    *to = (struct settings){s->law,    s->coupling, s->sharing,  s->step,   s->lambda_dt, to->limit,
+                            to->width, to->rate,    s->breaking, to->ratio, to->stribeck};
+    tribo_refresh(ctx);
     return TRIBO_OK;
 }

@@ -201,7 +201,7 @@ void tribo_refresh_static(tribo_context *ctx)
     }
 }
 
-int tribo_refuse_static(const tribo_context *ctx, const char *who)
+int tribo_refuse_static(tribo_context *ctx, const char *who)
 {
     for (size_t i = 0; ctx->set.breaking && i < ctx->n; i++) {
         if (ctx->set.ratio[i] > 1.0) {
@@ -211,8 +211,7 @@ int tribo_refuse_static(const tribo_context *ctx, const char *who)
     return TRIBO_OK;
 }
 
-int tribo_check_one_ratio(const tribo_context *ctx, const double *ratio, const double *velocity, size_t count,
-                          const size_t *first)
+int tribo_check_one_ratio(tribo_context *ctx, const double *ratio, const double *velocity, size_t count, const size_t *first)
 {
     for (size_t k = 0; k < count; k++) {
         const size_t i = first[k];
@@ -229,7 +228,7 @@ int tribo_check_one_ratio(const tribo_context *ctx, const double *ratio, const d
     return TRIBO_OK;
 }
 
-int tribo_check_breaking(const tribo_context *ctx, const struct law *law, int breaking, const double *ratio)
+int tribo_check_breaking(tribo_context *ctx, const struct law *law, int breaking, const double *ratio)
 {
     for (size_t i = 0; breaking == DROPS && !law->uses_feq && i < ctx->n; i++) {
         if (ratio[i] > 1.0) {

@@ -87,7 +87,7 @@ static void reduce(struct damper *d, const struct options *o, const struct struc
     d->load_shape = need_memory(d->modes, sizeof *d->load_shape);
     d->contact_shape = need_memory(d->contacts * d->modes, sizeof *d->contact_shape);
     d->output_shape = need_memory(d->outputs * d->modes, sizeof *d->output_shape);
-    need(tribo_system_get_frequencies(d->reduced, d->omega), tribo_message(tribo_system_context(d->reduced)));
+    need(tribo_system_get_frequencies(d->reduced, d->omega), tribo_system_message(d->reduced));
     read_shapes(d, r);
 }
 

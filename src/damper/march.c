@@ -55,7 +55,7 @@ tribo_driver *create_marcher(struct worker *w, double limit, double hz)
     if (!coulomb) { /* stuck contacts relax within a step or so, which rk4 still follows; epsilon follows each limit */
         need(tribo_set_epsilon_step(contacts, dt, 1.0), tribo_message(contacts));
     }
-    need(tribo_driver_create(&drv, w->sys, coulomb ? "moreau/fixed" : "rk4/fixed"), tribo_message(contacts));
+    need(tribo_driver_create(&drv, w->sys, coulomb ? "moreau/fixed" : "rk4/fixed"), tribo_system_message(w->sys));
     need(tribo_driver_set_step(drv, dt), tribo_driver_message(drv));
     return drv;
 }

@@ -15,7 +15,7 @@ struct worker create_worker(const struct damper *d, int march)
     struct worker w = {.d = d, .march = march, .dimension = 2 * d->motions + 1};
     need(tribo_system_clone(d->sys, &w.sys), NULL);
     if (!d->planar) {
-        need(tribo_driver_create(&w.drv, w.sys, "exact"), tribo_message(tribo_system_context(w.sys)));
+        need(tribo_driver_create(&w.drv, w.sys, "exact"), tribo_system_message(w.sys));
     }
     w.limit = need_memory(d->contacts, sizeof *w.limit);
     w.c = need_memory(2 * d->motions, sizeof *w.c);
@@ -44,8 +44,8 @@ void set_point(struct worker *w, double limit, double hz)
         w->limit[c] = isnan(d->limit[c]) ? d->mu[c] * limit : d->limit[c];
     }
     need(tribo_set_limit(contacts, w->limit), tribo_message(contacts));
-    need(tribo_system_clear_loads(w->sys), tribo_message(contacts));
-    need(tribo_system_add_load(w->sys, TURN * hz, NULL, d->load), tribo_message(contacts));
+    need(tribo_system_clear_loads(w->sys), tribo_system_message(w->sys));
+    need(tribo_system_add_load(w->sys, TURN * hz, NULL, d->load), tribo_system_message(w->sys));
 }
 
 /* ------------------------------------------------------------------------------------------------------------ measuring */

@@ -221,8 +221,8 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     for (int i = 0; i <= STEPS; i++) {
         const double cycle = (double)PERIODS * i / STEPS;
         need(tribo_driver_advance(drv, &now, cycle / m->hz, state), tribo_driver_message(drv));
-        need(tribo_system_contacts(w->sys, now, state, v, NULL, f), tribo_message(contacts));
-        need(tribo_get_slip(contacts, slip), tribo_message(contacts));
+        need(tribo_system_contacts(w->sys, now, state, v, NULL, f), tribo_system_message(w->sys));
+        need(tribo_system_get_slip(w->sys, slip), tribo_system_message(w->sys));
         write_instant(table, d, cycle, now, state, v, f, slip);
     }
     close_table(t, table, what);

@@ -107,7 +107,8 @@ static int check_contacts(const tribo_system *sys, const struct method *m)
 
 static int driver_create(tribo_driver **drv, tribo_system *sys, const struct method *m)
 {
-    int status = check_contacts(sys, m);
+    int status = tribo_system_take_settings(sys);
+    status = status ? status : check_contacts(sys, m);
     status = status ? status : driver_check_mass(sys, m);
     status = status || m == &tribo_method_moreau_fixed ? status : tribo_system_check_solved(sys, m->name);
     if (status) {
@@ -180,7 +181,7 @@ int tribo_driver_fail(const tribo_driver *drv, int status, const char *format, .
 
 int tribo_driver_explain(tribo_driver *drv, double t, double h)
 {
-    return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_message(drv->sys->contacts));
+    return tribo_driver_fail(drv, drv->sys->status, "at t = %.17g, in a step of %g: %s", t, h, tribo_system_message(drv->sys));
 }
 
 /* -------------------------------------------------------------------------------------------------------------- settings */
@@ -391,9 +392,10 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
     if (!t || !y) {
         return tribo_driver_fail(drv, TRIBO_ERR_NULL, "%s is NULL", t ? "y" : "t");
     }
-    const int status = tribo_system_check_state(drv->sys, *t, y);
+    int status = tribo_system_check_state(drv->sys, *t, y);
+    status = status ? status : tribo_system_take_settings(drv->sys);
     if (status) {
-        return tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts));
+        return tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys));
     }
     if (!isfinite(t1)) {
         return tribo_driver_fail(drv, TRIBO_ERR_NOT_FINITE, "t1 = %g is not finite", t1);
@@ -405,7 +407,7 @@ static int check_times(tribo_driver *drv, const double *t, double t1, const doub
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "method %s has no step: call tribo_driver_set_step", drv->method->name);
     }
     const int unfit = check_contacts(drv->sys, drv->method);
-    return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
+    return unfit ? tribo_driver_fail(drv, unfit, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
 int tribo_driver_advance(tribo_driver *drv, double *t, double t1, double *y)
@@ -458,7 +460,7 @@ static int driver_choose(const tribo_driver *drv)
     return sys->ndof <= 200 && closed && !refused ? EXACT : EVENT;
 }
 
-/* Creates inner[which] where it is missing. The message of a failure is on the system's context. */
+/* Creates inner[which] where it is missing. The message of a failure is the system's. */
 static int provide(tribo_driver *drv, int which)
 {
     static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
@@ -497,7 +499,7 @@ static int delegate(tribo_driver *drv, int which, const struct task *x)
     const struct choice *c = drv->own;
     int status = provide(drv, which);
     if (status) {
-        return tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_message(drv->sys->contacts));
+        return tribo_driver_fail(drv, status, "method %s: %s", drv->at_work->name, tribo_system_message(drv->sys));
     }
     tribo_driver *inner = c->inner[which];
     const tribo_driver before = *inner;

@@ -127,7 +127,7 @@ static int gsl_prepare(struct adaptive *a, tribo_driver *drv)
         double fastest;
         const int status = tribo_system_top_frequency(sys, &fastest);
         if (status) {
-            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+            return tribo_driver_fail(drv, status, "%s", tribo_system_message(sys));
         }
         a->largest = fastest > 0.0 ? LARGEST_STEP / fastest : HUGE_VAL;
     }

@@ -91,7 +91,7 @@ static void run(const struct method *m, const struct scene *s, double setting, s
     set_law(m, s, m->sweep == STEP ? dt : setting, contacts);
     tribo_driver *drv;
     need(set_up_driver(&drv, sys, m->name, dt, tolerance * s->size, m->sweep == TOLERANCE ? tolerance : 0.0),
-         tribo_message(contacts));
+         tribo_system_message(sys));
     if (o->deadline > 0.0 && m->sweep != NO_SETTING) {
         need(tribo_driver_set_observer(drv, in_time, &o->deadline), NULL);
         tribo_driver_set_output(drv, 0.01 * cycle); /* other methods show each step */

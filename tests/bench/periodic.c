@@ -60,8 +60,8 @@ static double error_of(const struct study *s, size_t point, const struct steady 
 static void set_point(const struct study *s, size_t point)
 {
     tribo_context *c = tribo_system_context(s->sys);
-    need(tribo_system_clear_loads(s->sys), tribo_message(c));
-    need(tribo_system_add_load(s->sys, omega_of(s, point), NULL, s->model.beam.load), tribo_message(c));
+    need(tribo_system_clear_loads(s->sys), tribo_system_message(s->sys));
+    need(tribo_system_add_load(s->sys, omega_of(s, point), NULL, s->model.beam.load), tribo_system_message(s->sys));
     need(tribo_set_limit_all(c, limit_of_point(s, point)), tribo_message(c));
 }
 
@@ -80,7 +80,7 @@ static tribo_driver *open_driver(const struct pass *p, double dt, double toleran
 {
     tribo_driver *drv;
     need(set_up_driver(&drv, p->study->sys, p->method, dt, tolerance, tolerance),
-         tribo_message(tribo_system_context(p->study->sys)));
+         tribo_system_message(p->study->sys));
     return drv;
 }
 

@@ -113,8 +113,8 @@ static struct cost run(const struct scene *x, tribo_system *sys, double first)
     need(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0), NULL);
     for (size_t k = 0; k < POINTS; k++) {
         const double omega = x->omega * first * (1.0 + 0.05 * (double)(k / LIMITS)), period = 2.0 * PI / omega;
-        need(tribo_system_clear_loads(sys), tribo_message(c));
-        need(tribo_system_add_load(sys, omega, NULL, load), tribo_message(c));
+        need(tribo_system_clear_loads(sys), tribo_system_message(sys));
+        need(tribo_system_add_load(sys, omega, NULL, load), tribo_system_message(sys));
         need(tribo_set_limit_all(c, x->limit * pow(0.01, (double)(k % LIMITS) / (LIMITS - 1))), tribo_message(c));
         const double begin = cpu_seconds();
         const int status = tribo_driver_find_periodic(drv, 0.0, period, y);

@@ -83,7 +83,7 @@ static void march(tribo_system *sys, const struct scene *x, int reduced, double 
     const double h = 1.0 / (PER_PERIOD * x->hz);
     tribo_driver *drv;
     const int status = set_up_driver(&drv, sys, "moreau/fixed", h, 0.0, 0.0);
-    need(status, status ? tribo_message(tribo_system_context(sys)) : NULL);
+    need(status, status ? tribo_system_message(sys) : NULL);
     double *y = need_memory(tribo_system_dimension(sys), sizeof *y), *full = need_memory(x->s.ndof, sizeof *full), t = 0.0;
     for (size_t i = 0; i < tribo_system_dimension(sys); i++) {
         y[i] = 0.0;

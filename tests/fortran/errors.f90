@@ -419,9 +419,9 @@ contains
     call c%force(v, v, x(:1), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'f has size 1, not 3')
     call c%force(bad, v, x(n:1:-1), stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'v(2) = nan is not finite')
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'v(2) = NaN is not finite')
     call c%force(v, bad, q(2, :), stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'feq(2) = nan is not finite')
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'feq(2) = NaN is not finite')
 
     call c%force_tangent(v(:0), v, x, y, z, w, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'v has size 0, not 3')
@@ -444,7 +444,7 @@ contains
     call c%force_tangent_planar(v, v(:1), stat=stat, errmsg=msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'feq has size 1, not 3')
     call c%force_tangent(bad, v, x, y(n:1:-1), q(1, :), q(:, 1), stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'v(2) = nan is not finite')
+    call expect_error(stat, msg, TRIBO_ERR_NOT_FINITE, 'v(2) = NaN is not finite')
 
     call c%balance(v(:2), v, x, y, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'v has size 2, not 3')
@@ -557,14 +557,14 @@ contains
     x = blank
     call c%get_slip(slip, stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_STATE, &
-      'no tribo_balance or tribo_step_force since the last tribo_solve_box or operator')
+      'another call must come first')
     call c%balance([0.0_dp, 0.0_dp, 0.0_dp], [0.0_dp, 0.0_dp, 0.0_dp])
     call c%get_slip(slip(:2), stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_SIZE, 'slip has size 2, not 3')
     call c%get_count(99, i, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = 99 is no count')
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'an index or a choice is out of range')
     call c%get_real(-1, x, stat, msg)
-    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'which = -1 is no real quantity')
+    call expect_error(stat, msg, TRIBO_ERR_RANGE, 'an index or a choice is out of range')
     call require(all(untouched([slip, i])) .and. untouched(x), 'queries: outputs')
   end subroutine queries
 

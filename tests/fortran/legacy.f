@@ -164,6 +164,8 @@ C     Where things begin in W and IWORK
       CALL SETTIN(IH)
       CALL TRBCPY(IH, IH2, IERR)
       CALL CMPI('TRBCPY', IERR)
+      CALL TRBCPS(IH2, IH, IERR)
+      CALL CMPI('TRBCPS', IERR)
       CALL TRBLAW(IH, 2, IERR)
       CALL CMPI('TRBLAW', IERR)
       CALL FORCES(IH, W(LLO), W(LUP))
@@ -172,6 +174,8 @@ C     Where things begin in W and IWORK
       CALL FORCES(IH2, W(LLO), W(LUP))
       CALL TRBDEL(IH, IERR)
       CALL EXPECT('TRBDEL', IERR .EQ. 0)
+      CALL TRBFIX(IH2, IERR)
+      CALL CMPI('TRBFIX', IERR)
       CALL TRBDEL(IH2, IERR)
       CALL EXPECT('TRBDEL of the copy', IERR .EQ. 0)
       END

@@ -339,13 +339,13 @@ C     Values
      1    'no tribo_balance_tangent since the last balance or change')
       CALL TRBSLP(IH, N, MODE, IERR)
       CALL WANTED('TRBSLP', IH, IERR, 8,
-     1    'no tribo_balance or tribo_step_force since the last tribo_'//
-     2            'solve_box or operator')
+     1    'another call must come first')
       CALL TRBCNT(IH, 99, J, IERR)
-      CALL WANTED('TRBCNT', IH, IERR, 5, 'which = 99 is no count')
+      CALL WANTED('TRBCNT', IH, IERR, 5,
+     1            'an index or a choice is out of range')
       CALL TRBVAL(IH, -1, Y(1), IERR)
       CALL WANTED('TRBVAL', IH, IERR, 5,
-     1            'which = -1 is no real quantity')
+     1            'an index or a choice is out of range')
       CALL TRBSTF(IH, N, 0D0, X, Y, IERR)
       CALL WANTED('TRBSTF', IH, IERR, 4, 'dt = 0 is not positive')
       CALL TRBBAL(IH, N, X, X, Y, Z, IERR)
@@ -353,8 +353,8 @@ C     Values
      1'_operator_diagonal or another tribo_set_operator_... first')
       CALL TRBSTP(IH, 1D0, 1D0, IERR)
       CALL TRBGEP(IH, N, Y, IERR)
-      CALL WANTED('TRBGEP', IH, IERR, 8, 'no operator: call tribo_set'//
-     1'_operator_diagonal or another tribo_set_operator_... first')
+      CALL WANTED('TRBGEP', IH, IERR, 8,
+     1    'another call must come first')
       CALL TRBOPD(IH, N, VAL, IERR)
       CALL TRBBOX(IH, N, X, VAL, X, Y, IERR)
       CALL WANTED('TRBBOX', IH, IERR, 5,

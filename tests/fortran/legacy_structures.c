@@ -131,6 +131,8 @@ static void put_whole(int damped)
     const double pattern[FULL] = {1.0, 0.0, 0.0, -0.5, 0.0, 0.0}, limits[2 * N] = {0.1, 0.2, 0.3, 0.1};
     struct watch watch = {0, 40, 0.0};
     double y[WHOLE] = {0.0}, t = 0.0, limit[N];
+    signed char slip[N];
+    size_t stuck;
     tribo_system *sys = make(damped, 0, 0);
     tribo_driver *drv = NULL;
     put_one(tribo_system_add_load_table(sys, 3, time, value, pattern));
@@ -151,7 +153,15 @@ static void put_whole(int damped)
     put(WHOLE, y);
     put_one(watch.seen);
     put_one(watch.sum);
-    tribo_system_set_limit_table(sys, 0, time, limits);
+    put_one(tribo_system_get_limit(sys, 1.5, limit));
+    put(N, limit);
+    put_one(tribo_system_get_slip(sys, slip));
+    put_one(slip[0]);
+    put_one(slip[1]);
+    put_one(tribo_system_get_count(sys, TRIBO_COUNT_STUCK, &stuck));
+    put_one((double)stuck);
+    put_one(tribo_system_clear_base_motion(sys));
+    put_one(tribo_system_clear_limits(sys));
     tribo_get_limit(tribo_system_context(sys), limit);
     put(N, limit);
     tribo_driver_destroy(drv);

@@ -252,11 +252,13 @@ void scene_play(void)
     put_one(tribo_set_limit_all(c, 0.75));
     settings(c);
     put_one(tribo_clone(c, &copy));
+    put_one(tribo_copy_settings(copy, c));
     put_one(tribo_set_law(c, TRIBO_SMOOTH));
     forces(c);
     settings(copy);
     queries(copy);
     forces(copy);
+    put_one(tribo_fix_operator(copy));
     tribo_destroy(c);
     tribo_destroy(copy);
 }

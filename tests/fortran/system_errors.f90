@@ -452,7 +452,7 @@ contains
     call require(abs(limit(1) - 0.25_dp) <= 0, 'two names of one context')
     call c%set_operator([2.0_dp], stat, msg)
     call expect_error(stat, msg, TRIBO_ERR_UNSUPPORTED, &
-      'the operator is that of a tribo_system: set that of a copy (tribo_clone) instead')
+      'the operator is fixed, as that of a tribo_system is: set that of a copy (tribo_clone)')
     call b%destroy()
     call use_up(s)
     call c%get_limit(limit)

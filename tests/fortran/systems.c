@@ -122,7 +122,9 @@ static void reference(tribo_system *sys)
 static void linear(tribo_system *sys, int reduced)
 {
     sizes(sys);
-    double omega[DOF], full[DOF];
+    double omega[DOF], full[DOF], now[CONTACTS];
+    signed char slip[CONTACTS];
+    size_t stuck;
     const double amplitudes[2] = {0.25, -0.5};
     put_one(tribo_set_limit(tribo_system_context(sys), limits));
     put_one(tribo_set_epsilon_step(tribo_system_context(sys), 0.05, 1.0));
@@ -149,7 +151,16 @@ static void linear(tribo_system *sys, int reduced)
     state(sys);
     run(sys, "event", 1e9);
     run(sys, "central/fixed", 1e9);
-    put_one(tribo_system_set_limit_table(sys, 0, NULL, NULL));
+    put_one(tribo_system_get_limit(sys, 1.25, now));
+    put(CONTACTS, now);
+    put_one(tribo_system_get_slip(sys, slip));
+    for (int i = 0; i < CONTACTS; i++) {
+        put_one(slip[i]);
+    }
+    put_one(tribo_system_get_count(sys, TRIBO_COUNT_STUCK, &stuck));
+    put_one((double)stuck);
+    put_one(tribo_system_clear_limits(sys));
+    put_one(tribo_system_clear_base_motion(sys));
     run(sys, "moreau/fixed", 1e9);
     tribo_system_destroy(sys);
 }

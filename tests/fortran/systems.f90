@@ -157,8 +157,8 @@ contains
     type(tribo_system), intent(inout) :: sys
     logical, intent(in) :: reduced
     type(tribo_context) :: c
-    real(dp) :: omega(2), full(dof), none(ncontact, 0)
-    integer :: stat
+    real(dp) :: omega(2), full(dof), limits_now(ncontact)
+    integer :: stat, stuck, slip(ncontact)
 
     call sizes(sys)
     call sys%context(c)
@@ -201,8 +201,19 @@ contains
     call state(sys)
     call run(sys, 'event', 1e9_dp)
     call run(sys, 'central/fixed', 1e9_dp)
-    call sys%set_limit_table(times(:0), none, stat)
-    call compare('set_limit_table, its end', stat)
+    call sys%get_limit(1.25_dp, limits_now, stat)
+    call compare('get_limit', stat)
+    call compare('get_limit', limits_now)
+    call sys%get_slip(slip, stat)
+    call compare('get_slip', stat)
+    call compare('get_slip', real(slip, dp))
+    call sys%get_count(TRIBO_COUNT_STUCK, stuck, stat)
+    call compare('get_count', stat)
+    call compare('get_count', stuck)
+    call sys%clear_limits(stat)
+    call compare('clear_limits', stat)
+    call sys%clear_base_motion(stat)
+    call compare('clear_base_motion', stat)
     call run(sys, 'moreau/fixed', 1e9_dp)
   end subroutine linear
 

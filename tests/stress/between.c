@@ -183,7 +183,7 @@ static tribo_driver *new_driver(tribo_system *sys, const struct way *way)
 {
     tribo_driver *drv = NULL;
     const int status = set_up_driver(&drv, sys, way->method, way->dt, way->tolerance, 0.0);
-    require(!status, "%s: %s", way->method, tribo_message(tribo_system_context(sys)));
+    require(!status, "%s: %s", way->method, tribo_system_message(sys));
     return drv;
 }
 

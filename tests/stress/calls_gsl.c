@@ -125,7 +125,7 @@ static int finite(const double *y, size_t n)
 /* A call on a system: an error has a message. */
 static void check(const struct scene *s, int status)
 {
-    const char *text = tribo_message(tribo_system_context(s->sys));
+    const char *text = tribo_system_message(s->sys);
     demand(status == TRIBO_OK || text[0] != '\0', "status %d without a message", status);
     demand(strcmp(tribo_strerror(status), tribo_strerror(-1)) != 0, "status %d is unknown", status);
 }

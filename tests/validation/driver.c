@@ -170,10 +170,10 @@ TEST(creation_errors)
     stain(&drv, sizeof drv);
     for (size_t i = 0; i < COUNT(cases); i++) {
         assert_status(tribo_driver_create(&drv, sys, cases[i].method), cases[i].status);
-        assert_says(tribo_message(tribo_system_context(sys)), cases[i].text);
+        assert_says(tribo_system_message(sys), cases[i].text);
     }
     assert_status(tribo_driver_create(NULL, sys, "rk4/fixed"), TRIBO_ERR_NULL);
-    assert_says(tribo_message(tribo_system_context(sys)), "drv is NULL");
+    assert_says(tribo_system_message(sys), "drv is NULL");
     assert_status(tribo_driver_create(&drv, NULL, "rk4/fixed"), TRIBO_ERR_NULL);
     ck_assert(stained(&drv, sizeof drv));
     tribo_system_destroy(sys);

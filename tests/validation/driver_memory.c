@@ -32,8 +32,8 @@ static void create_within_bounds(const char *method, int planar)
         memory_unbound();
         failures += status != TRIBO_OK;
         require(!status || status == TRIBO_ERR_MEMORY, "%s, %zu bytes: %d", method, bytes, status);
-        require(!status || says(tribo_message(tribo_system_context(sys)), "out of memory"), "%s: %s", method,
-                tribo_message(tribo_system_context(sys)));
+        require(!status || says(tribo_system_message(sys), "out of memory"), "%s: %s", method,
+                tribo_system_message(sys));
         require((drv == NULL) == (status != TRIBO_OK), "%s: a driver with status %d", method, status);
         tribo_driver_destroy(drv);
         require(memory_live() == none, "%s leaves %ld blocks with %zu bytes", method, memory_live() - none, bytes);

@@ -7,7 +7,7 @@ tribo_driver *driver_create(tribo_system *sys, const char *method, double dt, do
 {
     tribo_driver *drv = NULL;
     const int status = set_up_driver(&drv, sys, method, dt, tolerance, 0.0);
-    require(status == TRIBO_OK, "%s: %s", method, tribo_message(tribo_system_context(sys)));
+    require(status == TRIBO_OK, "%s: %s", method, tribo_system_message(sys));
     return drv;
 }
 

@@ -15,7 +15,7 @@
 #define NEGLIGIBLE 1e-17
 
 /* Makes a exactly symmetric, or says where it is not; and diagonal [n] its diagonal. */
-static int symmetrize(const tribo_context *ctx, const struct csr *a, double *diagonal)
+static int symmetrize(tribo_context *ctx, const struct csr *a, double *diagonal)
 {
     for (size_t i = 0; i < a->n; i++) {
         const double *r = tribo_csr_entry(a, i, i);
@@ -53,7 +53,7 @@ static int symmetrize(const tribo_context *ctx, const struct csr *a, double *dia
     return TRIBO_OK;
 }
 
-static int input_out_of_memory(const tribo_context *ctx)
+static int input_out_of_memory(tribo_context *ctx)
 {
     return tribo_fail(ctx, TRIBO_ERR_MEMORY, "out of memory for an operator of %zu contact%s", ctx->n, plural(ctx->n));
 }
@@ -84,21 +84,28 @@ static int install(tribo_context *ctx, struct delassus *op, struct memory *m)
 }
 
 /* Whether the caller may change the operator. */
-static int check_owner(const tribo_context *ctx)
+static int check_fixed(tribo_context *ctx)
 {
     if (!ctx) {
         return TRIBO_ERR_NULL;
     }
-    if (!ctx->owner) {
-        return TRIBO_OK;
+    return ctx->fixed ? tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED,
+                                   "the operator is fixed, as that of a tribo_system is: set that of a copy (tribo_clone)")
+                      : TRIBO_OK;
+}
+
+int tribo_fix_operator(tribo_context *ctx)
+{
+    if (!ctx) {
+        return TRIBO_ERR_NULL;
     }
-    return tribo_fail(ctx, TRIBO_ERR_UNSUPPORTED, "the operator is that of %s: set that of a copy (tribo_clone) instead",
-                      ctx->owner);
+    ctx->fixed = 1;
+    return TRIBO_OK;
 }
 
 int tribo_set_operator_diagonal(tribo_context *ctx, const double *r)
 {
-    int status = check_owner(ctx);
+    int status = check_fixed(ctx);
     status = status ? status : tribo_check_nonnegative(ctx, "r", r, ctx->n);
     const double none = 0.0;
     struct delassus *op;
@@ -143,7 +150,7 @@ static int install_rows(tribo_context *ctx, struct csr *a, const struct inertia 
 
 int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 {
-    const int status = check_owner(ctx);
+    const int status = check_fixed(ctx);
     if (status) {
         return status;
     }
@@ -178,7 +185,7 @@ int tribo_set_operator_dense(tribo_context *ctx, const double *r)
 }
 
 /* Checks the compressed rows of an [n][columns] matrix called name. */
-static int input_check_rows(const tribo_context *ctx, size_t n, size_t columns, const size_t *rowptr, const size_t *col,
+static int input_check_rows(tribo_context *ctx, size_t n, size_t columns, const size_t *rowptr, const size_t *col,
                             const double *val)
 {
     if (!rowptr) {
@@ -210,7 +217,7 @@ static int input_check_rows(const tribo_context *ctx, size_t n, size_t columns, 
 }
 
 /* In the transposed matrix equal columns of a row have become neighbours. */
-static int check_duplicates(const tribo_context *ctx, const struct csr *t)
+static int check_duplicates(tribo_context *ctx, const struct csr *t)
 {
     for (size_t j = 0; j < t->n; j++) {
         for (size_t k = t->first[j] + 1; k < t->first[j + 1]; k++) {
@@ -224,7 +231,7 @@ static int check_duplicates(const tribo_context *ctx, const struct csr *t)
 
 int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_t *col, const double *val)
 {
-    int status = check_owner(ctx);
+    int status = check_fixed(ctx);
     status = status ? status : input_check_rows(ctx, ctx->n, ctx->n, rowptr, col, val);
     if (status) {
         return status;
@@ -242,7 +249,7 @@ int tribo_set_operator_csr(tribo_context *ctx, const size_t *rowptr, const size_
 }
 
 /* J [n][ndof] in compressed rows is right; t is J'. */
-static int input_read_direction(const tribo_context *ctx, size_t ndof, const size_t *rowptr, const size_t *col, const double *val,
+static int input_read_direction(tribo_context *ctx, size_t ndof, const size_t *rowptr, const size_t *col, const double *val,
                                 struct csr *t)
 {
     int status = input_check_rows(ctx, ctx->n, ndof, rowptr, col, val);
@@ -262,7 +269,7 @@ static int input_read_direction(const tribo_context *ctx, size_t ndof, const siz
 int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const double *inverse_mass, const size_t *rowptr, const size_t *col,
                             const double *val)
 {
-    int status = check_owner(ctx);
+    int status = check_fixed(ctx);
     if (status) {
         return status;
     }
@@ -291,7 +298,7 @@ struct solver {
 };
 
 /* column [n] = R e_j. */
-static int find_column(const tribo_context *ctx, const struct solver *m, size_t j, const size_t *rowptr, const size_t *col,
+static int find_column(tribo_context *ctx, const struct solver *m, size_t j, const size_t *rowptr, const size_t *col,
                        const double *val, double *column)
 {
     for (size_t k = rowptr[j]; k < rowptr[j + 1]; k++) {
@@ -376,7 +383,7 @@ int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                 int (*apply)(size_t ndof, const double *force, double *acceleration, void *data), void *data,
                                 const size_t *rowptr, const size_t *col, const double *val)
 {
-    int status = check_owner(ctx);
+    int status = check_fixed(ctx);
     if (status) {
         return status;
     }

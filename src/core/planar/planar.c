@@ -240,7 +240,7 @@ static int create_planar(struct planar **planar, size_t n, size_t count, const s
 /* ------------------------------------------------------------------------------------------------------- settings */
 
 /* owner [n] is workspace. */
-static int check_first(const tribo_context *ctx, size_t count, const size_t *first, size_t *owner)
+static int check_first(tribo_context *ctx, size_t count, const size_t *first, size_t *owner)
 {
     for (size_t i = 0; i < ctx->n; i++) {
         owner[i] = SIZE_MAX;
@@ -266,7 +266,7 @@ static int check_first(const tribo_context *ctx, size_t count, const size_t *fir
 #define SPREAD_MOST 1e10
 
 /* Clusters have no more digits. */
-static int check_spread(const tribo_context *ctx, const struct planar *c, const struct delassus *op)
+static int check_spread(tribo_context *ctx, const struct planar *c, const struct delassus *op)
 {
     for (size_t k = 0; op->diagonal && k < op->groups; k++) {
         const struct group *g = &op->group[k];
@@ -280,7 +280,7 @@ static int check_spread(const tribo_context *ctx, const struct planar *c, const 
     return TRIBO_OK;
 }
 
-int tribo_planar_prepare(const tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
+int tribo_planar_prepare(tribo_context *ctx, size_t count, const size_t *first, const struct delassus *op, struct memory *m,
                          struct planar **planar, struct plane *plane)
 {
     size_t large = 0;

@@ -383,7 +383,7 @@ int tribo_planar_given_near(const tribo_context *ctx, size_t k, const struct giv
     return tribo_disc_solve(&x->p);
 }
 
-int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const double *feq)
+int tribo_planar_check_feq(const tribo_context *ctx, tribo_context *note, const double *v, const double *feq)
 {
     for (size_t k = 0; k < ctx->planar->count; k++) {
         double limit[2];
@@ -392,7 +392,7 @@ int tribo_planar_check_feq(const tribo_context *ctx, const double *v, const doub
         const struct slide s = tribo_planar_slide(&c, 0, v + i);
         for (size_t j = i; tribo_planar_near(ctx->set.law, &s) && j < i + 2; j++) {
             if (!isfinite(feq[j])) {
-                return tribo_fail(ctx, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
+                return tribo_fail(note, TRIBO_ERR_NOT_FINITE, "feq[%zu] = %g is not finite", j, feq[j]);
             }
         }
     }
@@ -431,7 +431,7 @@ int tribo_planar_force(const tribo_context *ctx, const double *v, const double *
         if (!g.near) {
             tribo_planar_slide_force(ctx->set.law, &g.s, g.c.limit, f + i);
         } else if (!tribo_planar_given_near(ctx, k, &g, feq + i, &x)) {
-            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
+            return TRIBO_ERR_NO_CONVERGENCE;
         } else {
             for (size_t d = 0; d < 2; d++) {
                 const double held = cut(feq[i + d]) - x.p.shift[d] * g.c.bound[d];

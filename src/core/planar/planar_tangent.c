@@ -352,7 +352,7 @@ int tribo_planar_blocks(const tribo_context *ctx, const double *v, const double 
         struct disc_alone x;
         tribo_planar_given(ctx, q, v + i, feq ? feq + i : none, &g);
         if (g.near && !tribo_planar_given_near(ctx, q, &g, feq + i, &x)) {
-            return tribo_fail(ctx, TRIBO_ERR_NO_CONVERGENCE, "no force found for the planar contact %zu", i);
+            return TRIBO_ERR_NO_CONVERGENCE;
         }
         if (g.near) {
             tribo_disc_gradients(&x.p);

@@ -237,7 +237,7 @@ static void learn(struct events *e, tribo_driver *drv, int brief, double when)
 
 static int on_context(tribo_driver *drv, int status)
 {
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
 /* Shows the observer the motion between t and t + tau at begin + k output. */

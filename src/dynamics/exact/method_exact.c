@@ -374,7 +374,7 @@ static int method_exact_open_events(tribo_driver *drv, struct events **events)
     struct exact *x = drv->own;
     tribo_system *sys = drv->sys;
     if (check_system(sys) || tribo_elastic_check(sys)) {
-        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_message(sys->contacts));
+        return tribo_driver_fail(drv, TRIBO_ERR_UNSUPPORTED, "%s", tribo_system_message(sys));
     }
     if (x->revision != sys->revision) {
         drop_helds(x);

@@ -128,7 +128,7 @@ static int hold_still(struct period_map *m)
     memset(contacts->base, 0, m->sys->ncontact * sizeof *contacts->base);
     tribo_system_loads(m->sys, DRIVES_BASE, 0, 1.0, contacts->base);
     const int status = tribo_stick_slip_hold(contacts, m->sys, contacts->base, m->y + m->sys->ndof);
-    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts)) : TRIBO_OK;
+    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
 }
 
 static void set_image(int odd, size_t count, double *x)
@@ -145,7 +145,7 @@ static int no_room(const struct period_map *m)
 
 static int on_driver(const struct period_map *m, int status)
 {
-    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_message(m->sys->contacts)) : TRIBO_OK;
+    return status ? tribo_driver_fail(m->drv, status, "%s", tribo_system_message(m->sys)) : TRIBO_OK;
 }
 
 /* A derivative without steps that is this point's alone; 0 if out of memory. */

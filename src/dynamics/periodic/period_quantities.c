@@ -48,6 +48,10 @@ static int set_signal(struct replay *r, double tau, const double *end)
 static int replay(tribo_driver *drv, struct replay *r)
 {
     struct shooting *s = drv->shooting;
+    const int unset = tribo_system_take_settings(drv->sys);
+    if (unset) {
+        return tribo_driver_fail(drv, unset, "%s", tribo_system_message(drv->sys));
+    }
     if (!s || !s->found || s->revision != tribo_system_revision(drv->sys)) {
         return tribo_driver_fail(drv, TRIBO_ERR_STATE, "%s: call tribo_driver_find_periodic first",
                                  s && s->found ? "the system has changed since the periodic motion was found"

@@ -74,8 +74,9 @@ static int check_planar(tribo_driver *drv)
 
 static int check_state(tribo_driver *drv, double t, const double *y)
 {
-    const int status = y ? tribo_system_check_state(drv->sys, t, y) : TRIBO_ERR_NULL;
-    return status ? tribo_driver_fail(drv, status, "%s", y ? tribo_message(drv->sys->contacts) : "y is NULL") : TRIBO_OK;
+    int status = y ? tribo_system_check_state(drv->sys, t, y) : TRIBO_ERR_NULL;
+    status = status ? status : tribo_system_take_settings(drv->sys);
+    return status ? tribo_driver_fail(drv, status, "%s", y ? tribo_system_message(drv->sys) : "y is NULL") : TRIBO_OK;
 }
 
 int tribo_events_find_periodic(tribo_driver *drv, double t, double period, double *y)

@@ -602,7 +602,7 @@ static int open_events(tribo_driver *drv, struct events **events)
     struct event *e = drv->own;
     const int status = method_event_prepare(e);
     *events = &e->events;
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(drv->sys->contacts)) : TRIBO_OK;
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(drv->sys)) : TRIBO_OK;
 }
 
 const struct method tribo_method_event = {

@@ -225,7 +225,7 @@ static int check_step(tribo_driver *drv, double h)
         limit = 2.0 / sqrt(value);
         status = tribo_system_highest(sys, 1.0, 2.0 / limit, &value);
     }
-    return status ? tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts))
+    return status ? tribo_driver_fail(drv, status, "%s", tribo_system_message(sys))
                   : tribo_driver_fail(drv, TRIBO_ERR_STEP,
                                       "central differences are unstable in steps of %g: dt must be below %.4g", h, limit);
 }

@@ -125,7 +125,7 @@ static size_t planar_of(const tribo_context *contacts)
 /* Whether the system's contacts may have become planar, or others than before. */
 static int planar_changed(const struct moreau *m, const tribo_system *sys)
 {
-    return m->settings != tribo_revision(sys->contacts) && (planar_of(sys->contacts) || planar_of(m->contacts));
+    return m->settings != tribo_system_settings(sys) && (planar_of(sys->contacts) || planar_of(m->contacts));
 }
 
 /* Contacts of its own, planar where the system's are. */
@@ -136,7 +136,7 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     }
     tribo_destroy(m->contacts);
     m->contacts = NULL;
-    m->settings = tribo_revision(sys->contacts);
+    m->settings = tribo_system_settings(sys);
     m->tell = 1;
     const int status =
         planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
@@ -251,7 +251,7 @@ static void find_load(struct moreau *m, tribo_system *sys, double t)
 /* Limits as the contacts of a step have them, and static ones, if they may be others than in the step before. */
 static void moreau_take_limits(struct moreau *m, const tribo_system *sys)
 {
-    const size_t revision = tribo_revision(sys->contacts);
+    const size_t revision = tribo_system_settings(sys);
     if (m->taken && m->settings_taken == revision) {
         return;
     }
@@ -399,7 +399,7 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
     if (!(fabs(h - m->h) <= 1e-9 * h) || s->revision != sys->revision || planar_changed(m, sys)) {
         const int status = moreau_prepare(m, sys, h);
         if (status) {
-            return tribo_driver_fail(drv, status, "%s", tribo_message(sys->contacts));
+            return tribo_driver_fail(drv, status, "%s", tribo_system_message(sys));
         }
     }
     if (sys->massless.count) {
@@ -418,7 +418,8 @@ static int moreau_step(tribo_driver *drv, double t, double next, const double *f
         return tribo_step_form_grew(drv, t);
     }
     if (status) {
-        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t, tribo_message(m->whole ? m->contacts : sys->contacts));
+        return tribo_driver_fail(drv, status, "at t = %.17g: %s", t,
+                                 m->whole ? tribo_message(m->contacts) : tribo_system_message(sys));
     }
     tribo_system_snap(sys, m->loose, s->base, s->u);
     tribo_step_form_relative(s, sys, s->u, s->end);

@@ -93,7 +93,7 @@ int tribo_system_rates(tribo_system *sys, double t, const double *y, double *acc
     if (!sys->status) {
         add_forces(sys, seen.v, acceleration, power);
     }
-    return sys->status;
+    return tribo_system_explain(sys, sys->status);
 }
 
 int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, double *acceleration, double *power)
@@ -111,7 +111,7 @@ int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, doubl
         sys->status = tribo_accept(sys->contacts, seen.v, sys->feq);
         add_forces(sys, seen.v, acceleration, power);
     }
-    return sys->status;
+    return tribo_system_explain(sys, sys->status);
 }
 
 /* What the steppers of GSL take besides accelerations and power; sys->v has the velocities for the driver. */
@@ -135,7 +135,8 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 {
     tribo_system *sys = params;
     const size_t n = sys->ndof;
-    sys->status = tribo_system_check_rates(sys, "the right-hand side");
+    sys->status = tribo_system_take_settings(sys);
+    sys->status = sys->status ? sys->status : tribo_system_check_rates(sys, "the right-hand side");
     if (sys->status) {
         return GSL_EBADFUNC;
     }
@@ -153,6 +154,7 @@ static int right_hand_side(double t, const double y[], double dydt[], void *para
 static int contacts_at(tribo_system *sys, double t, const double *y)
 {
     int status = tribo_system_check_state(sys, t, y);
+    status = status ? status : tribo_system_take_settings(sys);
     status = status ? status : tribo_system_check_solved(sys, "the force of contacts");
     if (!status) {
         tribo_system_free_motion(sys, t, y, sys->acceleration, sys->v, sys->a);
@@ -191,7 +193,7 @@ int tribo_system_contacts(tribo_system *sys, double t, const double *y, double *
     int status = sys ? check_apart(sys) : TRIBO_ERR_NULL;
     status = status ? status : contacts_at(sys, t, y);
     if (!status) {
-        status = tribo_balance(sys->contacts, sys->v, sys->a, feq, f);
+        status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, feq, f));
     }
     if (!status) {
         equations_put_springs(sys, y, feq);
@@ -208,9 +210,9 @@ int tribo_system_accept(tribo_system *sys, double t, const double *y)
     int status = sys ? tribo_system_check_mass(sys, "this call") : TRIBO_ERR_NULL;
     status = status ? status : contacts_at(sys, t, y);
     if (!status) {
-        status = tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL);
+        status = tribo_system_explain(sys, tribo_balance(sys->contacts, sys->v, sys->a, sys->feq, NULL));
     }
-    return status ? status : tribo_accept(sys->contacts, sys->v, sys->feq);
+    return status ? status : tribo_system_explain(sys, tribo_accept(sys->contacts, sys->v, sys->feq));
 }
 
 /* ----------------------------------------------------------------------------------------------------------------------- life */
@@ -221,7 +223,9 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     tribo_system *s = tribo_zeros(1, sizeof *s);
     int status = s ? tribo_create(&s->contacts, ncontact) : TRIBO_ERR_MEMORY;
     double *work = status ? NULL : tribo_zeros(8 * (ncontact + 1) + ndof, sizeof *work);
-    if (!work) {
+    char *message = work ? tribo_zeros(TRIBO_MESSAGE, 1) : NULL;
+    if (!message) {
+        free(work);
         tribo_system_destroy(s);
         tribo_matrix_free(stiffness);
         tribo_matrix_free(damping);
@@ -229,6 +233,7 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
         tribo_matrix_free(response);
         return status ? status : TRIBO_ERR_MEMORY;
     }
+    s->message = message;
     s->ndof = ndof;
     s->ncontact = ncontact;
     s->given = ndof;
@@ -254,6 +259,15 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     return TRIBO_OK;
 }
 
+/* A copy of the lent context, too, if there is one; 0 if out of memory. */
+static int copy_lent(tribo_system *to, const tribo_system *sys)
+{
+    if (!sys->lent) {
+        return 1;
+    }
+    return tribo_clone(sys->lent, &to->lent) == TRIBO_OK && tribo_fix_operator(to->lent) == TRIBO_OK;
+}
+
 /* What tribo_system_build does not make. 1, or 0 if out of memory. */
 static int copy_rest(tribo_system *to, const tribo_system *sys)
 {
@@ -263,15 +277,15 @@ static int copy_rest(tribo_system *to, const tribo_system *sys)
     to->given = sys->given;
     to->unsolved = sys->unsolved;
     memcpy(to->given_limit, sys->given_limit, sys->ncontact * sizeof *to->given_limit);
-    memcpy(to->put_limit, sys->put_limit, sys->ncontact * sizeof *to->put_limit);
+    to->copied = sys->copied;
     memcpy(to->tally, sys->tally, sys->ncontact * sizeof *to->tally);
     int done = 1;
     to->modes = tribo_copy_of(sys->modes, sys->given * sys->ndof, sizeof *to->modes, &done);
     to->omega = tribo_copy_of(sys->omega, sys->ndof, sizeof *to->omega, &done);
     to->truncation = sys->truncation;
-    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && tribo_matrix_copy(&to->elastic, &sys->elastic) &&
-           tribo_matrix_copy(&to->viscous, &sys->viscous) && tribo_matrix_copy(&to->mass, &sys->mass) &&
-           tribo_cholesky_copy(&to->factor, &sys->factor) &&
+    return done && tribo_clone(sys->contacts, &to->contacts) == TRIBO_OK && copy_lent(to, sys) &&
+           tribo_matrix_copy(&to->elastic, &sys->elastic) && tribo_matrix_copy(&to->viscous, &sys->viscous) &&
+           tribo_matrix_copy(&to->mass, &sys->mass) && tribo_cholesky_copy(&to->factor, &sys->factor) &&
            tribo_massless_copy(&to->massless, &sys->massless, sys->ndof, sys->ncontact) && tribo_loads_copy(to, sys);
 }
 
@@ -309,6 +323,8 @@ void tribo_system_destroy(tribo_system *sys)
         return;
     }
     tribo_destroy(sys->contacts);
+    tribo_destroy(sys->lent);
+    free(sys->message);
     tribo_matrix_free(&sys->stiffness);
     tribo_matrix_free(&sys->damping);
     tribo_matrix_free(&sys->direction);

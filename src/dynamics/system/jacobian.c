@@ -73,7 +73,7 @@ static int find_limit_rates(tribo_system *sys, double *df_dt)
     for (size_t i = 0; !status && i < sys->ncontact; i++) {
         df_dt[i] = (sys->dv_dt[i] - sys->f[i]) / later;
     }
-    return status;
+    return tribo_system_explain(sys, status);
 }
 
 /* pull = (df/da) J,  df/dq = -pull AK,  df/du = (df/dv) J - pull AC */
@@ -139,12 +139,13 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     tribo_system *sys = params;
     const size_t n = sys->ndof, size = tribo_system_dimension(sys);
     sys->jacobians++;
-    sys->status = tribo_system_check_rates(sys, "the Jacobian");
+    sys->status = tribo_system_take_settings(sys);
+    sys->status = sys->status ? sys->status : tribo_system_check_rates(sys, "the Jacobian");
     if (sys->status) {
         return GSL_EBADFUNC;
     }
     if (!sys->dense && !create_dense(sys)) {
-        sys->status = tribo_set_message(sys->contacts, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
+        sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
         return GSL_EBADFUNC;
     }
     const struct dense d = dense_of(sys);
@@ -152,7 +153,9 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
     /* Contacts at a state: forces in sys->f, how they follow v and a, and df_dt, as find_limit_rates has it. Returns a status. */
     tribo_system_free_motion(sys, t, y, d.load, sys->v, sys->a);
     const int status = find_limit_rates(sys, df_dt);
-    sys->status = status ? status : tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv, d.df_da);
+    sys->status = status ? status
+                         : tribo_system_explain(sys, tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv,
+                                                                           d.df_da));
     if (sys->status) {
         return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
     }

@@ -131,29 +131,13 @@ static double look_up(const tribo_system *sys, const struct table *table, size_t
     return order ? slope : v[0] + slope * (sys->time - table->time[k] + sys->low);
 }
 
-/* Finds out which limits are given in the context: those that it has before they vary, and those that it gets while harmonics,
- * but no table, change them. */
-static void find_given_limits(tribo_system *sys)
-{
-    const size_t bytes = sys->ncontact * sizeof *sys->v;
-    const int vary = tribo_system_limits_vary(sys);
-    tribo_get_limit(sys->contacts, sys->v);
-    if (!vary || (!sys->limits.knots && memcmp(sys->v, sys->put_limit, bytes) != 0)) {
-        memcpy(sys->given_limit, sys->v, bytes);
-    }
-    memcpy(sys->put_limit, sys->v, bytes);
-}
-
 void tribo_system_put_limits(tribo_system *sys, double later)
 {
-    const size_t before = tribo_revision(sys->contacts);
     tribo_system_limits(sys, sys->put_limit, sys->feq);
     for (size_t i = 0; i < sys->ncontact; i++) {
         sys->put_limit[i] = clamp(sys->put_limit[i] + later * sys->feq[i], 0.0, DBL_MAX);
     }
     tribo_set_limit(sys->contacts, sys->put_limit);
-    sys->seen = tribo_revision(sys->contacts);
-    sys->ours += sys->seen - before;
 }
 
 void tribo_system_set_low(tribo_system *sys, double low)
@@ -166,18 +150,14 @@ void tribo_system_set_low(tribo_system *sys, double low)
 
 void tribo_system_set_time(tribo_system *sys, double t)
 {
-    const int moves = t != sys->time;
-    if (moves) {
-        sys->time = t;
-        for (size_t k = 0; k < sys->tables; k++) {
-            sys->table[k].at = knot_at(&sys->table[k], t);
-        }
+    if (t == sys->time) {
+        return;
     }
-    if (tribo_system_limits_vary(sys) && (moves || sys->seen != tribo_revision(sys->contacts))) {
-        /* Makes the limits of the context those of the time set. */
-        if (sys->seen != tribo_revision(sys->contacts)) {
-            find_given_limits(sys);
-        }
+    sys->time = t;
+    for (size_t k = 0; k < sys->tables; k++) {
+        sys->table[k].at = knot_at(&sys->table[k], t);
+    }
+    if (tribo_system_limits_vary(sys)) {
         sys->limits.at = knot_at(&sys->limits, sys->time);
         tribo_system_put_limits(sys, 0.0);
     }
@@ -481,11 +461,13 @@ static void remove_harmonics(tribo_system *sys, enum drives drives)
 {
     size_t kept = 0;
     for (size_t k = 0; k < sys->harmonics; k++) {
-        const int by_load = drives == DRIVES_LOAD && sys->harmonic[k].by_load;
-        if (sys->harmonic[k].drives != drives && !by_load) {
-            sys->harmonic[kept++] = sys->harmonic[k];
+        const struct harmonic *h = &sys->harmonic[k];
+        const enum drives of = h->by_load ? DRIVES_LOAD : h->drives;
+        if (of != drives) {
+            sys->harmonic[kept++] = *h;
         } else {
-            sys->base_harmonics -= (size_t)by_load;
+            sys->base_harmonics -= h->drives == DRIVES_BASE;
+            sys->limit_harmonics -= h->drives == DRIVES_LIMIT;
             free_harmonic(&sys->harmonic[k]);
         }
     }
@@ -512,13 +494,20 @@ int tribo_system_add_base_motion(tribo_system *sys, double omega, const double *
     return loads_add_harmonic(sys, DRIVES_BASE, omega, cosine, sine);
 }
 
+/* Before limits begin to vary: given_limit becomes what the caller set. */
+static int loads_begin_limits(tribo_system *sys)
+{
+    const int status = tribo_system_take_settings(sys);
+    if (!status && !tribo_system_limits_vary(sys)) {
+        tribo_get_limit(sys->contacts, sys->given_limit);
+    }
+    return status;
+}
+
 int tribo_system_add_limit(tribo_system *sys, double omega, const double *cosine, const double *sine)
 {
-    if (!sys) {
-        return TRIBO_ERR_NULL;
-    }
-    find_given_limits(sys);
-    return loads_add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
+    const int status = sys ? loads_begin_limits(sys) : TRIBO_ERR_NULL;
+    return status ? status : loads_add_harmonic(sys, DRIVES_LIMIT, omega, cosine, sine);
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- tables */
@@ -607,25 +596,46 @@ int tribo_system_set_limit_table(tribo_system *sys, size_t knots, const double *
         return TRIBO_ERR_NULL;
     }
     struct table t = {0};
-    if (knots) {
-        int status = check_knots(sys, knots, time, "limit", limit);
-        status = status ? status : check_limit_table(sys, knots, limit);
-        if (status) {
-            return status;
-        }
-        if (!create_table(&t, knots, sys->ncontact, time, limit)) {
-            free_table(&t);
-            return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
-        }
+    int status = knots ? TRIBO_OK : tribo_system_fail(sys, TRIBO_ERR_SIZE, "knots = 0");
+    status = status ? status : check_knots(sys, knots, time, "limit", limit);
+    status = status ? status : check_limit_table(sys, knots, limit);
+    status = status ? status : loads_begin_limits(sys);
+    if (status) {
+        return status;
     }
-    find_given_limits(sys);
-    if (!knots && tribo_system_limits_vary(sys)) {
-        tribo_set_limit(sys->contacts, sys->given_limit);
-        remove_harmonics(sys, DRIVES_LIMIT);
-        sys->limit_harmonics = 0;
+    if (!create_table(&t, knots, sys->ncontact, time, limit)) {
+        free_table(&t);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for a table of %zu knot%s", knots, plural(knots));
     }
     free_table(&sys->limits);
     sys->limits = t;
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return TRIBO_OK;
+}
+
+int tribo_system_clear_limits(tribo_system *sys)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (tribo_system_limits_vary(sys)) {
+        tribo_set_limit(sys->contacts, sys->given_limit);
+    }
+    remove_harmonics(sys, DRIVES_LIMIT);
+    free_table(&sys->limits);
+    sys->limits = (struct table){0};
+    sys->revision++;
+    tribo_system_forget_time(sys);
+    return TRIBO_OK;
+}
+
+int tribo_system_clear_base_motion(tribo_system *sys)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    remove_harmonics(sys, DRIVES_BASE);
     sys->revision++;
     tribo_system_forget_time(sys);
     return TRIBO_OK;

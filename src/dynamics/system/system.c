@@ -9,12 +9,21 @@
 
 int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
 {
-    char text[200];
     va_list args;
     va_start(args, format);
-    vsnprintf(text, sizeof text, format, args);
+    vsnprintf(sys->message, TRIBO_MESSAGE, format, args);
     va_end(args);
-    return tribo_set_message(sys->contacts, status, text);
+    return status;
+}
+
+int tribo_system_explain(const tribo_system *sys, int status)
+{
+    return status ? tribo_system_fail(sys, status, "%s", tribo_message(sys->contacts)) : TRIBO_OK;
+}
+
+const char *tribo_system_message(const tribo_system *sys)
+{
+    return sys ? sys->message : "sys is NULL";
 }
 
 int tribo_system_check_mass(const tribo_system *sys, const char *who)
@@ -66,7 +75,14 @@ int tribo_system_check_state(const tribo_system *sys, double t, const double *y)
 
 size_t tribo_system_revision(const tribo_system *sys)
 {
-    return sys->revision + tribo_revision(sys->contacts) - sys->ours;
+    return sys->revision + sys->changes;
+}
+
+size_t tribo_system_settings(const tribo_system *sys)
+{
+    size_t settings = 0;
+    tribo_get_count(sys->contacts, TRIBO_COUNT_SETTINGS, &settings);
+    return settings;
 }
 
 size_t tribo_system_planar(const tribo_system *sys)
@@ -93,10 +109,63 @@ size_t tribo_system_dimension(const tribo_system *sys)
 
 tribo_context *tribo_system_context(tribo_system *sys)
 {
-    if (sys) {
-        tribo_set_owner(sys->contacts, "a tribo_system");
+    if (sys && !sys->lent && tribo_clone(sys->contacts, &sys->lent) == TRIBO_OK) {
+        tribo_fix_operator(sys->lent);
+        if (tribo_system_limits_vary(sys)) {
+            tribo_set_limit(sys->lent, sys->given_limit);
+        }
+        tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &sys->copied);
     }
-    return sys ? sys->contacts : NULL;
+    return sys ? sys->lent : NULL;
+}
+
+int tribo_system_take_settings(tribo_system *sys)
+{
+    size_t now = 0;
+    if (!sys->lent || tribo_get_count(sys->lent, TRIBO_COUNT_SETTINGS, &now) || now == sys->copied) {
+        return TRIBO_OK;
+    }
+    const int status = tribo_copy_settings(sys->contacts, sys->lent);
+    if (!status) {
+        tribo_get_limit(sys->lent, sys->given_limit);
+        sys->copied = now;
+        sys->changes++;
+        tribo_system_forget_time(sys);
+    }
+    return tribo_system_explain(sys, status);
+}
+
+int tribo_system_get_slip(const tribo_system *sys, signed char *slip)
+{
+    const int status = sys ? tribo_get_slip(sys->contacts, slip) : TRIBO_ERR_NULL;
+    return status && sys ? tribo_system_fail(sys, status, "%s", slip ? "no forces were found yet" : "slip is NULL") : status;
+}
+
+int tribo_system_get_count(const tribo_system *sys, int which, size_t *value)
+{
+    const int status = sys ? tribo_get_count(sys->contacts, which, value) : TRIBO_ERR_NULL;
+    return !status || !sys ? status
+           : value         ? tribo_system_fail(sys, status, "which = %d is no count", which)
+                           : tribo_system_fail(sys, status, "value is NULL");
+}
+
+int tribo_system_get_limit(tribo_system *sys, double t, double *limit)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!isfinite(t)) {
+        return tribo_system_fail(sys, TRIBO_ERR_NOT_FINITE, "t = %g is not finite", t);
+    }
+    if (!limit && sys->ncontact) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "limit is NULL");
+    }
+    const int status = tribo_system_take_settings(sys);
+    if (!status) {
+        tribo_system_set_time(sys, t);
+        tribo_get_limit(sys->contacts, limit);
+    }
+    return status;
 }
 
 const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)

@@ -47,17 +47,19 @@ struct truncation {
 struct tribo_system {
     size_t ndof, ncontact;
     struct matrix stiffness, damping, direction, response; /* AK, AC, J, B */
-    tribo_context *contacts;
+    tribo_context *contacts; /* finds the forces; its settings are those of lent, its limits those of the time set */
+    tribo_context *lent;     /* what tribo_system_context gives the caller to set; NULL: nothing is lent yet */
+    size_t copied, changes;  /* count of settings of lent when they were copied last; how often they were */
+    char *message;           /* [TRIBO_MESSAGE] a const system keeps it, too */
 
     size_t harmonics, base_harmonics, limit_harmonics; /* the latter are those of b(t) and of limits */
     struct harmonic *harmonic;
     size_t tables;
     struct table *table;
-    struct table limits;         /* knots 0: the limits are those given in the context, and harmonics on top */
-    double *given_limit;         /* [ncontact] while limits vary: those given in the context, */
-    double *put_limit;           /* [ncontact] and those that it was told last, to see whether others have been given since */
+    struct table limits;         /* knots 0: the limits are those that the caller set, and harmonics on top */
+    double *given_limit;         /* [ncontact] while limits vary: those that the caller set */
+    double *put_limit;           /* [ncontact] workspace: limits of the time set */
     size_t revision, structure;  /* count changes of loads, tables and damping; of damping */
-    size_t ours, seen;           /* of the context's revision: how much varying limits added, and where they left it */
     double time, low;            /* that is set (NaN: none yet), and what rounding left of it (below) */
     size_t foreseen;             /* times in foresight */
     double foresight[FORESIGHT]; /* ascending */
@@ -94,8 +96,20 @@ struct tribo_system {
 int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct matrix *stiffness, struct matrix *damping,
                        struct matrix *direction, struct matrix *response);
 
-/* Counts all changes that a caller can make: of loads, tables and damping, and of the context's settings. */
+enum { TRIBO_MESSAGE = 240 };
+
+/* Copies the settings of the lent context, if there are others, to the contacts: to be called where a caller's call begins.
+ * Returns a tribo status. */
+int tribo_system_take_settings(tribo_system *sys);
+
+/* Counts all changes that a caller can make: of loads, tables and damping, and of settings, as taken. */
 size_t tribo_system_revision(const tribo_system *sys);
+
+/* Counts changes of the contacts' settings, and of limits with time. */
+size_t tribo_system_settings(const tribo_system *sys);
+
+/* Status of a call on the contacts, which keeps its message on the system if it failed. */
+int tribo_system_explain(const tribo_system *sys, int status);
 
 /* How many planar contacts there are. */
 size_t tribo_system_planar(const tribo_system *sys);
@@ -111,7 +125,7 @@ void tribo_loads_free(tribo_system *sys);
 /* The loads, motions and tables of from for sys, which has none; 1, or 0 if out of memory. */
 int tribo_loads_copy(tribo_system *sys, const tribo_system *from);
 
-/* Prepares the loads for time t, and sets the limits of the context if they vary. */
+/* Prepares the loads for time t, and sets the limits of the contacts if they vary. */
 void tribo_system_set_time(tribo_system *sys, double t);
 
 /* ---- foresight.c */
@@ -173,7 +187,7 @@ static inline int tribo_system_is_at(const tribo_system *sys, double t)
 /* limit, and its derivative, each [ncontact], at the time set. Harmonics take it below 0 where the contact has lifted off. */
 void tribo_system_limits(const tribo_system *sys, double *limit, double *rate);
 
-/* Tells the context the limits of the time set, and what their rates make of them in a time so much later. */
+/* Sets the limits of the contacts to those of the time set, plus their rates times later. */
 void tribo_system_put_limits(tribo_system *sys, double later);
 
 /* By how much harmonics change the limit of contact i at most; 0 for one that they leave alone. */
@@ -246,7 +260,7 @@ size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose
 /* jacobian.c: of odeiv2. */
 int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params);
 
-/* Keeps the message on the system's context and returns status. */
+/* Keeps the message on the system and returns status. */
 int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)
 #if defined(__GNUC__)
     __attribute__((format(printf, 3, 4)))

@@ -195,12 +195,23 @@ static int copy_planar(tribo_context *c)
     }
     int status = tribo_set_planar(copy, 1, first);
     status = status ? status : set_dense(copy);
+    require(!status || says(tribo_message(copy), "out of memory"), "\"%s\"", tribo_message(copy));
     status = status ? status : tribo_clone(copy, &other);
-    if (status) {
-        tribo_set_message(c, status, tribo_message(copy));
-    }
     tribo_destroy(other);
     tribo_destroy(copy);
+    return status;
+}
+
+/* Settings of a context with planar contacts. */
+static int copy_settings(tribo_context *c)
+{
+    tribo_context *from;
+    int status = tribo_clone(c, &from);
+    if (!status) {
+        status = tribo_set_planar(from, 1, first);
+        status = status ? status : tribo_copy_settings(c, from);
+        tribo_destroy(from);
+    }
     return status;
 }
 
@@ -209,11 +220,12 @@ static const struct {
     int (*call)(tribo_context *c);
     int has_message;
 } calls[] = {
-    {"create", create, 0},         {"clone", clone, 1},
+    {"create", create, 0},         {"clone", clone, 0},
     {"diagonal", set_diagonal, 1}, {"dense", set_dense, 1},
     {"csr", set_csr, 1},           {"mass", set_mass, 1},
     {"callback", set_callback, 1}, {"diagonal as dense", set_dense_diagonal, 1},
-    {"planar", set_planar, 1},     {"planar copy", copy_planar, 1},
+    {"planar", set_planar, 1},     {"planar copy", copy_planar, 0},
+    {"settings", copy_settings, 0},
 };
 
 /* A context with islands {0, 1} and {2}. */

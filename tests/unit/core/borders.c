@@ -48,13 +48,13 @@ static void expect_all(tribo_context *c, struct arrays *s, size_t i, double valu
     const int status = TRIBO_ERR_NOT_FINITE;
     stain(&s->out, sizeof s->out);
     s->v[i] = value;
-    expect(c, tribo_force(c, s->v, s->a, s->out.f), status, "v", i, value);
-    expect(c, tribo_force_tangent(c, s->v, s->a, s->out.f, s->out.d[0], s->out.d[1], s->out.d[2]), status, "v", i, value);
+    assert_status(tribo_force(c, s->v, s->a, s->out.f), status);
+    assert_status(tribo_force_tangent(c, s->v, s->a, s->out.f, s->out.d[0], s->out.d[1], s->out.d[2]), status);
     expect(c, tribo_balance(c, s->v, s->a, s->out.feq, s->out.f), status, "v", i, value);
     s->v[i] = v;
     s->a[i] = value;
-    expect(c, tribo_force(c, s->v, s->a, s->out.f), status, "feq", i, value);
-    expect(c, tribo_force_tangent(c, s->v, s->a, s->out.f, s->out.d[0], s->out.d[1], s->out.d[2]), status, "feq", i, value);
+    assert_status(tribo_force(c, s->v, s->a, s->out.f), status);
+    assert_status(tribo_force_tangent(c, s->v, s->a, s->out.f, s->out.d[0], s->out.d[1], s->out.d[2]), status);
     expect(c, tribo_balance(c, s->v, s->a, s->out.feq, s->out.f), status, "a", i, value);
     s->a[i] = a;
     ck_assert(stained(&s->out, sizeof s->out));

@@ -450,7 +450,7 @@ TEST(refusal)
     tribo_driver *drv = driver_create(sys, "exact", 0.1, 0.0), *none = NULL;
     set_static(sys, 1.5, 0.3);
     assert_status(set_up_driver(&none, sys, "exact", 0.1, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_message(tribo_system_context(sys)), "contact 0 has a static limit that falls with the speed");
+    assert_says(tribo_system_message(sys), "contact 0 has a static limit that falls with the speed");
     ck_assert_ptr_null(none);
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_driver_message(drv), "contact 0 has a static limit that falls with the speed");

@@ -9,7 +9,7 @@ static tribo_driver *exact(tribo_system *s)
 {
     tribo_driver *d = NULL;
     const int status = set_up_driver(&d, s, "exact", 1e-3, 0.0, 0.0);
-    require(!status, "%s", tribo_message(tribo_system_context(s)));
+    require(!status, "%s", tribo_system_message(s));
     return d;
 }
 
@@ -434,7 +434,7 @@ TEST(refused_methods)
     tribo_system *s = element(0.5, 1), *copy;
     assert_ok(tribo_system_clone(s, &copy));
     tribo_system_destroy(s);
-    const char *message = tribo_message(tribo_system_context(copy));
+    const char *message = tribo_system_message(copy);
     for (int k = 0; k < tribo_method_count(); k++) {
         tribo_driver *d = NULL;
         const char *name = tribo_method_name(k);
@@ -455,7 +455,7 @@ TEST(refused_calls)
     const double on[2] = {0.0, 1.0}, time[2] = {0.0, 1.0}, limit[2] = {0.5, 0.6}, zero[5] = {0.0};
     double dydt[5], dfdy[25];
     tribo_system *s = element(0.5, 1);
-    const char *message = tribo_message(tribo_system_context(s));
+    const char *message = tribo_system_message(s);
     assert_status(tribo_system_add_load(s, 1.0, NULL, on), TRIBO_ERR_UNSUPPORTED);
     assert_says(message, "sine[1] = 1, but degree of freedom 1 has no mass");
     assert_status(tribo_system_add_load_table(s, 2, time, limit, on), TRIBO_ERR_UNSUPPORTED);

@@ -401,7 +401,7 @@ TEST(automatic)
     }
     ck_assert_ptr_null(tribo_driver_method(NULL));
     /* a table that ends makes it exact again */
-    assert_ok(tribo_system_set_limit_table(pressed, 0, NULL, NULL));
+    assert_ok(tribo_system_clear_limits(pressed));
     tribo_driver *drv = driver_create(pressed, "auto", 1.0, 0.0);
     ck_assert_str_eq(tribo_driver_method(drv), "exact");
     tribo_driver_destroy(drv);
@@ -459,8 +459,8 @@ TEST(tables)
     assert_ok(_i ? tribo_system_set_limit_table(sys, 2, times, limits)
                  : tribo_system_add_load_table(sys, 2, times, values, &one));
     assert_status(set_up_driver(&none, sys, "exact", 1.0, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_message(tribo_system_context(sys)), text);
-    assert_says(tribo_message(tribo_system_context(sys)), "take event or auto");
+    assert_says(tribo_system_message(sys), text);
+    assert_says(tribo_system_message(sys), "take event or auto");
     ck_assert_ptr_null(none);
     assert_status(tribo_driver_advance(drv, &t, 3.0, y), TRIBO_ERR_UNSUPPORTED);
     assert_says(tribo_driver_message(drv), text);

@@ -178,7 +178,7 @@ static double *motion(const char *method, const struct row *r, int setting, int 
     driver_advance(drv, &t, 30.0, y);
     counts->rested = driver_count(drv, TRIBO_COUNT_RESTED);
     counts->evaluations = driver_count(drv, TRIBO_COUNT_EVALUATIONS);
-    assert_ok(tribo_get_count(tribo_system_context(sys), TRIBO_COUNT_STUCK, &counts->stuck));
+    assert_ok(tribo_system_get_count(sys, TRIBO_COUNT_STUCK, &counts->stuck));
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
     free(x);

@@ -132,8 +132,8 @@ static struct outcome motion(const struct scene *s, int setting, size_t c, int w
     driver_advance(drv, &t, 5.0, o.y);
     change(sys, s, setting);
     driver_advance(drv, &t, 10.0, o.y);
-    assert_ok(tribo_get_slip(tribo_system_context(sys), o.slip));
-    assert_ok(tribo_get_count(tribo_system_context(sys), TRIBO_COUNT_SOLVES, &o.solves));
+    assert_ok(tribo_system_get_slip(sys, o.slip));
+    assert_ok(tribo_system_get_count(sys, TRIBO_COUNT_SOLVES, &o.solves));
     o.steps = driver_count(drv, TRIBO_COUNT_STEPS);
     o.evaluations = driver_count(drv, TRIBO_COUNT_EVALUATIONS);
     tribo_driver_destroy(drv);

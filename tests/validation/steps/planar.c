@@ -121,7 +121,7 @@ TEST(refused)
     tribo_driver *d = NULL;
     double t = 0.0, y[5] = {0.0};
     assert_status(set_up_driver(&d, s, "exact", 0.01, 1e-9, 1e-9), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_message(c), "planar");
+    assert_says(tribo_system_message(s), "planar");
     assert_ok(tribo_set_planar(c, 0, NULL));
     assert_ok(set_up_driver(&d, s, "exact", 0.01, 1e-9, 1e-9));
     assert_ok(tribo_driver_advance(d, &t, 0.1, y));

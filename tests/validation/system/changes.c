@@ -39,7 +39,7 @@ static void begin_table(tribo_system *sys)
 
 static void end_table(tribo_system *sys)
 {
-    assert_ok(tribo_system_set_limit_table(sys, 0, NULL, NULL));
+    assert_ok(tribo_system_clear_limits(sys));
 }
 
 static void add_limit(tribo_system *sys)
@@ -346,7 +346,7 @@ TEST(rest_is_seen_anew)
 
 /* --------------------------------------------------------------------------------------------------- limits and tables */
 
-/* Limits that a table had replaced come back, also if there were two tables, or a limit was set meanwhile. */
+/* Limits that a table had replaced come back, also if there were two tables; those that are set meanwhile count from then on. */
 TEST(limits_after_a_table)
 {
     struct random g = random_of(1);
@@ -359,15 +359,24 @@ TEST(limits_after_a_table)
     begin_table(sys);
     driver_advance(drv, &t, 2.0, y);
     assert_ok(tribo_get_limit(tribo_system_context(sys), limit));
+    assert_all_exact(limit, before, CONTACTS);
+    assert_ok(tribo_system_get_limit(sys, t, limit));
     ck_assert_double_ne(limit[0], before[0]);
     assert_ok(tribo_set_limit_all(tribo_system_context(sys), 9.0));
     begin_table(sys);
     driver_advance(drv, &t, 2.5, y);
-    assert_ok(tribo_system_set_limit_table(sys, 0, NULL, NULL));
-    assert_ok(tribo_get_limit(tribo_system_context(sys), limit));
-    assert_all_exact(limit, before, CONTACTS);
-    assert_ok(tribo_system_set_limit_table(sys, 0, NULL, NULL));
-    assert_ok(tribo_get_limit(tribo_system_context(sys), limit));
+    for (int k = 0; k < 2; k++) {
+        const double nine[CONTACTS] = {9.0, 9.0, 9.0};
+        assert_ok(tribo_system_clear_limits(sys));
+        assert_ok(tribo_get_limit(tribo_system_context(sys), limit));
+        assert_all_exact(limit, nine, CONTACTS);
+        assert_ok(tribo_system_get_limit(sys, t, limit));
+        assert_all_exact(limit, nine, CONTACTS);
+    }
+    begin_table(sys);
+    assert_ok(tribo_set_limit(tribo_system_context(sys), before));
+    assert_ok(tribo_system_clear_limits(sys));
+    assert_ok(tribo_system_get_limit(sys, t, limit));
     assert_all_exact(limit, before, CONTACTS);
     tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
@@ -424,7 +433,7 @@ TEST(choices)
     assert_ok(tribo_system_set_limit_table(changing, 3, time, limit));
     driver_advance(drv, &t, 2.0, y);
     ck_assert_str_eq(tribo_driver_method(drv), "event");
-    assert_ok(tribo_system_set_limit_table(changing, 0, NULL, NULL));
+    assert_ok(tribo_system_clear_limits(changing));
     driver_advance(drv, &t, 4.0, y);
     ck_assert_str_eq(tribo_driver_method(drv), "exact");
     assert_close(y[0], 0.0, 1e-8); /* x = 1 + cos t, then rests at 0 */

@@ -497,20 +497,20 @@ TEST(given_limits)
     assert_ok(tribo_system_clone(then, &copy));
     go(copy, methods[_i], 9.0, 12.0, z);
     assert_all_close(z, y, 3, 1e-12);
-    /* the context says what the limit is there */
+    /* the context says what was set, and the system what the limit is at a time */
     assert_ok(tribo_system_contacts(copy, 2.0, y, NULL, NULL, NULL));
     assert_ok(tribo_get_limit(tribo_system_context(copy), &got));
+    assert_exact(got, 0.8);
+    assert_ok(tribo_system_get_limit(copy, 2.0, &got));
     assert_close(got, fmax(0.8 + 0.6 * cos(2.5), 0.0), 1e-15);
     /* clearing loads leaves limits as they are; the end of them does not */
     assert_ok(tribo_system_clear_loads(copy));
-    assert_ok(tribo_system_contacts(copy, 2.0, y, NULL, NULL, NULL));
-    assert_ok(tribo_get_limit(tribo_system_context(copy), &got));
+    assert_ok(tribo_system_get_limit(copy, 2.0, &got));
     assert_close(got, fmax(0.8 + 0.6 * cos(2.5), 0.0), 1e-15);
-    assert_ok(tribo_system_set_limit_table(copy, 0, NULL, NULL));
+    assert_ok(tribo_system_clear_limits(copy));
     assert_ok(tribo_get_limit(tribo_system_context(copy), &got));
     assert_exact(got, 0.8);
-    assert_ok(tribo_system_contacts(copy, 1.0, y, NULL, NULL, NULL));
-    assert_ok(tribo_get_limit(tribo_system_context(copy), &got));
+    assert_ok(tribo_system_get_limit(copy, 1.0, &got));
     assert_exact(got, 0.8);
     tribo_system_destroy(first);
     tribo_system_destroy(then);
@@ -532,7 +532,53 @@ TEST(automatic)
     assert_status(tribo_driver_advance(drv, &t, 1.0, y), TRIBO_ERR_UNSUPPORTED);
     tribo_driver_destroy(drv);
     assert_status(set_up_driver(&drv, sys, "exact", 1.0, 0.0, 0.0), TRIBO_ERR_UNSUPPORTED);
-    assert_says(tribo_message(tribo_system_context(sys)), "table");
+    assert_says(tribo_system_message(sys), "table");
+    tribo_system_destroy(sys);
+}
+
+/* What a system does, with any method, changes nothing in the context that it lends; errors of the system leave no message there. */
+TEST(lent_context)
+{
+    const char *method = tribo_method_name(_i);
+    double y[3] = {0.0, 0.3, 0.0}, t = 0.0, limit, bad = NAN;
+    signed char slip = 9;
+    size_t before, after, stuck;
+    tribo_driver *drv, *none = NULL;
+    tribo_system *sys = block(1.0, 1.0, 0.3);
+    tribo_context *c = tribo_system_context(sys);
+    assert_ok(tribo_set_limit_all(c, 0.7));
+    add_limit(sys, 1.25, 0.6, 0.0);
+    assert_status(tribo_set_law(c, 999), TRIBO_ERR_RANGE);
+    assert_ok(tribo_get_count(c, TRIBO_COUNT_SETTINGS, &before));
+    assert_status(tribo_system_get_slip(sys, &slip), TRIBO_ERR_STATE);
+    ck_assert_int_eq(slip, 9);
+    assert_ok(set_up_driver(&drv, sys, method, 0.01, 1e-6, 1e-6));
+    assert_ok(tribo_driver_advance(drv, &t, 3.0, y));
+    assert_status(tribo_driver_advance(drv, &t, 4.0, &bad), TRIBO_ERR_NOT_FINITE);
+    assert_status(set_up_driver(&none, sys, "none", 0.01, 1e-6, 1e-6), TRIBO_ERR_NAME);
+    assert_says(tribo_system_message(sys), "method \"none\" is unknown");
+    assert_status(tribo_system_add_load(sys, NAN, NULL, NULL), TRIBO_ERR_NOT_FINITE);
+    ck_assert_str_eq(tribo_system_message(sys), "omega = nan is not finite");
+    ck_assert_str_eq(tribo_message(c), "law = 999 is none of the 6 laws");
+    assert_ok(tribo_get_count(c, TRIBO_COUNT_SETTINGS, &after));
+    ck_assert_uint_eq(after, before);
+    assert_ok(tribo_get_limit(c, &limit));
+    assert_exact(limit, 0.7);
+    assert_status(tribo_get_slip(c, &slip), TRIBO_ERR_STATE);
+    assert_status(tribo_set_operator_diagonal(c, &limit), TRIBO_ERR_UNSUPPORTED);
+    /* slips and counts are the system's */
+    y[1] = 2.0;
+    assert_ok(tribo_system_contacts(sys, 0.0, y, NULL, NULL, NULL));
+    assert_ok(tribo_system_get_slip(sys, &slip));
+    ck_assert_int_eq(slip, TRIBO_SLIP_FORTH);
+    assert_ok(tribo_system_get_count(sys, TRIBO_COUNT_STUCK, &stuck));
+    ck_assert_uint_eq(stuck, 0);
+    assert_ok(tribo_system_contacts(sys, PI / 1.25, y, NULL, NULL, NULL)); /* 0.7 - 0.6 */
+    assert_ok(tribo_set_limit_all(c, 0.5));
+    assert_ok(tribo_system_contacts(sys, PI / 1.25, y, NULL, NULL, NULL)); /* 0.5 - 0.6 */
+    assert_ok(tribo_system_get_slip(sys, &slip));
+    ck_assert_int_eq(slip, TRIBO_SLIP_OPEN);
+    tribo_driver_destroy(drv);
     tribo_system_destroy(sys);
 }
 
@@ -540,7 +586,7 @@ TEST(errors)
 {
     const double bad = HUGE_VAL, one = 1.0, far = 1e301;
     tribo_system *sys = block(1.0, 1.0, 0.3);
-    const char *message = tribo_message(tribo_system_context(sys));
+    const char *message = tribo_system_message(sys);
     assert_status(tribo_system_add_limit(NULL, 1.0, &one, &one), TRIBO_ERR_NULL);
     assert_status(tribo_system_add_limit(sys, NAN, &one, &one), TRIBO_ERR_NOT_FINITE);
     assert_says(message, "omega");
@@ -568,7 +614,7 @@ TEST(errors_of_tables)
     const double time[] = {0.0, 1.0};
     tribo_system *sys;
     assert_ok(tribo_system_belt(&sys, 2.0, 0.5, 0.25, 1.0, 0.5));
-    const char *message = tribo_message(tribo_system_context(sys));
+    const char *message = tribo_system_message(sys);
     for (size_t i = 0; i < COUNT(cases); i++) {
         assert_status(tribo_system_set_limit_table(sys, 2, time, cases[i].limit), cases[i].status);
         ck_assert_str_eq(message, cases[i].text);
@@ -583,5 +629,5 @@ TEST(errors_of_tables)
 TEST_MAIN("limits", {slides_on, 2}, {resonance, 2}, {lift_off, 2}, {touches_down_at_rest, 2}, {touches_down_pulled, 2},
           {grazing_lift_off, 2}, {released_at_the_load_s_extremum, 2}, {grazing_limit, 2}, {zero_limits, 2}, {constant, 1},
           {together, 2}, {doubled, 2}, {methods_agree, 12}, {reference_systems, 1}, {steppers, 1}, {energy, 12},
-          {late_in_time, 2}, {table_lifts_off, 1}, {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1}, {errors, 1},
+          {late_in_time, 2}, {table_lifts_off, 1}, {table_and_harmonics, 1}, {given_limits, 2}, {automatic, 1}, {lent_context, 17}, {errors, 1},
           {errors_of_tables, 1})

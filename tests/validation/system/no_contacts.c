@@ -23,7 +23,7 @@ TEST(moves_freely)
     assert_exact(y[2], 0.0);
     assert_ok(tribo_system_contacts(sys, t1, y, NULL, NULL, &none));
     assert_exact(none, 7.0);
-    assert_ok(tribo_get_count(tribo_system_context(sys), TRIBO_COUNT_STUCK, &stuck));
+    assert_ok(tribo_system_get_count(sys, TRIBO_COUNT_STUCK, &stuck));
     ck_assert_uint_eq(stuck, 0);
     tribo_system_destroy(sys);
 }

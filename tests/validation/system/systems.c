@@ -274,7 +274,7 @@ TEST(creation_errors)
 #define REFUSED(status, text, call)                                                                                              \
     do {                                                                                                                         \
         assert_status(call, status);                                                                                             \
-        assert_says(tribo_message(tribo_system_context(sys)), text);                                                             \
+        assert_says(tribo_system_message(sys), text);                                                             \
     } while (0)
 
 TEST(load_errors)
