@@ -1106,7 +1106,7 @@ contains
     if (w%status == TRIBO_OK .and. present(output)) w%status = c_driver_set_output(drv, output)
     if (w%status == TRIBO_OK .and. present(max_step)) w%status = c_driver_set_max_step(drv, max_step)
     if (w%status == TRIBO_OK) return
-    w%object = drv
+    call to_text(c_driver_message(drv), w%text)
     call c_driver_destroy(drv)
   end subroutine set_all
 

@@ -18,9 +18,7 @@ TRIBO_API int tribo_create(tribo_context **ctx, size_t ncontact);
 TRIBO_API int tribo_clone(const tribo_context *ctx, tribo_context **copy);
 TRIBO_API void tribo_destroy(tribo_context *ctx);
 TRIBO_API const char *tribo_message(const tribo_context *ctx);
-TRIBO_API int tribo_set_message(const tribo_context *ctx, int status, const char *text);
-TRIBO_API size_t tribo_revision(const tribo_context *ctx);
-TRIBO_API int tribo_set_owner(tribo_context *ctx, const char *owner);
+TRIBO_API int tribo_copy_settings(tribo_context *ctx, const tribo_context *from);
 TRIBO_API int tribo_get_ncontact(const tribo_context *ctx, size_t *ncontact);
 TRIBO_API int tribo_set_law(tribo_context *ctx, int law);
 TRIBO_API int tribo_get_law(const tribo_context *ctx, int *law);
@@ -43,6 +41,7 @@ TRIBO_API int tribo_set_operator_mass(tribo_context *ctx, size_t ndof, const dou
 TRIBO_API int tribo_set_operator_callback(tribo_context *ctx, size_t ndof,
                                           int (*apply)(size_t ndof, const double *force, double *acceleration, void *data),
                                           void *data, const size_t *rowptr, const size_t *col, const double *val);
+TRIBO_API int tribo_fix_operator(tribo_context *ctx);
 TRIBO_API int tribo_set_coupling(tribo_context *ctx, int coupling);
 TRIBO_API int tribo_get_coupling(const tribo_context *ctx, int *coupling);
 TRIBO_API int tribo_set_sharing(tribo_context *ctx, int sharing);
