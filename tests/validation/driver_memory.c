@@ -11,7 +11,9 @@ static tribo_system *start(const struct model *m, int planar, double *y)
 {
     const size_t first = 0;
     tribo_system *sys = model_system(m, 1, 0, 0.1);
+    double limit[CONTACTS];
     assert_ok(tribo_set_planar(tribo_system_context(sys), planar ? 1 : 0, &first));
+    assert_ok(tribo_system_get_limit(sys, 0.0, limit)); /* the system has taken its settings, and their memory */
     memset(y, 0, DIMENSION * sizeof *y);
     y[0] = 1.0;
     return sys;

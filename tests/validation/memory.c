@@ -186,7 +186,7 @@ static int advance_exact(tribo_system **sys, tribo_driver **drv, int damped)
 {
     double y[DIMENSION] = {0}, t = 0.0;
     int status = make_linear(sys, model, damped, 0);
-    status = status ? status : tribo_set_limit_all(tribo_system_context(*sys), 1.0);
+    status = status ? status : tribo_system_context(*sys) ? tribo_set_limit_all(tribo_system_context(*sys), 1.0) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
     status = status ? status : tribo_system_add_base_motion(*sys, 1.0, NULL, model->motion[0]);
     status = status ? status : set_up_driver(drv, *sys, "exact", 1.0, 0.0, 0.0);
@@ -225,7 +225,7 @@ static int advance_massless(tribo_system **sys, tribo_driver **drv, double coupl
     int status = dense_system(&from, N, 3, mass, NULL, stiffness, direction, 0, NULL, 0);
     status = status ? status : tribo_system_clone(from, sys);
     tribo_system_destroy(from);
-    status = status ? status : tribo_set_limit(tribo_system_context(*sys), limit);
+    status = status ? status : tribo_system_context(*sys) ? tribo_set_limit(tribo_system_context(*sys), limit) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_system_add_load(*sys, 1.0, load, NULL);
     status = status ? status : tribo_system_add_base_motion(*sys, 1.0, base, NULL);
     status = status ? status : set_up_driver(drv, *sys, method, 0.1, 1e-9, 0.0);
@@ -268,7 +268,7 @@ static int find_periodic(tribo_system **sys, tribo_driver **drv, const char *met
     const double limits[CONTACTS] = {1e3, 0.1, 0.1}, c[DIMENSION] = {1.0};
     double y[DIMENSION] = {0}, contact[CONTACTS], a, b;
     int status = make_linear(sys, model, 1, 0);
-    status = status ? status : tribo_set_limit(tribo_system_context(*sys), limits);
+    status = status ? status : tribo_system_context(*sys) ? tribo_set_limit(tribo_system_context(*sys), limits) : TRIBO_ERR_MEMORY;
     status = status ? status : tribo_system_add_load(*sys, 1.0, model->load[0], NULL);
     status = status ? status : set_up_driver(drv, *sys, method, 1.0, 1e-13, 0.0);
     status = status ? status : tribo_driver_find_periodic(*drv, 0.0, 2.0 * PI, y);

@@ -191,13 +191,12 @@ static void look(tribo_system *sys, const char *method, const struct scene *scen
 {
     double y[2 * MOST_DOF + 1], v[MOST_CONTACTS], from = 0.0;
     signed char slip[MOST_CONTACTS];
-    tribo_context *c = tribo_system_context(sys);
     tribo_driver *drv;
     memcpy(y, scene->start, sizeof y);
     assert_ok(tribo_driver_create(&drv, sys, method));
     driver_advance(drv, &from, t, y);
     assert_ok(tribo_system_contacts(sys, t, y, v, NULL, NULL));
-    assert_ok(tribo_get_slip(c, slip));
+    assert_ok(tribo_system_get_slip(sys, slip));
     for (size_t i = 0; i < tribo_system_ncontact(sys); i++) {
         const int plane = slip[i] == 3, moves = fabs(v[i]) > 1e-9 || (plane && (fabs(v[i + 1]) > 1e-9));
         does[i] = (signed char)(slip[i] == 2 ? 2 : !moves ? 0 : plane ? 3 : v[i] > 0.0 ? 1 : -1);
