@@ -32,6 +32,7 @@
 !>   TRBCLL(IH, IERR)                                takes all loads away
 !>   TRBBAS(IH, N, OMEGA, BC, BS, IERR)              adds BC(N)*COS(OMEGA*t) + BS(N)*SIN(OMEGA*t) to the velocities of the bases
 !>   TRBHLM(IH, N, OMEGA, FC, FS, IERR)              adds FC(N)*COS(OMEGA*t) + FS(N)*SIN(OMEGA*t) to the limits
+!>   TRBHAS(IFEAT, IHAS, IERR)                       IFEAT TRIBO_FEATURE_...           IHAS 1 if this build has it, else 0
 !>   TRBBSC(IH, IERR)                                takes all base motions away
 !>   TRBLMC(IH, IERR)                                takes the table and all harmonics of the limits away
 !>   TRBSLM(IH, N, T, FMUN, IERR)                    limits at time T                  FMUN(N)
@@ -612,6 +613,15 @@ subroutine trbnmt(nmeth, ierr)
   nmeth = tribo_method_count()
   ierr = TRIBO_OK
 end subroutine trbnmt
+
+subroutine trbhas(ifeat, ihas, ierr)
+  use tribo_fixed_gsl
+  implicit none
+  integer, intent(in) :: ifeat
+  integer, intent(out) :: ihas, ierr
+  ihas = merge(1, 0, tribo_dynamics_has(ifeat))
+  ierr = TRIBO_OK
+end subroutine trbhas
 
 subroutine trbmnm(meth, text, ierr)
   use tribo_fixed_gsl

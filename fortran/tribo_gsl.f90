@@ -32,7 +32,7 @@ module tribo_systems
   implicit none
   private
 
-  public :: tribo_method_count, tribo_method_name
+  public :: tribo_method_count, tribo_method_name, tribo_dynamics_has
 
   !> A sparse matrix.
   type, public :: tribo_sparse
@@ -1123,6 +1123,12 @@ contains
       text = ''
     end if
   end function method
+
+  !> Whether this build has a feature, TRIBO_FEATURE_...
+  logical function tribo_dynamics_has(feature)
+    integer, intent(in) :: feature
+    tribo_dynamics_has = c_dynamics_has(to_int(feature)) /= 0
+  end function tribo_dynamics_has
 
   !> Names of the methods, method 0 to tribo_method_count() - 1; empty outside.
   integer function tribo_method_count()

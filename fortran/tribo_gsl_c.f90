@@ -5,6 +5,9 @@ module tribo_gsl_constants
   implicit none
   private
 
+  !> sparse factors: systems of many degrees of freedom whose mass matrix is not diagonal
+  integer, parameter, public :: TRIBO_FEATURE_CHOLMOD = 0
+
   integer, parameter, public :: TRIBO_STATICS_NONE = 0
   integer, parameter, public :: TRIBO_STATICS_MASS = 1
   integer, parameter, public :: TRIBO_STATICS_COMPLIANCE = 2
@@ -182,6 +185,12 @@ module tribo_gsl_c
       character(kind=c_char), intent(in), optional :: message(*)
       integer(c_int) :: answer
     end function c_model_refuse
+
+    function c_dynamics_has(feature) result(answer) bind(c,name='tribo_dynamics_has')
+      import
+      integer(c_int), value :: feature
+      integer(c_int) :: answer
+    end function c_dynamics_has
 
     function c_system_create(sys, model) result(answer) bind(c,name='tribo_system_create')
       import

@@ -66,6 +66,12 @@ TRIBO_API size_t tribo_model_ncontact(const tribo_model *model);
 /* Makes message that of the model and returns status: for readers of files and other forms of matrices on top of these calls. */
 TRIBO_API int tribo_model_refuse(tribo_model *model, int status, const char *message);
 
+/* 1 if this build has the feature, else 0, also for numbers that are none. Thread-safe. */
+enum {
+    TRIBO_FEATURE_CHOLMOD = 0 /* sparse factors: systems of many degrees of freedom whose mass matrix is not diagonal */
+};
+TRIBO_API int tribo_dynamics_has(int feature);
+
 /* --------------------------------------------------------------------------------------------------------- systems */
 
 typedef struct tribo_system tribo_system;

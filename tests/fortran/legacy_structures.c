@@ -170,6 +170,8 @@ static void put_whole(int damped)
 
 void legacy_structures_play(void)
 {
+    put_one(tribo_dynamics_has(TRIBO_FEATURE_CHOLMOD));
+    put_one(0);
     put_one(tribo_method_count());
     for (int k = 0; k < tribo_method_count(); k++) {
         put_text(tribo_method_name(k));

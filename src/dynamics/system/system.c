@@ -107,6 +107,16 @@ size_t tribo_system_dimension(const tribo_system *sys)
     return sys ? 2 * sys->ndof + 1 : 0;
 }
 
+int tribo_dynamics_has(int feature)
+{
+#if defined(TRIBO_CHOLMOD)
+    return feature == TRIBO_FEATURE_CHOLMOD;
+#else
+    (void)feature;
+    return 0;
+#endif
+}
+
 tribo_context *tribo_system_context(tribo_system *sys)
 {
     if (sys && !sys->lent && tribo_clone(sys->contacts, &sys->lent) == TRIBO_OK) {
