@@ -125,7 +125,7 @@ static size_t planar_of(const tribo_context *contacts)
 /* Whether the system's contacts may have become planar, or others than before. */
 static int planar_changed(const struct moreau *m, const tribo_system *sys)
 {
-    return m->settings != tribo_system_settings(sys) && (planar_of(sys->contacts) || planar_of(m->contacts));
+    return m->settings != sys->changes && (planar_of(sys->contacts) || planar_of(m->contacts));
 }
 
 /* Contacts of its own, planar where the system's are. */
@@ -136,7 +136,7 @@ static int make_contacts(struct moreau *m, const tribo_system *sys)
     }
     tribo_destroy(m->contacts);
     m->contacts = NULL;
-    m->settings = tribo_system_settings(sys);
+    m->settings = sys->changes;
     m->tell = 1;
     const int status =
         planar_of(sys->contacts) ? tribo_clone(sys->contacts, &m->contacts) : tribo_create(&m->contacts, sys->ncontact);
