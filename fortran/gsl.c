@@ -114,21 +114,20 @@ int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows *mass, con
     return make_system(sys, mass, NULL, stiffness, direction, 1, nmode, static_contacts, message, size);
 }
 
-/* GSL's status tells less than what the same state gets from tribo. */
-static int status_of(tribo_system *sys, double t, const double *y, int gsl_status)
+int tribo_fortran_method_count(void)
 {
-    const int status = gsl_status ? tribo_system_contacts(sys, t, y, NULL, NULL, NULL) : TRIBO_OK;
-    return gsl_status && !status ? TRIBO_ERR_MEMORY : status;
+    return tribo_method_count() + tribo_gsl_stepper_count();
 }
 
-int tribo_fortran_derivative(tribo_system *sys, double t, const double *y, double *dydt)
+const char *tribo_fortran_method_name(int method)
 {
-    const gsl_odeiv2_system *s = tribo_system_odeiv2(sys);
-    return status_of(sys, t, y, s->function(t, y, dydt, s->params));
+    const int steppers = tribo_gsl_stepper_count();
+    return method > 0 && method <= steppers ? tribo_gsl_stepper_name(method - 1)
+                                            : tribo_method_name(method > 0 ? method - steppers : method);
 }
 
-int tribo_fortran_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt)
+int tribo_fortran_driver_create(tribo_driver **drv, tribo_system *sys, const char *method)
 {
-    const gsl_odeiv2_system *s = tribo_system_odeiv2(sys);
-    return status_of(sys, t, y, s->jacobian(t, y, dfdy, dfdt, s->params));
+    const int status = tribo_gsl_driver_create(drv, sys, method);
+    return status == TRIBO_ERR_NAME ? tribo_driver_create(drv, sys, method) : status;
 }

@@ -37,8 +37,9 @@ TRIBO_API int tribo_fortran_reduced(tribo_system **sys, const struct tribo_rows 
                                     const struct tribo_rows *direction, size_t nmode, int static_contacts, char *message,
                                     size_t size);
 
-/* The right-hand side of tribo_system_odeiv2 and its Jacobian, with a status of tribo's. */
-TRIBO_API int tribo_fortran_derivative(tribo_system *sys, double t, const double *y, double *dydt);
-TRIBO_API int tribo_fortran_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt);
+/* Methods of tribo_dynamics.h and steppers of GSL in one list, and a driver by either. */
+TRIBO_API int tribo_fortran_method_count(void);
+TRIBO_API const char *tribo_fortran_method_name(int method);
+TRIBO_API int tribo_fortran_driver_create(tribo_driver **drv, tribo_system *sys, const char *method);
 
 #endif

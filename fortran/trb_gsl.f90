@@ -625,13 +625,13 @@ end subroutine trbhas
 
 subroutine trbmnm(meth, text, ierr)
   use tribo_fixed_gsl
-  use tribo_gsl_c, only: c_method_name
+  use tribo_gsl_c, only: c_fortran_method_name
   use tribo_support, only: to_int
   implicit none
   integer, intent(in) :: meth
   character(len=*), intent(inout) :: text
   integer, intent(out) :: ierr
-  call hand_out(c_method_name(to_int(meth)), text, ierr)
+  call hand_out(c_fortran_method_name(to_int(meth)), text, ierr)
 end subroutine trbmnm
 
 subroutine trbdrv(ih, name, dt, atol, rtol, ierr)

@@ -962,7 +962,7 @@ contains
     call find_system(this, w)
     call expect_size(w, 'y', y, w%dimension)
     call expect_size(w, 'dydt', dydt, w%dimension)
-    if (w%status == TRIBO_OK) w%status = c_fortran_derivative(w%object, t, y, dydt)
+    if (w%status == TRIBO_OK) w%status = c_system_derivative(w%object, t, y, dydt)
     call finish(w, stat, errmsg)
   end subroutine derivative
 
@@ -979,7 +979,7 @@ contains
     call expect_size(w, 'dfdy', dfdy, w%dimension)
     call expect_size(w, 'dfdt', dfdt, w%dimension)
     if (w%status == TRIBO_OK) then
-      w%status = c_fortran_jacobian(w%object, t, y, dfdy, dfdt)
+      w%status = c_system_jacobian(w%object, t, y, dfdy, dfdt)
       if (w%status == TRIBO_OK) call transpose_in_place(dfdy)
     end if
     call finish(w, stat, errmsg)
@@ -1079,7 +1079,7 @@ contains
 
     call find_system(sys, w)
     if (present(reltol) .and. .not. present(abstol)) call fail(w, TRIBO_ERR_NULL, 'reltol is given, but abstol is not')
-    if (w%status == TRIBO_OK) w%status = c_driver_create(drv, w%object, trim(method) // c_null_char)
+    if (w%status == TRIBO_OK) w%status = c_fortran_driver_create(drv, w%object, trim(method) // c_null_char)
     if (w%status == TRIBO_OK) call set_all(w, drv, step, abstol, reltol, output, max_step)
     if (w%status == TRIBO_OK) then
       allocate (held)
@@ -1132,13 +1132,13 @@ contains
 
   !> Names of the methods, method 0 to tribo_method_count() - 1; empty outside.
   integer function tribo_method_count()
-    tribo_method_count = int(c_method_count())
+    tribo_method_count = int(c_fortran_method_count())
   end function tribo_method_count
 
   function tribo_method_name(method) result(text)
     integer, intent(in) :: method
     character(len=:), allocatable :: text
-    call to_text(c_method_name(to_int(method)), text)
+    call to_text(c_fortran_method_name(to_int(method)), text)
   end function tribo_method_name
 
   !> Integrates from t to t1 >= t; y, the system and its context's settings may be changed between calls. On error t and y hold

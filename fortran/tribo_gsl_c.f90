@@ -417,6 +417,56 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_system_accept
 
+    function c_system_derivative(sys, t, y, dydt) result(answer) bind(c,name='tribo_system_derivative')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: dydt(*)
+      integer(c_int) :: answer
+    end function c_system_derivative
+
+    function c_system_jacobian(sys, t, y, dfdy, dfdt) result(answer) bind(c,name='tribo_system_jacobian')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), value :: t
+      real(c_double), intent(in), optional :: y(*)
+      real(c_double), intent(inout), optional :: dfdy(*)
+      real(c_double), intent(inout), optional :: dfdt(*)
+      integer(c_int) :: answer
+    end function c_system_jacobian
+
+    function c_system_get_force(sys, f) result(answer) bind(c,name='tribo_system_get_force')
+      import
+      type(c_ptr), value :: sys
+      real(c_double), intent(inout), optional :: f(*)
+      integer(c_int) :: answer
+    end function c_system_get_force
+
+    function c_system_set_message(sys, status, text) result(answer) bind(c,name='tribo_system_set_message')
+      import
+      type(c_ptr), value :: sys
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in), optional :: text(*)
+      integer(c_int) :: answer
+    end function c_system_set_message
+
+    function c_system_attach(sys, key, data, destroy) result(answer) bind(c,name='tribo_system_attach')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr), value :: key
+      type(c_ptr), value :: data
+      type(c_funptr), value :: destroy
+      integer(c_int) :: answer
+    end function c_system_attach
+
+    function c_system_attached(sys, key) result(answer) bind(c,name='tribo_system_attached')
+      import
+      type(c_ptr), value :: sys
+      type(c_ptr), value :: key
+      type(c_ptr) :: answer
+    end function c_system_attached
+
     function c_driver_create(drv, sys, method) result(answer) bind(c,name='tribo_driver_create')
       import
       type(c_ptr), intent(inout) :: drv
@@ -424,6 +474,15 @@ module tribo_gsl_c
       character(kind=c_char), intent(in), optional :: method(*)
       integer(c_int) :: answer
     end function c_driver_create
+
+    function c_driver_create_stepper(drv, sys, stepper, data) result(answer) bind(c,name='tribo_driver_create_stepper')
+      import
+      type(c_ptr), intent(inout) :: drv
+      type(c_ptr), value :: sys
+      type(c_ptr), value :: stepper
+      type(c_ptr), value :: data
+      integer(c_int) :: answer
+    end function c_driver_create_stepper
 
     function c_driver_method(drv) result(answer) bind(c,name='tribo_driver_method')
       import
@@ -603,11 +662,30 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_gsl_model_set_direction
 
-    function c_system_odeiv2(sys) result(answer) bind(c,name='tribo_system_odeiv2')
+    function c_gsl_driver_create(drv, sys, stepper) result(answer) bind(c,name='tribo_gsl_driver_create')
+      import
+      type(c_ptr), intent(inout) :: drv
+      type(c_ptr), value :: sys
+      character(kind=c_char), intent(in), optional :: stepper(*)
+      integer(c_int) :: answer
+    end function c_gsl_driver_create
+
+    function c_gsl_stepper_count() result(answer) bind(c,name='tribo_gsl_stepper_count')
+      import
+      integer(c_int) :: answer
+    end function c_gsl_stepper_count
+
+    function c_gsl_stepper_name(stepper) result(answer) bind(c,name='tribo_gsl_stepper_name')
+      import
+      integer(c_int), value :: stepper
+      type(c_ptr) :: answer
+    end function c_gsl_stepper_name
+
+    function c_gsl_system(sys) result(answer) bind(c,name='tribo_gsl_system')
       import
       type(c_ptr), value :: sys
       type(c_ptr) :: answer
-    end function c_system_odeiv2
+    end function c_gsl_system
 
     pure function c_fortran_ndof(held) result(answer) bind(c,name='tribo_fortran_ndof')
       import
@@ -671,23 +749,23 @@ module tribo_gsl_c
       integer(c_int) :: answer
     end function c_fortran_reduced
 
-    function c_fortran_derivative(sys, t, y, dydt) result(answer) bind(c,name='tribo_fortran_derivative')
+    function c_fortran_method_count() result(answer) bind(c,name='tribo_fortran_method_count')
       import
-      type(c_ptr), value :: sys
-      real(c_double), value :: t
-      real(c_double), intent(in), optional :: y(*)
-      real(c_double), intent(inout), optional :: dydt(*)
       integer(c_int) :: answer
-    end function c_fortran_derivative
+    end function c_fortran_method_count
 
-    function c_fortran_jacobian(sys, t, y, dfdy, dfdt) result(answer) bind(c,name='tribo_fortran_jacobian')
+    function c_fortran_method_name(method) result(answer) bind(c,name='tribo_fortran_method_name')
       import
+      integer(c_int), value :: method
+      type(c_ptr) :: answer
+    end function c_fortran_method_name
+
+    function c_fortran_driver_create(drv, sys, method) result(answer) bind(c,name='tribo_fortran_driver_create')
+      import
+      type(c_ptr), intent(inout) :: drv
       type(c_ptr), value :: sys
-      real(c_double), value :: t
-      real(c_double), intent(in), optional :: y(*)
-      real(c_double), intent(inout), optional :: dfdy(*)
-      real(c_double), intent(inout), optional :: dfdt(*)
+      character(kind=c_char), intent(in), optional :: method(*)
       integer(c_int) :: answer
-    end function c_fortran_jacobian
+    end function c_fortran_driver_create
   end interface
 end module tribo_gsl_c

@@ -4,7 +4,26 @@
 
 #include <string.h>
 
-#include "tribo/tribo_dynamics.h"
+#include "tribo/tribo_gsl.h"
+
+/* Methods of tribo_dynamics.h and steppers of GSL in one list: method 0, the steppers, the other methods. NULL outside. */
+static inline int any_method_count(void)
+{
+    return tribo_method_count() + tribo_gsl_stepper_count();
+}
+
+static inline const char *any_method_name(int i)
+{
+    const int steppers = tribo_gsl_stepper_count();
+    return i > 0 && i <= steppers ? tribo_gsl_stepper_name(i - 1) : tribo_method_name(i > 0 ? i - steppers : i);
+}
+
+/* A driver by the method or the stepper of that name. */
+static inline int create_any_driver(tribo_driver **drv, tribo_system *sys, const char *method)
+{
+    const int status = method ? tribo_gsl_driver_create(drv, sys, method) : TRIBO_ERR_NAME;
+    return status == TRIBO_ERR_NAME ? tribo_driver_create(drv, sys, method) : status;
+}
 
 /* Creates a driver, and sets what its method takes: dt as step, for exact and auto as output; tolerances where abstol > 0.
  * Returns a status; *drv = NULL if it fails. */
@@ -12,7 +31,7 @@ static inline int set_up_driver(tribo_driver **drv, tribo_system *sys, const cha
                                 double reltol)
 {
     tribo_driver *made;
-    int status = tribo_driver_create(&made, sys, method);
+    int status = create_any_driver(&made, sys, method);
     *drv = NULL;
     if (status) {
         return status;

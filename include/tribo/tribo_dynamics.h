@@ -221,17 +221,70 @@ TRIBO_API int tribo_system_accept(tribo_system *sys, double t, const double *y);
 
 /* --------------------------------------------------------------------------------------------------------- drivers */
 
+/* For integrators of your own. The state y [dimension] need not be finite: if the derivative is not, TRIBO_ERR_NOT_FINITE.
+ * dydt   [dimension] out
+ * dfdy   [dimension][dimension] out   derivative of dydt[i] by y[j] in row i
+ * dfdt   [dimension] out   partial derivative by t, or NULL
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_UNSUPPORTED (no mass, or no accelerations), TRIBO_ERR_MEMORY
+ * (Jacobian), and what tribo_balance returns. */
+TRIBO_API int tribo_system_derivative(tribo_system *sys, double t, const double *y, double *dydt);
+TRIBO_API int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt);
+
+/* Forces of the contacts in the last derivative; tribo_system_get_slip has their slip values.
+ * f   [ncontact] out
+ * Returns TRIBO_ERR_NULL. */
+TRIBO_API int tribo_system_get_force(const tribo_system *sys, double *f);
+
+/* Keeps text as the system's message, and returns status: for integrators of your own. */
+TRIBO_API int tribo_system_set_message(tribo_system *sys, int status, const char *text);
+
+/* Hangs data on a system: destroy (or NULL) gets the data when the system is destroyed. Clones have none.
+ * key   in   an address of your own; each may be used once for a system
+ * tribo_system_attach returns TRIBO_ERR_NULL (sys, key), TRIBO_ERR_STATE (key is in use), TRIBO_ERR_MEMORY;
+ * tribo_system_attached NULL if nothing is there. */
+TRIBO_API int tribo_system_attach(tribo_system *sys, const void *key, void *data, void (*destroy)(void *data));
+TRIBO_API void *tribo_system_attached(const tribo_system *sys, const void *key);
+
 typedef struct tribo_driver tribo_driver;
 
 /* A driver advances the state of sys by a method: the manual says what each method solves, and where its limits are.
  * sys      in/out   borrowed; must live longer than the driver
  * method   in       a name in any case of letters. Coulomb's law: "exact", "event", "auto" (exact where it can do the system,
- *                   else event); "central/fixed", "moreau/fixed" (fixed steps). The law of the context: "rk4/fixed"; "rk2", "rk4",
- *                   "rkf45", "rkck", "rk8pd", "rk1imp", "rk2imp", "rk4imp", "bsimp", "msadams", "msbdf" (adaptive steps)
+ *                   else event); "central/fixed", "moreau/fixed" (fixed steps). The law of the context: "rk4/fixed"
  * Methods with fixed steps need tribo_driver_set_step; for all other settings there are defaults.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED (the method cannot do the system); the message
  * is that of sys. */
 TRIBO_API int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *method);
+
+/* A step from (t, y) over h for a stepper to try. */
+typedef struct {
+    size_t size;             /* sizeof(tribo_trial) of the library: later versions may add members at the end */
+    double t, h;             /* h > 0 */
+    const double *y, *slope; /* [dimension] state, and its derivative if the stepper takes that */
+    const double *tolerance; /* [dimension] largest error of the step */
+    const double *rate;      /* [ncontact] rate at which a contact relaxes at rest; 0: its force jumps */
+    double *to, *error;      /* [dimension] out: state at t + h, and an estimate of its error */
+} tribo_trial;
+
+/* A method that tries single steps; the driver chooses their lengths by the errors. */
+typedef struct {
+    size_t size;      /* sizeof(tribo_stepper) */
+    const char *name; /* for messages; must live as long as the driver */
+    double stable;    /* largest h rate of a contact at rest for which an explicit method is stable; 0: implicit */
+    int takes_slope;  /* 1: step reads slope */
+    /* Tries a step. Returns 0; TRIBO_ERR_STEP, TRIBO_ERR_NO_CONVERGENCE or TRIBO_ERR_NOT_FINITE: the driver tries a shorter one; any
+     * other status ends the advance. A step from the t of the last one replaces it, else that was accepted. */
+    int (*step)(const tribo_trial *trial, void *data);
+    double (*order)(void *data);  /* error of the step to come goes with the power order + 1 of h */
+    void (*restart)(void *data);  /* forgets the steps before; or NULL */
+    void (*destroy)(void *data);  /* frees data when the driver is destroyed; or NULL */
+} tribo_stepper;
+
+/* A driver with adaptive steps by a stepper of your own, see tribo_driver_create.
+ * stepper   in   copied
+ * data      in   passed to the stepper's functions; the driver's from success on, yours after an error
+ * Returns what tribo_driver_create returns, and TRIBO_ERR_SIZE (stepper->size). */
+TRIBO_API int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tribo_stepper *stepper, void *data);
 
 /* Name of the method; for "auto" that of the method at work, which each advance chooses anew. NULL for NULL. */
 TRIBO_API const char *tribo_driver_method(const tribo_driver *drv);

@@ -27,8 +27,18 @@ TRIBO_API int tribo_gsl_model_set_damping(tribo_model *model, const gsl_spmatrix
 TRIBO_API int tribo_gsl_model_set_stiffness(tribo_model *model, const gsl_spmatrix *k);
 TRIBO_API int tribo_gsl_model_set_direction(tribo_model *model, const gsl_spmatrix *j);
 
-/* The system for anyone's own GSL driver, with Jacobian; borrowed. Use one driver at a time. */
-TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);
+/* A driver with adaptive steps that a stepper of GSL tries, see tribo_driver_create.
+ * stepper   in   "rk2", "rk4", "rkf45", "rkck", "rk8pd", "msadams" (explicit: they follow the stiffness of contacts at rest);
+ *                "rk1imp", "rk2imp", "rk4imp", "bsimp", "msbdf" (implicit: dense matrices of the whole state); in any case of letters
+ * Returns TRIBO_ERR_NULL, TRIBO_ERR_NAME, TRIBO_ERR_MEMORY, TRIBO_ERR_UNSUPPORTED; tribo_system_message says more. */
+TRIBO_API int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *stepper);
+
+/* Names of the steppers, 0 to tribo_gsl_stepper_count() - 1; NULL outside. */
+TRIBO_API int tribo_gsl_stepper_count(void);
+TRIBO_API const char *tribo_gsl_stepper_name(int stepper);
+
+/* The system for your own GSL driver, with Jacobian; borrowed, one driver at a time. NULL for NULL, or if out of memory. */
+TRIBO_API const gsl_odeiv2_system *tribo_gsl_system(tribo_system *sys);
 
 #ifdef __cplusplus
 }

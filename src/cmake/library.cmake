@@ -88,7 +88,10 @@ function(tribo_library target)
   # A new SOVERSION is due when a symbol goes, or what a call means changes: the major version. The installed libraries find each
   # other wherever they are moved to.
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${ARG_EXPORT} VERSION ${PROJECT_VERSION}
-                                             SOVERSION ${PROJECT_VERSION_MAJOR} INSTALL_RPATH "$ORIGIN")
+                                             SOVERSION ${PROJECT_VERSION_MAJOR})
+  if(NOT CMAKE_INSTALL_RPATH)
+    set_target_properties(${target} PROPERTIES INSTALL_RPATH "$ORIGIN")
+  endif()
   list(TRANSFORM ARG_INCLUDES PREPEND "${CMAKE_INSTALL_INCLUDEDIR}/" OUTPUT_VARIABLE includes)
   target_include_directories(${target} PUBLIC
     "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>" "$<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR};${includes}>")
@@ -149,4 +152,14 @@ function(tribo_pkgconfig target)
   list(JOIN requires_private ", " requires_private)
   configure_file("${PROJECT_SOURCE_DIR}/src/cmake/library.pc.in" "${CMAKE_CURRENT_BINARY_DIR}/${target}.pc" @ONLY)
   install(FILES "${CMAKE_CURRENT_BINARY_DIR}/${target}.pc" DESTINATION "${TRIBO_PKGCONFIG_DIR}")
+endfunction()
+
+# Links what no consumer of the target sees: in a shared library the installed target does not name the dependency.
+function(tribo_link_privately target dependency)
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "STATIC_LIBRARY")
+    target_link_libraries(${target} PRIVATE ${dependency})
+  else()
+    target_link_libraries(${target} PRIVATE "$<BUILD_INTERFACE:${dependency}>")
+  endif()
 endfunction()

@@ -2,10 +2,14 @@
 include(CMakePackageConfigHelpers)
 
 get_property(TRIBO_COMPONENTS GLOBAL PROPERTY TRIBO_COMPONENTS)
+get_target_property(type tribo TYPE)
+string(COMPARE EQUAL "${type}" STATIC_LIBRARY TRIBO_STATIC)
 configure_file("${CMAKE_CURRENT_LIST_DIR}/triboConfig.cmake.in" "${PROJECT_BINARY_DIR}/triboConfig.cmake" @ONLY)
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/triboConfigVersion.cmake" COMPATIBILITY SameMajorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/triboConfig.cmake" "${PROJECT_BINARY_DIR}/triboConfigVersion.cmake"
   DESTINATION "${TRIBO_CMAKE_DIR}")
+install(FILES "${CMAKE_CURRENT_LIST_DIR}/cholmod.cmake" DESTINATION "${TRIBO_CMAKE_DIR}" RENAME tribo-cholmod.cmake)
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 if(PROJECT_IS_TOP_LEVEL)
   add_custom_target(uninstall VERBATIM

@@ -14,10 +14,8 @@
 static const struct method automatic;
 
 static const struct method *const methods[] = {
-    &tribo_method_rk4_fixed,    &tribo_method_rk2,    &tribo_method_rk4,    &tribo_method_rkf45,  &tribo_method_rkck,
-    &tribo_method_rk8pd,        &tribo_method_rk1imp, &tribo_method_rk2imp, &tribo_method_rk4imp, &tribo_method_bsimp,
-    &tribo_method_msadams,      &tribo_method_msbdf,  &tribo_method_exact,  &tribo_method_event,  &tribo_method_central_fixed,
-    &tribo_method_moreau_fixed, &automatic,
+    &tribo_method_rk4_fixed,     &tribo_method_exact,        &tribo_method_event,
+    &tribo_method_central_fixed, &tribo_method_moreau_fixed, &automatic,
 };
 
 int tribo_method_count(void)
@@ -61,7 +59,8 @@ static int unknown(const tribo_system *sys, const char *name)
         const size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", methods[i]->name);
     }
-    return tribo_system_fail(sys, TRIBO_ERR_NAME, "method \"%.20s\" is unknown; there are %s", name, list);
+    return tribo_system_fail(sys, TRIBO_ERR_NAME,
+                             "method \"%.20s\" is unknown; there are %s; tribo_gsl_driver_create takes GSL's steppers", name, list);
 }
 
 /* Returns TRIBO_OK if all degrees of freedom have mass, or m is exact, event, moreau/fixed or auto, which need none. */
@@ -105,7 +104,7 @@ static int check_contacts(const tribo_system *sys, const struct method *m)
     return status || sys->massless.count == 0 ? status : driver_check_static(sys);
 }
 
-static int driver_create(tribo_driver **drv, tribo_system *sys, const struct method *m)
+int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *m)
 {
     int status = tribo_system_take_settings(sys);
     status = status ? status : check_contacts(sys, m);
@@ -145,7 +144,7 @@ int tribo_driver_create(tribo_driver **drv, tribo_system *sys, const char *metho
         return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "method" : "drv");
     }
     const struct method *m = driver_find(method);
-    return m ? driver_create(drv, sys, m) : unknown(sys, method);
+    return m ? tribo_driver_create_method(drv, sys, m) : unknown(sys, method);
 }
 
 void tribo_driver_destroy(tribo_driver *drv)
@@ -466,7 +465,7 @@ static int provide(tribo_driver *drv, int which)
     static const struct method *const of[] = {&tribo_method_event, &tribo_method_exact};
     struct choice *c = drv->own;
     drv->at_work = of[which];
-    return c->inner[which] ? TRIBO_OK : driver_create(&c->inner[which], drv->sys, of[which]);
+    return c->inner[which] ? TRIBO_OK : tribo_driver_create_method(&c->inner[which], drv->sys, of[which]);
 }
 
 static int create_choice(tribo_driver *drv)

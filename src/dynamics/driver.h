@@ -97,8 +97,10 @@ struct fixed_method {
  * tribo_driver_keep, but not copied. */
 int tribo_driver_fixed_steps(tribo_driver *drv, double *t, double t1, double *y, const struct fixed_method *method);
 
+/* A driver by method, which must live longer, in *drv. Returns what tribo_driver_create returns. */
+int tribo_driver_create_method(tribo_driver **drv, tribo_system *sys, const struct method *method);
+
 extern const struct method tribo_method_exact, tribo_method_event, tribo_method_central_fixed, tribo_method_moreau_fixed,
-    tribo_method_rk4_fixed, tribo_method_rk2, tribo_method_rk4, tribo_method_rkf45, tribo_method_rkck, tribo_method_rk8pd,
-    tribo_method_rk1imp, tribo_method_rk2imp, tribo_method_rk4imp, tribo_method_bsimp, tribo_method_msadams, tribo_method_msbdf;
+    tribo_method_rk4_fixed;
 
 #endif

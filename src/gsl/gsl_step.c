@@ -1,11 +1,16 @@
-#include "gsl_step.h"
-#include "numerics/linalg.h"
+/* GSL's steppers as steppers of tribo_dynamics.h, by its public calls only. GSL calls its error handler, which ends the program, where
+ * memory ends and where a matrix of an implicit step is singular, and divides by zero where an estimate is zero: a step is prepared
+ * so that none of that happens. */
+#include "tribo/tribo_gsl.h"
+
 #include "common/real.h"
+#include "gsl_system.h"
 
 #include <fenv.h>
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,22 +29,37 @@
 #define NEGLIGIBLE 1e-3
 #define ROUNDING 1e-6 /* of a tolerance that is larger than this part of the state, that part */
 
+struct gsl_kind {
+    const char *name;
+    const gsl_odeiv2_step_type *const *type;
+    /* Steps longer than this over the rate at which a contact at rest relaxes must not pass a change of what the contact does.
+     * HUGE_VAL: all may */
+    double stable;
+    int takes_slope; /* a step begins with f(t, y) */
+    int newton;      /* an implicit Runge-Kutta method with GSL's Newton iteration */
+    size_t matrices; /* that a step may factorize: I - h c_i A x J; 0 for explicit ones */
+    const double *c;
+    size_t stages;
+    const double *a; /* [stages][stages] A; NULL: 1 */
+};
+
 struct gsl_step {
-    const struct gsl_step_kind *kind;
+    const struct gsl_kind *kind;
     tribo_system *sys;
+    size_t dimension, ndof, ncontact;
+    int status; /* of the last evaluation */
     gsl_odeiv2_step *step;
     gsl_odeiv2_system guarded;  /* what GSL sees of the system */
     gsl_odeiv2_control control; /* GSL asks this one for the tolerance, */
     gsl_odeiv2_driver driver;   /* by way of this one */
-    const double *tolerance, *rate;
-    double h; /* being tried */
+    const tribo_trial *trial;
 
     /* implicit kinds */
     double *jacobian, *matrix; /* [dimension][dimension] the last one, if known; workspace of a factorization */
-    int *pivot;
     int known;
     double regular;    /* all matrices of the step h with this Jacobian can be solved with; 0: of none known */
     double *end;       /* [dimension] slope where it ends, newton kinds */
+    double *force;     /* [ncontact] */
     signed char *mode; /* [2][ncontact] what contacts do where the step begins; workspace */
 };
 
@@ -73,7 +93,7 @@ static int memory_for(const struct request *r, size_t count)
 }
 
 /* At least what creating a stepper of GSL takes: headers, vectors, histories of up to 13 vectors, and matrices. */
-static int memory_to_create(const struct gsl_step_kind *kind, size_t n)
+static int memory_to_create(const struct gsl_kind *kind, size_t n)
 {
     const size_t size = n * kind->stages, header = 512, vector = header + size * sizeof(double);
     if (size > SIZE_MAX / sizeof(double) / (16 + size)) {
@@ -87,17 +107,26 @@ static int memory_to_create(const struct gsl_step_kind *kind, size_t n)
 static int memory_to_factorize(const struct gsl_step *g)
 {
     const size_t header = 512;
-    const struct request all[] = {{2, header}, {1, header + g->sys->odeiv2.dimension * g->kind->stages * sizeof(size_t)}};
+    const struct request all[] = {{2, header}, {1, header + g->dimension * g->kind->stages * sizeof(size_t)}};
     return memory_for(all, sizeof all / sizeof *all);
 }
 
-static int gsl_step_out_of_memory(tribo_system *sys)
+static int gsl_step_out_of_memory(struct gsl_step *g)
 {
-    sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for an implicit step");
+    g->status = tribo_system_set_message(g->sys, TRIBO_ERR_MEMORY, "out of memory for an implicit step");
     return GSL_EBADFUNC;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- callbacks */
+
+static double largest(const double *x, size_t n)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < n; i++) {
+        most = greater(most, fabs(x[i]));
+    }
+    return most;
+}
 
 /* Open contacts carry nothing, and nearly nothing just before they lift off, or after they have touched down: no jump. */
 static int jumps(signed char before, signed char after)
@@ -109,12 +138,13 @@ static int jumps(signed char before, signed char after)
  * than so much beside the time in which it relaxes; one of rate 0 does not relax but jumps. */
 static int passes_a_change(const struct gsl_step *g, double part)
 {
-    const size_t n = g->sys->ncontact;
-    if (tribo_get_slip(g->sys->contacts, g->mode + n)) {
+    const size_t n = g->ncontact;
+    const double *rate = g->trial->rate;
+    if (tribo_system_get_slip(g->sys, g->mode + n)) {
         return 0;
     }
     for (size_t i = 0; i < n; i++) {
-        if (jumps(g->mode[i], g->mode[n + i]) && (g->rate[i] * g->h > part || g->rate[i] == 0.0)) {
+        if (jumps(g->mode[i], g->mode[n + i]) && (rate[i] * g->trial->h > part || rate[i] == 0.0)) {
             return 1;
         }
     }
@@ -125,31 +155,32 @@ static int passes_a_change(const struct gsl_step *g, double part)
 static int guarded_function(double t, const double y[], double dydt[], void *params)
 {
     struct gsl_step *g = params;
-    const int status = g->sys->odeiv2.function(t, y, dydt, g->sys);
-    if (status) {
-        return status;
+    g->status = tribo_system_derivative(g->sys, t, y, dydt);
+    if (g->status || g->kind->matrices == 0) {
+        return tribo_gsl_status(g->status);
     }
     if (g->kind->stable < HUGE_VAL && passes_a_change(g, g->kind->stable)) {
         return GSL_FAILURE;
     }
     if (g->kind->newton) {
-        /* Slopes that are nothing beside the tolerance, and beside the state, are left out for Newton's method, which as GSL has it takes
-         * rounding that does not decrease for divergence. */
-        const size_t n = g->sys->ndof;
-        const double way = tribo_largest(y, n) + g->h * tribo_largest(y + n, n);
-        const double size[] = {way, way / g->h, fabs(y[2 * n]) + way * tribo_largest(g->sys->f, g->sys->ncontact)};
+        /* Slopes that are nothing beside the tolerance, and beside the state, are left out for Newton's method: GSL's takes rounding
+         * that does not decrease for divergence. */
+        const size_t n = g->ndof;
+        const double h = g->trial->h, way = largest(y, n) + h * largest(y + n, n);
+        tribo_system_get_force(g->sys, g->force);
+        const double size[] = {way, way / h, fabs(y[2 * n]) + way * largest(g->force, g->ncontact)};
         for (size_t i = 0; i <= 2 * n; i++) {
-            const double least = NEGLIGIBLE * lesser(g->tolerance[i], ROUNDING * size[i / n]);
-            dydt[i] = fabs(dydt[i]) * g->h < least ? 0.0 : dydt[i];
+            const double least = NEGLIGIBLE * lesser(g->trial->tolerance[i], ROUNDING * size[i / n]);
+            dydt[i] = fabs(dydt[i]) * h < least ? 0.0 : dydt[i];
         }
     }
-    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g->sys);
+    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g);
 }
 
 /* matrix = I - h A x J, row by row, as GSL has it. */
 static void fill_matrix(const struct gsl_step *g, double h)
 {
-    const size_t n = g->sys->odeiv2.dimension, stages = g->kind->stages, size = n * stages;
+    const size_t n = g->dimension, stages = g->kind->stages, size = n * stages;
     for (size_t k = 0; k < stages; k++) {
         for (size_t m = 0; m < stages; m++) {
             const double factor = -h * (g->kind->a ? g->kind->a[k * stages + m] : 1.0);
@@ -164,17 +195,34 @@ static void fill_matrix(const struct gsl_step *g, double h)
     }
 }
 
-/* Whether all pivots are more than rounding: each beside the sum of the sizes that it is the sum of, so that scales of rows and
- * columns do not matter. */
-static int pivots_are_sure(const double *lu, size_t n)
+/* 1 if elimination of a [n][n], which is overwritten, meets no pivot that may be rounding: each is compared with the sum of the sizes
+ * of its terms, so that scales of rows and columns do not matter. */
+static int has_sure_pivots(double *a, size_t n)
 {
-    for (size_t i = 0; i < n; i++) {
-        double sum = fabs(lu[i * n + i]);
-        for (size_t k = 0; k < i; k++) {
-            sum += fabs(lu[i * n + k] * lu[k * n + i]);
+    for (size_t k = 0; k < n; k++) {
+        size_t best = k;
+        for (size_t i = k + 1; i < n; i++) {
+            best = fabs(a[i * n + k]) > fabs(a[best * n + k]) ? i : best;
         }
-        if (!(fabs(lu[i * n + i]) > LEAST_PIVOT * sum && isfinite(sum))) {
+        for (size_t j = 0; best != k && j < n; j++) {
+            const double x = a[k * n + j];
+            a[k * n + j] = a[best * n + j];
+            a[best * n + j] = x;
+        }
+        const double *row = a + k * n, size = fabs(row[k]);
+        double sum = size;
+        for (size_t j = 0; j < k; j++) {
+            sum += fabs(row[j] * a[j * n + k]);
+        }
+        if (!(size > LEAST_PIVOT * sum && isfinite(sum))) {
             return 0;
+        }
+        for (size_t i = k + 1; i < n; i++) {
+            const double factor = a[i * n + k] / row[k];
+            a[i * n + k] = factor;
+            for (size_t j = k + 1; factor != 0.0 && j < n; j++) {
+                a[i * n + j] -= factor * row[j];
+            }
         }
     }
     return 1;
@@ -184,17 +232,17 @@ static int pivots_are_sure(const double *lu, size_t n)
  * are so far: an order grows from one step to the next only. */
 static int is_regular(struct gsl_step *g)
 {
-    const size_t size = g->sys->odeiv2.dimension * g->kind->stages;
+    const size_t size = g->dimension * g->kind->stages;
     const size_t order = gsl_odeiv2_step_order(g->step);
     const size_t count = g->kind->type == &gsl_odeiv2_step_msbdf && order < g->kind->matrices ? order : g->kind->matrices;
-    for (size_t i = 0; i < count && g->h != g->regular; i++) {
-        fill_matrix(g, g->kind->c[i] * g->h);
-        if (tribo_largest(g->matrix, size * size) > LARGEST_ENTRY || !(tribo_lu_create(g->matrix, size, g->pivot) > 0.0) ||
-            !pivots_are_sure(g->matrix, size)) {
+    const double h = g->trial->h;
+    for (size_t i = 0; i < count && h != g->regular; i++) {
+        fill_matrix(g, g->kind->c[i] * h);
+        if (!(largest(g->matrix, size * size) <= LARGEST_ENTRY) || !has_sure_pivots(g->matrix, size)) {
             return 0;
         }
     }
-    g->regular = g->kind->type == &gsl_odeiv2_step_msbdf ? 0.0 : g->h;
+    g->regular = g->kind->type == &gsl_odeiv2_step_msbdf ? 0.0 : h;
     return 1;
 }
 
@@ -202,39 +250,44 @@ static int is_regular(struct gsl_step *g)
 static int guarded_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
 {
     struct gsl_step *g = params;
-    const size_t n = g->sys->odeiv2.dimension;
-    const int status = g->sys->odeiv2.jacobian(t, y, dfdy, dfdt, g->sys);
-    if (status) {
-        return status;
+    const size_t n = g->dimension;
+    double sum = 0.0;
+    g->status = tribo_system_jacobian(g->sys, t, y, dfdy, dfdt);
+    if (g->status) {
+        return tribo_gsl_status(g->status);
     }
-    tribo_get_slip(g->sys->contacts, g->mode);
+    for (size_t i = 0; i < n; i++) {
+        sum += dfdt[i] - dfdt[i];
+    }
+    tribo_system_get_slip(g->sys, g->mode);
     memcpy(g->jacobian, dfdy, n * n * sizeof *dfdy);
     g->known = 1;
     g->regular = 0.0;
-    if (!tribo_dense_finite(dfdt, n) || !is_regular(g)) {
+    if (sum != 0.0 || !is_regular(g)) {
         return GSL_FAILURE;
     }
-    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g->sys);
+    return memory_to_factorize(g) ? GSL_SUCCESS : gsl_step_out_of_memory(g);
 }
 
 static int tell_tolerance(void *state, const double y, const double dydt, const double h, const size_t i, double *level)
 {
     const struct gsl_step *g = state;
     (void)y, (void)dydt, (void)h;
-    *level = (g->kind->newton ? NEWTON : 1.0) * g->tolerance[i];
+    *level = (g->kind->newton ? NEWTON : 1.0) * g->trial->tolerance[i];
     return GSL_SUCCESS;
 }
 
 /* ------------------------------------------------------------------------------------------------------------- steppers */
 
-void tribo_gsl_step_destroy(struct gsl_step *g)
+static void gsl_step_destroy(void *data)
 {
+    struct gsl_step *g = data;
     if (g) {
         gsl_odeiv2_step_free(g->step);
         free(g->jacobian);
         free(g->matrix);
-        free(g->pivot);
         free(g->end);
+        free(g->force);
         free(g->mode);
         free(g);
     }
@@ -242,19 +295,17 @@ void tribo_gsl_step_destroy(struct gsl_step *g)
 
 static int create_workspace(struct gsl_step *g)
 {
-    const size_t n = g->sys->odeiv2.dimension, size = n * g->kind->stages;
-    g->guarded.function = guarded_function;
-    g->guarded.jacobian = guarded_jacobian;
-    g->guarded.params = g;
+    const size_t n = g->dimension, size = n * g->kind->stages;
     g->jacobian = calloc(n, n * sizeof *g->jacobian);
     g->matrix = calloc(size, size * sizeof *g->matrix);
-    g->pivot = calloc(size, sizeof *g->pivot);
     g->end = calloc(n, sizeof *g->end);
-    g->mode = calloc(2 * g->sys->ncontact + 1, sizeof *g->mode);
-    return g->jacobian && g->matrix && g->pivot && g->end && g->mode;
+    g->force = calloc(g->ncontact + 1, sizeof *g->force);
+    g->mode = calloc(2 * g->ncontact + 1, sizeof *g->mode);
+    return g->jacobian && g->matrix && g->end && g->force && g->mode;
 }
 
-struct gsl_step *tribo_gsl_step_create(const struct gsl_step_kind *kind, tribo_system *sys)
+/* NULL if out of memory. */
+static struct gsl_step *gsl_step_create(const struct gsl_kind *kind, tribo_system *sys)
 {
     static const gsl_odeiv2_control_type tolerance = {.name = "tribo", .errlevel = tell_tolerance};
     struct gsl_step *g = calloc(1, sizeof *g);
@@ -263,20 +314,28 @@ struct gsl_step *tribo_gsl_step_create(const struct gsl_step_kind *kind, tribo_s
     }
     g->kind = kind;
     g->sys = sys;
-    g->guarded = sys->odeiv2;
-    g->control = (gsl_odeiv2_control){&tolerance, g};
+    g->dimension = tribo_system_dimension(sys);
+    g->ndof = tribo_system_ndof(sys);
+    g->ncontact = tribo_system_ncontact(sys);
+    g->guarded.function = guarded_function;
+    g->guarded.jacobian = guarded_jacobian;
+    g->guarded.dimension = g->dimension;
+    g->guarded.params = g;
+    g->control.type = &tolerance;
+    g->control.state = g;
     g->driver.c = &g->control;
-    if ((kind->matrices && !create_workspace(g)) || !memory_to_create(kind, sys->odeiv2.dimension)) {
-        tribo_gsl_step_destroy(g);
+    if ((kind->matrices && !create_workspace(g)) || !memory_to_create(kind, g->dimension)) {
+        gsl_step_destroy(g);
         return NULL;
     }
-    g->step = gsl_odeiv2_step_alloc(*kind->type, sys->odeiv2.dimension);
+    g->step = gsl_odeiv2_step_alloc(*kind->type, g->dimension);
     gsl_odeiv2_step_set_driver(g->step, &g->driver);
     return g;
 }
 
-void tribo_gsl_step_restart(struct gsl_step *g)
+static void gsl_step_restart(void *data)
 {
+    struct gsl_step *g = data;
     gsl_odeiv2_step_reset(g->step);
     g->known = 0;
 }
@@ -284,9 +343,9 @@ void tribo_gsl_step_restart(struct gsl_step *g)
 /* Whether a contact sticks at either end of the step, or slides back at one and forth at the other. */
 static int has_stuck(const struct gsl_step *g)
 {
-    const size_t n = g->sys->ncontact;
+    const size_t n = g->ncontact;
     int found = 0;
-    if (!tribo_get_slip(g->sys->contacts, g->mode + n)) {
+    if (!tribo_system_get_slip(g->sys, g->mode + n)) {
         for (size_t i = 0; i < n; i++) {
             found |= g->mode[i] != g->mode[n + i] || g->mode[i] == TRIBO_SLIP_STUCK;
         }
@@ -294,42 +353,43 @@ static int has_stuck(const struct gsl_step *g)
     return found;
 }
 
-static int gsl_step_apply(struct gsl_step *g, double t, const double *slope, double *to, double *error)
+static int gsl_step_apply(struct gsl_step *g)
 {
+    const tribo_trial *x = g->trial;
     if (g->kind->matrices && !memory_to_factorize(g)) {
-        return gsl_step_out_of_memory(g->sys);
+        return gsl_step_out_of_memory(g);
     }
     if (g->known && !is_regular(g)) {
-        tribo_gsl_step_restart(g); /* which makes it ask for another Jacobian before it factorizes */
+        gsl_step_restart(g); /* so that GSL takes another Jacobian before it factorizes */
     }
-    return gsl_odeiv2_step_apply(g->step, t, g->h, to, error, g->kind->takes_slope ? slope : NULL,
+    return gsl_odeiv2_step_apply(g->step, x->t, x->h, x->to, x->error, g->kind->takes_slope ? x->slope : NULL,
                                  g->kind->newton ? g->end : NULL, &g->guarded);
 }
 
-int tribo_gsl_step_try(struct gsl_step *g, double t, double h, const double *y, const double *slope, const double *tolerance,
-                       const double *rate, double *to, double *error)
+static int gsl_step_try(const tribo_trial *x, void *data)
 {
+    struct gsl_step *g = data;
     fenv_t callers;
-    memcpy(to, y, g->sys->odeiv2.dimension * sizeof *to);
-    g->h = h;
-    g->tolerance = tolerance;
-    g->rate = rate;
+    memcpy(x->to, x->y, g->dimension * sizeof *x->to);
+    g->trial = x;
+    g->status = TRIBO_OK;
     feholdexcept(&callers);
-    const int status = gsl_step_apply(g, t, slope, to, error);
+    const int status = gsl_step_apply(g);
     if (!status && g->kind->newton) {
-        /* Half steps see nothing of a force that jumps before or after all of their stages, nor of a contact that breaks away after them;
-         * slopes at both ends do. */
+        /* Half steps see nothing of a force that jumps before or after all of their stages, nor of a contact that breaks away after
+         * them; slopes at both ends do. */
         const int jumps = has_stuck(g);
-        for (size_t i = 0; jumps && i < g->sys->odeiv2.dimension; i++) {
-            error[i] = fabs(error[i]) + fabs(0.5 * g->h * (slope[i] + g->end[i]) - (to[i] - y[i]));
+        for (size_t i = 0; jumps && i < g->dimension; i++) {
+            x->error[i] = fabs(x->error[i]) + fabs(0.5 * x->h * (x->slope[i] + g->end[i]) - (x->to[i] - x->y[i]));
         }
     }
     fesetenv(&callers);
-    return status;
+    return !status ? TRIBO_OK : g->status ? g->status : TRIBO_ERR_STEP;
 }
 
-double tribo_gsl_step_order(const struct gsl_step *g)
+static double gsl_step_order(void *data)
 {
+    const struct gsl_step *g = data;
     return (double)gsl_odeiv2_step_order(g->step);
 }
 
@@ -341,19 +401,88 @@ static const double gauss[] = {0.25, 0.25 - ROOT_3 / 6, 0.25 + ROOT_3 / 6, 0.25}
 static const double sequence[] = {1.0 / 2, 1.0 / 6, 1.0 / 10, 1.0 / 14, 1.0 / 22, 1.0 / 34, 1.0 / 50, 1.0 / 70};
 static const double bdf[] = {1.0, 2.0 / 3, 6.0 / 11, 12.0 / 25, 60.0 / 137};
 
-#define EXPLICIT(id, stable) const struct gsl_step_kind tribo_kind_##id = {&gsl_odeiv2_step_##id, stable, 1, 0, 0, NULL, 1, NULL};
+#define EXPLICIT(id, stable) {#id, &gsl_odeiv2_step_##id, stable, 1, 0, 0, NULL, 1, NULL}
 #define IMPLICIT(id, stable, slope, newton, c, stages, a)                                                                        \
-    const struct gsl_step_kind tribo_kind_##id = {&gsl_odeiv2_step_##id, stable, slope,  newton,                                 \
-                                                  sizeof c / sizeof *c,  c,      stages, a};
+    {#id, &gsl_odeiv2_step_##id, stable, slope, newton, sizeof c / sizeof *c, c, stages, a}
 
-EXPLICIT(rk2, 2.5)
-EXPLICIT(rk4, 5.5)
-EXPLICIT(rkf45, 3.6)
-EXPLICIT(rkck, 3.7)
-EXPLICIT(rk8pd, 5.1)
-EXPLICIT(msadams, 0.5)
-IMPLICIT(rk1imp, HUGE_VAL, 1, 1, halves, 1, NULL)
-IMPLICIT(rk2imp, HUGE_VAL, 1, 1, middle, 1, NULL)
-IMPLICIT(rk4imp, HUGE_VAL, 1, 1, halves, 2, gauss)
-IMPLICIT(bsimp, 0.1, 1, 0, sequence, 1, NULL)
-IMPLICIT(msbdf, HUGE_VAL, 0, 0, bdf, 1, NULL)
+static const struct gsl_kind kinds[] = {
+    EXPLICIT(rk2, 2.5),
+    EXPLICIT(rk4, 5.5),
+    EXPLICIT(rkf45, 3.6),
+    EXPLICIT(rkck, 3.7),
+    EXPLICIT(rk8pd, 5.1),
+    IMPLICIT(rk1imp, HUGE_VAL, 1, 1, halves, 1, NULL),
+    IMPLICIT(rk2imp, HUGE_VAL, 1, 1, middle, 1, NULL),
+    IMPLICIT(rk4imp, HUGE_VAL, 1, 1, halves, 2, gauss),
+    IMPLICIT(bsimp, 0.1, 1, 0, sequence, 1, NULL),
+    EXPLICIT(msadams, 0.5),
+    IMPLICIT(msbdf, HUGE_VAL, 0, 0, bdf, 1, NULL),
+};
+
+int tribo_gsl_stepper_count(void)
+{
+    return (int)(sizeof kinds / sizeof *kinds);
+}
+
+const char *tribo_gsl_stepper_name(int stepper)
+{
+    return stepper >= 0 && stepper < tribo_gsl_stepper_count() ? kinds[stepper].name : NULL;
+}
+
+static int same_name(const char *a, const char *b)
+{
+    size_t i = 0;
+    while (a[i] && (b[i] >= 'A' && b[i] <= 'Z' ? b[i] - 'A' + 'a' : b[i]) == a[i]) {
+        i++;
+    }
+    return a[i] == b[i];
+}
+
+static const struct gsl_kind *find_kind(const char *name)
+{
+    for (int i = 0; i < tribo_gsl_stepper_count(); i++) {
+        if (same_name(kinds[i].name, name)) {
+            return &kinds[i];
+        }
+    }
+    return NULL;
+}
+
+static int unknown_stepper(tribo_system *sys, const char *name)
+{
+    char text[200];
+    size_t used = (size_t)snprintf(text, sizeof text, "stepper \"%.20s\" is unknown; GSL has ", name);
+    for (int i = 0; i < tribo_gsl_stepper_count(); i++) {
+        used += (size_t)snprintf(text + used, sizeof text - used, "%s%s", i ? ", " : "", kinds[i].name);
+    }
+    return tribo_system_set_message(sys, TRIBO_ERR_NAME, text);
+}
+
+int tribo_gsl_driver_create(tribo_driver **drv, tribo_system *sys, const char *stepper)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!drv || !stepper) {
+        return tribo_system_set_message(sys, TRIBO_ERR_NULL, drv ? "stepper is NULL" : "drv is NULL");
+    }
+    const struct gsl_kind *kind = find_kind(stepper);
+    if (!kind) {
+        return unknown_stepper(sys, stepper);
+    }
+    struct gsl_step *g = gsl_step_create(kind, sys);
+    const tribo_stepper table = {.size = sizeof table,
+                                 .name = kind->name,
+                                 .stable = kind->matrices ? 0.0 : kind->stable,
+                                 .takes_slope = kind->takes_slope,
+                                 .step = gsl_step_try,
+                                 .order = gsl_step_order,
+                                 .restart = gsl_step_restart,
+                                 .destroy = gsl_step_destroy};
+    const int status = g ? tribo_driver_create_stepper(drv, sys, &table, g)
+                         : tribo_system_set_message(sys, TRIBO_ERR_MEMORY, "out of memory for a stepper of GSL");
+    if (status) {
+        gsl_step_destroy(g);
+    }
+    return status;
+}

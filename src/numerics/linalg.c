@@ -263,7 +263,7 @@ size_t tribo_cholesky_row(const struct cholesky *c, size_t k)
 }
 
 /* Column k of L below the diagonal, and the pivots of the rows there without column k; above the diagonal A stays. */
-static void eliminate(struct cholesky *c, size_t k)
+static void eliminate_below(struct cholesky *c, size_t k)
 {
     const size_t n = c->n;
     double *row = c->factor + k * n;
@@ -307,7 +307,7 @@ static int factorize(struct cholesky *c, const struct matrix *a, struct matrix *
         }
         c->root[i] = sqrt(d);
         if (!diagonal) {
-            eliminate(c, i);
+            eliminate_below(c, i);
         }
     }
     return TRIBO_OK;

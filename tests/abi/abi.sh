@@ -2,6 +2,7 @@
 # The binary interface, in files kept beside this one.
 #   abi.sh check <file> <what>...     compares <file> with what is there now
 #   abi.sh refresh <file> <what>...   writes it anew
+#   abi.sh no_gsl <library>           nothing that the library needs is GSL's
 #   abi.sh names <file>...            a map, a header, symbols and prototypes: all must name the same functions
 # <what> is one of
 #   symbols <library>                 soname and exported symbols with their versions
@@ -73,6 +74,12 @@ check)
 refresh)
     "$@" >"$scratch/now"
     cp "$scratch/now" "$file"
+    ;;
+no_gsl)
+    if { objdump -p "$file" | grep NEEDED; nm -D --undefined-only "$file"; } | grep -i gsl; then
+        echo "$file needs GSL."
+        exit 1
+    fi
     ;;
 names)
     names "$file" >"$scratch/first"

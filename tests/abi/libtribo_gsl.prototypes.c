@@ -69,4 +69,4 @@ TRIBO_API int tribo_gsl_model_set_mass(tribo_model *model, const gsl_spmatrix *m
 TRIBO_API int tribo_gsl_model_set_damping(tribo_model *model, const gsl_spmatrix *c);
 TRIBO_API int tribo_gsl_model_set_stiffness(tribo_model *model, const gsl_spmatrix *k);
 TRIBO_API int tribo_gsl_model_set_direction(tribo_model *model, const gsl_spmatrix *j);
-TRIBO_API const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys);
+TRIBO_API const gsl_odeiv2_system *tribo_gsl_system(tribo_system *sys);

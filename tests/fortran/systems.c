@@ -2,6 +2,7 @@
 #include "../make.h"
 #include "tape.h"
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 #define DOF 4
 #define CONTACTS 3
@@ -47,7 +48,7 @@ static void state(tribo_system *sys)
     for (size_t i = 0; i < n; i++) {
         y[i] = 0.1 * (double)(i + 1) - 0.35;
     }
-    const gsl_odeiv2_system *s = tribo_system_odeiv2(sys);
+    const gsl_odeiv2_system *s = tribo_gsl_system(sys);
     put_one(s->function(0.5, y, dydt, s->params));
     put(n, dydt);
     put_one(s->jacobian(0.5, y, dfdy, dfdt, s->params));
@@ -66,7 +67,7 @@ static void run(tribo_system *sys, const char *method, double most)
     struct sums sums = {n, most, {0.0}};
     double y[32] = {0.0}, t = 0.0;
     tribo_driver *drv = NULL;
-    put_one(tribo_driver_create(&drv, sys, method));
+    put_one(create_any_driver(&drv, sys, method));
     put_one(tribo_driver_set_step(drv, 0.05));
     put_one(tribo_driver_set_tolerance(drv, 1e-5, 1e-5));
     put_one(tribo_driver_set_output(drv, 0.05));
@@ -107,8 +108,8 @@ static void reference(tribo_system *sys)
     sizes(sys);
     put_one(tribo_set_epsilon_all(tribo_system_context(sys), 0.05));
     state(sys);
-    for (int i = 0; i < tribo_method_count(); i++) {
-        run(sys, tribo_method_name(i), 1e9);
+    for (int i = 0; i < any_method_count(); i++) {
+        run(sys, any_method_name(i), 1e9);
     }
     tribo_system *copy = NULL;
     put_one(tribo_system_clone(sys, &copy));
@@ -229,9 +230,9 @@ static void periodic(void)
 void systems_play(void)
 {
     tribo_system *sys = NULL;
-    put_one(tribo_method_count());
-    for (int i = -1; i <= tribo_method_count(); i++) {
-        put_text(tribo_method_name(i));
+    put_one(any_method_count());
+    for (int i = -1; i <= any_method_count(); i++) {
+        put_text(any_method_name(i));
     }
     put_one(tribo_system_oscillator(&sys, 0.4, 1.0, 0.75));
     reference(sys);

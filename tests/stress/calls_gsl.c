@@ -19,6 +19,7 @@
 
 #include "make.h"
 #include "tribo/tribo_gsl.h"
+#include "../set_up_driver.h"
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
@@ -335,11 +336,11 @@ static void tune(struct bytes *b, struct run *r)
 
 static void create_run(struct bytes *b, struct scene *s, struct run *r)
 {
-    const int kind = (int)choose(b, (size_t)tribo_method_count() + 1);
-    const char *const name = kind < tribo_method_count() ? tribo_method_name(kind) : "rk5";
+    const int kind = (int)choose(b, (size_t)any_method_count() + 1);
+    const char *const name = kind < any_method_count() ? any_method_name(kind) : "rk5";
     tribo_driver_destroy(r->drv);
     memset(r, 0, sizeof *r);
-    const int status = tribo_driver_create(&r->drv, s->sys, name);
+    const int status = create_any_driver(&r->drv, s->sys, name);
     check(s, status);
     demand((status == TRIBO_OK) == (r->drv != NULL), "status %d", status);
     demand(status || strlen(tribo_driver_method(r->drv)) > 1, "no name");

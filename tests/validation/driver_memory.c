@@ -84,12 +84,12 @@ static void advance_within_bounds(const char *method, int planar)
 
 TEST(creation)
 {
-    create_within_bounds(tribo_method_name(_i), 0);
+    create_within_bounds(any_method_name(_i), 0);
 }
 
 TEST(advance)
 {
-    advance_within_bounds(tribo_method_name(_i), 0);
+    advance_within_bounds(any_method_name(_i), 0);
 }
 
 /* Two of the contacts are the directions of one. */

@@ -344,7 +344,7 @@ TEST(failing_jacobian)
     struct random g = random_of(1);
     const struct model m = model_create(&g, 1);
     tribo_system *sys = model_system(&m, 1, 0, 0.1);
-    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    const gsl_odeiv2_system *ode = tribo_gsl_system(sys);
     for (size_t fails = 1; fails <= 5; fails++) {
         memory_fail(fails);
         const int status = ode->jacobian(0.0, y, dfdy, dfdt, ode->params);

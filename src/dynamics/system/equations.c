@@ -114,7 +114,7 @@ int tribo_system_begin_rates(tribo_system *sys, double t, const double *y, doubl
     return tribo_system_explain(sys, sys->status);
 }
 
-/* What the steppers of GSL take besides accelerations and power; sys->v has the velocities for the driver. */
+/* What a derivative has besides accelerations and power; sys->v has the velocities for the driver. */
 static void equations_complete(tribo_system *sys, const double *y, double *dydt)
 {
     const double *u = y + sys->ndof;
@@ -131,21 +131,41 @@ int tribo_system_begin_step(tribo_system *sys, double t, const double *y, double
     return tribo_system_begin_rates(sys, t, y, dydt + n, dydt + 2 * n);
 }
 
-static int right_hand_side(double t, const double y[], double dydt[], void *params)
+int tribo_system_derivative(tribo_system *sys, double t, const double *y, double *dydt)
 {
-    tribo_system *sys = params;
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
     const size_t n = sys->ndof;
+    double power;
     sys->status = tribo_system_take_settings(sys);
     sys->status = sys->status ? sys->status : tribo_system_check_rates(sys, "the right-hand side");
+    if (!sys->status && (!y || !dydt)) {
+        sys->status = tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", y ? "dydt" : "y");
+    }
     if (sys->status) {
-        return GSL_EBADFUNC;
+        return sys->status;
+    }
+    if (tribo_system_rates(sys, t, y, sys->acceleration, &power)) {
+        const int status = tribo_system_check_state(sys, t, y); /* names the value of y, if it is one */
+        return sys->status = status ? status : sys->status;
     }
     equations_complete(sys, y, dydt);
-    if (tribo_system_rates(sys, t, y, dydt + n, dydt + 2 * n)) {
-        /* a step that is too long may overflow, and a shorter one not */
-        return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
+    memcpy(dydt + n, sys->acceleration, n * sizeof *dydt);
+    dydt[2 * n] = power;
+    return TRIBO_OK;
+}
+
+int tribo_system_get_force(const tribo_system *sys, double *f)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
     }
-    return GSL_SUCCESS;
+    if (!f) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "f is NULL");
+    }
+    memcpy(f, sys->f, sys->ncontact * sizeof *f);
+    return TRIBO_OK;
 }
 
 /* --------------------------------------------------------------------------------------------------------------------- states */
@@ -254,7 +274,6 @@ int tribo_system_build(tribo_system **sys, size_t ndof, size_t ncontact, struct 
     for (size_t i = 0; i < ncontact; i++) {
         s->tally[i] = 1.0;
     }
-    s->odeiv2 = (gsl_odeiv2_system){right_hand_side, tribo_jacobian, 2 * ndof + 1, s};
     *sys = s;
     return TRIBO_OK;
 }
@@ -322,6 +341,7 @@ void tribo_system_destroy(tribo_system *sys)
     if (!sys) {
         return;
     }
+    tribo_system_detach(sys);
     tribo_destroy(sys->contacts);
     tribo_destroy(sys->lent);
     free(sys->message);

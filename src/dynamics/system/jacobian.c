@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
-
 /* The matrices of the Jacobian, dense, and room for its products. */
 struct dense {
     double *stiffness, *damping, *direction, *response, *df_dv, *df_da, *df_dq, *df_du, *pull, *load;
@@ -113,40 +111,49 @@ static void write_motion(const tribo_system *sys, const struct dense *d, const d
         }
         tribo_multiply_add(1, m, n, 1.0, d->response + i * m, d->df_dq, row);
         tribo_multiply_add(1, m, n, 1.0, d->response + i * m, d->df_du, row + n);
-        dfdt[n + i] = d->load[i];
-        tribo_multiply_add(1, m, 1, 1.0, d->response + i * m, df_dt, dfdt + n + i);
+        if (dfdt) {
+            dfdt[n + i] = d->load[i];
+            tribo_multiply_add(1, m, 1, 1.0, d->response + i * m, df_dt, dfdt + n + i);
+        }
     }
 }
 
-/* The row of the energy, whose rate is -sum of tally f v. v and f of sys are spent. */
+/* The row of the energy, whose rate is -sum of tally f v. Spoils v of sys, and pull. */
 static void write_power(tribo_system *sys, const struct dense *d, const double *df_dt, double *row, double *dfdt)
 {
     const size_t n = sys->ndof, m = sys->ncontact;
+    double *f = d->pull;
     for (size_t i = 0; i < m; i++) {
         sys->v[i] *= sys->tally[i];
-        sys->f[i] *= sys->tally[i];
+        f[i] = sys->tally[i] * sys->f[i];
     }
     tribo_multiply_add(1, m, n, -1.0, sys->v, d->df_dq, row);
     tribo_multiply_add(1, m, n, -1.0, sys->v, d->df_du, row + n);
-    tribo_multiply_add(1, m, n, -1.0, sys->f, d->direction, row + n);
-    tribo_multiply_add(1, m, 1, -1.0, sys->v, df_dt, dfdt);
-    tribo_multiply_add(1, m, 1, -1.0, sys->f, sys->dv_dt, dfdt);
+    tribo_multiply_add(1, m, n, -1.0, f, d->direction, row + n);
+    if (dfdt) {
+        tribo_multiply_add(1, m, 1, -1.0, sys->v, df_dt, dfdt);
+        tribo_multiply_add(1, m, 1, -1.0, f, sys->dv_dt, dfdt);
+    }
 }
 
 /* With u = q':  u' = load - AK q - AC u + B f,  f = f(v, a),  v = J u - b,  a = J (load - AK q - AC u) - b'. */
-int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params)
+int tribo_system_jacobian(tribo_system *sys, double t, const double *y, double *dfdy, double *dfdt)
 {
-    tribo_system *sys = params;
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
     const size_t n = sys->ndof, size = tribo_system_dimension(sys);
     sys->jacobians++;
     sys->status = tribo_system_take_settings(sys);
     sys->status = sys->status ? sys->status : tribo_system_check_rates(sys, "the Jacobian");
-    if (sys->status) {
-        return GSL_EBADFUNC;
+    if (!sys->status && (!y || !dfdy)) {
+        sys->status = tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", y ? "dfdy" : "y");
     }
-    if (!sys->dense && !create_dense(sys)) {
+    if (!sys->status && !sys->dense && !create_dense(sys)) {
         sys->status = tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for the Jacobian");
-        return GSL_EBADFUNC;
+    }
+    if (sys->status) {
+        return sys->status;
     }
     const struct dense d = dense_of(sys);
     double *df_dt = sys->feq;
@@ -157,16 +164,19 @@ int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void
                          : tribo_system_explain(sys, tribo_balance_tangent(sys->contacts, sys->v, sys->a, NULL, sys->f, d.df_dv,
                                                                            d.df_da));
     if (sys->status) {
-        return sys->status == TRIBO_ERR_NOT_FINITE ? GSL_FAILURE : GSL_EBADFUNC;
+        const int found = tribo_system_check_state(sys, t, y); /* names the value of y, if it is one */
+        return sys->status = found ? found : sys->status;
     }
     follow_state(n, sys->ncontact, &d);
     follow_time(sys, &d, df_dt);
     memset(dfdy, 0, size * size * sizeof *dfdy);
-    memset(dfdt, 0, size * sizeof *dfdt);
+    if (dfdt) {
+        memset(dfdt, 0, size * sizeof *dfdt);
+    }
     for (size_t i = 0; i < n; i++) {
         dfdy[i * size + n + i] = 1.0;
     }
     write_motion(sys, &d, df_dt, dfdy, dfdt);
-    write_power(sys, &d, df_dt, dfdy + 2 * n * size, dfdt + 2 * n);
-    return GSL_SUCCESS;
+    write_power(sys, &d, df_dt, dfdy + 2 * n * size, dfdt ? dfdt + 2 * n : NULL);
+    return TRIBO_OK;
 }

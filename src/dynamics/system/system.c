@@ -178,9 +178,13 @@ int tribo_system_get_limit(tribo_system *sys, double t, double *limit)
     return status;
 }
 
-const gsl_odeiv2_system *tribo_system_odeiv2(tribo_system *sys)
+int tribo_system_set_message(tribo_system *sys, int status, const char *text)
 {
-    return sys ? &sys->odeiv2 : NULL;
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    sys->status = tribo_system_fail(sys, status, "%s", text ? text : "");
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------------------------------------ structure */

@@ -3,7 +3,7 @@
 #ifndef TRIBO_SYSTEM_H
 #define TRIBO_SYSTEM_H
 
-#include "tribo/tribo_gsl.h"
+#include "tribo/tribo_dynamics.h"
 
 #include "numerics/linalg.h"
 #include "massless.h"
@@ -81,7 +81,7 @@ struct tribo_system {
     double *modes, *omega; /* [given][ndof], [ndof]; NULL if not reduced */
     struct truncation truncation;
 
-    gsl_odeiv2_system odeiv2;
+    struct attached *attached; /* what tribo_system_attach has hung on the system */
     size_t evaluations, jacobians;
     int status;                      /* what the last evaluation returned */
     double *tally;                   /* [ncontact] how often y's energy counts what a contact dissipates: 1, but see chains */
@@ -257,8 +257,8 @@ static inline void tribo_snap(const struct snap *s, const double *base, double *
 /* All that it does, in its order: none undoes another. list [ncontact] out; returns how many. */
 size_t tribo_system_list_snaps(const tribo_system *sys, const signed char *loose, struct snap *list);
 
-/* jacobian.c: of odeiv2. */
-int tribo_jacobian(double t, const double y[], double *dfdy, double dfdt[], void *params);
+/* attached.c */
+void tribo_system_detach(tribo_system *sys);
 
 /* Keeps the message on the system and returns status. */
 int tribo_system_fail(const tribo_system *sys, int status, const char *format, ...)

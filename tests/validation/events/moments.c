@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "../sliders.h"
+#include "set_up_driver.h"
 
 #define MOST 4000
 #define MOST_DOF 6
@@ -193,7 +194,7 @@ static void look(tribo_system *sys, const char *method, const struct scene *scen
     signed char slip[MOST_CONTACTS];
     tribo_driver *drv;
     memcpy(y, scene->start, sizeof y);
-    assert_ok(tribo_driver_create(&drv, sys, method));
+    assert_ok(create_any_driver(&drv, sys, method));
     driver_advance(drv, &from, t, y);
     assert_ok(tribo_system_contacts(sys, t, y, v, NULL, NULL));
     assert_ok(tribo_system_get_slip(sys, slip));

@@ -19,16 +19,110 @@ static const struct {
 TEST(names)
 {
     const char *const others[] = {"exact", "event", "central/fixed", "moreau/fixed", "auto"};
-    ck_assert_int_eq(tribo_method_count(), COUNT(steppers) + 1 + COUNT(others));
-    ck_assert_str_eq(tribo_method_name(0), "rk4/fixed");
+    ck_assert_int_eq(any_method_count(), COUNT(steppers) + 1 + COUNT(others));
+    ck_assert_str_eq(any_method_name(0), "rk4/fixed");
     for (size_t i = 0; i < COUNT(steppers); i++) {
-        ck_assert_str_eq(tribo_method_name((int)i + 1), steppers[i].name);
+        ck_assert_str_eq(any_method_name((int)i + 1), steppers[i].name);
     }
     for (size_t i = 0; i < COUNT(others); i++) {
-        ck_assert_str_eq(tribo_method_name((int)(COUNT(steppers) + 1 + i)), others[i]);
+        ck_assert_str_eq(any_method_name((int)(COUNT(steppers) + 1 + i)), others[i]);
     }
-    ck_assert_ptr_null(tribo_method_name(-1));
-    ck_assert_ptr_null(tribo_method_name(tribo_method_count()));
+    ck_assert_ptr_null(any_method_name(-1));
+    ck_assert_ptr_null(any_method_name(any_method_count()));
+}
+
+/* A stepper of one's own: Heun's method with Euler's as its estimate. */
+struct heun {
+    tribo_system *sys;
+    double end[3];
+    int destroyed;
+};
+
+static int heun_step(const tribo_trial *x, void *data)
+{
+    struct heun *h = data;
+    for (size_t i = 0; i < 3; i++) {
+        x->to[i] = x->y[i] + x->h * x->slope[i];
+    }
+    const int status = tribo_system_derivative(h->sys, x->t + x->h, x->to, h->end);
+    for (size_t i = 0; i < 3; i++) {
+        x->error[i] = 0.5 * x->h * (h->end[i] - x->slope[i]);
+        x->to[i] += x->error[i];
+    }
+    return status;
+}
+
+static double heun_order(void *data)
+{
+    (void)data;
+    return 1.0;
+}
+
+static void heun_destroy(void *data)
+{
+    ((struct heun *)data)->destroyed++;
+}
+
+TEST(own_stepper)
+{
+    const tribo_stepper heun = {.size = sizeof heun,
+                                .name = "heun",
+                                .stable = 2.0,
+                                .takes_slope = 1,
+                                .step = heun_step,
+                                .order = heun_order,
+                                .destroy = heun_destroy};
+    tribo_stepper bad = heun;
+    tribo_system *sys;
+    tribo_driver *drv, *other;
+    double y[2][3] = {{0.0}}, t[2] = {0.0};
+    assert_ok(tribo_system_oscillator(&sys, 1.0, 1.5, 0.5));
+    assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 0.01));
+    struct heun own = {.sys = sys};
+    bad.step = NULL;
+    assert_status(tribo_driver_create_stepper(&drv, sys, &bad, &own), TRIBO_ERR_NULL);
+    bad.size = 8;
+    assert_status(tribo_driver_create_stepper(&drv, sys, &bad, &own), TRIBO_ERR_SIZE);
+    assert_ok(tribo_driver_create_stepper(&drv, sys, &heun, &own));
+    ck_assert_str_eq(tribo_driver_method(drv), "heun");
+    assert_ok(tribo_gsl_driver_create(&other, sys, "RK8PD"));
+    assert_ok(tribo_driver_set_tolerance(drv, 1e-7, 1e-7));
+    assert_ok(tribo_driver_set_tolerance(other, 1e-9, 1e-9));
+    assert_ok(tribo_driver_advance(drv, &t[0], 20.0, y[0]));
+    assert_ok(tribo_driver_advance(other, &t[1], 20.0, y[1]));
+    assert_all_close(y[0], y[1], 3, 1e-4);
+    tribo_driver_destroy(other);
+    ck_assert_int_eq(own.destroyed, 0);
+    tribo_driver_destroy(drv);
+    ck_assert_int_eq(own.destroyed, 1);
+    tribo_system_destroy(sys);
+}
+
+static void count_up(void *data)
+{
+    ++*(int *)data;
+}
+
+/* Data hang on a system until it is destroyed, and not on its clone. */
+TEST(attached)
+{
+    const char key[2] = {0};
+    int freed = 0;
+    tribo_system *sys, *copy;
+    assert_ok(tribo_system_oscillator(&sys, 1.0, 1.5, 0.5));
+    ck_assert_ptr_null(tribo_system_attached(sys, key));
+    assert_ok(tribo_system_attach(sys, key, &freed, count_up));
+    assert_ok(tribo_system_attach(sys, key + 1, &freed, NULL));
+    assert_status(tribo_system_attach(sys, key, &freed, count_up), TRIBO_ERR_STATE);
+    assert_status(tribo_system_attach(sys, NULL, &freed, count_up), TRIBO_ERR_NULL);
+    ck_assert_ptr_eq(tribo_system_attached(sys, key), &freed);
+    ck_assert_ptr_eq(tribo_gsl_system(sys), tribo_gsl_system(sys));
+    assert_ok(tribo_system_clone(sys, &copy));
+    ck_assert_ptr_null(tribo_system_attached(copy, key));
+    tribo_system_destroy(copy);
+    ck_assert_int_eq(freed, 0);
+    tribo_system_destroy(sys);
+    ck_assert_int_eq(freed, 1);
 }
 
 /* Steps as long as the largest, since no error is too large: those of a fixed step, whose order shows in the closed form of
@@ -258,11 +352,11 @@ TEST(largest_step_errors)
 {
     tribo_system *sys = fig_7a(1e-3);
     assert_status(tribo_driver_set_max_step(NULL, 1.0), TRIBO_ERR_NULL);
-    for (int m = 0; m < tribo_method_count(); m++) {
-        tribo_driver *drv = driver_create(sys, tribo_method_name(m), 0.1, 1e-6);
+    for (int m = 0; m < any_method_count(); m++) {
+        tribo_driver *drv = driver_create(sys, any_method_name(m), 0.1, 1e-6);
         int adaptive = 0;
         for (size_t k = 0; k < COUNT(steppers); k++) {
-            adaptive |= strcmp(tribo_method_name(m), steppers[k].name) == 0;
+            adaptive |= strcmp(any_method_name(m), steppers[k].name) == 0;
         }
         if (adaptive) {
             assert_ok(tribo_driver_set_max_step(drv, 0.5));
@@ -273,7 +367,7 @@ TEST(largest_step_errors)
             assert_says(tribo_driver_message(drv), "h = nan");
         } else {
             assert_status(tribo_driver_set_max_step(drv, 0.5), TRIBO_ERR_UNSUPPORTED);
-            assert_says(tribo_driver_message(drv), tribo_method_name(m));
+            assert_says(tribo_driver_message(drv), any_method_name(m));
         }
         tribo_driver_destroy(drv);
     }
@@ -384,7 +478,8 @@ TEST(advance_in_pieces)
     ck_assert_uint_le(steps[1], steps[0] + 100);
 }
 
-TEST_MAIN("steppers", {names, 1}, {orders, COUNT(steppers)}, {smooth_law, COUNT(steppers)}, {energies, 2 * COUNT(systems)},
+TEST_MAIN("steppers", {names, 1}, {own_stepper, 1}, {attached, 1}, {orders, COUNT(steppers)}, {smooth_law, COUNT(steppers)},
+          {energies, 2 * COUNT(systems)},
           {steps_over_rest, COUNT(steppers)}, {short_slips, COUNT(steppers)}, {pulse, COUNT(steppers)},
           {reversal_law, COUNT(steppers)}, {coulombs_law, COUNT(steppers)}, {largest_step, COUNT(steppers)},
           {largest_step_errors, 1}, {singular_matrices, COUNT(steppers)}, {singular_by_rounding, COUNT(steppers)},

@@ -5,6 +5,7 @@
 #include "make.h"
 #include "coulomb.h"
 #include "model.h"
+#include "set_up_driver.h"
 
 #define METHODS 17
 #define CHANGE 1.0
@@ -136,14 +137,14 @@ static int possible(const char *method, size_t change)
 static tribo_driver *start(const char *method, tribo_system *sys)
 {
     tribo_driver *drv = driver_create(sys, method, 0.02, strcmp(method, "rkf45") ? 1e-8 : 1e-9);
-    ck_assert_int_eq(tribo_method_count(), METHODS);
+    ck_assert_int_eq(any_method_count(), METHODS);
     return drv;
 }
 
 /* A driver that has been there before the change, and a new one on a new system that has been like that from the beginning. */
 TEST(like_a_new_driver)
 {
-    const char *method = tribo_method_name(_i);
+    const char *method = any_method_name(_i);
     for (size_t k = 0; k < COUNT(changes); k++) {
         struct random g = random_of(1 + (int)k);
         const struct model m = model_create(&g, 1);
@@ -210,7 +211,7 @@ TEST(order_after_a_change)
 /* A block that friction holds on ground that starts to move: it slides, and does not go along. x = 1 - cos(t - 1)/2. */
 TEST(ground_that_starts)
 {
-    const char *method = tribo_method_name(_i);
+    const char *method = any_method_name(_i);
     const double speed = 0.7;
     double t = 0.0, y[3] = {0.5, 0.0, 0.0};
     tribo_system *sys = block(1.0, 1.0, 1.0);
@@ -274,7 +275,7 @@ static void begin(tribo_driver *drv, int how, double *t, double *y)
 /* From x = 1, v = 2: x(1) as if nothing had been before. */
 TEST(beginnings)
 {
-    const char *method = tribo_method_name(_i);
+    const char *method = any_method_name(_i);
     double want = 0.0;
     for (int how = 0; how < 5; how++) {
         double t = 0.0, y[DIMENSION] = {1.0, 2.0, 0.0};
@@ -295,7 +296,7 @@ TEST(beginnings)
 /* Advances that are as short as time resolves. */
 TEST(shortest_advances)
 {
-    const char *method = tribo_method_name(_i);
+    const char *method = any_method_name(_i);
     double t = 3.0, y[DIMENSION] = {1.0, 2.0, 0.0};
     tribo_system *sys = oscillator(TRIBO_QUINN, 0.5, 0.7);
     assert_ok(tribo_set_epsilon_all(tribo_system_context(sys), 1e-2));

@@ -38,7 +38,7 @@ static size_t check_column(const gsl_odeiv2_system *ode, double t, const double 
 
 static void check_jacobian(tribo_system *sys, struct random *g)
 {
-    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    const gsl_odeiv2_system *ode = tribo_gsl_system(sys);
     const size_t n = ode->dimension;
     double y[LARGEST], dfdy[LARGEST * LARGEST], dfdt[LARGEST];
     size_t smooth = 0;
@@ -122,7 +122,7 @@ TEST(jacobian_of_bad_states)
 {
     double y[3] = {0.0, NAN, 0.0}, dfdy[9], dfdt[3], dydt[3];
     tribo_system *sys = oscillator(TRIBO_QUINN, 1.0, 1.0);
-    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    const gsl_odeiv2_system *ode = tribo_gsl_system(sys);
     ck_assert_int_ne(ode->jacobian(0.0, y, dfdy, dfdt, ode->params), GSL_SUCCESS);
     ck_assert_int_ne(ode->function(0.0, y, dydt, ode->params), GSL_SUCCESS);
     tribo_system_destroy(sys);

@@ -126,7 +126,7 @@ TEST(star)
     }
     y[0] = 3.0;
     assert_ok(sparse_system(&sys, mass, NULL, stiffness, direction, 0, NULL, 0));
-    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    const gsl_odeiv2_system *ode = tribo_gsl_system(sys);
     ck_assert_int_eq(ode->function(0.0, y, rate, ode->params), GSL_SUCCESS);
     assert_exact(rate[SIZE], pull / 2.0);
     for (size_t i = 1; i < SIZE; i++) {

@@ -1,13 +1,14 @@
 /* A structure without contacts is one like others: every method moves it, and answers for friction that there is none. */
 #include "make.h"
 #include "run.h"
+#include "set_up_driver.h"
 
 #include <string.h>
 
 /* x'' + x = 0.5 cos 0.7t, from x = 1. */
 TEST(moves_freely)
 {
-    const char *method = tribo_method_name(_i);
+    const char *method = any_method_name(_i);
     const int exact = strcmp(method, "exact") == 0 || strcmp(method, "auto") == 0, fixed = strstr(method, "/fixed") != NULL;
     const double one = 1.0, load = 0.5, t1 = 10.0, a = 0.5 / (1.0 - 0.49);
     double y[3] = {1.0, 0.0, 0.0}, none = 7.0;

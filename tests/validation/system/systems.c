@@ -13,7 +13,7 @@ static tribo_context *widen(tribo_system *sys, double epsilon)
 
 static void rate_of(tribo_system *sys, double t, const double *y, double *dydt)
 {
-    const gsl_odeiv2_system *ode = tribo_system_odeiv2(sys);
+    const gsl_odeiv2_system *ode = tribo_gsl_system(sys);
     ck_assert_int_eq(ode->function(t, y, dydt, ode->params), GSL_SUCCESS);
 }
 
@@ -207,13 +207,13 @@ TEST(sizes)
     ck_assert_uint_eq(tribo_system_ndof(sys), 7);
     ck_assert_uint_eq(tribo_system_ncontact(sys), 7);
     ck_assert_uint_eq(tribo_system_dimension(sys), 15);
-    ck_assert_uint_eq(tribo_system_odeiv2(sys)->dimension, 15);
+    ck_assert_uint_eq(tribo_gsl_system(sys)->dimension, 15);
     tribo_system_destroy(sys);
     ck_assert_uint_eq(tribo_system_ndof(NULL), 0);
     ck_assert_uint_eq(tribo_system_ncontact(NULL), 0);
     ck_assert_uint_eq(tribo_system_dimension(NULL), 0);
     ck_assert_ptr_null(tribo_system_context(NULL));
-    ck_assert_ptr_null(tribo_system_odeiv2(NULL));
+    ck_assert_ptr_null(tribo_gsl_system(NULL));
     tribo_system_destroy(NULL);
 }
 

@@ -1,16 +1,13 @@
-/* The methods that choose their steps: the loop in which GSL's steppers try steps, and their errors decide whether these are
- * taken. */
+/* The methods that choose their steps: the loop in which a stepper tries steps, and their errors decide whether these are taken. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
-
-#include "dynamics/driver.h"
-#include "gsl_step.h"
-#include "dynamics/reduce/spectrum.h"
 #include "common/real.h"
+#include "common/zeros.h"
+#include "dynamics/driver.h"
+#include "dynamics/reduce/spectrum.h"
 
 /* While all contacts rest, nothing moves, and an estimate sees no error however long the step: this long in terms of the
  * fastest motion of structure and loads it may be. */
@@ -29,8 +26,10 @@
 #define HEADWAY 1e-3
 
 struct adaptive {
-    const struct gsl_step_kind *kind;
-    struct gsl_step *step;
+    tribo_stepper stepper;
+    void *data;                     /* the stepper's own */
+    int owned;                      /* the driver destroys the stepper */
+    struct method method;           /* of the stepper's name */
     double h;                       /* the next step */
     double span;                    /* of the advance */
     double since;                   /* when the count began of */
@@ -49,8 +48,10 @@ struct adaptive {
 static void destroy(tribo_driver *drv)
 {
     struct adaptive *a = drv->own;
-    if (a) {
-        tribo_gsl_step_destroy(a->step);
+    if (a && a->owned) {
+        if (a->stepper.destroy) {
+            a->stepper.destroy(a->data);
+        }
         free(a->memory);
         free(a);
     }
@@ -58,26 +59,16 @@ static void destroy(tribo_driver *drv)
 
 static int create(tribo_driver *drv)
 {
-    const size_t n = tribo_system_dimension(drv->sys), c = drv->sys->ncontact;
-    struct adaptive *a = calloc(1, sizeof *a);
-    if (a) {
-        drv->own = a;
-        a->kind = drv->method->with;
-        a->step = tribo_gsl_step_create(a->kind, drv->sys);
-        a->memory = malloc((4 * n + 2 * c) * sizeof *a->memory);
-    }
-    if (!a || !a->step || !a->memory) {
-        return tribo_system_fail(drv->sys, TRIBO_ERR_MEMORY, "out of memory for method %s", drv->method->name);
-    }
-    a->to = a->memory;
-    a->error = a->memory + n;
-    a->tolerance = a->memory + 2 * n;
-    a->cap = a->memory + 3 * n;
-    a->band = a->memory + 4 * n;
-    a->rate = a->band + c;
     drv->abstol = ABSTOL;
     drv->reltol = RELTOL;
     return TRIBO_OK;
+}
+
+static void restart(const struct adaptive *a)
+{
+    if (a->stepper.restart) {
+        a->stepper.restart(a->data);
+    }
 }
 
 /* What the contacts ask of velocities and steps, with the limits that they have. */
@@ -119,7 +110,7 @@ static void find_bands(struct adaptive *a, tribo_system *sys)
 }
 
 /* Brings all that up to date that follows from the system. */
-static int gsl_prepare(struct adaptive *a, tribo_driver *drv)
+static int adaptive_prepare(struct adaptive *a, tribo_driver *drv)
 {
     tribo_system *sys = drv->sys;
     const size_t revision = tribo_system_revision(sys);
@@ -142,20 +133,20 @@ static int gsl_prepare(struct adaptive *a, tribo_driver *drv)
 
 /* The longest step from here, sys->v being the velocities of the contacts: where one is about to stick, an explicit method jumps
  * about in its band if a step is longer than is stable, and now and then its estimate happens to see nothing. */
-static double gsl_longest(const struct adaptive *a, const tribo_driver *drv)
+static double adaptive_longest(const struct adaptive *a, const tribo_driver *drv)
 {
     const tribo_system *sys = drv->sys;
     double h = drv->max_step > 0.0 ? drv->max_step : a->largest;
-    for (size_t i = 0; !a->kind->matrices && i < sys->ncontact; i++) {
-        if (fabs(sys->v[i]) <= a->band[i] && a->rate[i] * h > a->kind->stable) {
-            h = a->kind->stable / a->rate[i];
+    for (size_t i = 0; a->stepper.stable > 0.0 && i < sys->ncontact; i++) {
+        if (fabs(sys->v[i]) <= a->band[i] && a->rate[i] * h > a->stepper.stable) {
+            h = a->stepper.stable / a->rate[i];
         }
     }
     return h;
 }
 
 /* The largest error in terms of the tolerance; infinite if something is not finite. */
-static double gsl_size_of(const struct adaptive *a, size_t n)
+static double adaptive_size_of(const struct adaptive *a, size_t n)
 {
     double most = 0.0;
     for (size_t i = 0; i < n; i++) {
@@ -167,13 +158,27 @@ static double gsl_size_of(const struct adaptive *a, size_t n)
     return most;
 }
 
-/* Why a step failed however short it was. */
-static int gsl_give_up(tribo_driver *drv, int gsl_status, double t, double h, double size)
+/* 1 if a shorter step may succeed where one has failed with status. */
+static int may_be_shorter(int status)
 {
-    if (gsl_status && drv->sys->status) {
-        return tribo_driver_explain(drv, t, h);
+    return status == TRIBO_ERR_STEP || status == TRIBO_ERR_NO_CONVERGENCE || status == TRIBO_ERR_NOT_FINITE;
+}
+
+/* Says why a step of h from t failed with status: in the stepper, or in an evaluation of the system. */
+static int say_why(tribo_driver *drv, int status, double t, double h)
+{
+    return drv->sys->status == status ? tribo_driver_explain(drv, t, h)
+                                      : tribo_driver_fail(drv, status, "at t = %.17g, in a step of %g: %s", t, h,
+                                                          tribo_strerror(status));
+}
+
+/* Why a step failed however short it was. */
+static int adaptive_give_up(tribo_driver *drv, int status, double t, double h, double size)
+{
+    if (status == TRIBO_ERR_NOT_FINITE) {
+        return say_why(drv, status, t, h);
     }
-    if (gsl_status) {
+    if (status) {
         return tribo_driver_fail(drv, TRIBO_ERR_STEP,
                                  "step from t = %.17g failed down to %g: the implicit equations have no solution", t, h);
     }
@@ -184,7 +189,7 @@ static int gsl_give_up(tribo_driver *drv, int gsl_status, double t, double h, do
 /* How many times longer the next step is: as GSL's control has it, none is changed for little. */
 static double next_step(const struct adaptive *a, double size)
 {
-    const double order = tribo_gsl_step_order(a->step);
+    const double order = a->stepper.order(a->data);
     if (size > 1.0) {
         return clamp(0.9 * pow(size, -1.0 / order), 0.2, 0.9);
     }
@@ -196,17 +201,19 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
 {
     struct adaptive *a = drv->own;
     const size_t n = tribo_system_dimension(drv->sys);
-    a->h = lesser(a->h, gsl_longest(a, drv));
+    a->h = lesser(a->h, adaptive_longest(a, drv));
     for (;;) {
         const double left = end - *t, h = a->h >= left ? left : lesser(a->h, 0.5 * left); /* no tiny rest */
         if (!(*t + h > *t)) {
             return tribo_driver_fail(drv, TRIBO_ERR_STEP, "at t = %.17g the step is down to %g", *t, h);
         }
-        const int status = tribo_gsl_step_try(a->step, *t, h, y, drv->slope, a->tolerance, a->rate, a->to, a->error);
-        if (status == GSL_EBADFUNC) {
-            return tribo_driver_explain(drv, *t, h);
+        const tribo_trial trial = {sizeof trial, *t, h, y, drv->slope, a->tolerance, a->rate, a->to, a->error};
+        drv->sys->status = TRIBO_OK;
+        const int status = a->stepper.step(&trial, a->data);
+        if (status && !may_be_shorter(status)) {
+            return say_why(drv, status, *t, h);
         }
-        const double size = status ? HUGE_VAL : gsl_size_of(a, n);
+        const double size = status ? HUGE_VAL : adaptive_size_of(a, n);
         if (size <= 1.0) {
             const double next = next_step(a, size) * h;
             a->h = h == a->h ? next : greater(a->h, next);
@@ -224,7 +231,7 @@ static int advance_step(tribo_driver *drv, double *t, double end, double *y)
         }
         a->h = h * (isfinite(size) ? next_step(a, size) : 0.25);
         if (a->h < DBL_EPSILON * greater(fabs(*t), a->span)) {
-            return gsl_give_up(drv, status, *t, a->h, size);
+            return adaptive_give_up(drv, status, *t, a->h, size);
         }
     }
 }
@@ -235,7 +242,7 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
     struct adaptive *a = drv->own;
     int law;
     tribo_get_law(drv->sys->contacts, &law);
-    if ((a->kind->takes_slope || law == TRIBO_QUINN_REVERSAL) && tribo_system_begin_step(drv->sys, t, y, drv->slope)) {
+    if ((a->stepper.takes_slope || law == TRIBO_QUINN_REVERSAL) && tribo_system_begin_step(drv->sys, t, y, drv->slope)) {
         return tribo_driver_explain(drv, t, a->h);
     }
     if (tribo_system_limits_vary(drv->sys)) {
@@ -262,9 +269,9 @@ static int begin_step(tribo_driver *drv, double t, const double *y)
 static int advance(tribo_driver *drv, double *t, double t1, double *y, int continues)
 {
     struct adaptive *a = drv->own;
-    int status = gsl_prepare(a, drv);
+    int status = adaptive_prepare(a, drv);
     if (!continues) {
-        tribo_gsl_step_restart(a->step);
+        restart(a);
         a->h = drv->dt > 0.0 ? drv->dt : FIRST_STEP * lesser(a->largest, t1 - *t);
     }
     a->since = *t;
@@ -275,7 +282,7 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
         status = begin_step(drv, *t, y);
         status = status ? status : advance_step(drv, t, lesser(t1, kink), y);
         if (*t == kink) {
-            tribo_gsl_step_restart(a->step);
+            restart(a);
         }
         if (!status) {
             status = tribo_driver_accept(drv, *t, y);
@@ -287,16 +294,52 @@ static int advance(tribo_driver *drv, double *t, double t1, double *y, int conti
 
 enum { TAKES_ALL = TAKES_STEP | TAKES_TOLERANCE | TAKES_MAX_STEP };
 
-#define ADAPTIVE(id)                                                                                                             \
-    const struct method tribo_method_##id = {#id, TAKES_ALL, create, destroy, advance, &tribo_kind_##id, NULL, NULL};
-ADAPTIVE(rk2)
-ADAPTIVE(rk4)
-ADAPTIVE(rkf45)
-ADAPTIVE(rkck)
-ADAPTIVE(rk8pd)
-ADAPTIVE(rk1imp)
-ADAPTIVE(rk2imp)
-ADAPTIVE(rk4imp)
-ADAPTIVE(bsimp)
-ADAPTIVE(msadams)
-ADAPTIVE(msbdf)
+static int check_stepper(const tribo_system *sys, const tribo_stepper *s)
+{
+    const char *missing = !s->name ? "name" : !s->step ? "step" : !s->order ? "order" : NULL;
+    if (s->size < sizeof *s) {
+        return tribo_system_fail(sys, TRIBO_ERR_SIZE, "stepper->size = %zu is below %zu", s->size, sizeof *s);
+    }
+    return missing ? tribo_system_fail(sys, TRIBO_ERR_NULL, "stepper->%s is NULL", missing) : TRIBO_OK;
+}
+
+int tribo_driver_create_stepper(tribo_driver **drv, tribo_system *sys, const tribo_stepper *stepper, void *data)
+{
+    if (!sys) {
+        return TRIBO_ERR_NULL;
+    }
+    if (!drv || !stepper) {
+        return tribo_system_fail(sys, TRIBO_ERR_NULL, "%s is NULL", drv ? "stepper" : "drv");
+    }
+    int status = check_stepper(sys, stepper);
+    if (status) {
+        return status;
+    }
+    const size_t n = tribo_system_dimension(sys), c = sys->ncontact;
+    struct adaptive *a = tribo_zeros(1, sizeof *a);
+    double *memory = a ? malloc((4 * n + 2 * c) * sizeof *memory) : NULL;
+    if (!memory) {
+        free(a);
+        return tribo_system_fail(sys, TRIBO_ERR_MEMORY, "out of memory for stepper %.20s", stepper->name);
+    }
+    a->stepper = *stepper;
+    a->data = data;
+    a->method = (struct method){
+        .name = stepper->name, .takes = TAKES_ALL, .create = create, .destroy = destroy, .advance = advance};
+    a->memory = memory;
+    a->to = memory;
+    a->error = memory + n;
+    a->tolerance = memory + 2 * n;
+    a->cap = memory + 3 * n;
+    a->band = memory + 4 * n;
+    a->rate = a->band + c;
+    status = tribo_driver_create_method(drv, sys, &a->method);
+    if (status) {
+        free(memory);
+        free(a);
+        return status;
+    }
+    a->owned = 1;
+    (*drv)->own = a;
+    return TRIBO_OK;
+}
