@@ -65,14 +65,12 @@ compile() {
     esac
 }
 
-# page <page>: writes its programs, a block in C to user.c, the next one to user2.c, one in Fortran to user.f if it begins in
-# column 7, else to user.f90; its CMake to user.cmake, and its lines for the shell to lines.
+# page <page>: writes its programs, a block in C to user.c, one in Fortran to user.f if it begins in column 7, else to user.f90; its
+# CMake to user.cmake, and its lines for the shell to lines.
 page() {
-    rm -f user2.c
     awk 'BEGIN { name["c"] = "user.c"; name["cmake"] = "user.cmake"; name["sh"] = "lines" }
          /^```/ { kind = substr($0, 4); on = !on; first = on; next }
          first { file = kind != "fortran" ? name[kind] : /^      / ? "user.f" : "user.f90"; first = 0
-                 if (kind == "c") name["c"] = "user2.c"
                  if (file && !(file in seen)) printf "" > file
                  seen[file] = 1 }
          on && file { print > file }' "$ROOT/$1"
@@ -110,20 +108,24 @@ follow() {
             eval "$compile"
             rests ./a.out
         done <compile.lines
-        if [ -f user2.c ]; then
-            eval "$(sed -n -e 's/--libs tribo)/--libs tribo_gsl)/' -e 's/user\.c/user2.c/p' compile.lines | head -n 1)"
-            ./a.out >out
-            grep -q '^between -0\.11634 and 0\.11634 m; friction takes 0\.38536 J a period$' out || {
-                cat out
-                say "the steady response is another one"
-                exit 1
-            }
-        fi
         [ "$(wc -l <compile.lines)" -ge 3 ] || {
             say "$page: too few lines compile something"
             exit 1
         }
     done
+    # the program for a whole structure
+    cp user.c rest.c
+    cp user.cmake rest.cmake
+    page src/dynamics/README.md
+    eval "cc user.c -o structure $(pkg-config --cflags --libs tribo_dynamics)"
+    ./structure >out
+    grep -q '^between -0\.11634 and 0\.11634 m; friction takes 0\.38536 J a period$' out || {
+        cat out
+        say "the steady response is another one"
+        exit 1
+    }
+    mv rest.c user.c
+    mv rest.cmake user.cmake
     printf '%s\n' 'cmake_minimum_required(VERSION 3.22)' 'project(user C Fortran)' 'add_executable(user user.c)' >CMakeLists.user
     rm -rf user
     mkdir user
