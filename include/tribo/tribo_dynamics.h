@@ -56,6 +56,7 @@ TRIBO_API int tribo_model_set_direction_csr(tribo_model *model, const size_t *ro
 
 /* Springs before the sliders of contacts (Jenkins, Masing): v = J q' + c f'.
  * c  [ncontact] in   1/stiffness of the spring, >= 0; 0: a rigid contact
+ * In systems each adds a degree of freedom without mass, the displacement of its slider, behind those of the model.
  * Returns TRIBO_ERR_NULL, TRIBO_ERR_NOT_FINITE, TRIBO_ERR_NEGATIVE, TRIBO_ERR_RANGE (1/c overflows), TRIBO_ERR_MEMORY. */
 TRIBO_API int tribo_model_set_compliance(tribo_model *model, const double *c);
 
