@@ -262,6 +262,37 @@ static int make_graded(tribo_system **sys, tribo_driver **drv)
     return dense_system(sys, 3, 1, mass, NULL, stiffness, direction, 2, NULL, 0);
 }
 
+/* A model of compressed rows with one elastic contact: all of it, or its modes. */
+static int make_sliders(tribo_system **sys, size_t nmode)
+{
+    const size_t row[] = {0, 2, 4}, col[] = {0, 1, 0, 1}, end[] = {0, 2, 3};
+    const double mass[] = {1.0, 2.0}, stiffness[] = {2.0, -1.0, -1.0, 2.0}, j[] = {1.0, -1.0, 1.0}, soft[] = {0.5, 0.0};
+    tribo_model *from = NULL;
+    int status = tribo_model_create(&from, 2, 2);
+    status = status ? status : tribo_model_set_mass_diagonal(from, mass);
+    status = status || nmode ? status : tribo_model_set_damping_csr(from, row, col, stiffness);
+    status = status ? status : tribo_model_set_stiffness_csr(from, row, col, stiffness);
+    status = status ? status : tribo_model_set_direction_csr(from, end, col, j);
+    status = status ? status : tribo_model_set_compliance(from, soft);
+    status = status   ? status
+             : nmode ? tribo_system_reduce(sys, from, nmode, TRIBO_STATICS_NONE)
+                     : tribo_system_create(sys, from);
+    tribo_model_destroy(from);
+    return status;
+}
+
+static int make_whole_sliders(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    return make_sliders(sys, 0);
+}
+
+static int make_reduced_sliders(tribo_system **sys, tribo_driver **drv)
+{
+    (void)drv;
+    return make_sliders(sys, 2);
+}
+
 /* A periodic motion, one of a family since a contact never slips, and what its period holds. */
 static int find_periodic(tribo_system **sys, tribo_driver **drv, const char *method)
 {
@@ -309,7 +340,9 @@ static const struct {
               {"massless", make_massless},
               {"massless coupled", make_massless_coupled},
               {"massless event", make_massless_event},
-              {"massless moreau", make_massless_moreau}};
+              {"massless moreau", make_massless_moreau},
+              {"sliders", make_whole_sliders},
+              {"reduced sliders", make_reduced_sliders}};
 
 /* Fails one allocation after the other, until there are no more. Those that make blocks smaller may fail without an error. */
 TEST(failures)

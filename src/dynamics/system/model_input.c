@@ -131,20 +131,25 @@ static int set_diagonal(struct input in, const double *entries)
     return status ? status : take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
 }
 
-/* Compressed rows that begin at 0 and ascend, with columns that there are. */
+/* Refuses compressed rows that do not begin at 0 and ascend, and columns beyond the last. Reads col once all of rowptr is known to
+ * ascend. */
 static int check_rows(const struct input *in, const size_t *rowptr, const size_t *col)
 {
     const struct model *m = &in->model->given;
-    for (size_t i = 0; i <= in->rows; i++) {
-        const size_t least = i ? rowptr[i - 1] : 0;
-        if (rowptr[i] < least || rowptr[0] != 0) {
-            return i ? tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] is below %zu, the one before", in->name, i, least)
-                     : tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[0] is not 0", in->name);
+    if (rowptr[0] != 0) {
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[0] = %zu is not 0", in->name, rowptr[0]);
+    }
+    for (size_t i = 1; i <= in->rows; i++) {
+        if (rowptr[i] < rowptr[i - 1]) {
+            return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is below rowptr[%zu] = %zu", in->name, i,
+                                    rowptr[i], i - 1, rowptr[i - 1]);
         }
-        for (size_t k = least; k < rowptr[i]; k++) {
+    }
+    for (size_t i = 0; i < in->rows; i++) {
+        for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
             if (col[k] >= m->ndof) {
-                return tribo_model_fail(m, TRIBO_ERR_RANGE, "%s: col[%zu] is not below %zu, the number of columns", in->name, k,
-                                        m->ndof);
+                return tribo_model_fail(m, TRIBO_ERR_RANGE, "%s: col[%zu] = %zu, in row %zu, is not below %zu, the columns",
+                                        in->name, k, col[k], i, m->ndof);
             }
         }
     }

@@ -35,7 +35,7 @@ static int add_spring(struct model *m, size_t i, size_t w)
 {
     const struct matrix *j = &m->direction;
     const size_t first = j->first[i], n = j->first[i + 1] - first + 1;
-    size_t *row = malloc(2 * n * n * sizeof *row), *col = row + n * n;
+    size_t *row = malloc(2 * n * n * sizeof *row), *col = row ? row + n * n : NULL;
     double *val = malloc(n * n * sizeof *val);
     struct matrix spring = {0}, sum = {0};
     for (size_t a = 0; row && val && a < n; a++) {
@@ -64,7 +64,7 @@ static int move_contacts(struct model *m, size_t w)
 {
     const struct matrix *j = &m->direction;
     const size_t room = j->first[j->rows] + j->rows + 1;
-    size_t *row = malloc(2 * room * sizeof *row), *col = row + room, count = 0;
+    size_t *row = malloc(2 * room * sizeof *row), *col = row ? row + room : NULL, count = 0;
     double *val = malloc(room * sizeof *val);
     for (size_t i = 0; row && val && i < j->rows; i++) {
         const int elastic = m->compliance[i] > 0.0;

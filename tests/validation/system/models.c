@@ -104,7 +104,8 @@ TEST(set_again)
 
 TEST(errors)
 {
-    const size_t backward[] = {0, 2, 1, 3}, late[] = {1, 2, 3, 4}, far[] = {0, 1, 7}, twice[] = {1, 1, 0, 2, 1, 2, 1};
+    const size_t backward[] = {0, 2, 1, 3}, late[] = {1, 2, 3, 4}, far[] = {0, 1, 7},
+                 leap[] = {0, (size_t)1 << 40, 2, 3}, twice[] = {1, 1, 0, 2, 1, 2, 1};
     const double inf[N * N] = {1.0, 0.0, 0.0, 0.0, 1.0, INFINITY, 0.0, 0.0, 1.0},
                          skew[N * N] = {1.0, 2.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0};
     const double negative[C] = {0.0, -1.0}, tiny[C] = {1e-310, 0.0};
@@ -124,9 +125,10 @@ TEST(errors)
     REFUSED(tribo_model_set_stiffness_csr(model, row, NULL, val), TRIBO_ERR_NULL, "stiffness: col is NULL");
     REFUSED(tribo_model_set_stiffness_csr(model, row, col, NULL), TRIBO_ERR_NULL, "stiffness: val is NULL");
     REFUSED(tribo_model_set_stiffness(model, inf), TRIBO_ERR_NOT_FINITE, "stiffness[1][2] = inf is not finite");
-    REFUSED(tribo_model_set_mass_csr(model, backward, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[2] is below 2");
-    REFUSED(tribo_model_set_mass_csr(model, late, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[0] is not 0");
-    REFUSED(tribo_model_set_mass_csr(model, mass_row, far, mass), TRIBO_ERR_RANGE, "mass: col[2] is not below 3");
+    REFUSED(tribo_model_set_mass_csr(model, backward, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[2] = 1 is below rowptr[1] = 2");
+    REFUSED(tribo_model_set_mass_csr(model, leap, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[2] = 2 is below rowptr[1]");
+    REFUSED(tribo_model_set_mass_csr(model, late, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[0] = 1 is not 0");
+    REFUSED(tribo_model_set_mass_csr(model, mass_row, far, mass), TRIBO_ERR_RANGE, "mass: col[2] = 7, in row 2, is not below 3");
     REFUSED(tribo_model_set_stiffness_csr(model, row, twice, val), TRIBO_ERR_DUPLICATE, "stiffness[0][1] is given twice");
     REFUSED(tribo_model_set_compliance(model, NULL), TRIBO_ERR_NULL, "compliance is NULL");
     REFUSED(tribo_model_set_compliance(model, negative), TRIBO_ERR_NEGATIVE, "compliance[1] = -1 is negative");
