@@ -131,13 +131,13 @@ static int set_diagonal(struct input in, const double *entries)
     return status ? status : take(&in, &a, tribo_matrix_diagonal(&a, in.rows, entries));
 }
 
-/* Refuses compressed rows that do not begin at 0 and ascend, and columns beyond the last. Reads col once all of rowptr is known to
- * ascend. */
+/* Refuses compressed rows that do not begin at 0 and ascend, and columns beyond the last. Reads col after all of
+ * rowptr. */
 static int check_rows(const struct input *in, const size_t *rowptr, const size_t *col)
 {
     const struct model *m = &in->model->given;
     if (rowptr[0] != 0) {
-        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[0] = %zu is not 0", in->name, rowptr[0]);
+        return tribo_model_fail(m, TRIBO_ERR_SIZE, "%s: rowptr[%zu] = %zu is not 0", in->name, (size_t)0, rowptr[0]);
     }
     for (size_t i = 1; i <= in->rows; i++) {
         if (rowptr[i] < rowptr[i - 1]) {
@@ -148,8 +148,8 @@ static int check_rows(const struct input *in, const size_t *rowptr, const size_t
     for (size_t i = 0; i < in->rows; i++) {
         for (size_t k = rowptr[i]; k < rowptr[i + 1]; k++) {
             if (col[k] >= m->ndof) {
-                return tribo_model_fail(m, TRIBO_ERR_RANGE, "%s: col[%zu] = %zu, in row %zu, is not below %zu, the columns",
-                                        in->name, k, col[k], i, m->ndof);
+                return tribo_model_fail(m, TRIBO_ERR_RANGE, "%s: col[%zu] = %zu is not below %zu, the number of columns",
+                                        in->name, k, col[k], m->ndof);
             }
         }
     }

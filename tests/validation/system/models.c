@@ -128,7 +128,7 @@ TEST(errors)
     REFUSED(tribo_model_set_mass_csr(model, backward, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[2] = 1 is below rowptr[1] = 2");
     REFUSED(tribo_model_set_mass_csr(model, leap, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[2] = 2 is below rowptr[1]");
     REFUSED(tribo_model_set_mass_csr(model, late, mass_col, mass), TRIBO_ERR_SIZE, "mass: rowptr[0] = 1 is not 0");
-    REFUSED(tribo_model_set_mass_csr(model, mass_row, far, mass), TRIBO_ERR_RANGE, "mass: col[2] = 7, in row 2, is not below 3");
+    REFUSED(tribo_model_set_mass_csr(model, mass_row, far, mass), TRIBO_ERR_RANGE, "mass: col[2] = 7 is not below 3");
     REFUSED(tribo_model_set_stiffness_csr(model, row, twice, val), TRIBO_ERR_DUPLICATE, "stiffness[0][1] is given twice");
     REFUSED(tribo_model_set_compliance(model, NULL), TRIBO_ERR_NULL, "compliance is NULL");
     REFUSED(tribo_model_set_compliance(model, negative), TRIBO_ERR_NEGATIVE, "compliance[1] = -1 is negative");
