@@ -5,7 +5,7 @@
 !> since t = 0: 2*ndof + 1 values.
 !>
 !>     use tribo
-!>     use tribo_gsl
+!>     use tribo_dynamics
 !>     type(tribo_system) :: chain
 !>     type(tribo_driver) :: driver
 !>     call chain%chain(20, limit=0.1_dp, alpha=1.0_dp, omega=0.5_dp)
@@ -17,7 +17,7 @@
 !> driver puts it in the place of the one before, and leaves that if it fails. Systems and drivers cannot be copied: an assignment
 !> stops the program. A driver keeps its system alive: it goes on working when the variable has gone.
 !>
-!> Programs use module tribo_gsl, at the end of this file: it is what is here, and the constants of tribo_gsl.h, see
+!> Programs use module tribo_dynamics, at the end of this file: it is what is here, and the constants of tribo_gsl.h, see
 !> tribo_gsl_c.f90.
 !>
 !> GSL is under the GPL, and so is what is linked with libtribo_gsl.
@@ -1636,10 +1636,17 @@ contains
   end function borrowed
 end module tribo_systems
 
-!> What programs use: the module above, and the constants of tribo_gsl.h.
-module tribo_gsl
+!> What programs use: the module above, and the constants of tribo_dynamics.h.
+module tribo_dynamics
   use tribo_gsl_constants
   use tribo_systems
+  implicit none
+  public
+end module tribo_dynamics
+
+!> The same, with GSL's steppers among the methods: `driver%create(system, 'rkf45')`.
+module tribo_gsl
+  use tribo_dynamics
   implicit none
   public
 end module tribo_gsl

@@ -2,7 +2,7 @@
 !> spring before a slider.
 program models
   use tribo
-  use tribo_gsl
+  use tribo_dynamics
   use check
   implicit none
   integer :: stat
