@@ -6,7 +6,7 @@ set -eu
 CDPATH= cd -- "$(dirname -- "$0")/.."
 . tests/setup.sh
 
-setup gcc gfortran libc6-dev make cmake pkg-config libgsl-dev libsuitesparse-dev zlib1g-dev gnuplot-nox
+setup gcc gfortran libc6-dev make cmake pkg-config libgsl-dev liblapack-dev libsuitesparse-dev zlib1g-dev gnuplot-nox
 
 build=build/release bin=build/release/examples results=$PWD/build/results
 legacy='legacy_newmark_before legacy_newmark_after legacy_newmark_implicit legacy_rk45 legacy_fric legacy_vfric legacy_damper'
