@@ -30,31 +30,60 @@ static int enlarge(struct matrix *a, size_t n)
     return done;
 }
 
-/* Adds P'P/compliance to the stiffness, P = (row i of J, -1 at w). 0 if out of memory. */
-static int add_spring(struct model *m, size_t i, size_t w)
+/* Entries of the stiffness and of all springs, P'P/compliance with P = (row i of J, -1 at w), w from the first slider on. */
+static size_t list_springs(const struct model *m, size_t w, size_t *row, size_t *col, double *val)
 {
-    const struct matrix *j = &m->direction;
-    const size_t first = j->first[i], n = j->first[i + 1] - first + 1;
-    size_t *row = malloc(2 * n * n * sizeof *row), *col = row ? row + n * n : NULL;
-    double *val = malloc(n * n * sizeof *val);
-    struct matrix spring = {0}, sum = {0};
-    for (size_t a = 0; row && val && a < n; a++) {
-        const double x = a + 1 < n ? j->val[first + a] : -1.0;
-        for (size_t b = 0; b < n; b++) {
-            const double y = b + 1 < n ? j->val[first + b] : -1.0;
-            row[a * n + b] = a + 1 < n ? j->col[first + a] : w;
-            col[a * n + b] = b + 1 < n ? j->col[first + b] : w;
-            val[a * n + b] = x * y / m->compliance[i];
+    const struct matrix *k = &m->stiffness, *j = &m->direction;
+    size_t count = 0;
+    for (size_t i = 0; i < k->rows; i++) {
+        for (size_t e = k->first[i]; e < k->first[i + 1]; e++) {
+            row[count] = i;
+            col[count] = k->col[e];
+            val[count++] = k->val[e];
         }
     }
-    const int done = row && val && replace(&spring, m->ndof, m->ndof, n * n, row, col, val) &&
-                     tribo_matrix_sum(&sum, 1.0, &m->stiffness, 1.0, &spring);
-    if (done) {
-        tribo_matrix_free(&m->stiffness);
-        m->stiffness = sum;
+    for (size_t i = 0; i < m->ncontact; i++) {
+        const size_t first = j->first[i], last = j->first[i + 1];
+        for (size_t a = first; m->compliance[i] > 0.0 && a <= last; a++) {
+            for (size_t b = first; b <= last; b++) {
+                row[count] = a < last ? j->col[a] : w;
+                col[count] = b < last ? j->col[b] : w;
+                val[count++] = (a < last ? j->val[a] : -1.0) * (b < last ? j->val[b] : -1.0) / m->compliance[i];
+            }
+        }
+        w += m->compliance[i] > 0.0;
     }
-    tribo_matrix_free(&spring);
+    return count;
+}
+
+/* Adds all springs to the stiffness. 0 if out of memory. */
+static int add_springs(struct model *m, size_t w)
+{
+    const struct matrix *j = &m->direction;
+    struct matrix all = {0};
+    size_t room = m->stiffness.first[m->stiffness.rows] + 1, count = 0;
+    for (size_t i = 0; i < m->ncontact; i++) {
+        const size_t n = j->first[i + 1] - j->first[i] + 1;
+        room += m->compliance[i] > 0.0 ? n * n : 0;
+    }
+    size_t *row = malloc(room * sizeof *row), *col = malloc(room * sizeof *col);
+    double *val = malloc(room * sizeof *val);
+    int done = row && col && val;
+    done = done && replace(&all, m->ndof, m->ndof, list_springs(m, w, row, col, val), row, col, val);
+    for (size_t i = 0; done && i < m->ndof; i++) { /* entries of one place stand side by side */
+        for (size_t e = all.first[i]; e < all.first[i + 1]; e++) {
+            const int again = e > all.first[i] && all.col[e] == all.col[e - 1];
+            count -= (size_t)again;
+            row[count] = i;
+            col[count] = all.col[e];
+            val[count] = (again ? val[count] : 0.0) + all.val[e];
+            count++;
+        }
+    }
+    done = done && replace(&m->stiffness, m->ndof, m->ndof, count, row, col, val);
+    tribo_matrix_free(&all);
     free(row);
+    free(col);
     free(val);
     return done;
 }
@@ -97,10 +126,5 @@ int tribo_model_add_sliders(struct model *m)
     m->ndof += m->sliders;
     int done =
         enlarge(&m->mass, m->ndof) && enlarge(&m->stiffness, m->ndof) && (!m->damping.rows || enlarge(&m->damping, m->ndof));
-    for (size_t i = 0, w = n; done && i < m->ncontact; i++) {
-        if (m->compliance[i] > 0.0) {
-            done = add_spring(m, i, w++);
-        }
-    }
-    return done && move_contacts(m, n) ? TRIBO_OK : tribo_model_no_memory(m);
+    return done && add_springs(m, n) && move_contacts(m, n) ? TRIBO_OK : tribo_model_no_memory(m);
 }
