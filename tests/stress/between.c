@@ -94,7 +94,7 @@ static int apply(tribo_system *sys, const struct change *c)
     case LOAD_TABLE:
         return tribo_system_add_load_table(sys, KNOTS, c->time, c->x, c->y);
     default:
-        return tribo_system_set_limit_table(sys, c->kind == LIMIT_TABLE ? KNOTS : 0, c->time, c->x);
+        return c->kind == LIMIT_TABLE ? tribo_system_set_limit_table(sys, KNOTS, c->time, c->x) : tribo_system_clear_limits(sys);
     }
 }
 

@@ -131,6 +131,12 @@ static void check(const struct scene *s, int status)
     demand(strcmp(tribo_strerror(status), tribo_strerror(-1)) != 0, "status %d is unknown", status);
 }
 
+/* A call on the context that the system lends. */
+static void check_setting(const tribo_context *c, int status)
+{
+    demand(status == TRIBO_OK || tribo_message(c)[0] != '\0', "status %d without a message", status);
+}
+
 static void destroy_scene(struct scene *s)
 {
     for (size_t k = 0; k < DRIVERS; k++) {
@@ -250,28 +256,28 @@ static void set(struct bytes *b, struct scene *s)
     s->wild |= wild(x, MOST_CONTACTS);
     switch (choose(b, 8)) {
     case 0:
-        check(s, tribo_set_limit(c, x));
+        check_setting(c, tribo_set_limit(c, x));
         break;
     case 1:
-        check(s, tribo_set_limit_all(c, x[0]));
+        check_setting(c, tribo_set_limit_all(c, x[0]));
         break;
     case 2:
-        check(s, tribo_set_epsilon(c, x));
+        check_setting(c, tribo_set_epsilon(c, x));
         break;
     case 3:
-        check(s, tribo_set_epsilon_all(c, 0.1 * x[0]));
+        check_setting(c, tribo_set_epsilon_all(c, 0.1 * x[0]));
         break;
     case 4:
-        check(s, tribo_set_epsilon_step(c, x[0], x[1]));
+        check_setting(c, tribo_set_epsilon_step(c, x[0], x[1]));
         break;
     case 5:
-        check(s, tribo_set_law(c, (int)choose(b, 8) - 1));
+        check_setting(c, tribo_set_law(c, (int)choose(b, 8) - 1));
         break;
     case 6:
-        check(s, tribo_set_coupling(c, (int)choose(b, 4) - 1));
+        check_setting(c, tribo_set_coupling(c, (int)choose(b, 4) - 1));
         break;
     default:
-        check(s, tribo_set_sharing(c, (int)choose(b, 4) - 1));
+        check_setting(c, tribo_set_sharing(c, (int)choose(b, 4) - 1));
         break;
     }
 }

@@ -539,7 +539,7 @@ TEST(automatic)
 /* What a system does, with any method, changes nothing in the context that it lends; errors of the system leave no message there. */
 TEST(lent_context)
 {
-    const char *method = tribo_method_name(_i);
+    const char *method = any_method_name(_i);
     double y[3] = {0.0, 0.3, 0.0}, t = 0.0, limit, bad = NAN;
     signed char slip = 9;
     size_t before, after, stuck;
