@@ -205,7 +205,8 @@ void write_history(const struct tables *t, struct worker *w, const struct motion
     tribo_driver *marcher = w->drv ? NULL : create_marcher(w, m->limit, m->hz), *drv = marcher ? marcher : w->drv;
     if (!marcher) {
         set_point(w, m->limit, m->hz);
-        /* what sticks has velocities that are rounding, to be told from those of what slides */
+        /* contacts that stick have velocities of rounding size: a law with a band around v = 0 sees them stick */
+        need(tribo_set_law(contacts, TRIBO_QUINN), tribo_message(contacts));
         const double size = fmax(m->amplitude, 1e-6 * free_amplitude(d, TURN * m->hz));
         need(tribo_set_epsilon_all(contacts, 1e-8 * TURN * m->hz * size), tribo_message(contacts));
     }

@@ -14,6 +14,28 @@
 #define READ_BEAM "--read " BEAM "/beam.txt"
 #define READ_FAMILY "--read " BEAM "/family.txt --name damper --drive 25:45:6 --limits 0.1:10:3 --check 1"
 
+/* How many instants of a table of three periods show contact 1 at rest, with a force below the limit. */
+static size_t instants_at_rest(const char *name, double limit)
+{
+    char *text = NULL;
+    size_t length = 0, count = 0;
+    double cycle, t, x, v, f;
+    int slip;
+    FILE *file = fopen(name, "r");
+    require(file && fseek(file, 0, SEEK_END) == 0, "there is no %s", name);
+    length = (size_t)ftell(file);
+    rewind(file);
+    text = calloc(length + 1, 1);
+    require(text && fread(text, 1, length, file) == length, "cannot read %s", name);
+    fclose(file);
+    for (char *line = strchr(text, '\n'); line && line[1]; line = strchr(line + 1, '\n')) {
+        require(sscanf(line, "%lf,%lf,%lf,%lf,%lf,%d", &cycle, &t, &x, &v, &f, &slip) == 6, "%.40s", line);
+        count += slip == 0 && fabs(f) < 0.999 * limit;
+    }
+    free(text);
+    return count;
+}
+
 /* Without friction and with all contacts stuck the motion is known; so is about how much friction takes at best: half of what the
  * load puts in. Marching agrees to what its step allows. */
 TEST(beam)
@@ -29,6 +51,9 @@ TEST(beam)
     assert_close(value_of("damper.best.power"), value_of("damper.best.power.balance"), 1e-4 * 24.0);
     assert_close(value_of("damper.check.amplitude"), 0.0, 1e-4);
     assert_exact(value_of("damper.gaps"), 0.0);
+    /* at three times the best limit contacts rest for a part of each period */
+    const size_t rest = instants_at_rest("damper-sticking.csv", 3.0 * value_of("damper.best.limit"));
+    require(rest > 500 && rest < 2900, "contact 1 rests at %zu of 3001 instants", rest);
 }
 END_TEST
 
